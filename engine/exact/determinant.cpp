@@ -1,0 +1,82 @@
+#include "exact/determinant.h"
+
+#include <cmath>
+
+namespace radar::exact {
+
+namespace {
+
+// Twofold: two products of 7 u^2 and three sums of 3 u^2 make 23 u^2; differences are exact.
+constexpr double kFineRelative = 0x1p-99;
+thread_local uint64_t decisions = 0;
+
+}  // namespace
+
+uint64_t exactDecisions() {
+  return decisions;
+}
+
+void countExactDecision() {
+  ++decisions;
+}
+
+Estimate estimate(const Determinant& d) {
+  const Vec w = rounded(d.w);
+  return estimate(w, rounded(d.x), rounded(d.y), underflowOf(w));
+}
+
+FineEstimate fineEstimate(const Determinant& d) {
+  Twofold w[3], x[3], y[3];
+  for (int k = 0; k < 3; ++k) {
+    w[k] = difference(d.w.to[k], d.w.from[k]);
+    x[k] = difference(d.x.to[k], d.x.from[k]);
+    y[k] = difference(d.y.to[k], d.y.from[k]);
+  }
+  Twofold value;
+  double magnitude = 0, size = 1;
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    const Twofold p = x[i] * y[j], q = x[j] * y[i];
+    value = value + w[k] * (p - q);
+    magnitude += std::abs(w[k].high) * (std::abs(p.high) + std::abs(q.high));
+    size += std::abs(w[k].high);
+  }
+  return {value, kFineRelative * magnitude + kUnderflow * size};
+}
+
+namespace {
+
+Dyadic component(const Difference& v, int k) {
+  return Dyadic(v.to[k]) - Dyadic(v.from[k]);
+}
+
+}  // namespace
+
+Dyadic exactly(const Determinant& d) {
+  Dyadic value;
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    const Dyadic w = component(d.w, k);
+    if (w.sign() == 0) continue;
+    const Dyadic minor = component(d.x, i) * component(d.y, j) - component(d.x, j) * component(d.y, i);
+    value = value + w * minor;
+  }
+  return value;
+}
+
+int sign(const Determinant& d) {
+  const Estimate rough = estimate(d);
+  if (std::abs(rough.value) > rough.error) return signOf(rough.value);
+  countExactDecision();
+  return exactly(d).sign();
+}
+
+int crossSign(const Difference& v, const Difference& w, int axis) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const double p = (v.to[i] - v.from[i]) * (w.to[j] - w.from[j]), q = (v.to[j] - v.from[j]) * (w.to[i] - w.from[i]);
+  if (std::abs(p - q) > kRelative * (std::abs(p) + std::abs(q)) + kUnderflow) return signOf(p - q);
+  countExactDecision();
+  return (component(v, i) * component(w, j) - component(v, j) * component(w, i)).sign();
+}
+
+}  // namespace radar::exact

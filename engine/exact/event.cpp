@@ -1,0 +1,227 @@
+#include "exact/event.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "exact/determinant.h"
+
+namespace radar::exact {
+
+namespace {
+
+constexpr double kUnit = 0x1p-53;
+constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+
+Determinant numerator(const Event& e) {
+  return {{e.from, e.to}, {e.x0, e.x1}, {e.y0, e.y1}};
+}
+
+Determinant denominator(const Event& e) {
+  return {{kOrigin, e.direction}, {e.x0, e.x1}, {e.y0, e.y1}};
+}
+
+/// Fills in the parameter. With num = n + dn, den = d + dd: n/d - num/den = (dn - (n/d) dd) / -den.
+Event evaluated(Event e) {
+  const Estimate num = estimate(numerator(e)), den = estimate(denominator(e));
+  e.s = num.value / den.value;
+  const double sure = std::abs(den.value) - den.error;
+  e.error = sure > 0 ? (1 + 8 * kUnit) * ((num.error + std::abs(e.s) * den.error) / sure + 2 * kUnit * std::abs(e.s)) +
+                           4 * kLeast
+                     : std::numeric_limits<double>::infinity();
+  return e;
+}
+
+Vec unit(int axis) {
+  Vec v{};
+  v[axis % 3] = 1;
+  return v;
+}
+
+struct FineParameter {
+  Twofold s;
+  double error;
+};
+
+/// The parameter as a twofold: one step of long division. Its own error is below 2^-102 |s|.
+FineParameter fineParameter(const Event& e) {
+  const FineEstimate num = fineEstimate(numerator(e)), den = fineEstimate(denominator(e));
+  const double first = num.value.high / den.value.high;
+  const Twofold rest = num.value - Twofold{first, 0} * den.value;
+  const Twofold s = quickSum(first, rest.high / den.value.high);
+  const double sure = std::abs(den.value.high) * (1 - 2 * kUnit) - den.error, size = std::abs(s.high);
+  const double error =
+      sure > 0 ? (1 + 8 * kUnit) * ((num.error + size * den.error) / sure) + 0x1p-100 * size + 0x1p-1000 : INFINITY;
+  return {s, error};
+}
+
+}  // namespace
+
+Event vertexFace(const Vec& direction, const Vec& a, const Triangle& b) {
+  Triangle f = b;
+  std::sort(f.begin(), f.end());
+  return evaluated({Kind::vertexFace, direction, a, f[0], f[0], f[1], f[0], f[2]});
+}
+
+Event faceVertex(const Vec& direction, const Triangle& a, const Vec& b) {
+  Triangle f = a;
+  std::sort(f.begin(), f.end());
+  return evaluated({Kind::faceVertex, direction, f[0], b, f[0], f[1], f[0], f[2]});
+}
+
+Event edgeEdge(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b0, const Vec& b1) {
+  const auto [p0, p1] = std::minmax(a0, a1);
+  const auto [q0, q1] = std::minmax(b0, b1);
+  return evaluated({Kind::edgeEdge, direction, p0, q0, p0, p1, q0, q1});
+}
+
+Event vertexEdge(const Vec& direction, const Vec& a, const Vec& b0, const Vec& b1, int axis) {
+  const auto [q0, q1] = std::minmax(b0, b1);
+  return evaluated({Kind::vertexEdge, direction, a, q0, q0, q1, kOrigin, unit(axis)});
+}
+
+Event edgeVertex(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b, int axis) {
+  const auto [p0, p1] = std::minmax(a0, a1);
+  return evaluated({Kind::edgeVertex, direction, p0, b, p0, p1, kOrigin, unit(axis)});
+}
+
+Event vertexVertex(const Vec& direction, const Vec& a, const Vec& b) {
+  int axis = 0;
+  while (direction[axis] == 0) ++axis;
+  return evaluated({Kind::vertexVertex, direction, a, b, kOrigin, unit(axis + 1), kOrigin, unit(axis + 2)});
+}
+
+bool precedes(const Event& p, const Event& q) {
+  return std::tie(p.kind, p.from, p.to, p.x0, p.x1, p.y0, p.y1) < std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1);
+}
+
+int sign(const Event& e) {
+  if (std::abs(e.s) > e.error) return signOf(e.s);
+  return sign(numerator(e)) * sign(denominator(e));
+}
+
+int compare(const Event& p, const Event& q) {
+  const double apart = p.s - q.s, margin = (1 + 8 * kUnit) * (p.error + q.error);
+  if (std::abs(apart) > margin) return signOf(apart);
+  if (!precedes(p, q) && !precedes(q, p)) return 0;
+  const FineParameter fp = fineParameter(p), fq = fineParameter(q);
+  const Twofold fine = fp.s - fq.s;
+  if (std::abs(fine.high) > (1 + 8 * kUnit) * (fp.error + fq.error)) return signOf(fine.high);
+  countExactDecision();
+  const Dyadic denP = exactly(denominator(p)), denQ = exactly(denominator(q));
+  const Dyadic difference = exactly(numerator(p)) * denQ - exactly(numerator(q)) * denP;
+  return difference.sign() * denP.sign() * denQ.sign();
+}
+
+int compareToDistance(const Event& e, double distance) {
+  const double size = std::hypot(e.direction[0], e.direction[1], e.direction[2]);
+  const double t = e.s * size, margin = (1 + 32 * kUnit) * e.error * size + 32 * kUnit * std::abs(t) + kLeast;
+  if (std::abs(t - distance) > margin) return signOf(t - distance);
+  const int side = sign(e);
+  if (side < 0) return -1;
+  if (side == 0) return distance == 0 ? 0 : -1;
+  countExactDecision();
+  const Dyadic num = exactly(numerator(e)), den = exactly(denominator(e)), end = Dyadic(distance) * den;
+  Dyadic square;
+  for (double c : e.direction) square = square + Dyadic(c) * Dyadic(c);
+  return (num * num * square - end * end).sign();
+}
+
+double parameter(const Event& e) {
+  const FineParameter fine = fineParameter(e);
+  const double below = fine.s.high + (fine.s.low - fine.error), above = fine.s.high + (fine.s.low + fine.error);
+  if (below == above) return below;
+  countExactDecision();
+  return quotient(exactly(numerator(e)), exactly(denominator(e)));
+}
+
+namespace {
+
+/// An estimate made right: the length is between the midpoints from its nearest double to the neighbours.
+double exactLength(const Vec& d, double root) {
+  Dyadic square;
+  for (double c : d) square = square + Dyadic(c) * Dyadic(c);
+  const Dyadic fourfold = square * Dyadic(4);
+  const auto isBeyond = [&](double p, double q) {  // the length, doubled, against p + q
+    const Dyadic sum = Dyadic(p) + Dyadic(q);
+    return (fourfold - sum * sum).sign();
+  };
+  for (;;) {
+    const double up = std::nextafter(root, INFINITY), down = std::nextafter(root, 0);
+    if (isBeyond(root, up) > 0) {
+      root = up;
+    } else if (isBeyond(down, root) < 0) {
+      root = down;
+    } else {
+      return root;
+    }
+  }
+}
+
+}  // namespace
+
+double length(const Vec& d) {
+  const double root = std::hypot(d[0], d[1], d[2]);
+  if (!std::isfinite(root)) return root;
+  if (root < 0x1p-400 || root > 0x1p400) return exactLength(d, root);
+  Twofold square;
+  for (double c : d) square = square + product(c, c);
+  // |d| - root = (|d|^2 - root^2) / (|d| + root), of which 40 bits are right.
+  const double rest = (square - product(root, root)).high / (2 * root), error = 0x1p-40 * std::abs(rest) + 0x1p-90 * root;
+  const double below = root + (rest - error), above = root + (rest + error);
+  return below == above ? below : exactLength(d, root);
+}
+
+namespace {
+
+Vec along(const Vec& p, double s, const Vec& d) {
+  return {p[0] + s * d[0], p[1] + s * d[1], p[2] + s * d[2]};
+}
+
+}  // namespace
+
+Vec point(const Event& e, double s) {
+  switch (e.kind) {
+    case Kind::vertexFace:
+    case Kind::vertexEdge:
+      return along(e.from, s, e.direction);
+    case Kind::faceVertex:
+    case Kind::edgeVertex:
+    case Kind::vertexVertex:
+      return e.to;
+    case Kind::edgeEdge:
+      break;
+  }
+  // The resting edge from y0 to y1 crosses the moving one where the orientations of its ends say.
+  const Difference d{kOrigin, e.direction};
+  const Twofold p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
+  const Twofold q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
+  const double share = p.high / (p - q).high;
+  return along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1}));
+}
+
+Vec normal(const Event& e) {
+  if (e.kind > Kind::edgeEdge) return {NAN, NAN, NAN};
+  Twofold x[3], y[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = difference(e.x1[k], e.x0[k]);
+    y[k] = difference(e.y1[k], e.y0[k]);
+  }
+  // Scaled by powers of two, so that tiny and huge edges neither under- nor overflow.
+  for (Twofold* v : {x, y}) {
+    const int size = std::ilogb(std::max({std::abs(v[0].high), std::abs(v[1].high), std::abs(v[2].high)}));
+    for (int k = 0; k < 3; ++k) v[k] = {std::ldexp(v[k].high, -size), std::ldexp(v[k].low, -size)};
+  }
+  Vec n;
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    n[k] = (x[i] * y[j] - x[j] * y[i]).high;
+  }
+  const double size = std::hypot(n[0], n[1], n[2]);
+  const double turn = sign(denominator(e)) > 0 ? -1 : 1;
+  for (double& c : n) c *= turn / size;
+  return n;
+}
+
+}  // namespace radar::exact

@@ -1,0 +1,92 @@
+#include "gpu/buffer.h"
+
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+#include "gpu/check.h"
+
+namespace radar::gpu {
+
+uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryPropertyFlags needed,
+                    VkMemoryPropertyFlags wanted) {
+  for (VkMemoryPropertyFlags flags : {needed | wanted, needed}) {
+    for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+      if ((allowed >> i & 1) != 0 && (device.memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+    }
+  }
+  throw Error("no memory type has the properties " + std::to_string(needed));
+}
+
+Buffer::Buffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage)
+    : device_(&device), name_(name), residence_(residence), usage_(usage) {
+  reserve(1024);
+}
+
+bool Buffer::reserve(VkDeviceSize bytes) {
+  if (bytes <= capacity_) return false;
+  const VkDeviceSize size = std::bit_ceil(bytes);
+  const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
+  VkBuffer handle;
+  check(vkCreateBuffer(device_->device(), &info, nullptr, &handle), "vkCreateBuffer (" + what + ")");
+  BufferHandle buffer(device_->device(), handle);
+  device_->setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
+  VkMemoryRequirements requirements;
+  vkGetBufferMemoryRequirements(device_->device(), handle, &requirements);
+  constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const bool onDevice = residence_ == Residence::device;
+  const VkMemoryAllocateInfo allocate{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+      .allocationSize = requirements.size,
+      .memoryTypeIndex = memoryType(*device_, requirements.memoryTypeBits, onDevice ? 0 : kMapped,
+                                    onDevice                            ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+                                    : residence_ == Residence::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                                                        : 0)};
+  VkDeviceMemory memory;
+  check(vkAllocateMemory(device_->device(), &allocate, nullptr, &memory), "vkAllocateMemory (" + what + ")");
+  DeviceMemory owned(device_->device(), memory);
+  check(vkBindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");
+  void* mapped = nullptr;
+  if (!onDevice) {
+    check(vkMapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory (" + what + ")");
+  }
+  buffer_ = std::move(buffer);
+  memory_ = std::move(owned);
+  mapped_ = static_cast<std::byte*>(mapped);
+  capacity_ = size;
+  return true;
+}
+
+Upload::Upload(const Device::Impl& device)
+    : staging_(device, "staging", Residence::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {}
+
+void Upload::begin(VkDeviceSize bytes) {
+  staging_.reserve(bytes);
+  used_ = 0;
+  copies_.clear();
+}
+
+void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
+  if (bytes == 0) return;
+  assert(used_ + bytes <= staging_.capacity() && offset + bytes <= target.capacity());
+  std::memcpy(staging_.mapped() + used_, data, bytes);
+  // Neighbouring pieces of one target are one copy.
+  if (!copies_.empty()) {
+    Copy& last = copies_.back();
+    if (last.target == target.get() && last.region.srcOffset + last.region.size == used_ &&
+        last.region.dstOffset + last.region.size == offset) {
+      last.region.size += bytes;
+      used_ = aligned(used_ + bytes);
+      return;
+    }
+  }
+  copies_.push_back({target.get(), {used_, offset, bytes}});
+  used_ = aligned(used_ + bytes);
+}
+
+void Upload::record(VkCommandBuffer commands) const {
+  for (const Copy& copy : copies_) vkCmdCopyBuffer(commands, staging_.get(), copy.target, 1, &copy.region);
+}
+
+}  // namespace radar::gpu

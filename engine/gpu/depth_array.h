@@ -1,0 +1,56 @@
+// A square 2D-array depth image, one layer per sensor, drawn by a classic render pass (whose depth write -> sample
+// hazards the validation layer sees, unlike dynamic rendering's) and then sampled.
+#pragma once
+
+#include <map>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace radar::gpu {
+
+/// Clears to 1, stores, leaves SHADER_READ_ONLY layout; waits for compute shaders that still read the image, and makes
+/// the depth available to those that follow.
+RenderPass depthRenderPass(const Device::Impl& device);
+
+/// Nearest, clamped: for exact texels and gathers.
+Sampler texelSampler(const Device::Impl& device);
+
+class DepthArray {
+ public:
+  /// `side` x `side` pixels of D32, `layers` layers.
+  DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side, uint32_t layers);
+
+  VkImage image() const { return image_.get(); }
+  /// All layers, for sampling.
+  VkImageView view() const { return view_.get(); }
+  uint32_t side() const { return side_; }
+  uint32_t layers() const { return layers_; }
+
+  /// Once after creation: puts all layers in SHADER_READ_ONLY layout, since a batch may draw only some of them.
+  void recordFirstUse(VkCommandBuffer commands);
+  /// Begins the render pass on `count` layers from `first`, over `side` x `side` pixels from the corner; made on first
+  /// use, so callers keep to few distinct ranges.
+  void beginPass(VkCommandBuffer commands, uint32_t first, uint32_t count, uint32_t side);
+  /// Copies the corner of a layer that compute shaders have read, `width` x `height` floats, to `offset` in `target`.
+  /// All layers lose their contents.
+  void recordCopy(VkCommandBuffer commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
+                  VkDeviceSize offset);
+
+ private:
+  struct Target {
+    ImageView view;
+    Framebuffer framebuffer;
+  };
+
+  const Device::Impl* device_;
+  VkRenderPass renderPass_;
+  uint32_t side_, layers_;
+  DeviceMemory memory_;
+  ImageHandle image_;
+  ImageView view_;
+  std::map<std::pair<uint32_t, uint32_t>, Target> targets_;
+  bool used_ = false;
+};
+
+}  // namespace radar::gpu

@@ -1,0 +1,53 @@
+// A logical device with one queue, opened or adopted. Opening is making the handles, then adopting them.
+#pragma once
+
+#include <string>
+
+#include "gpu/handle.h"
+#include "radar/radar.h"
+
+namespace radar {
+
+struct Device::Impl {
+  Impl(const HostDevice& host);
+  ~Impl();
+
+  /// Only where opened here; declared first, so destroyed last.
+  struct Owned {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    std::function<void(const std::string&)> onValidation;
+    ~Owned();
+  };
+  std::unique_ptr<Owned> owned;
+
+  HostDevice host;
+  VkPhysicalDeviceProperties properties{};
+  VkPhysicalDeviceMemoryProperties memory{};
+  std::string name, driver;
+  uint32_t maxLayers = 0;
+
+  VkDevice device() const { return host.device; }
+  /// Names an object for debuggers and validation messages.
+  void setName(VkObjectType type, uint64_t handle, const char* name) const;
+  template <class T>
+  void setName(VkObjectType type, T handle, const char* text) const {
+    setName(type, reinterpret_cast<uint64_t>(handle), text);
+  }
+  /// Opens and closes a labelled region of a command buffer.
+  void beginLabel(VkCommandBuffer commands, const char* label) const;
+  void endLabel(VkCommandBuffer commands) const;
+
+  PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
+  PFN_vkCmdBeginDebugUtilsLabelEXT cmdBeginLabel = nullptr;
+  PFN_vkCmdEndDebugUtilsLabelEXT cmdEndLabel = nullptr;
+};
+
+namespace gpu {
+
+/// The first queue family that does graphics and compute, or kNone.
+uint32_t queueFamilyOf(VkPhysicalDevice device);
+
+}  // namespace gpu
+}  // namespace radar

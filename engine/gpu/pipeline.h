@@ -1,0 +1,42 @@
+// One descriptor set, one pipeline layout: every shader of the engine binds the same numbers (shaders/interop.h).
+#pragma once
+
+#include <span>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace radar::gpu {
+
+struct Binding {
+  uint32_t number;
+  VkDescriptorType type;
+};
+
+/// The set layout, the pipeline layout (push constants: `pushBytes`, compute) and one descriptor set.
+class Bindings {
+ public:
+  Bindings(const Device::Impl& device, std::span<const Binding> bindings, uint32_t pushBytes);
+
+  void setBuffer(uint32_t number, VkBuffer buffer);
+  void setImage(uint32_t number, VkImageView view, VkSampler sampler);
+  VkPipelineLayout layout() const { return pipelineLayout_.get(); }
+  VkDescriptorSet set() const { return set_; }
+
+ private:
+  const Device::Impl* device_;
+  DescriptorSetLayout setLayout_;
+  PipelineLayout pipelineLayout_;
+  DescriptorPool pool_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                         const char* name);
+
+/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
+/// dynamic; a fragment survives if its depth is less.
+Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
+                       std::span<const uint32_t> spirv, const char* name);
+
+}  // namespace radar::gpu

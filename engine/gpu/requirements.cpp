@@ -1,0 +1,83 @@
+#include "gpu/requirements.h"
+
+#include <algorithm>
+
+#include "gpu/device.h"
+
+namespace radar::gpu {
+
+namespace {
+
+struct Requirement {
+  const char* name;
+  const char* why;
+  VkBool32& (*in)(Features&);
+};
+
+// A sensor is a layer of an array image, chosen in the vertex stage; structs are shared in scalar layout; pairs are
+// solved in double precision.
+const Requirement kRequired[] = {
+    {"shaderFloat64", "pairs are solved in double precision",
+     [](Features& f) -> VkBool32& { return f.core.features.shaderFloat64; }},
+    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage",
+     [](Features& f) -> VkBool32& { return f.v12.shaderOutputLayer; }},
+    {"scalarBlockLayout", "buffers share the structs of C++",
+     [](Features& f) -> VkBool32& { return f.v12.scalarBlockLayout; }},
+    {"synchronization2", "barriers name exact stages", [](Features& f) -> VkBool32& { return f.v13.synchronization2; }},
+    {"maintenance4", "shaders are compiled for Vulkan 1.3",
+     [](Features& f) -> VkBool32& { return f.v13.maintenance4; }},
+};
+
+std::string versionText(uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version));
+}
+
+}  // namespace
+
+Features::Features() {
+  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  v12.pNext = &v13;
+  core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  core.pNext = &v12;
+}
+
+DeviceFacts factsOf(VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device, &properties);
+  DeviceFacts facts{
+      .apiVersion = properties.apiVersion,
+      .maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers),
+      .subPixelBits = properties.limits.subPixelPrecisionBits,
+      .graphicsAndComputeQueue = queueFamilyOf(device) != kNone,
+      .missingFeatures = {}};
+  if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the feature structs below do not exist there
+  Features features;
+  vkGetPhysicalDeviceFeatures2(device, &features.core);
+  for (const Requirement& required : kRequired) {
+    if (!required.in(features)) facts.missingFeatures.push_back(std::string(required.name) + " (" + required.why + ")");
+  }
+  return facts;
+}
+
+std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
+  std::vector<std::string> reasons;
+  if (facts.apiVersion < VK_API_VERSION_1_3) {
+    reasons.push_back("Vulkan 1.3 is needed, it has " + versionText(facts.apiVersion));
+  }
+  for (const std::string& feature : facts.missingFeatures) reasons.push_back("lacks the feature " + feature);
+  if (!facts.graphicsAndComputeQueue) reasons.push_back("has no queue family that does graphics and compute");
+  if (facts.maxLayers < 256) {
+    reasons.push_back("256 layers are needed, it has " + std::to_string(facts.maxLayers));
+  }
+  if (facts.subPixelBits < 4) {
+    reasons.push_back("4 bits of subpixel precision are needed, it has " + std::to_string(facts.subPixelBits));
+  }
+  return reasons;
+}
+
+void enableRequired(Features& features) {
+  for (const Requirement& required : kRequired) required.in(features) = VK_TRUE;
+}
+
+}  // namespace radar::gpu

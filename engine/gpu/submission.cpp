@@ -1,0 +1,94 @@
+#include "gpu/submission.h"
+
+#include <cassert>
+
+#include "gpu/barrier.h"
+#include "gpu/check.h"
+
+namespace radar::gpu {
+
+Submission::Submission(const Device::Impl& device, bool timestamps)
+    : device_(&device), timestamps_(timestamps && device.properties.limits.timestampComputeAndGraphics) {
+  const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                         .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                         .queueFamilyIndex = device.host.queueFamily};
+  VkCommandPool pool;
+  check(vkCreateCommandPool(device.device(), &poolInfo, nullptr, &pool), "vkCreateCommandPool");
+  pool_ = {device.device(), pool};
+  const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                             .commandPool = pool,
+                                             .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                             .commandBufferCount = 1};
+  check(vkAllocateCommandBuffers(device.device(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  const VkFenceCreateInfo fenceInfo{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  VkFence fence;
+  check(vkCreateFence(device.device(), &fenceInfo, nullptr, &fence), "vkCreateFence");
+  fence_ = {device.device(), fence};
+  if (!timestamps_) return;
+  const VkQueryPoolCreateInfo queryInfo{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                        .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                        .queryCount = kMaxStages + 1};
+  VkQueryPool queries;
+  check(vkCreateQueryPool(device.device(), &queryInfo, nullptr, &queries), "vkCreateQueryPool");
+  queries_ = {device.device(), queries};
+}
+
+VkCommandBuffer Submission::begin() {
+  const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+  stages_.clear();
+  if (timestamps_) {
+    vkCmdResetQueryPool(commands_, queries_.get(), 0, kMaxStages + 1);
+    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), 0);
+  }
+  return commands_;
+}
+
+void Submission::endStage() {
+  if (stages_.empty()) return;
+  device_->endLabel(commands_);
+  if (!timestamps_) return;
+  // In profiling runs only: without a full barrier a timestamp is written before the stage's work is done.
+  everythingToEverything(commands_);
+  vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
+                       static_cast<uint32_t>(stages_.size()));
+  everythingToEverything(commands_);
+}
+
+void Submission::stage(const char* name) {
+  endStage();
+  assert(stages_.size() < kMaxStages);
+  stages_.push_back(name);
+  device_->beginLabel(commands_, name);
+}
+
+void Submission::submitAndWait() {
+  endStage();
+  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  const VkCommandBufferSubmitInfo commandInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                              .commandBuffer = commands_};
+  const VkSubmitInfo2 submit{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commandInfo};
+  check(vkQueueSubmit2(device_->host.queue, 1, &submit, fence_.get()), "vkQueueSubmit2");
+  const VkFence fence = fence_.get();
+  check(vkWaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vkResetFences(device_->device(), 1, &fence), "vkResetFences");
+}
+
+std::vector<StageTime> Submission::stageTimes() const {
+  if (!timestamps_ || stages_.empty()) return {};
+  std::vector<uint64_t> ticks(stages_.size() + 1);
+  check(vkGetQueryPoolResults(device_->device(), queries_.get(), 0, static_cast<uint32_t>(ticks.size()),
+                              ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
+  std::vector<StageTime> times;
+  const double msPerTick = 1e-6 * device_->properties.limits.timestampPeriod;
+  for (size_t i = 0; i < stages_.size(); ++i) {
+    times.push_back({stages_[i], msPerTick * static_cast<double>(ticks[i + 1] - ticks[i])});
+  }
+  return times;
+}
+
+}  // namespace radar::gpu

@@ -1,0 +1,37 @@
+// One command buffer at a time: begin, record, submit and wait; with timestamps between its stages on request.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "gpu/handle.h"
+
+namespace radar::gpu {
+
+class Submission {
+ public:
+  Submission(const Device::Impl& device, bool timestamps);
+
+  VkCommandBuffer begin();
+  /// Opens a stage: a debug label, and the end of the stage before it.
+  void stage(const char* name);
+  /// Submits and blocks until the device is done. Throws Error with VK_ERROR_DEVICE_LOST if it is lost.
+  void submitAndWait();
+  /// Milliseconds per stage of the last submission; empty without timestamps.
+  std::vector<StageTime> stageTimes() const;
+
+ private:
+  static constexpr uint32_t kMaxStages = 32;
+  void endStage();
+
+  const Device::Impl* device_;
+  bool timestamps_;
+  CommandPool pool_;
+  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Fence fence_;
+  QueryPool queries_;
+  std::vector<const char*> stages_;
+};
+
+}  // namespace radar::gpu

@@ -1,0 +1,300 @@
+// Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
+//
+// The whole public interface. Units: any one unit of length, used throughout; angles never appear. Coordinates are
+// left- or right-handed; meshes are two-sided triangle soups, winding is ignored, nothing has to be closed or
+// connected.
+//
+// Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
+// a Sweeper reads its Scene during run() and scopes().
+//
+// Errors: a set-up that fails, and an argument that breaks its contract, throw radar::Error; a query that cannot be
+// answered gets Status::invalid and leaves its neighbours alone.
+//
+// Method: T. Iida, H. Yamachi, Y. Kambayashi, Y. Tsujimura, "Comparison and Multi-GPU based Implementation of a
+// Collision Detection Method with Z-buffer in Cyber Space". R, M, L, d below are that paper's; docs/method.md has the
+// mathematics.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan_core.h>
+
+namespace radar {
+
+/// Semantic version of this interface.
+inline constexpr uint32_t kVersionMajor = 0;
+inline constexpr uint32_t kVersionMinor = 1;
+inline constexpr uint32_t kVersionPatch = 0;
+
+/// No object, no triangle.
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+/// What went wrong, in words that name the call, the value and what was expected. `reasons` holds one line per device
+/// where no device was usable, else it is empty; `result` is the VkResult of a failed Vulkan call, else VK_SUCCESS.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& what, VkResult code = VK_SUCCESS, std::vector<std::string> perDevice = {})
+      : std::runtime_error(what), result(code), reasons(std::move(perDevice)) {}
+  VkResult result;
+  std::vector<std::string> reasons;
+};
+
+/// A placement: world = M p + t, row-major rows (m0 m1 m2 t), any invertible affine matrix, mirrors too. Vertices are
+/// placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add: that result *is* the geometry.
+struct Pose {
+  std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+/// Where `pose` puts the mesh vertex `p`, by the formula above.
+std::array<double, 3> place(const Pose& pose, const float* p);
+
+/// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed; the
+/// least free id is given next, so objects added to a fresh scene are 0, 1, 2, ...
+using MeshId = uint32_t;
+using ObjectId = uint32_t;
+
+/// A triangle mesh as it was given.
+struct MeshView {
+  std::span<const float> positions;   ///< 3 floats per vertex
+  std::span<const uint32_t> indices;  ///< 3 vertex numbers per triangle; the triangle's id is its place here
+  uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
+};
+
+/// An object of the scene: a mesh, placed.
+struct Object {
+  MeshId mesh = kNone;
+  Pose worldFromMesh;
+  uint32_t mask = ~0u;  ///< takes part in a query when it shares a bit with the query's mask
+};
+
+/// Meshes, and objects that place them. Plain data on the CPU: a scene knows no device, and any number of sweepers and
+/// references may read it. Copies everything it is given.
+class Scene {
+ public:
+  Scene();
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
+  /// not a multiple of 3, a number is not finite or an index is out of range.
+  MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices);
+  /// Throws while an object uses the mesh.
+  void removeMesh(MeshId mesh);
+
+  /// Throws if the mesh does not exist, or the pose is singular or not finite.
+  ObjectId addObject(const Object& object);
+  void setPose(ObjectId object, const Pose& worldFromMesh);
+  void removeObject(ObjectId object);
+
+  bool hasMesh(MeshId mesh) const;
+  bool hasObject(ObjectId object) const;
+  /// Valid until the mesh is removed.
+  MeshView mesh(MeshId mesh) const;
+  /// Valid until the scene changes.
+  const Object& object(ObjectId object) const;
+  /// Every id in use is below this.
+  MeshId meshLimit() const;
+  ObjectId objectLimit() const;
+
+  /// Rises with every change, of mesh or object.
+  uint64_t version() const;
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
+struct Query {
+  MeshId mesh = kNone;                ///< of the scene
+  Pose worldFromMesh;                 ///< invertible
+  std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
+  double distance = 0;                ///< D >= 0, world units
+  std::vector<ObjectId> exclude;      ///< objects that take no part, such as the sensor's own; at most a handful
+  uint32_t mask = ~0u;                ///< an object takes part when it shares a bit
+  uint32_t resolution = 0;  ///< pixels of the longer side of the sensor's window, up to kMaxResolution; 0: chosen
+};
+
+inline constexpr uint32_t kMaxResolution = 2048;
+
+enum class Status : uint32_t {
+  hit,        ///< first contact within D, for certain: t*, the exact distance, lies in [lo, hi], hi <= D
+  clear,      ///< certainly no contact within D
+  overlap,    ///< the surfaces meet at the start, for certain: t = lo = hi = 0
+  undecided,  ///< there is no contact before lo; whether there is one after is not known (hi is NaN)
+  invalid     ///< not answered; Sweeper::reason says why
+};
+
+/// The stage that settled an answer.
+enum class Tier : uint32_t { select, sampled, reference };
+
+/// The paper's first step: is there anything in the target volume?
+enum class Detected : uint32_t {
+  no,        ///< certainly nothing (after sampling: nothing at any pixel centre)
+  yes,       ///< some surface lies there
+  notLooked  ///< the question did not come up
+};
+
+/// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
+struct Result {
+  Status status = Status::invalid;
+  Tier tier = Tier::select;
+  Detected detected = Detected::notLooked;
+  uint32_t resolution = 0;  ///< pixels of the window's longer side; 0 where no picture was drawn
+  double t;                 ///< best estimate of t*, world units; after sampling: hi
+  double lo, hi;            ///< the certified bracket, world units
+  double fraction;          ///< t / D (0 where D is 0)
+  ObjectId object = kNone;  ///< what is touched
+  uint32_t triB = kNone;    ///< its triangle
+  uint32_t triA = kNone;    ///< the sensor's triangle
+  uint32_t reserved = 0;
+  std::array<double, 3> point;   ///< world position of the contact at the moment of contact
+  std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
+  double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
+  Result();
+};
+inline constexpr uint32_t kResultVersion = 1;
+static_assert(sizeof(Result) == 120);
+
+/// Checks what Scene and Query promise of their numbers. Return an empty string, or what is wrong and what was
+/// expected.
+std::string whatIsWrong(const Pose& worldFromMesh);
+std::string whatIsWrong(const Query& query, const Scene& scene);
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// A physical device as seen from here.
+struct DeviceReport {
+  std::string name, driver, type;
+  std::vector<std::string> reasons;  ///< why it cannot be used; empty: it can
+  bool usable() const { return reasons.empty(); }
+};
+
+/// Every physical device that the Vulkan loader lists, in its order. Throws where there is no loader or no driver at
+/// all.
+std::vector<DeviceReport> listDevices();
+
+/// Vulkan handles of a host that owns them and outlives the Device made from them. Needed of `device`: Vulkan 1.3 and
+/// the features listed in docs/embedding.md, enabled. `queue` belongs to family `queueFamily`, which does graphics and
+/// compute.
+struct HostDevice {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  uint32_t queueFamily = 0;
+  VkQueue queue = VK_NULL_HANDLE;
+  bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
+};
+
+struct DeviceOptions {
+  uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
+  /// Receives each warning or error of the validation layers that are active; called on any thread.
+  std::function<void(const std::string&)> onValidation;
+};
+
+/// A logical device with one queue: opened here (and then owned), or a host's (and then only borrowed).
+class Device {
+ public:
+  /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
+  static Device open(const DeviceOptions& options = {});
+  /// Throws with reasons if the physical device lacks something. While a Sweeper of this device runs, the host keeps
+  /// other threads from using `queue`.
+  static Device adopt(const HostDevice& host);
+  ~Device();
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+
+  const std::string& name() const;
+  const std::string& driver() const;
+  const HostDevice& handles() const;
+
+  struct Impl;
+  Impl& impl() const { return *impl_; }
+
+ private:
+  explicit Device(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+struct SweeperOptions {
+  bool select = true;       ///< false: draw every object for every sensor, the naive baseline; the answers are the same
+  bool timestamps = false;  ///< measure each stage; costs a little
+  /// Upper bound on device memory for the pictures of one submission, bytes; a batch that needs more is split.
+  uint64_t pictureBytes = 256ull << 20;
+};
+
+/// Time of one stage, summed over the submissions of the last run(), milliseconds.
+struct StageTime {
+  std::string name;
+  double ms = 0;
+};
+
+/// What the last run() did.
+struct SweepStats {
+  uint32_t submissions = 0;
+  uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
+  uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
+  uint64_t pairs = 0;             ///< distinct triangle pairs nominated and solved on the device
+  uint64_t cpuPairs = 0;          ///< pairs decided on the CPU
+  std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps (then CPU stages too)
+};
+
+/// The scopes of one query as pictures: row-major from the window's lower left corner, `width` x `height` floats, world
+/// units along the motion; NaN where R is empty, the sensor does not cover the pixel, or there is no L.
+struct Scopes {
+  uint32_t width = 0, height = 0;
+  double pixel = 0;      ///< side of a pixel, world units
+  double d = 0;          ///< target area distance: sensor length + D
+  double length = 0;     ///< extent of the sensor along the motion
+  std::vector<float> R;  ///< from the sensor's back plane to the scene
+  std::vector<float> M;  ///< from the far end of the target volume back to the sensor
+  std::vector<float> L;  ///< R + M - d
+  /// worldFromWindow: world = origin + right*u + up*v + forward*w for u, v, w in world units from the window's corner
+  /// at the back plane; right, up, forward are orthonormal.
+  std::array<double, 3> origin{}, right{}, up{}, forward{};
+  Result result;  ///< the answer to the same query
+};
+
+/// Answers batches of queries against one scene on one device.
+class Sweeper {
+ public:
+  /// Creates the pipelines. `device` and `scene` must outlive the sweeper.
+  Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
+  ~Sweeper();
+  Sweeper(Sweeper&&) noexcept;
+  Sweeper& operator=(Sweeper&&) noexcept;
+
+  /// Brings what changed in the scene since the last call to the device. run() does it too; calling it apart only moves
+  /// the cost.
+  void sync();
+
+  /// Answers each query by the paper's method (tiers select and sampled), in the order given: any number of queries. A
+  /// batch that fits the device's layers and memory is one upload, one command buffer, one readback; a larger one is
+  /// split. The answer to a query does not depend on its batch. Throws if a query breaks its contract, naming it,
+  /// before anything is submitted. Blocks until the answers are here.
+  std::vector<Result> run(std::span<const Query> queries);
+
+  /// The pictures behind the answer to `query`.
+  Scopes scopes(const Query& query);
+
+  const SweepStats& stats() const;
+  /// Why the i-th answer of the last run() is invalid; empty if it is not.
+  const std::string& reason(size_t i) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace radar

@@ -1,0 +1,53 @@
+// What a query promises, and an answer before anything is known.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/scene.h"
+
+namespace radar {
+
+std::string whatIsWrong(const Pose& pose) {
+  for (double value : pose.m) {
+    if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
+  }
+  // Rows scaled to length 1, so that an honest 1e-5 scale is no singular matrix.
+  Pose scaled;
+  for (int i = 0; i < 3; ++i) {
+    const double* r = &pose.m[4 * i];
+    const double length = std::hypot(r[0], r[1], r[2]);
+    if (length == 0) return "expected an invertible matrix, got one with a zero row";
+    for (int k = 0; k < 3; ++k) scaled.m[4 * i + k] = r[k] / length;
+  }
+  if (std::abs(determinant(scaled)) < 1e-12) return "expected an invertible matrix, got a singular one";
+  return {};
+}
+
+std::string whatIsWrong(const Query& query, const Scene& scene) {
+  if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
+  if (std::string wrong = whatIsWrong(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
+  double largest = 0;
+  for (double value : query.direction) {
+    if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + std::to_string(value);
+    largest = std::max(largest, std::abs(value));
+  }
+  if (largest == 0) return "direction: expected a vector that is not zero";
+  if (!std::isfinite(query.distance) || query.distance < 0) {
+    return "distance: expected a finite number of 0 or more, got " + std::to_string(query.distance);
+  }
+  for (ObjectId object : query.exclude) {
+    if (!scene.hasObject(object)) return "exclude: object " + std::to_string(object) + " does not exist";
+  }
+  if (query.resolution > kMaxResolution) {
+    return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);
+  }
+  return {};
+}
+
+Result::Result() {
+  t = lo = hi = fraction = paperMinL = std::numeric_limits<double>::quiet_NaN();
+  point.fill(std::numeric_limits<double>::quiet_NaN());
+  normal.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace radar

@@ -1,0 +1,229 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace radar {
+
+namespace {
+
+constexpr double kFloatUlp = 0x1p-24;
+
+std::string idText(const char* kind, uint32_t id) {
+  return std::string(kind) + " " + std::to_string(id);
+}
+
+uint64_t nextVersion() {
+  static std::atomic<uint64_t> version{0};
+  return ++version;
+}
+
+double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double difference = double(mesh.positions[3 * a + k]) - mesh.positions[3 * b + k];
+    sum += difference * difference;
+  }
+  return std::sqrt(sum);
+}
+
+void derive(Mesh& mesh) {
+  // Vertices that no triangle uses must not widen the window.
+  Box box;
+  for (uint32_t vertex : mesh.indices) {
+    box.add({mesh.positions[3 * vertex], mesh.positions[3 * vertex + 1], mesh.positions[3 * vertex + 2]});
+  }
+  for (int k = 0; k < 3; ++k) {
+    mesh.centre[k] = 0.5 * (box.lo[k] + box.hi[k]);
+    mesh.recentred[k].assign(mesh.vertexCount(), 0.0f);
+  }
+  for (uint32_t vertex : mesh.indices) {
+    for (int k = 0; k < 3; ++k) {
+      const float value = static_cast<float>(mesh.positions[3 * vertex + k] - mesh.centre[k]);
+      mesh.recentred[k][vertex] = value;
+      mesh.halfExtent[k] = std::max(mesh.halfExtent[k], std::abs(value));
+    }
+  }
+  double sum = 0;
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
+    sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
+  }
+  mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
+}
+
+template <class Slots>
+uint32_t takeSlot(Slots& slots, FreeIds& free) {
+  if (free.empty()) {
+    slots.emplace_back();
+    return static_cast<uint32_t>(slots.size() - 1);
+  }
+  const uint32_t id = free.top();
+  free.pop();
+  return id;
+}
+
+}  // namespace
+
+void Box::add(const std::array<double, 3>& p) {
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = std::min(lo[k], p[k]);
+    hi[k] = std::max(hi[k], p[k]);
+  }
+}
+
+void Box::merge(const Box& b) {
+  add(b.lo);
+  add(b.hi);
+}
+
+Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
+  std::array<double, 12> recentred = m;
+  double magnitude = 0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) {
+      recentred[4 * row + 3] += r[k] * mesh.centre[k];
+      sum += std::abs(r[k]) * (std::abs(mesh.centre[k]) + mesh.halfExtent[k]);
+    }
+    magnitude = std::max(magnitude, sum);
+  }
+  Box box = boxOfRecentred(mesh, recentred);
+  for (int row = 0; row < 3; ++row) {
+    box.lo[row] -= 0x1p-48 * magnitude;
+    box.hi[row] += 0x1p-48 * magnitude;
+  }
+  return box;
+}
+
+Box boxOfRecentred(const Mesh& mesh, const std::array<double, 12>& m) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    double half = 0;
+    for (int k = 0; k < 3; ++k) half += std::abs(r[k]) * mesh.halfExtent[k];
+    half += 2 * kFloatUlp * half;  // recentring rounds each coordinate to float
+    box.lo[row] = r[3] - half;
+    box.hi[row] = r[3] + half;
+  }
+  return box;
+}
+
+double determinant(const Pose& pose) {
+  const std::array<double, 12>& m = pose.m;
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+std::array<double, 3> place(const Pose& pose, const float* p) {
+  const double x = p[0], y = p[1], z = p[2];
+  std::array<double, 3> out;
+  for (int k = 0; k < 3; ++k) {
+    const double* r = &pose.m[4 * k];
+    out[k] = ((r[0] * x + r[1] * y) + r[2] * z) + r[3];
+  }
+  return out;
+}
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices) {
+  if (positions.size() % 3 != 0)
+    throw Error("addMesh: positions: expected 3 floats per vertex, got " + std::to_string(positions.size()));
+  if (indices.size() % 3 != 0)
+    throw Error("addMesh: indices: expected 3 per triangle, got " + std::to_string(indices.size()));
+  if (indices.empty()) throw Error("addMesh: expected at least one triangle, got none");
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i]))
+      throw Error("addMesh: positions: vertex " + std::to_string(i / 3) + " is not finite");
+  }
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= positions.size() / 3) {
+      throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " names vertex " +
+                  std::to_string(indices[i]) + " of " + std::to_string(positions.size() / 3));
+    }
+  }
+  Mesh mesh;
+  mesh.positions.assign(positions.begin(), positions.end());
+  mesh.indices.assign(indices.begin(), indices.end());
+  mesh.used = true;
+  mesh.version = nextVersion();
+  derive(mesh);
+  const MeshId id = takeSlot(impl_->meshes, impl_->freeMeshes);
+  impl_->meshes[id] = std::move(mesh);
+  impl_->meshVersion = nextVersion();
+  return id;
+}
+
+void Scene::removeMesh(MeshId mesh) {
+  if (!hasMesh(mesh)) throw Error("removeMesh: " + idText("mesh", mesh) + " does not exist");
+  if (impl_->meshes[mesh].objects != 0) {
+    throw Error("removeMesh: " + idText("mesh", mesh) + " is used by " + std::to_string(impl_->meshes[mesh].objects) +
+                " objects");
+  }
+  impl_->meshes[mesh] = Mesh{};
+  impl_->freeMeshes.push(mesh);
+  impl_->meshVersion = nextVersion();
+}
+
+ObjectId Scene::addObject(const Object& object) {
+  if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
+  if (std::string wrong = whatIsWrong(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
+  const ObjectId id = takeSlot(impl_->objects, impl_->freeObjects);
+  impl_->objects[id] = {object, true};
+  ++impl_->meshes[object.mesh].objects;
+  impl_->changedAt.resize(impl_->objects.size());
+  impl_->structureVersion = impl_->poseVersion = impl_->changedAt[id] = nextVersion();
+  return id;
+}
+
+void Scene::setPose(ObjectId object, const Pose& worldFromMesh) {
+  if (!hasObject(object)) throw Error("setPose: " + idText("object", object) + " does not exist");
+  if (std::string wrong = whatIsWrong(worldFromMesh); !wrong.empty()) throw Error("setPose: " + wrong);
+  impl_->objects[object].object.worldFromMesh = worldFromMesh;
+  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+}
+
+void Scene::removeObject(ObjectId object) {
+  if (!hasObject(object)) throw Error("removeObject: " + idText("object", object) + " does not exist");
+  --impl_->meshes[impl_->objects[object].object.mesh].objects;
+  impl_->objects[object] = {};
+  impl_->freeObjects.push(object);
+  impl_->structureVersion = impl_->poseVersion = nextVersion();
+}
+
+bool Scene::hasMesh(MeshId mesh) const {
+  return mesh < impl_->meshes.size() && impl_->meshes[mesh].used;
+}
+
+bool Scene::hasObject(ObjectId object) const {
+  return object < impl_->objects.size() && impl_->objects[object].used;
+}
+
+MeshView Scene::mesh(MeshId mesh) const {
+  if (!hasMesh(mesh)) throw Error("mesh: " + idText("mesh", mesh) + " does not exist");
+  return {impl_->meshes[mesh].positions, impl_->meshes[mesh].indices};
+}
+
+const Object& Scene::object(ObjectId object) const {
+  if (!hasObject(object)) throw Error("object: " + idText("object", object) + " does not exist");
+  return impl_->objects[object].object;
+}
+
+MeshId Scene::meshLimit() const {
+  return static_cast<MeshId>(impl_->meshes.size());
+}
+
+ObjectId Scene::objectLimit() const {
+  return static_cast<ObjectId>(impl_->objects.size());
+}
+
+uint64_t Scene::version() const {
+  return std::max(impl_->meshVersion, impl_->poseVersion);
+}
+
+}  // namespace radar

@@ -1,0 +1,44 @@
+// Plans become what one submission uploads and draws.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sweep/encode.h"
+
+namespace radar {
+
+/// One instanced draw: `count` instances of a mesh from `firstDraw`.
+struct DrawCall {
+  MeshId mesh;
+  uint32_t firstDraw, count;
+};
+
+/// One render pass: consecutive layers of one resolution.
+struct DepthPass {
+  uint32_t firstLayer, layers, resolution;
+  uint32_t firstCall, calls;
+};
+
+struct Batch {
+  std::vector<gpu::View> views;
+  std::vector<gpu::Draw> draws;
+  std::vector<gpu::Item> items;
+  std::vector<DrawCall> calls;
+  std::vector<DepthPass> rangePasses, maskPasses;
+  uint32_t layers = 0;      ///< used, gaps included
+  uint32_t resolution = 0;  ///< the greatest
+  uint64_t triangles = 0;
+  uint64_t objects = 0;  ///< drawn for R
+
+  void clear();
+};
+
+/// Most layers that one render pass draws into.
+inline constexpr uint32_t kMaxPassLayers = 64;
+
+/// `plans`: ascending by resolution, each with something in reach. View i is plan i; layers() of the batch never exceed
+/// plans.size() + kMaxPassLayers per resolution.
+void fill(Batch& batch, std::span<const ViewPlan* const> plans, const Scene::Impl& scene);
+
+}  // namespace radar

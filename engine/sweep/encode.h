@@ -1,0 +1,41 @@
+// A query becomes a plan: the window and depth range of its view, the objects in reach, and the matrices they are drawn
+// with. CPU only; looks at boxes, never at triangle pairs.
+#pragma once
+
+#include <vector>
+
+#include "scene/hierarchy.h"
+#include "shaders/interop.h"
+#include "sweep/frame.h"
+
+namespace radar {
+
+/// A mesh in the window: clip coordinates from recentred vertices, for R or M.
+struct Placed {
+  ObjectId object = kNone;  ///< kNone: the sensor
+  MeshId mesh = kNone;
+  std::array<float, 12> clipFromMesh{};
+};
+
+/// Everything a submission needs to know of one query.
+struct ViewPlan {
+  gpu::View view{};             ///< all but `layer`
+  Placed mask;                  ///< the sensor, from the far end
+  std::vector<Placed> inReach;  ///< by object; empty: certainly clear
+  std::vector<Placed> others;   ///< drawn too, only where select is off
+  uint64_t triangles = 0;       ///< drawn, R and M
+
+  std::array<Vector, 3> axes{};
+  Vector corner{};  ///< world position of the window's lower left corner at the back plane
+  double pixel = 0, length = 0, d = 0;
+};
+
+/// `subPixelBits`: of the device. `select` false draws every object (and changes nothing else).
+ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t subPixelBits,
+                bool select);
+
+/// The window's longer side, pixels, where the query leaves it open: four pixels to the sensor's mean triangle edge, so
+/// that a triangle is seen by some pixel centres, in powers of two from 64 to 512.
+uint32_t chooseResolution(double windowSide, double meanEdge);
+
+}  // namespace radar

@@ -1,0 +1,227 @@
+#include "sweep/recorder.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/barrier.h"
+#include "spirv/depth_vert.h"
+#include "spirv/identify_comp.h"
+#include "spirv/reduce_comp.h"
+#include "spirv/solve_comp.h"
+
+// pass       reads                                     writes                     barrier behind it
+// ---------- ----------------------------------------- -------------------------- ------------------------------
+// upload     staging                                   scene, views, draws, items uploadToRead
+// range      draws, positions, indices                 R                          the render pass's own
+// mask       draws, positions, indices                 M                          the render pass's own
+// reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
+// identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
+// solve      scene, views, draws, items, candidates    answers                    computeWriteToCopy
+// readback   answers (and R, M for pictures)           readback                   copyToHost
+
+namespace radar {
+
+using gpu::Residence;
+using gpu::Upload;
+
+namespace {
+
+constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+
+struct IdentifyPush {
+  uint32_t items, groupsX;
+};
+
+std::vector<gpu::Binding> bindingList() {
+  std::vector<gpu::Binding> list;
+  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
+    const bool image = i == gpu::kBindRange || i == gpu::kBindMask;
+    list.push_back({i, image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  }
+  return list;
+}
+
+template <class T>
+VkDeviceSize bytesOf(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+}  // namespace
+
+Recorder::Recorder(const Device::Impl& device, bool timestamps)
+    : device_(&device),
+      resident_(device),
+      upload_(device),
+      submission_(device, timestamps),
+      bindings_(device, bindingList(), sizeof(IdentifyPush)),
+      renderPass_(gpu::depthRenderPass(device)),
+      sampler_(gpu::texelSampler(device)),
+      depth_(gpu::depthPipeline(device, bindings_.layout(), renderPass_.get(), k_depth_vert, "depth")),
+      reduce_(gpu::computePipeline(device, bindings_.layout(), k_reduce_comp, "reduce")),
+      identify_(gpu::computePipeline(device, bindings_.layout(), k_identify_comp, "identify")),
+      solve_(gpu::computePipeline(device, bindings_.layout(), k_solve_comp, "solve")),
+      views_(device, "views", Residence::device, kUploaded),
+      draws_(device, "draws", Residence::device, kUploaded),
+      items_(device, "items", Residence::device, kUploaded),
+      candidates_(device, "candidates", Residence::device, kComputed),
+      ranks_(device, "ranks", Residence::device, kComputed),
+      answers_(device, "answers", Residence::device, kComputed),
+      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+void Recorder::sync(const Scene::Impl& scene) {
+  const VkDeviceSize bytes = resident_.prepare(scene);
+  if (bytes == 0) return;
+  upload_.begin(bytes);
+  resident_.upload(scene, upload_);
+  const VkCommandBuffer commands = submission_.begin();
+  submission_.stage("upload");
+  upload_.record(commands);
+  gpu::uploadToRead(commands);
+  submission_.submitAndWait();
+}
+
+Recorder::Pictures& Recorder::picturesFor(const Batch& batch) {
+  const auto found = pictures_.find(batch.resolution);
+  if (found != pictures_.end()) {
+    if (found->second.range.layers() >= batch.layers) return found->second;
+    pictures_.erase(found);  // before its successor is allocated
+  }
+  // In steps, so that batches of slightly different size keep one image.
+  const uint32_t step = std::min(64u, device_->maxLayers);
+  const uint32_t layers = std::min((batch.layers + step - 1) / step * step, device_->maxLayers);
+  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers < 8 ? batch.layers : layers);
+  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, range.layers());
+  return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
+}
+
+void Recorder::stage(const Batch& batch, const Scene::Impl& scene) {
+  views_.reserve(bytesOf(batch.views));
+  draws_.reserve(bytesOf(batch.draws));
+  items_.reserve(bytesOf(batch.items));
+  const VkDeviceSize cells = batch.views.size() * gpu::kCells;
+  candidates_.reserve(cells * sizeof(gpu::Candidate));
+  ranks_.reserve(cells * sizeof(uint32_t));
+  answers_.reserve(batch.views.size() * sizeof(gpu::Answer));
+  upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
+                Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
+  resident_.upload(scene, upload_);
+  upload_.add(batch.views.data(), bytesOf(batch.views), views_);
+  upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
+  upload_.add(batch.items.data(), bytesOf(batch.items), items_);
+}
+
+void Recorder::bind(const Pictures& pictures) {
+  const ResidentScene::Buffers& scene = resident_.buffers();
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {{gpu::kBindPositions, &scene.positions},
+                                                             {gpu::kBindOriginals, &scene.originals},
+                                                             {gpu::kBindIndices, &scene.indices},
+                                                             {gpu::kBindMeshes, &scene.meshes},
+                                                             {gpu::kBindObjects, &scene.objects},
+                                                             {gpu::kBindViews, &views_},
+                                                             {gpu::kBindDraws, &draws_},
+                                                             {gpu::kBindItems, &items_},
+                                                             {gpu::kBindCandidates, &candidates_},
+                                                             {gpu::kBindRanks, &ranks_},
+                                                             {gpu::kBindAnswers, &answers_}};
+  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, buffer->get());
+  bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
+  bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
+}
+
+void Recorder::drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
+                          gpu::DepthArray& target, const Scene::Impl& scene) const {
+  for (const DepthPass& pass : passes) {
+    target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
+    for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
+      const DrawCall& call = batch.calls[i];
+      const gpu::MeshRecord& record = resident_.record(call.mesh);
+      vkCmdDrawIndexed(commands, static_cast<uint32_t>(scene.meshes[call.mesh].indices.size()), call.count,
+                       record.firstIndex, static_cast<int32_t>(record.firstVertex), call.firstDraw);
+    }
+    vkCmdEndRenderPass(commands);
+  }
+}
+
+std::span<const gpu::Answer> Recorder::submit(const Batch& batch, const Scene::Impl& scene,
+                                              std::vector<StageTime>& stages, StoredScopes* scopes) {
+  Pictures& pictures = picturesFor(batch);
+  stage(batch, scene);
+  bind(pictures);
+  const auto views = static_cast<uint32_t>(batch.views.size());
+  const VkDeviceSize answerBytes = views * sizeof(gpu::Answer);
+  const uint32_t width = batch.views[0].width, height = batch.views[0].height;
+  const VkDeviceSize pictureBytes = scopes != nullptr ? VkDeviceSize{width} * height * sizeof(float) : 0;
+  readback_.reserve(answerBytes + 2 * pictureBytes);
+
+  const VkCommandBuffer commands = submission_.begin();
+  submission_.stage("upload");
+  upload_.record(commands);
+  pictures.range.recordFirstUse(commands);
+  pictures.mask.recordFirstUse(commands);
+  gpu::uploadToRead(commands);
+
+  const VkDescriptorSet set = bindings_.set();
+  const VkBuffer positions = resident_.buffers().positions.get();
+  const VkDeviceSize zero = 0;
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
+  vkCmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
+  vkCmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  submission_.stage("range");
+  drawScopes(commands, batch, batch.rangePasses, pictures.range, scene);
+  submission_.stage("mask");
+  drawScopes(commands, batch, batch.maskPasses, pictures.mask, scene);
+
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  submission_.stage("reduce");
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
+  vkCmdDispatch(commands, views, 1, 1);
+  gpu::computeWriteToComputeReadWrite(commands);
+
+  submission_.stage("identify");
+  const auto items = static_cast<uint32_t>(batch.items.size());
+  const IdentifyPush push{items, std::min(items, 65535u)};
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
+  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  vkCmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
+  gpu::computeWriteToComputeReadWrite(commands);
+
+  submission_.stage("solve");
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
+  vkCmdDispatch(commands, views, 1, 1);
+  gpu::computeWriteToCopy(commands);
+
+  submission_.stage("readback");
+  const VkBufferCopy copy{0, 0, answerBytes};
+  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &copy);
+  if (scopes != nullptr) {
+    const uint32_t layer = batch.views[0].layer;
+    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), answerBytes);
+    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), answerBytes + pictureBytes);
+  }
+  gpu::copyToHost(commands);
+  submission_.submitAndWait();
+
+  addTimes(stages);
+  if (scopes != nullptr) {
+    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes);
+    scopes->range.assign(at, at + pictureBytes / sizeof(float));
+    scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
+  }
+  return {reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views};
+}
+
+void Recorder::addTimes(std::vector<StageTime>& stages) const {
+  for (const StageTime& time : submission_.stageTimes()) {
+    const auto found =
+        std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == time.name; });
+    if (found == stages.end()) {
+      stages.push_back(time);
+    } else {
+      found->ms += time.ms;
+    }
+  }
+}
+
+}  // namespace radar

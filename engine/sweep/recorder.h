@@ -1,0 +1,55 @@
+// The recipe of a sweep: owns pipelines, buffers and pictures, and records a batch. The only file that puts barriers
+// between stages.
+#pragma once
+
+#include <map>
+
+#include "gpu/depth_array.h"
+#include "gpu/pipeline.h"
+#include "gpu/submission.h"
+#include "sweep/batch.h"
+#include "sweep/resident_scene.h"
+
+namespace radar {
+
+/// Depth of one view, as stored: 0 near, 1 empty.
+struct StoredScopes {
+  std::vector<float> range, mask;
+};
+
+class Recorder {
+ public:
+  Recorder(const Device::Impl& device, bool timestamps);
+
+  /// Uploads what changed in the scene, and nothing else.
+  void sync(const Scene::Impl& scene);
+  /// One upload, one command buffer, one readback. Answers are by view, valid until the next call. With `scopes`, the
+  /// pictures of view 0 come too. Adds each stage's time to `stages`.
+  std::span<const gpu::Answer> submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                                      StoredScopes* scopes = nullptr);
+
+ private:
+  struct Pictures {
+    gpu::DepthArray range, mask;
+  };
+
+  Pictures& picturesFor(const Batch& batch);
+  void stage(const Batch& batch, const Scene::Impl& scene);
+  void bind(const Pictures& pictures);
+  void drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
+                  gpu::DepthArray& target, const Scene::Impl& scene) const;
+  void addTimes(std::vector<StageTime>& stages) const;
+
+  const Device::Impl* device_;
+  ResidentScene resident_;
+  gpu::Upload upload_;
+  gpu::Submission submission_;
+  gpu::Bindings bindings_;
+  gpu::RenderPass renderPass_;
+  gpu::Sampler sampler_;
+  gpu::Pipeline depth_, reduce_, identify_, solve_;
+  gpu::Buffer views_, draws_, items_, candidates_, ranks_, answers_, readback_;
+  std::map<uint32_t, Pictures> pictures_;  ///< by side
+};
+
+}  // namespace radar

@@ -1,0 +1,34 @@
+// A scene's copy on a device: all meshes in one pair of position buffers and one index buffer, all poses in one.
+#pragma once
+
+#include "gpu/buffer.h"
+#include "scene/scene.h"
+#include "shaders/interop.h"
+
+namespace radar {
+
+class ResidentScene {
+ public:
+  explicit ResidentScene(const Device::Impl& device);
+
+  struct Buffers {
+    gpu::Buffer positions, originals, indices, meshes, objects;
+  };
+
+  /// Works out what changed and makes room for it; returns the bytes that `upload` will stage.
+  VkDeviceSize prepare(const Scene::Impl& scene);
+  /// Stages the changes found by the last `prepare`.
+  void upload(const Scene::Impl& scene, gpu::Upload& upload);
+
+  const Buffers& buffers() const { return buffers_; }
+  const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
+
+ private:
+  Buffers buffers_;
+  std::vector<gpu::MeshRecord> records_;
+  uint64_t seenMeshes_ = 0, seenPoses_ = 0;
+  bool meshesChanged_ = false;
+  std::vector<ObjectId> changedObjects_;
+};
+
+}  // namespace radar

@@ -1,0 +1,256 @@
+// A query travels: run -> encode -> fill -> submit -> decode.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "gpu/device.h"
+#include "sweep/decode.h"
+#include "sweep/recorder.h"
+
+namespace radar {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// One query of a slice on its way to the device.
+struct Pending {
+  size_t query;
+  ViewPlan plan;
+};
+
+// What one submission has to hold.
+struct Load {
+  uint64_t views = 0, layers = 0, draws = 0, items = 0;
+  uint32_t resolution = 0;
+};
+
+}  // namespace
+
+struct Sweeper::Impl {
+  Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given)
+      : device(openDevice.impl()), scene(ownScene), options(given), recorder(device, given.timestamps) {
+    const VkPhysicalDeviceLimits& limits = device.properties.limits;
+    // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
+    bufferBytes = std::min<uint64_t>(limits.maxStorageBufferRange, 256ull << 20);
+  }
+
+  bool fits(const Load& load) const;
+  void add(Load& load, const ViewPlan& plan) const;
+  std::string tooLarge(const ViewPlan& plan) const;
+  void flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results);
+  void submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results);
+  void addCpuTime(const char* name, double ms);
+  void refuseWrong(std::span<const Query> queries) const;
+
+  const Device::Impl& device;
+  const Scene& scene;
+  SweeperOptions options;
+  Recorder recorder;
+  Hierarchy hierarchy;
+  Batch batch;
+  SweepStats stats;
+  std::map<size_t, std::string> reasons;
+  uint64_t bufferBytes;
+};
+
+void Sweeper::Impl::add(Load& load, const ViewPlan& plan) const {
+  ++load.views;
+  // Passes are aligned: a gap of at most a pass where the resolution changes, and one behind the last.
+  const bool fresh = plan.view.resolution != load.resolution;
+  load.resolution = plan.view.resolution;
+  load.layers += fresh ? 1 + 2 * (kMaxPassLayers - 1) : 1;
+  load.draws += 1 + plan.inReach.size() + plan.others.size();
+  const auto items = [&](const Placed& placed) {
+    return (scene.impl().meshes[placed.mesh].triangleCount() + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
+  };
+  load.items += items(plan.mask);
+  for (const Placed& placed : plan.inReach) load.items += items(placed);
+}
+
+bool Sweeper::Impl::fits(const Load& load) const {
+  const uint64_t layer = 2ull * load.resolution * load.resolution * sizeof(float);
+  return load.layers <= device.maxLayers && load.views * layer <= options.pictureBytes &&
+         load.draws * sizeof(gpu::Draw) <= bufferBytes && load.items * sizeof(gpu::Item) <= bufferBytes;
+}
+
+std::string Sweeper::Impl::tooLarge(const ViewPlan& plan) const {
+  Load load;
+  add(load, plan);
+  const uint64_t bytes = std::max(load.draws * sizeof(gpu::Draw), load.items * sizeof(gpu::Item));
+  if (bytes <= bufferBytes) return {};  // a picture too large for `pictureBytes` is drawn alone
+  return "capacity: the objects in reach need a buffer of " + std::to_string(bytes) + " bytes, the device allows " +
+         std::to_string(bufferBytes);
+}
+
+void Sweeper::Impl::addCpuTime(const char* name, double ms) {
+  if (!options.timestamps) return;
+  for (StageTime& stage : stats.stages) {
+    if (stage.name == name) {
+      stage.ms += ms;
+      return;
+    }
+  }
+  stats.stages.push_back({name, ms});
+}
+
+void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const std::string wrong = whatIsWrong(queries[i], scene);
+    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+  }
+}
+
+// One submission.
+void Sweeper::Impl::submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results) {
+  if (part.empty()) return;
+  const Clock::time_point start = Clock::now();
+  std::vector<const ViewPlan*> plans;
+  for (const Pending& pending : part) plans.push_back(&pending.plan);
+  fill(batch, plans, scene.impl());
+  addCpuTime("encode", msSince(start));
+  try {
+    const std::span<const gpu::Answer> answers = recorder.submit(batch, scene.impl(), stats.stages);
+    const Clock::time_point decodeStart = Clock::now();
+    for (size_t i = 0; i < part.size(); ++i) {
+      const size_t query = part[i].query;
+      results[query] = decode(answers[i], queries[query], scene.impl(), batch.views[i].resolution);
+      stats.pairs += answers[i].pairs;
+    }
+    addCpuTime("decode", msSince(decodeStart));
+  } catch (const Error& error) {
+    if (error.result == VK_SUCCESS) throw;
+    for (const Pending& pending : part) {
+      results[pending.query] = Result();
+      reasons[pending.query] = error.what();
+    }
+  }
+  ++stats.submissions;
+  stats.drawnObjects += batch.objects;
+  stats.drawnTriangles += batch.triangles;
+}
+
+// Cuts a slice into submissions that fit.
+void Sweeper::Impl::flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results) {
+  std::stable_sort(slice.begin(), slice.end(),
+                   [](const Pending& a, const Pending& b) { return a.plan.view.resolution < b.plan.view.resolution; });
+  size_t first = 0;
+  Load load;
+  for (size_t i = 0; i < slice.size(); ++i) {
+    Load next = load;
+    add(next, slice[i].plan);
+    if (i > first && !fits(next)) {
+      submit(std::span(slice).subspan(first, i - first), queries, results);
+      first = i;
+      next = {};
+      add(next, slice[i].plan);
+    }
+    load = next;
+  }
+  submit(std::span(slice).subspan(first), queries, results);
+  slice.clear();
+}
+
+Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options)
+    : impl_(std::make_unique<Impl>(device, scene, options)) {}
+Sweeper::~Sweeper() = default;
+Sweeper::Sweeper(Sweeper&&) noexcept = default;
+Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;
+
+void Sweeper::sync() {
+  impl_->hierarchy.update(impl_->scene.impl());
+  impl_->recorder.sync(impl_->scene.impl());
+}
+
+std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+  Impl& self = *impl_;
+  self.refuseWrong(queries);
+  self.stats = {};
+  self.reasons.clear();
+  std::vector<Result> results(queries.size());
+  const Clock::time_point start = Clock::now();
+  self.hierarchy.update(self.scene.impl());
+  self.addCpuTime("select", msSince(start));
+
+  // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
+  // stays bounded however many queries there are.
+  std::vector<Pending> slice;
+  Load load;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Clock::time_point encodeStart = Clock::now();
+    ViewPlan plan = encode(queries[i], self.scene.impl(), self.hierarchy,
+                           self.device.properties.limits.subPixelPrecisionBits, self.options.select);
+    self.addCpuTime("select", msSince(encodeStart));
+    if (plan.inReach.empty()) {
+      results[i] = decodeClear();
+      continue;
+    }
+    if (std::string reason = self.tooLarge(plan); !reason.empty()) {
+      self.reasons[i] = std::move(reason);
+      continue;
+    }
+    self.add(load, plan);
+    slice.push_back({i, std::move(plan)});
+    if (slice.size() >= self.device.maxLayers || load.draws * sizeof(gpu::Draw) > self.bufferBytes ||
+        load.items * sizeof(gpu::Item) > self.bufferBytes) {
+      self.flush(slice, queries, results);
+      load = {};
+    }
+  }
+  self.flush(slice, queries, results);
+  return results;
+}
+
+Scopes Sweeper::scopes(const Query& query) {
+  Impl& self = *impl_;
+  self.refuseWrong({&query, 1});
+  self.hierarchy.update(self.scene.impl());
+  const ViewPlan plan = encode(query, self.scene.impl(), self.hierarchy,
+                               self.device.properties.limits.subPixelPrecisionBits, self.options.select);
+  if (std::string reason = self.tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
+  const ViewPlan* plans[] = {&plan};
+  fill(self.batch, plans, self.scene.impl());
+  StoredScopes stored;
+  self.stats = {};
+  const gpu::Answer answer = self.recorder.submit(self.batch, self.scene.impl(), self.stats.stages, &stored)[0];
+
+  Scopes out;
+  out.result = plan.inReach.empty() ? decodeClear() : decode(answer, query, self.scene.impl(), plan.view.resolution);
+  out.width = plan.view.width;
+  out.height = plan.view.height;
+  out.pixel = plan.pixel;
+  out.d = plan.d;
+  out.length = plan.length;
+  out.origin = plan.corner;
+  out.right = plan.axes[0];
+  out.up = plan.axes[1];
+  out.forward = plan.axes[2];
+  const float null = std::numeric_limits<float>::quiet_NaN();
+  for (size_t i = 0; i < stored.range.size(); ++i) {
+    const bool hasR = stored.range[i] < 1, hasM = stored.mask[i] < 1;
+    const float R = plan.view.rangeScale * stored.range[i];
+    const float sensor = plan.view.maskBase - plan.view.maskScale * stored.mask[i];
+    out.R.push_back(hasR ? R : null);
+    out.M.push_back(hasM ? static_cast<float>(plan.d - sensor) : null);
+    out.L.push_back(hasR && hasM ? R - sensor : null);
+  }
+  return out;
+}
+
+const SweepStats& Sweeper::stats() const {
+  return impl_->stats;
+}
+
+const std::string& Sweeper::reason(size_t i) const {
+  static const std::string kNothing;
+  const auto found = impl_->reasons.find(i);
+  return found == impl_->reasons.end() ? kNothing : found->second;
+}
+
+}  // namespace radar

@@ -1,0 +1,21 @@
+// Depth only: places a mesh in a sensor's window. R and M differ in the matrix alone.
+#version 460
+#extension GL_ARB_shader_viewport_layer_array : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "interop.h"
+
+layout(scalar, binding = kBindDraws) readonly restrict buffer Draws { Draw draws[]; };
+
+layout(location = 0) in vec3 position;
+
+void main() {
+  const uint i = gl_InstanceIndex;
+  vec3 clip;
+  for (int row = 0; row < 3; ++row) {
+    clip[row] = dot(vec3(draws[i].clipFromMesh[4 * row], draws[i].clipFromMesh[4 * row + 1],
+                         draws[i].clipFromMesh[4 * row + 2]), position) + draws[i].clipFromMesh[4 * row + 3];
+  }
+  gl_Position = vec4(clip, 1.0);
+  gl_Layer = int(draws[i].layer);
+}

@@ -1,0 +1,155 @@
+#include <catch2/catch.hpp>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+std::string queryFile(const std::string& queries, const std::string& mesh = "a.obj",
+                      const std::string& instances = "[0, 1,0,0,0, 0,1,0,0, 0,0,1,5]") {
+  return "{\"format\": \"cyber-radar-queries-1\", \"meshes\": [\"" + mesh +
+         "\"], \"scenes\": [{\"id\": \"a\", \"instances\": [" + instances + "]}],\n \"queries\": [" + queries + "]}";
+}
+
+std::string query(const std::string& id, const std::string& rest) {
+  return "{\"id\": \"" + id + "\", \"scene\": 0, \"batch\": 0, " + rest + "}";
+}
+
+const std::string kGood = query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8)");
+
+/// Runs query on the file; it must fail as bad input does, and leave nothing behind.
+void requireRefused(const ScratchFolder& folder, const std::string& text, const std::string& place,
+                    const std::string& expectation) {
+  folder.write("q.json", text);
+  folder.write("answers.jsonl", "what was there before\n");
+  const std::string before = folder.list();
+  const Run run = runProgram(folder, "query q.json --out answers.jsonl --stats stats.json");
+  CAPTURE(text);
+  CHECK(run.status == 2);
+  CHECK(run.out.empty());
+  CHECK_THAT(run.err, Contains("q.json: ") && Contains(place) && Contains(expectation));
+  CHECK(folder.read("answers.jsonl") == "what was there before\n");
+  CHECK(folder.list() == before);
+}
+
+}  // namespace
+
+TEST_CASE("every kind of bad query file ends with status 2, a message that names the place, and no output") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kMesh);
+  folder.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+  folder.write("empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  folder.write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  requireRefused(folder, queryFile(kGood, "missing.obj"), "meshes[0]", "missing.obj: expected a mesh file");
+  requireRefused(folder, queryFile(kGood, "broken.ply"), "meshes[0]", "expected end_header");
+  requireRefused(folder, queryFile(kGood, "empty.obj"), "meshes[0]", "expected at least one triangle");
+  requireRefused(folder, queryFile(kGood, "nan.obj"), "meshes[0]", "vertex 0: expected 3 finite numbers");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,NaN], "D": 8)")), "queries[0].dir[2]",
+                 "expected valid JSON");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,1], "D": 1e999)")), "queries[0].D",
+                 "1e999");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,0], "D": 8)")), "queries[0].dir",
+                 "not zero");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0, 1,0,0,0, 1,0,0,0, 0,0,1,0], "dir": [0,0,1], "D": 8)")),
+                 "queries[0].sensor", "invertible");
+  requireRefused(folder, queryFile(kGood, "a.obj", "[0, 0,0,0,0, 0,0,0,0, 0,0,0,0]"), "scenes[0].instances[0]",
+                 "invertible");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [1], "dir": [0,0,1], "D": 8)")), "queries[0].sensor[0]",
+                 "one of the 1 meshes");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "exclude": [1], "dir": [0,0,1], "D": 8)")),
+                 "queries[0].exclude[0]", "one of the 1 objects");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8, "d": 1)")), "queries[0].d",
+                 "expected one of the keys");
+  requireRefused(folder, queryFile(kGood + "," + kGood), "queries[1].id", "no other query");
+  const std::string whole = queryFile(kGood);
+  requireRefused(folder, whole.substr(0, whole.size() - 9), "line 2", "unexpected end of input");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "motion": [0,0,1])")), "queries[0].motion",
+                 "not available in this version");
+}
+
+TEST_CASE("a missing query file is named") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "query no.json");
+  CHECK(run.status == 2);
+  CHECK_THAT(run.err, Contains("no.json: expected a query file"));
+}
+
+TEST_CASE("options that do not work yet, or do not exist, are refused by name") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kMesh);
+  folder.write("q.json", queryFile(kGood));
+  for (const auto& [options, words] :
+       {std::pair{"--mode bounded", "--mode: expected mode"}, std::pair{"--mode contact", "not available"},
+        std::pair{"--mode exact", "got \"exact\""}, std::pair{"--tolerance 0.1", "--tolerance"},
+        std::pair{"--resolution 0", "--resolution"}, std::pair{"--resolution 4096", "--resolution"},
+        std::pair{"--resolution 64x", "\"64x\""}, std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
+        std::pair{"--out no/folder.jsonl", "no/folder.jsonl"}, std::pair{"--stats no/s.json", "no/s.json"}}) {
+    CAPTURE(options);
+    const Run run = runProgram(folder, std::string("query q.json ") + options);
+    CHECK(run.status == 2);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Contains(words));
+  }
+  CHECK(folder.list() == "a.obj q.json");
+}
+
+TEST_CASE("a sweep with bad numbers or files is refused by the option's name") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kMesh);
+  for (const auto& [arguments, words] :
+       {std::pair{"a.obj b.obj --direction 0 0 1 --distance 1", "b.obj: expected a mesh file"},
+        std::pair{"a.obj a.obj --direction 0 0 0 --distance 1", "--direction"},
+        std::pair{"a.obj a.obj --direction 0 0 inf --distance 1", "--direction"},
+        std::pair{"a.obj a.obj --direction 0 1 --distance 1", "--direction"},
+        std::pair{"a.obj a.obj --direction 0 0 1", "--distance"}, std::pair{"a.obj a.obj --distance 1", "--direction"},
+        std::pair{"a.obj a.obj --direction 0 0 1 --distance -1", "--distance"},
+        std::pair{"a.obj a.obj --direction 0 0 1 --distance nan", "--distance"},
+        std::pair{"a.obj a.obj --direction 0 0 1 --distance 1 --at 0 nan 0", "--at"},
+        std::pair{"a.obj a.obj --direction 0 0 1 --distance 1 --rotate 0 0 0 9", "--rotate"},
+        std::pair{"a.obj a.obj --direction 0 0 1 --distance 1 --speed 0", "--speed"},
+        std::pair{"a.obj --direction 0 0 1 --distance 1", "SENSOR"}}) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, std::string("sweep ") + arguments);
+    CHECK(run.status == 2);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Contains(words));
+  }
+}
+
+TEST_CASE("scopes asks for what it needs") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kMesh);
+  folder.write("q.json", queryFile(kGood));
+  for (const auto& [arguments, words] :
+       {std::pair{"q.json --out p", "--query"}, std::pair{"q.json --query x --out p", "the id \"x\""},
+        std::pair{"q.json --query p", "--out"}, std::pair{"a.obj a.obj --query p --out p", "--query"},
+        std::pair{"q.json --query p --out p --distance 3", "--distance"}}) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, std::string("scopes ") + arguments);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains(words));
+  }
+  CHECK(folder.list() == "a.obj q.json");
+}
+
+TEST_CASE("without a Vulkan driver the program says so and how to get one, and the reference works") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kMesh);
+  folder.write("q.json", queryFile(kGood));
+  const std::string noDriver = "VK_DRIVER_FILES=/nowhere.json VK_ICD_FILENAMES=/nowhere.json VK_INSTANCE_LAYERS=";
+  for (const char* arguments :
+       {"query q.json --mode sampled --out a.jsonl", "devices", "scopes q.json --query p --out pictures"}) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, arguments, noDriver);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.out + run.err, Contains("apt install mesa-vulkan-drivers"));
+  }
+  CHECK(runProgram(folder, "query q.json", noDriver).status == 0);
+  CHECK(folder.list() == "a.obj q.json");
+}

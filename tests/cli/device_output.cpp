@@ -1,0 +1,66 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+bool isPng(const std::string& bytes) {
+  return bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.find("IEND") != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("the devices are listed with their numbers") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "devices");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("0  ") && Contains("usable"));
+}
+
+TEST_CASE("mode sampled answers, says what resolution it chose, and counts its stages") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload table1 --boxes 500 --sensors 16 --out w").status == 0);
+  const Run run = runProgram(folder, "query w/queries.json --mode sampled --out a.jsonl --stats s.json");
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.err, Contains("resolution: "));
+  const auto stats = nlohmann::json::parse(folder.read("s.json"));
+  CHECK(stats["device"].is_string());
+  CHECK(stats["driver"].is_string());
+  CHECK_FALSE(stats["stages"].empty());
+  const auto first = nlohmann::json::parse(folder.read("a.jsonl").substr(0, folder.read("a.jsonl").find('\n')));
+  CHECK(first.contains("paper_min_l"));
+}
+
+TEST_CASE("scopes draws R, M and L, and writes their values on request") {
+  const ScratchFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  const Run run = runProgram(folder,
+                             "scopes a.obj a.obj --at 0.5 0 -3 --direction 0 0 1 --distance 9 --resolution 32 "
+                             "--out p --raw");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  for (const char* name : {"p/R.png", "p/M.png", "p/L.png", "p/scopes.png"}) CHECK(isPng(folder.read(name)));
+  const auto sidecar = nlohmann::json::parse(folder.read("p/scopes.json"));
+  CHECK(sidecar["width"] == 32);
+  CHECK(sidecar["height"] == 32);
+  CHECK(sidecar["d"] == Approx(9));
+  CHECK(sidecar["answer"]["t"] == Approx(3));
+  for (const char* name : {"p/R.f32", "p/M.f32", "p/L.f32"}) CHECK(folder.read(name).size() == 4u * 32 * 32);
+}
+
+TEST_CASE("the demo leaves a table, answers, questions and pictures") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "demo --out d");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("teapot/0") && Contains("reference"));
+  CHECK(isPng(folder.read("d/scene.png")));
+  CHECK_FALSE(folder.read("d/table.txt").empty());
+  CHECK(runProgram(folder, "query d/queries.json").out == folder.read("d/answers-reference.jsonl"));
+}

@@ -1,0 +1,138 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+std::vector<nlohmann::json> linesOf(const std::string& text) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
+}
+
+/// A triangle in the plane z = 0 moves up towards others.
+void writeTriangles(const ScratchFolder& folder) {
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
+    "scenes": [{"id": "a", "instances": [[0, 1,0,0,0, 0,1,0,0, 0,0,1,5]]},
+               {"id": "b", "base": 0, "instances": [[0, 1,0,0,0, 0,1,0,0, 0,0,1,2]], "masks": [[1, 2]]},
+               {"id": "c", "base": 0, "instances": [[0, 1,0,0,0, 0,1,0,0, 0,0,1,3]]}],
+    "queries": [{"id": "far", "scene": 0, "sensor": [0], "dir": [0,0,2], "D": 8, "speed": 10},
+                {"id": "near", "scene": 1, "sensor": [0], "dir": [0,0,1], "D": 8},
+                {"id": "masked", "scene": 1, "sensor": [0], "dir": [0,0,1], "D": 8, "mask": 5},
+                {"id": "excluded", "scene": 2, "sensor": [0], "exclude": [1], "dir": [0,0,1], "D": 8},
+                {"id": "moved", "scene": 2, "sensor": [0], "dir": [0,0,1], "D": 3},
+                {"id": "short", "scene": 2, "sensor": [0], "dir": [0,0,1], "D": 2.5},
+                {"id": "again", "scene": 0, "batch": 9, "sensor": [0, 1,0,0,1, 0,1,0,0, 0,0,1,5], "dir": [0,0,1],
+                 "D": 0}]})");
+}
+
+}  // namespace
+
+TEST_CASE("query answers in the file's order, over scenes with a base, masks and exclusions") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  const Run run = runProgram(folder, "query q.json --mode reference");
+  REQUIRE(run.status == 0);
+  const auto answers = linesOf(run.out);
+  REQUIRE(answers.size() == 7);
+  const struct {
+    const char *id, *status;
+    double t;
+    int object;
+  } expected[] = {{"far", "hit", 5, 0},      {"near", "hit", 2, 1},  {"masked", "hit", 5, 0},
+                  {"excluded", "hit", 5, 0}, {"moved", "hit", 3, 1}, {"short", "clear", -1, 0},
+                  {"again", "overlap", 0, 0}};
+  for (size_t i = 0; i < answers.size(); ++i) {
+    CAPTURE(answers[i].dump());
+    CHECK(answers[i]["id"] == expected[i].id);
+    CHECK(answers[i]["status"] == expected[i].status);
+    if (expected[i].t < 0) {
+      CHECK(answers[i]["t"].is_null());
+    } else {
+      CHECK(answers[i]["t"] == expected[i].t);
+      CHECK(answers[i]["object"] == expected[i].object);
+    }
+    CHECK(answers[i]["tier"] == "reference");
+    CHECK_FALSE(answers[i].contains("paper_min_l"));
+  }
+  CHECK(answers[0]["time"] == 0.5);
+  CHECK(answers[0]["fraction"] == 5.0 / 8);
+}
+
+TEST_CASE("query writes answers and statistics to files") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  const Run plain = runProgram(folder, "query q.json");
+  const Run run = runProgram(folder, "query q.json --out a.jsonl --stats s.json --repeat 3");
+  REQUIRE(run.status == 0);
+  CHECK(run.out.empty());
+  CHECK(folder.read("a.jsonl") == plain.out);
+  CHECK(folder.list() == "a.jsonl a.obj q.json s.json");
+  const auto stats = nlohmann::json::parse(folder.read("s.json"));
+  CHECK(stats["queries"] == 7);
+  CHECK(stats["batches"] == 4);
+  for (const char* key : {"load_ms", "setup_ms", "sweep_ms"}) CHECK(stats[key].get<double>() > 0);
+  CHECK(stats["stages"].is_object());
+  CHECK(stats["pairs"].get<int>() >= 6);
+  CHECK(stats["cpu_pairs"] == stats["pairs"]);
+  CHECK(stats["device"].is_null());
+  CHECK(stats["driver"].is_null());
+  CHECK(stats["commit"].is_string());
+}
+
+TEST_CASE("sweep says in words what is hit, where and when, and --json prints the answer line") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  const std::string arguments = "sweep a.obj a.obj --at 0 0 -3 --rotate 0 0 1 90 --direction 0 0 1 --distance 9 ";
+  const Run words = runProgram(folder, arguments + "--speed 2");
+  CHECK(words.status == 0);
+  CHECK_THAT(words.out,
+             Contains("hit: first contact after 3 of 9") && Contains("object 0 (a.obj)") && Contains("after 1.5 s"));
+  const Run json = runProgram(folder, arguments + "--json");
+  const auto answers = linesOf(json.out);
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0]["t"] == 3);
+  CHECK_FALSE(answers[0].contains("time"));
+  const Run clear = runProgram(folder, "sweep a.obj a.obj --at 0 0 -3 --direction 0 0 -1 --distance 9");
+  CHECK_THAT(clear.out, Contains("clear: certainly no contact within 9"));
+}
+
+TEST_CASE("every workload is written, read and answered, the same each time") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  for (const std::string name :
+       {"table1 --boxes 200 --sensors 9 --shape box", "figure7 --teapots 3 --boxes 40 --steps 3",
+        "scale --boxes 100 --sensors 5", "soup --objects 10 --sensors 12 --triangles 6",
+        "meshes --mesh a.obj --objects 5 --sensors 4"}) {
+    CAPTURE(name);
+    REQUIRE(runProgram(folder, "workload " + name + " --out one").status == 0);
+    REQUIRE(runProgram(folder, "workload " + name + " --out two").status == 0);
+    CHECK(folder.read("one/queries.json") == folder.read("two/queries.json"));
+    CHECK(folder.read("one/scene-0.inst") == folder.read("two/scene-0.inst"));
+    const Run run = runProgram(folder, "query one/queries.json");
+    CHECK(run.status == 0);
+    CHECK(linesOf(run.out).size() >= 4);
+  }
+}
+
+TEST_CASE("help teaches with examples") {
+  const ScratchFolder folder;
+  CHECK_THAT(runProgram(folder, "--help").out, Contains("cyber-radar demo"));
+  for (const char* command : {"sweep", "query", "scopes", "workload"}) {
+    const Run run = runProgram(folder, std::string(command) + " --help");
+    CHECK(run.status == 0);
+    CHECK_THAT(run.out, Contains("Examples:"));
+  }
+  const Run nothing = runProgram(folder, "");
+  CHECK(nothing.status == 2);
+  CHECK_THAT(nothing.err, Contains("--help"));
+}

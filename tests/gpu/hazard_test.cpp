@@ -1,0 +1,53 @@
+// The validation layer must see what it is there for: a missing barrier between an upload and a dispatch.
+#include <catch2/catch.hpp>
+
+#include "gpu/barrier.h"
+#include "gpu/buffer.h"
+#include "gpu/pipeline.h"
+#include "gpu/submission.h"
+#include "shaders/interop.h"
+#include "spirv/solve_comp.h"
+#include "support/test_device.h"
+
+namespace {
+
+using namespace radar;
+
+// An upload, then a dispatch that reads what was uploaded (and, of all zeros, finds nothing to do).
+std::vector<std::string> messagesOf(bool withBarrier) {
+  const Device::Impl& device = test::device().impl();
+  std::vector<gpu::Binding> list;
+  for (uint32_t i = 0; i < gpu::kBindRange; ++i) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  gpu::Bindings bindings(device, list, 8);
+  const gpu::Pipeline solve = gpu::computePipeline(device, bindings.layout(), k_solve_comp, "solve");
+  std::vector<gpu::Buffer> buffers;
+  for (uint32_t i = 0; i < gpu::kBindRange; ++i) {
+    buffers.emplace_back(device, "hazard", gpu::Residence::upload,
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    std::fill_n(buffers.back().mapped(), 1024, std::byte{0});
+    bindings.setBuffer(i, buffers.back().get());
+  }
+  const gpu::View nothing{};
+  gpu::Upload upload(device);
+  upload.begin(sizeof(nothing));
+  upload.add(&nothing, sizeof(nothing), buffers[gpu::kBindViews]);
+  gpu::Submission submission(device, false);
+  const VkCommandBuffer commands = submission.begin();
+  const VkDescriptorSet set = bindings.set();
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve.get());
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  upload.record(commands);
+  if (withBarrier) gpu::uploadToRead(commands);
+  vkCmdDispatch(commands, 1, 1, 1);
+  submission.submitAndWait();
+  return test::takeValidationMessages();
+}
+
+}  // namespace
+
+TEST_CASE("a missing barrier is reported as a hazard, and the barrier silences it") {
+  const std::vector<std::string> missing = messagesOf(false);
+  REQUIRE_FALSE(missing.empty());
+  CHECK(missing[0].find("SYNC-HAZARD") != std::string::npos);
+  CHECK(messagesOf(true).empty());
+}

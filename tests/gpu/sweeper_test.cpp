@@ -1,0 +1,175 @@
+// What a batch must not change.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstring>
+
+#include "support/test_device.h"
+#include "workloads/generate.h"
+
+namespace {
+
+using namespace radar;
+
+struct Loaded {
+  explicit Loaded(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
+    player.show(0);
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, resolution));
+  }
+  tools::Workload workload;
+  tools::ScenePlayer player;
+  std::vector<Query> queries;
+};
+
+bool sameBits(const Result& a, const Result& b) {
+  return std::memcmp(&a, &b, sizeof(Result)) == 0;
+}
+
+void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
+  REQUIRE(a.size() == b.size());
+  size_t different = 0;
+  for (size_t i = 0; i < a.size(); ++i) different += !sameBits(a[i], b[i]);
+  CHECK(different == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a batch of any size gives the same bits as one query at a time") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}), 32);
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  std::vector<Result> single;
+  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
+  uint32_t found = 0;
+  for (const Result& result : single) found += result.status == Status::hit;
+  CHECK(found > 100);
+  for (size_t size : {1, 63, 64, 65, 1234}) {
+    CAPTURE(size);
+    checkSame(sweeper.run(std::span(loaded.queries).first(size)), {single.begin(), single.begin() + size});
+  }
+}
+
+TEST_CASE("more sensors than the device has layers are split, not refused, and keep their bits") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 512, .shape = tools::SensorShape::box}),
+                16);
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  const std::vector<Result> once = sweeper.run(loaded.queries);
+  std::vector<Query> many;
+  std::vector<Result> expected;
+  for (int i = 0; i < 5; ++i) {
+    many.insert(many.end(), loaded.queries.begin(), loaded.queries.end());
+    expected.insert(expected.end(), once.begin(), once.end());
+  }
+  REQUIRE(many.size() > 2048);
+  checkSame(sweeper.run(many), expected);
+  CHECK(sweeper.stats().submissions > 1);
+}
+
+TEST_CASE("a small budget of picture memory splits a batch and keeps its bits") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 64}), 64);
+  Sweeper roomy(test::device(), loaded.player.scene());
+  Sweeper narrow(test::device(), loaded.player.scene(), {.pictureBytes = 7 * 2 * 64 * 64 * 4});
+  const std::vector<Result> expected = roomy.run(loaded.queries);
+  CHECK(roomy.stats().submissions == 1);
+  checkSame(narrow.run(loaded.queries), expected);
+  CHECK(narrow.stats().submissions > 5);
+}
+
+TEST_CASE("drawing every object gives the same bits as drawing those in reach") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 16}), 64);
+  Sweeper culled(test::device(), loaded.player.scene());
+  Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
+  const std::vector<Result> expected = culled.run(loaded.queries);
+  checkSame(naive.run(loaded.queries), expected);
+  CHECK(naive.stats().drawnObjects > 100 * culled.stats().drawnObjects);
+}
+
+TEST_CASE("the order of a batch and mixed resolutions do not matter") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 65}), 0);
+  for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(i * 37 % 150);
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  const std::vector<Result> forward = sweeper.run(loaded.queries);
+  std::reverse(loaded.queries.begin(), loaded.queries.end());
+  std::vector<Result> backward = sweeper.run(loaded.queries);
+  std::reverse(backward.begin(), backward.end());
+  checkSame(forward, backward);
+}
+
+TEST_CASE("edits of the scene are followed: objects move, come and go, and ids of others stay") {
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Scene scene;
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const auto at = [](double z) { return Pose{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
+  const ObjectId far = scene.addObject({mesh, at(7), ~0u});
+  const ObjectId near = scene.addObject({mesh, at(4), ~0u});
+  const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10};
+  Sweeper sweeper(test::device(), scene);
+  const auto answer = [&] { return sweeper.run({&query, 1})[0]; };
+
+  CHECK(answer().object == near);
+  CHECK(answer().t == Approx(3).epsilon(1e-6));
+  scene.setPose(near, at(5));
+  CHECK(answer().t == Approx(4).epsilon(1e-6));
+  scene.removeObject(near);
+  CHECK(answer().object == far);
+  CHECK(answer().t == Approx(6).epsilon(1e-6));
+  CHECK(scene.addObject({mesh, at(3), 2u}) == near);
+  CHECK(answer().object == near);
+  Query masked = query;
+  masked.mask = 1;
+  CHECK(sweeper.run({&masked, 1})[0].object == far);
+  Query excluding = query;
+  excluding.exclude = {near, far};
+  CHECK(sweeper.run({&excluding, 1})[0].status == Status::clear);
+  const tools::MeshData ball = tools::makeUvSphere(8, 8);
+  const MeshId other = scene.addMesh(ball.positions, ball.indices);
+  scene.addObject({other, at(2.5), ~0u});
+  CHECK(answer().t == Approx(1).epsilon(0.05));
+}
+
+TEST_CASE("the empty scene, the empty batch and nothing in reach are answered") {
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Scene scene;
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  Sweeper sweeper(test::device(), scene);
+  CHECK(sweeper.run({}).empty());
+  const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
+  const Result result = sweeper.run({&query, 1})[0];
+  CHECK(result.status == Status::clear);
+  CHECK(std::isnan(result.t));
+  const Scopes scopes = sweeper.scopes(query);
+  CHECK(std::isnan(scopes.R[scopes.R.size() / 2]));
+  CHECK(scopes.M[scopes.M.size() / 2] == Approx(5));
+}
+
+TEST_CASE("a query that breaks its contract is refused by number before anything is drawn") {
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Scene scene;
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  Sweeper sweeper(test::device(), scene);
+  const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
+  std::vector<Query> queries(3, good);
+  queries[2].direction = {0, 0, 0};
+  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 2") && Catch::Contains("direction"));
+  queries[2] = good;
+  queries[1].distance = -1;
+  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 1") && Catch::Contains("distance"));
+  queries[1] = good;
+  queries[0].worldFromMesh.m = {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0};
+  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 0") && Catch::Contains("singular"));
+}
+
+TEST_CASE("a mesh of more triangles than a shader invocation has loop iterations is seen whole") {
+  // 160,000 triangles: item lists and vertex loops run past 65,535.
+  const tools::MeshData ball = tools::makeUvSphere(200, 400), box = tools::makeBox({0.5, 0.5, 0.5});
+  REQUIRE(ball.triangleCount() > 2 * 65'535);
+  Scene scene;
+  const MeshId sphere = scene.addMesh(ball.positions, ball.indices), cube = scene.addMesh(box.positions, box.indices);
+  scene.addObject({sphere, {}, ~0u});
+  Sweeper sweeper(test::device(), scene);
+  const Pose start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
+  const Query query{.mesh = cube, .worldFromMesh = start, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Result result = sweeper.run({&query, 1})[0];
+  CHECK(result.status == Status::hit);
+  // The box's upper face lies at -4.75; the ball's lowest point over it at about -1.
+  CHECK(result.t == Approx(3.75).margin(0.01));
+}

@@ -1,0 +1,20 @@
+// The device that the tests share, and what the validation layers said about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "radar/radar.h"
+
+namespace radar::test {
+
+/// Opened on first use, with the validation layers listening.
+const Device& device();
+
+/// Where other devices' DeviceOptions::onValidation should send their messages too.
+void onValidation(const std::string& message);
+
+/// Messages since the last call.
+std::vector<std::string> takeValidationMessages();
+
+}  // namespace radar::test

@@ -1,0 +1,84 @@
+#include <catch2/catch.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "batch/answer_file.h"
+#include "batch/whole_file.h"
+#include "support/scratch_folder.h"
+
+using namespace radar;
+using namespace radar::tools;
+
+namespace {
+
+Result hit() {
+  Result result;
+  result.status = Status::hit;
+  result.tier = Tier::sampled;
+  result.detected = Detected::yes;
+  result.t = result.hi = 0.1 + 0.2;
+  result.lo = 0;
+  result.fraction = 1e-300;
+  result.object = 7;
+  result.triB = 4294967294u;
+  result.triA = 0;
+  result.point = {1, -2.5, 1e22};
+  result.normal = {0, 0, -1};
+  result.paperMinL = -0.25;
+  return result;
+}
+
+QuerySpec ask(const std::string& id) {
+  QuerySpec query;
+  query.id = id;
+  return query;
+}
+
+}  // namespace
+
+TEST_CASE("an answer line holds every key in order, with shortest numbers that read back the same") {
+  CHECK(answerLine(ask("ring/0"), hit(), Mode::sampled, "") ==
+        R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
+        R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
+        R"("point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
+}
+
+TEST_CASE("what an answer does not have is null") {
+  Result clear;
+  clear.status = Status::clear;
+  clear.detected = Detected::no;
+  CHECK(answerLine(ask("a"), clear, Mode::reference, "") ==
+        R"({"id": "a", "status": "clear", "t": null, "lo": null, "hi": null, "fraction": null, "detected": false, )"
+        R"("object": null, "tri_a": null, "tri_b": null, "point": null, "normal": null, "tier": "select"})");
+}
+
+TEST_CASE("time is there with a speed only, the paper's min(L) in mode sampled only, a reason if invalid only") {
+  QuerySpec query = ask("a");
+  query.speed = 2;
+  const auto timed = nlohmann::json::parse(answerLine(query, hit(), Mode::reference, ""));
+  CHECK(timed["time"] == (0.1 + 0.2) / 2);
+  CHECK_FALSE(timed.contains("paper_min_l"));
+  CHECK_FALSE(timed.contains("reason"));
+  const auto invalid = nlohmann::json::parse(answerLine(query, Result(), Mode::sampled, "out of memory"));
+  CHECK(invalid["status"] == "invalid");
+  CHECK(invalid["reason"] == "out of memory");
+  CHECK(invalid["time"].is_null());
+  CHECK(invalid["paper_min_l"].is_null());
+  CHECK(invalid["detected"].is_null());
+}
+
+TEST_CASE("any id survives") {
+  const std::string id = "\"quoted\"\n\\ \x01 \xc3\xa4";
+  CHECK(nlohmann::json::parse(answerLine(ask(id), hit(), Mode::sampled, ""))["id"] == id);
+}
+
+TEST_CASE("a file is written whole or not at all") {
+  const radar::test::ScratchFolder folder;
+  writeWhole(folder.path() / "a", "first");
+  writeWhole(folder.path() / "a", "second");
+  CHECK(folder.read("a") == "second");
+  CHECK_THROWS_WITH(writeWhole(folder.path() / "no" / "a", "x"), Catch::Matchers::Contains("no/a"));
+  std::filesystem::create_directory(folder.path() / "b");
+  CHECK_THROWS(writeWhole(folder.path() / "b", "x"));
+  CHECK(folder.list() == "a b");
+}

@@ -1,0 +1,215 @@
+// The contact interval of two triangles, against separating axes in exact rationals.
+#include <catch2/catch.hpp>
+
+#include "exact/contact.h"
+#include "exact_oracle.h"
+#include "reference_soups.h"
+
+using namespace radar::exact;
+using oracle::Fraction;
+using oracle::Rational;
+using soups::Random;
+
+namespace {
+
+Rational rational(const Fraction& f) {
+  return Rational(f.num, f.den);
+}
+
+/// Whether `rounded` is the double nearest to `exact`.
+bool isNearest(double rounded, const Rational& exact) {
+  if (!std::isfinite(rounded)) return abs(exact) > Rational(std::numeric_limits<double>::max());
+  const Rational below = (Rational(std::nextafter(rounded, -INFINITY)) + Rational(rounded)) / 2;
+  const Rational above = (Rational(std::nextafter(rounded, INFINITY)) + Rational(rounded)) / 2;
+  return below <= exact && exact <= above;
+}
+
+void check(const Triangle& a, const Triangle& b, const Vec& direction) {
+  const auto ours = contact(a, b, direction);
+  const auto truth = oracle::contact(a, b, direction);
+  REQUIRE(ours.has_value() == truth.has_value());
+  if (!ours) return;
+  for (const auto& [event, fraction] : {std::pair{ours->first, truth->first}, std::pair{ours->last, truth->last}}) {
+    const Rational s = rational(fraction);
+    REQUIRE(isNearest(parameter(event), s));
+    REQUIRE(sign(event) == s.sign());
+    if (std::isfinite(event.error)) REQUIRE(abs(Rational(event.s) - s) <= Rational(event.error));
+    const double t = std::abs(event.s) * length(direction);
+    for (double distance : {0.0, t, std::nextafter(t, 0), std::nextafter(t, INFINITY), 2 * t}) {
+      if (!std::isfinite(distance)) continue;
+      const int expected = s.sign() < 0 ? -1 : oracle::compareToDistance(fraction, direction, distance);
+      REQUIRE(compareToDistance(event, distance) == expected);
+    }
+  }
+  REQUIRE(compare(ours->first, ours->last) == oracle::compare(truth->first, truth->last));
+  // Swapped, reversed: the same to the bit.
+  const auto swapped = contact(b, a, {-direction[0], -direction[1], -direction[2]});
+  REQUIRE(swapped.has_value());
+  REQUIRE(parameter(swapped->first) == parameter(ours->first));
+  REQUIRE(parameter(swapped->last) == parameter(ours->last));
+}
+
+Triangle latticeTriangle(Random& random, int side) {
+  Triangle t;
+  for (Vec& c : t) {
+    for (double& v : c) v = random.integer(0, side);
+  }
+  return t;
+}
+
+Vec latticeDirection(Random& random, int side) {
+  Vec d{};
+  while (d == Vec{}) {
+    for (double& c : d) c = random.chance(0.3) ? 0 : random.integer(-side, side);
+  }
+  return d;
+}
+
+/// Moves one coordinate by one place.
+void nudge(Random& random, Triangle& t) {
+  double& c = t[static_cast<size_t>(random.integer(0, 2))][static_cast<size_t>(random.integer(0, 2))];
+  c = std::nextafter(c, random.chance(0.5) ? INFINITY : -INFINITY);
+}
+
+void scale(Triangle& t, double by) {
+  for (Vec& c : t) {
+    for (double& v : c) v *= by;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the contact interval is exact on integer lattices") {
+  Random random(1);
+  for (int i = 0; i < 30000; ++i) {
+    INFO("case " << i);
+    const int side = random.integer(1, 4);
+    check(latticeTriangle(random, side), latticeTriangle(random, side), latticeDirection(random, 3));
+  }
+}
+
+TEST_CASE("the contact interval is exact one place beside integer lattices") {
+  Random random(2);
+  for (int i = 0; i < 15000; ++i) {
+    INFO("case " << i);
+    Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
+    for (int n = random.integer(1, 3); n-- > 0;) nudge(random, random.chance(0.5) ? a : b);
+    Vec d = latticeDirection(random, 3);
+    if (random.chance(0.3)) d[0] = std::nextafter(d[0], 9);
+    check(a, b, d);
+  }
+}
+
+TEST_CASE("the contact interval is exact for triangles in general position, needles and slivers") {
+  Random random(3);
+  for (int i = 0; i < 10000; ++i) {
+    INFO("case " << i);
+    const soups::Mesh mesh = soups::soup(random, 2, random.uniform(0.3, 2), 0.4);
+    const radar::Pose pose = random.pose(1, {0, 0, 0});
+    const radar::MeshView view{mesh.positions, mesh.indices};
+    check(oracle::corners(view, radar::Pose{}, 0), oracle::corners(view, pose, 1), random.inBall());
+  }
+}
+
+TEST_CASE("the contact interval is exact for all finite doubles") {
+  Random random(4);
+  for (double size : {1e-300, 1e-150, 1e-60, 1e-10, 1e10, 1e60, 1e150, 1e290}) {
+    for (double speed : {1e-300, 1e-60, 1.0, 1e60, 1e300}) {
+      for (int i = 0; i < 60; ++i) {
+        INFO("size " << size << " speed " << speed << " case " << i);
+        Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
+        for (Triangle* t : {&a, &b}) {
+          if (random.chance(0.5)) nudge(random, *t);
+          scale(*t, size);
+        }
+        Vec d = latticeDirection(random, 3);
+        for (double& c : d) c *= speed;
+        check(a, b, d);
+      }
+    }
+  }
+  // Sizes as unlike as they can be.
+  for (int i = 0; i < 300; ++i) {
+    INFO("mixed, case " << i);
+    Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
+    scale(a, std::ldexp(1, random.integer(-1000, 1000)));
+    scale(b, std::ldexp(1, random.integer(-1000, 1000)));
+    check(a, b, latticeDirection(random, 3));
+  }
+}
+
+TEST_CASE("events that share a parameter compare equal, whatever features they are of") {
+  // A vertex comes down on the corner where four triangles meet: over faces, edges and a vertex at once.
+  const Triangle a{Vec{0, 0, 5}, Vec{1, 0, 6}, Vec{0, 1, 6}};
+  std::vector<Event> events;
+  for (const Triangle& b :
+       {Triangle{Vec{0, 0, 0}, Vec{1, 0, 0}, Vec{0, 1, 0}}, Triangle{Vec{0, 0, 0}, Vec{0, 1, 0}, Vec{-1, 0, -1}},
+        Triangle{Vec{-1, 0, 0}, Vec{0, -1, 0}, Vec{0, 0, 0}}, Triangle{Vec{1, 0, 0}, Vec{0, 0, 0}, Vec{0, -1, 0}}}) {
+    const auto interval = contact(a, b, {0, 0, -1});
+    REQUIRE(interval);
+    events.push_back(interval->first);
+  }
+  for (const Event& p : events) {
+    REQUIRE(parameter(p) == 5);
+    for (const Event& q : events) REQUIRE(compare(p, q) == 0);
+  }
+}
+
+TEST_CASE("two parameters that round to the same double are told apart") {
+  const auto fall = [](double floor) {
+    const Triangle ground{Vec{-9, -9, floor}, Vec{9, -9, floor}, Vec{0, 9, floor}};
+    const Triangle a{Vec{0, 0, 1}, Vec{1, 0, 9}, Vec{0, 1, 9}};
+    return contact(a, ground, {0, 0, -3})->first;
+  };
+  const Event third = fall(0);
+  for (double less : {0x1p-54, 0x1p-100, 0x1p-200, 0x1p-1074}) {
+    const Event near = fall(less);
+    REQUIRE(parameter(near) == parameter(third));
+    REQUIRE(compare(near, third) == -1);
+    REQUIRE(compare(third, near) == 1);
+    REQUIRE(compareToDistance(third, 1) == 0);
+    REQUIRE(compareToDistance(near, 1) == -1);
+    REQUIRE(compareToDistance(fall(-less), 1) == 1);
+  }
+}
+
+TEST_CASE("the length of a direction is rounded to the nearest double") {
+  Random random(5);
+  const auto check = [](const Vec& d) {
+    const double r = length(d);
+    Rational square = 0;
+    for (double c : d) square += Rational(c) * Rational(c);
+    const Rational below = (Rational(std::nextafter(r, 0)) + Rational(r)) / 2;
+    const Rational above = (Rational(std::nextafter(r, INFINITY)) + Rational(r)) / 2;
+    REQUIRE(below * below <= square);
+    REQUIRE(square <= above * above);
+  };
+  for (int i = 0; i < 5000; ++i) check({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  for (double size : {1e-320, 1e-200, 1e-60, 1e60, 1e200, 1e307}) check({size, -2 * size, 1.5 * size});
+  REQUIRE(length({3, 0, -4}) == 5);
+  REQUIRE(length({0, 0, -0.1}) == 0.1);
+}
+
+TEST_CASE("contact point and normal lie where the features are") {
+  const Triangle floor{Vec{-9, -9, 0}, Vec{9, -9, 0}, Vec{0, 9, 0}};
+  const Triangle tip{Vec{0, 0, 2}, Vec{1, 0, 3}, Vec{0, 1, 3}};
+  const auto down = contact(tip, floor, {0, 0, -1})->first;
+  REQUIRE(down.kind == Kind::vertexFace);
+  REQUIRE(point(down, parameter(down)) == Vec{0, 0, 0});
+  REQUIRE(normal(down) == Vec{0, 0, 1});
+  const auto up = contact(floor, tip, {0, 0, 1})->first;
+  REQUIRE(up.kind == Kind::faceVertex);
+  REQUIRE(point(up, parameter(up)) == Vec{0, 0, 2});
+  REQUIRE(normal(up) == Vec{0, 0, -1});
+  const auto edges = contact({Vec{-1, 0, 4}, Vec{1, 0, 4}, Vec{0, 0, 5}},
+                             {Vec{0.5, -1, 0}, Vec{0.5, 1, 0}, Vec{0.5, 0, -1}}, {0, 0, -2})
+                         ->first;
+  REQUIRE(edges.kind == Kind::edgeEdge);
+  REQUIRE(parameter(edges) == 2);
+  REQUIRE(point(edges, 2) == Vec{0.5, 0, 0});
+  REQUIRE(normal(edges) == Vec{0, 0, 1});
+  const auto flat =
+      contact({Vec{0, 0, 0}, Vec{1, 0, 0}, Vec{0, 0, 1}}, {Vec{5, 0, 0}, Vec{6, 0, 0}, Vec{5, 0, 1}}, {1, 0, 0})->first;
+  REQUIRE(parameter(flat) == 4);
+  REQUIRE(std::isnan(normal(flat)[0]));
+}

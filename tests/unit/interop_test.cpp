@@ -1,0 +1,112 @@
+// The structs that C++ and GLSL share have the same layout: offsetof against the SPIR-V's own decorations.
+#include <catch2/catch.hpp>
+
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <span>
+#include <string>
+
+#include "shaders/interop.h"
+#include "spirv/depth_vert.h"
+#include "spirv/identify_comp.h"
+#include "spirv/reduce_comp.h"
+#include "spirv/solve_comp.h"
+
+namespace {
+
+using namespace radar::gpu;
+
+// struct -> member -> offset, and struct -> stride of the arrays of it.
+struct Layouts {
+  std::map<std::string, std::map<std::string, uint32_t>> offsets;
+  std::map<std::string, uint32_t> strides;
+};
+
+Layouts layoutsOf(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kOpName = 5, kOpMemberName = 6, kOpTypeRuntimeArray = 29, kOpDecorate = 71, kOpMemberDecorate = 72;
+  constexpr uint32_t kOffset = 35, kArrayStride = 6;
+  std::map<uint32_t, std::string> names;
+  std::map<std::pair<uint32_t, uint32_t>, std::string> memberNames;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> memberOffsets;
+  std::map<uint32_t, uint32_t> arrayStrides, elementTypes;
+  for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+    const uint32_t op = spirv[at] & 0xffff;
+    const auto text = [&](size_t from) { return std::string(reinterpret_cast<const char*>(&spirv[at + from])); };
+    if (op == kOpName) names[spirv[at + 1]] = text(2);
+    if (op == kOpMemberName) memberNames[{spirv[at + 1], spirv[at + 2]}] = text(3);
+    if (op == kOpMemberDecorate && spirv[at + 3] == kOffset)
+      memberOffsets[{spirv[at + 1], spirv[at + 2]}] = spirv[at + 4];
+    if (op == kOpDecorate && spirv[at + 2] == kArrayStride) arrayStrides[spirv[at + 1]] = spirv[at + 3];
+    if (op == kOpTypeRuntimeArray) elementTypes[spirv[at + 1]] = spirv[at + 2];
+  }
+  Layouts layouts;
+  for (const auto& [member, offset] : memberOffsets) layouts.offsets[names[member.first]][memberNames[member]] = offset;
+  for (const auto& [array, stride] : arrayStrides) layouts.strides[names[elementTypes[array]]] = stride;
+  return layouts;
+}
+
+Layouts all() {
+  Layouts layouts;
+  for (std::span<const uint32_t> spirv :
+       {std::span<const uint32_t>(k_depth_vert), std::span<const uint32_t>(k_reduce_comp),
+        std::span<const uint32_t>(k_identify_comp), std::span<const uint32_t>(k_solve_comp)}) {
+    Layouts one = layoutsOf(spirv);
+    layouts.offsets.merge(one.offsets);
+    layouts.strides.merge(one.strides);
+  }
+  return layouts;
+}
+
+struct Expected {
+  const char* structure;
+  size_t size;
+  std::map<std::string, size_t> members;
+};
+
+#define MEMBER(type, name) \
+  { #name, offsetof(type, name) }
+
+}  // namespace
+
+TEST_CASE("every shared struct has the offsets and the stride that the shaders use") {
+  const Expected expected[] = {
+      {"MeshRecord", sizeof(MeshRecord), {MEMBER(MeshRecord, firstVertex), MEMBER(MeshRecord, firstIndex)}},
+      {"ObjectRecord",
+       sizeof(ObjectRecord),
+       {MEMBER(ObjectRecord, pose), MEMBER(ObjectRecord, mesh), MEMBER(ObjectRecord, pad)}},
+      {"View",
+       sizeof(View),
+       {MEMBER(View, pose), MEMBER(View, direction), MEMBER(View, directionLength), MEMBER(View, distance),
+        MEMBER(View, size), MEMBER(View, mesh), MEMBER(View, layer), MEMBER(View, resolution), MEMBER(View, width),
+        MEMBER(View, height), MEMBER(View, cell), MEMBER(View, rangeScale), MEMBER(View, maskBase),
+        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, snap), MEMBER(View, rangeSlack),
+        MEMBER(View, maskSlack), MEMBER(View, pad)}},
+      {"Draw",
+       sizeof(Draw),
+       {MEMBER(Draw, clipFromMesh), MEMBER(Draw, view), MEMBER(Draw, layer), MEMBER(Draw, mesh), MEMBER(Draw, object)}},
+      {"Item", sizeof(Item), {MEMBER(Item, draw), MEMBER(Item, firstTriangle), MEMBER(Item, endTriangle)}},
+      {"Candidate",
+       sizeof(Candidate),
+       {MEMBER(Candidate, pixel), MEMBER(Candidate, range), MEMBER(Candidate, mask), MEMBER(Candidate, itemB),
+        MEMBER(Candidate, itemA)}},
+      {"Answer",
+       sizeof(Answer),
+       {MEMBER(Answer, hi), MEMBER(Answer, object), MEMBER(Answer, triB), MEMBER(Answer, triA), MEMBER(Answer, feature),
+        MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs)}},
+  };
+  const Layouts layouts = all();
+  for (const Expected& one : expected) {
+    CAPTURE(one.structure);
+    REQUIRE(layouts.offsets.count(one.structure) == 1);
+    const auto& found = layouts.offsets.at(one.structure);
+    CHECK(found.size() == one.members.size());
+    for (const auto& [member, offset] : one.members) {
+      CAPTURE(member);
+      REQUIRE(found.count(member) == 1);
+      CHECK(found.at(member) == offset);
+    }
+    REQUIRE(layouts.strides.count(one.structure) == 1);
+    CHECK(layouts.strides.at(one.structure) == one.size);
+  }
+}

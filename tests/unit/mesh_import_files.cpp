@@ -1,0 +1,144 @@
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "import/mesh_import.h"
+#include "support/scratch_folder.h"
+
+using namespace radar::tools;
+using Catch::Matchers::Contains;
+using radar::test::ScratchFolder;
+
+namespace {
+
+MeshData read(const std::string& file) {
+  std::vector<std::string> warnings;
+  MeshData mesh = readMesh(file, warnings);
+  CHECK(warnings.empty());
+  return mesh;
+}
+
+/// The corners of each triangle, so that importers that number vertices otherwise compare equal.
+std::vector<float> corners(const MeshData& mesh) {
+  std::vector<float> values;
+  for (uint32_t index : mesh.indices) {
+    for (int k = 0; k < 3; ++k) values.push_back(mesh.positions[3 * index + k]);
+  }
+  return values;
+}
+
+std::string ply(int vertices, int faces, const std::string& rows) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
+         "\nproperty list uchar int vertex_indices\nend_header\n" + rows;
+}
+
+std::string refusal(const std::string& file) {
+  std::vector<std::string> warnings;
+  try {
+    readMesh(file, warnings);
+  } catch (const InputError& error) {
+    CHECK_THAT(error.what(), Contains(file) && Contains("expected"));
+    return error.what();
+  }
+  FAIL("not refused: " << file);
+  return {};
+}
+
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+}  // namespace
+
+TEST_CASE("faces of more than three corners are fanned from their first corner, concave ones too") {
+  const ScratchFolder folder;
+  const MeshData mesh = read(folder.write("a.obj", std::string(kSquare) + "v 0.1 0.1 0\nf 2 3 4 5 1\n"));
+  CHECK(corners(mesh) ==
+        std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, .1f, .1f, 0, 1, 0, 0, .1f, .1f, 0, 0, 0, 0});
+}
+
+TEST_CASE("doubled vertices stay apart and degenerate faces stay in place") {
+  const ScratchFolder folder;
+  const MeshData mesh =
+      read(folder.write("a.ply", ply(5, 3, "0 0 0\n1 0 0\n0 1 0\n0 0 0\n9 9 9\n3 0 1 2\n3 0 0 0\n3 3 1 3\n")));
+  CHECK(mesh.vertexCount() == 5);
+  CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 0, 0, 3, 1, 3});
+}
+
+TEST_CASE("points and lines are dropped and counted") {
+  const ScratchFolder folder;
+  const std::string file = folder.write("a.obj", std::string(kSquare) + "f 1 2 3\nl 1 2\nl 2 3\n");
+  std::vector<std::string> warnings;
+  CHECK(readMesh(file, warnings).triangleCount() == 1);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Contains(file) && Contains("2 lines"));
+}
+
+TEST_CASE("nodes are walked depth-first, their transforms multiplied, each placement a copy") {
+  const ScratchFolder folder;
+  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  folder.write("a.bin", std::string(reinterpret_cast<const char*>(positions), sizeof positions));
+  const std::string file = folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0, 3]}],
+    "nodes": [{"mesh": 0, "translation": [10, 0, 0], "children": [1, 2]}, {"mesh": 0, "scale": [2, 3, 4]},
+              {"mesh": 0, "translation": [0, 0, 7]}, {"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"uri": "a.bin", "byteLength": 36}]})");
+  CHECK(corners(read(file)) == std::vector<float>{10, 0, 0, 11, 0, 0, 10, 1, 0,  //
+                                                  10, 0, 0, 12, 0, 0, 10, 3, 0,  //
+                                                  10, 0, 7, 11, 0, 7, 10, 1, 7,  //
+                                                  0,  0, 0, 1,  0, 0, 0,  1, 0});
+}
+
+TEST_CASE("a broken mesh file is refused with the file, the place and what was expected") {
+  const ScratchFolder folder;
+  const std::string three = "0 0 0\n1 0 0\n0 1 0\n", off = "OFF\n3 1 0\n";
+  const std::string square = kSquare;
+  CHECK_THAT(refusal((folder.path() / "missing.obj").string()), Contains("no such file"));
+  CHECK_THAT(refusal(folder.path().string()), Contains("folder"));
+  CHECK_THAT(refusal(folder.write("empty.ply", "")), Contains("empty"));
+  CHECK_THAT(refusal(folder.write("text.xyz", "no mesh at all")), Contains("assimp"));
+  CHECK_THAT(refusal(folder.write("none.obj", square)), Contains("at least one triangle"));
+  CHECK_THAT(refusal(folder.write("line.obj", square + "l 1 2\n")), Contains("1 line"));
+  CHECK_THAT(refusal(folder.write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), Contains("vertex 0"));
+  CHECK_THAT(refusal(folder.write("inf.ply", ply(3, 1, "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n"))), Contains("vertex 1"));
+  CHECK_THAT(refusal(folder.write("huge.off", off + "0 0 0\n1 0 0\n0 1e99 0\n3 0 1 2\n")), Contains("vertex 2"));
+  CHECK_THAT(refusal(folder.write("index.obj", square + "f 1 2 9\n")), Contains("out of range"));
+  CHECK_THAT(refusal(folder.write("index.ply", ply(3, 1, three + "3 0 1 3\n"))), Contains("face 0"));
+  CHECK_THAT(refusal(folder.write("index.off", off + three + "3 0 1 3\n")), Contains("line 6") && Contains("face 0"));
+  CHECK_THAT(refusal(folder.write("sign.off", off + three + "3 0 1 -1\n")), Contains("\"-1\""));
+  CHECK_THAT(refusal(folder.write("cut.ply", ply(3, 2, three + "3 0 1 2\n"))), Contains("element face"));
+  CHECK_THAT(refusal(folder.write("cut2.ply", ply(4, 1, three))), Contains("element vertex"));
+  CHECK_THAT(refusal(folder.write("cut3.ply", "ply\nformat ascii 1.0\n")), Contains("header"));
+  CHECK_THAT(refusal(folder.write("cut.off", "OFF\n3 2 0\n" + three + "3 0 1 2\n")), Contains("face 1"));
+  CHECK_THAT(refusal(folder.write("cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")),
+             Contains("assimp"));
+}
+
+TEST_CASE("a binary PLY file that ends early is refused") {
+  const ScratchFolder folder;
+  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::string body(reinterpret_cast<const char*>(positions), sizeof positions);
+  for (char byte : {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0}) body += byte;
+  std::string content = ply(3, 1, body);
+  content.replace(content.find("ascii"), 5, "binary_little_endian");
+  CHECK(read(folder.write("whole.ply", content)).triangleCount() == 1);
+  for (size_t cut : {1u, 5u, 13u, 14u, 40u}) {
+    CAPTURE(cut);
+    refusal(folder.write("cut.ply", content.substr(0, content.size() - cut)));
+  }
+}
+
+TEST_CASE("real files of many formats are read") {
+  const std::string models = "/usr/share/assimp/models/";
+  for (const auto& [name, triangles] :
+       {std::pair{"OBJ/spider.obj", 1368u}, std::pair{"PLY/Wuson.ply", 3732u}, std::pair{"PLY/cube_binary.ply", 12u},
+        std::pair{"OFF/Wuson.off", 3732u}, std::pair{"STL/Spider_binary.stl", 1368u},
+        std::pair{"STL/Spider_ascii.stl", 1368u}, std::pair{"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", 12u},
+        std::pair{"Collada/duck.dae", 4212u}, std::pair{"3DS/cubes_with_alpha.3DS", 60u},
+        std::pair{"FBX/box.fbx", 12u}}) {
+    CAPTURE(name);
+    std::vector<std::string> warnings;
+    CHECK(readMesh(models + name, warnings).triangleCount() == triangles);
+  }
+}

@@ -1,0 +1,238 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "batch/query_file.h"
+#include "support/scratch_folder.h"
+#include "workloads/generate.h"
+
+using namespace radar;
+using namespace radar::tools;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using radar::test::ScratchFolder;
+
+namespace {
+
+constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// A small file that is right in every way.
+nlohmann::json goodFile() {
+  return nlohmann::json::parse(R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
+    "scenes": [{"id": "a", "instances": [[0], [0, 1,0,0,5, 0,1,0,0, 0,0,1,0]]},
+               {"id": "b", "base": 0, "instances": [[0, 2,0,0,0, 0,-2,0,0, 0,0,2,1e-3]], "masks": [[1, 6]]}],
+    "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
+                {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2],
+                 "dir": [0, -0.5, 1], "D": 0, "mask": 5, "mode": "sampled", "speed": 2.5}]})");
+}
+
+struct Files {
+  ScratchFolder folder;
+  Files() { folder.write("a.obj", kMesh); }
+
+  Workload read(const std::string& text) {
+    std::vector<std::string> warnings;
+    Workload workload = readQueryFile(folder.write("q.json", text), warnings);
+    CHECK(warnings.empty());
+    return workload;
+  }
+  /// What a reader says after the file's name, which must come first.
+  std::string refusal(const std::string& text) {
+    std::vector<std::string> warnings;
+    const std::string file = folder.write("q.json", text);
+    try {
+      readQueryFile(file, warnings);
+    } catch (const InputError& error) {
+      REQUIRE_THAT(error.what(), StartsWith(file + ": "));
+      return std::string(error.what()).substr(file.size() + 2);
+    }
+    FAIL("not refused: " << text);
+    return {};
+  }
+  std::string refusalWith(const char* pointer, const std::string& value) {
+    nlohmann::json file = goodFile();
+    file[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    return refusal(file.dump());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a query file is read as it says") {
+  Files files;
+  const Workload workload = files.read(goodFile().dump());
+  REQUIRE(workload.meshes.size() == 1);
+  CHECK(workload.meshes[0].triangleCount() == 1);
+  REQUIRE(workload.scenes.size() == 2);
+  CHECK(workload.scenes[0].instances[1].worldFromMesh.m[3] == 5);
+  CHECK(workload.scenes[1].base == 0u);
+  CHECK(workload.objectCount(1) == 3);
+  CHECK(workload.scenes[1].masks == std::vector<ObjectMask>{{1, 6}});
+  REQUIRE(workload.queries.size() == 2);
+  const QuerySpec &plain = workload.queries[0], &full = workload.queries[1];
+  CHECK(plain.id == "p");
+  CHECK(plain.batch == 0);
+  CHECK(plain.mask == ~0u);
+  CHECK_FALSE(plain.mode);
+  CHECK_FALSE(plain.speed);
+  CHECK(full.batch == 3);
+  CHECK(full.exclude == std::vector<uint32_t>{2});
+  CHECK(full.direction == std::array<double, 3>{0, -0.5, 1});
+  CHECK(full.distance == 0);
+  CHECK(full.mask == 5);
+  CHECK(full.mode == Mode::sampled);
+  CHECK(full.speed == 2.5);
+  CHECK(full.sensor.worldFromMesh.m[11] == -2);
+}
+
+TEST_CASE("a value that breaks its contract is refused with its path, what was expected and what was found") {
+  Files files;
+  const struct {
+    const char *pointer, *value, *path, *problem;
+  } cases[] = {
+      {"/format", "\"cyber-radar-queries-2\"", "format: ", "got \"cyber-radar-queries-2\""},
+      {"/meshes", "{}", "meshes: ", "an array"},
+      {"/meshes/0", "3", "meshes[0]: ", "a string"},
+      {"/meshes/0", "\"no.obj\"", "meshes[0]: ", "no such file"},
+      {"/scenes/0", "[]", "scenes[0]: ", "an object"},
+      {"/scenes/1/id", "\"a\"", "scenes[1].id: ", "no other scene"},
+      {"/scenes/1/base", "1", "scenes[1].base: ", "scenes before this one"},
+      {"/scenes/1/base", "-1", "scenes[1].base: ", "got -1"},
+      {"/scenes/1/instances/0/0", "1", "scenes[1].instances[0][0]: ", "one of the 1 meshes"},
+      {"/scenes/1/instances/0/0", "0.5", "scenes[1].instances[0][0]: ", "a whole number"},
+      {"/scenes/1/instances/0/4", "\"x\"", "scenes[1].instances[0][4]: ", "a finite number"},
+      {"/scenes/1/instances/0/4", "null", "scenes[1].instances[0][4]: ", "got null"},
+      {"/scenes/1/instances/0", "[0, 1]", "scenes[1].instances[0]: ", "12 numbers"},
+      {"/scenes/1/instances/0", "[0, 1,0,0,0, 0,0,0,0, 0,0,1,0]", "scenes[1].instances[0]: ", "zero row"},
+      {"/scenes/1/instances/0", "[0, 1,2,3,0, 2,4,6,0, 0,0,1,0]", "scenes[1].instances[0]: ", "singular"},
+      {"/scenes/1/masks/0/0", "3", "scenes[1].masks[0][0]: ", "one of the 3 objects"},
+      {"/scenes/1/masks/0/1", "4294967296", "scenes[1].masks[0][1]: ", "4294967295"},
+      {"/scenes/1/masks", "[[1,2],[1,3]]", "scenes[1].masks[1][0]: ", "each object once"},
+      {"/queries/1/id", "7", "queries[1].id: ", "a string"},
+      {"/queries/1/id", "\"p\"", "queries[1].id: ", "no other query"},
+      {"/queries/1/scene", "2", "queries[1].scene: ", "one of the 2 scenes"},
+      {"/queries/1/batch", "-1", "queries[1].batch: ", "a whole number"},
+      {"/queries/1/sensor/0", "9", "queries[1].sensor[0]: ", "got 9"},
+      {"/queries/1/sensor/4", "true", "queries[1].sensor[4]: ", "got true"},
+      {"/queries/1/sensor", "[0, 0,0,0,0, 0,1,0,0, 0,0,1,0]", "queries[1].sensor: ", "invertible"},
+      {"/queries/1/exclude/0", "3", "queries[1].exclude[0]: ", "one of the 3 objects"},
+      {"/queries/0/exclude", "[2]", "queries[0].exclude[0]: ", "one of the 2 objects"},
+      {"/queries/1/dir", "[0, 0, 0]", "queries[1].dir: ", "not zero"},
+      {"/queries/1/dir", "[0, 1]", "queries[1].dir: ", "3 numbers"},
+      {"/queries/1/D", "-1e-9", "queries[1].D: ", "0 or more"},
+      {"/queries/1/D", "\"8\"", "queries[1].D: ", "got \"8\""},
+      {"/queries/1/mask", "1.5", "queries[1].mask: ", "a whole number"},
+      {"/queries/1/mode", "\"fast\"", "queries[1].mode: ", "got \"fast\""},
+      {"/queries/1/mode", "\"contact\"", "queries[1].mode: ", "not available in this version"},
+      {"/queries/1/mode", "\"bounded\"", "queries[1].mode: ", "not available in this version"},
+      {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
+  };
+  for (const auto& c : cases) {
+    CAPTURE(c.pointer, c.value);
+    CHECK_THAT(files.refusalWith(c.pointer, c.value), StartsWith(c.path) && Contains(c.problem));
+  }
+}
+
+TEST_CASE("unknown keys are refused everywhere, keys kept for later by name") {
+  Files files;
+  CHECK_THAT(files.refusalWith("/extra", "1"), StartsWith("extra: ") && Contains("got \"extra\""));
+  CHECK_THAT(files.refusalWith("/scenes/0/Instances", "[]"), StartsWith("scenes[0].Instances: "));
+  CHECK_THAT(files.refusalWith("/queries/1/direction", "[]"), StartsWith("queries[1].direction: "));
+  for (const char* key : {"margin", "top", "rotation", "motion", "decide", "tolerance"}) {
+    CAPTURE(key);
+    CHECK_THAT(files.refusalWith((std::string("/queries/1/") + key).c_str(), "0"),
+               StartsWith(std::string("queries[1].") + key) && Contains("not available in this version"));
+  }
+  for (const char* key : {"motions", "deforms"}) {
+    CAPTURE(key);
+    CHECK_THAT(files.refusalWith((std::string("/scenes/1/") + key).c_str(), "[]"),
+               StartsWith(std::string("scenes[1].") + key) && Contains("not available in this version"));
+  }
+}
+
+TEST_CASE("a missing key is named") {
+  Files files;
+  for (const char* pointer : {"/format", "/meshes", "/scenes", "/queries"}) {
+    nlohmann::json file = goodFile();
+    file.erase(pointer + 1);
+    CHECK_THAT(files.refusal(file.dump()), Contains("\"" + std::string(pointer + 1) + "\", which is missing"));
+  }
+  for (const char* key : {"id", "scene", "sensor", "dir", "D"}) {
+    nlohmann::json file = goodFile();
+    file["queries"][1].erase(key);
+    CHECK_THAT(files.refusal(file.dump()), StartsWith("queries[1]: ") && Contains(key));
+  }
+}
+
+TEST_CASE("a base that has a base itself is refused") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["scenes"].push_back({{"id", "c"}, {"base", 1}, {"instances", nlohmann::json::array()}});
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("scenes[2].base: ") && Contains("no base"));
+}
+
+TEST_CASE("text that is not JSON is refused with line, column and path") {
+  Files files;
+  const std::string text = goodFile().dump(1);
+  CHECK_THAT(files.refusal(text.substr(0, text.size() / 2)), StartsWith("line ") && Contains("unexpected end"));
+  CHECK_THAT(files.refusal(text + "x"), Contains("column 2"));
+  CHECK_THAT(files.refusal(""), StartsWith("line 1"));
+  CHECK_THAT(files.refusal("{\"meshes\": [\"a\", NaN]}"), StartsWith("line 1") && Contains("in meshes[1]"));
+  CHECK_THAT(files.refusal("{\"queries\": [{\"D\": 1e400}]}"), Contains("in queries[0].D") && Contains("1e400"));
+  CHECK_THAT(files.refusal("{\"queries\": [{}, {\"D\": 1, \"D\": 2}]}"),
+             StartsWith("queries[1]") && Contains("\"D\" twice"));
+  CHECK_THAT(files.refusal("{\"format\": \"\xff\"}"), StartsWith("line 1"));
+}
+
+TEST_CASE("an instance file is read line by line and refused by line") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["scenes"][0] = {{"id", "a"}, {"instances_file", "a.inst"}};
+  const std::string text = file.dump();
+  const std::string good = "0 1 0 0 0.1 0 1 0 0 0 0 1 -2e-3\r\n0\n";
+  files.folder.write("a.inst", good + "\n");
+  const Workload workload = files.read(text);
+  REQUIRE(workload.scenes[0].instances.size() == 2);
+  CHECK(workload.scenes[0].instances[0].worldFromMesh.m[3] == 0.1);
+  CHECK(workload.scenes[0].instances[0].worldFromMesh.m[11] == -2e-3);
+  CHECK(workload.scenes[0].instances[1] == Instance{});
+  for (const char* line : {"1", "-1", "0.5", "nan", "0 1", "0 1 0 0 x 0 1 0 0 0 0 1 0", "0 1 0 0 inf 0 1 0 0 0 0 1 0",
+                           "0 1 0 0 0 0 0 0 0 0 0 1 0", "0 1 0 0 0 0 1 0 0 0 0 1 0 5", "0,1", "\n0"}) {
+    CAPTURE(line);
+    files.folder.write("a.inst", good + line + "\n");
+    CHECK_THAT(files.refusal(text),
+               StartsWith("scenes[0].instances_file: ") && Contains("a.inst: line 3: ") && Contains("expected"));
+  }
+  std::filesystem::remove(files.folder.path() / "a.inst");
+  CHECK_THAT(files.refusal(text), StartsWith("scenes[0].instances_file: ") && Contains("a.inst"));
+}
+
+TEST_CASE("a workload survives writing and reading to the bit") {
+  const ScratchFolder folder;
+  Workload workload = makeWorkload(Figure7{3, 100, 2});
+  workload.meshes.push_back(makeWorkload(Soups{}).meshes[4]);
+  workload.scenes[1].masks = {{0, 3}, {101, 0}};
+  workload.queries[0].mask = 17;
+  workload.queries[1].mode = Mode::reference;
+  workload.queries[2].id = "odd \"id\"\n\\ \xc3\xa4";
+  std::vector<std::string> warnings;
+  const Workload again = readQueryFile(writeQueryFile(workload, folder.path() / "new" / "folder"), warnings);
+  REQUIRE(again.meshes.size() == workload.meshes.size());
+  for (size_t i = 0; i < workload.meshes.size(); ++i) {
+    CHECK(again.meshes[i].positions == workload.meshes[i].positions);
+    CHECK(again.meshes[i].indices == workload.meshes[i].indices);
+  }
+  REQUIRE(again.scenes.size() == workload.scenes.size());
+  for (size_t i = 0; i < workload.scenes.size(); ++i) {
+    CHECK(again.scenes[i].id == workload.scenes[i].id);
+    CHECK(again.scenes[i].base == workload.scenes[i].base);
+    CHECK(again.scenes[i].instances == workload.scenes[i].instances);
+    CHECK(again.scenes[i].masks == workload.scenes[i].masks);
+  }
+  REQUIRE(again.queries.size() == workload.queries.size());
+  for (size_t i = 0; i < workload.queries.size(); ++i) {
+    const QuerySpec &a = again.queries[i], &b = workload.queries[i];
+    CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor));
+    CHECK((a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance));
+    CHECK((a.mask == b.mask && a.mode == b.mode && a.speed == b.speed));
+  }
+}

@@ -1,0 +1,47 @@
+// Why a device is refused, over made-up devices.
+#include <catch2/catch.hpp>
+
+#include "gpu/requirements.h"
+
+namespace {
+
+radar::gpu::DeviceFacts goodDevice() {
+  return {.apiVersion = VK_API_VERSION_1_3,
+          .maxLayers = 2048,
+          .subPixelBits = 8,
+          .graphicsAndComputeQueue = true,
+          .missingFeatures = {}};
+}
+
+}  // namespace
+
+TEST_CASE("a device with everything is not refused") {
+  CHECK(radar::gpu::reasonsAgainst(goodDevice()).empty());
+}
+
+TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
+  radar::gpu::DeviceFacts facts = goodDevice();
+  facts.apiVersion = VK_API_VERSION_1_1;
+  CHECK(radar::gpu::reasonsAgainst(facts) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1"});
+  facts = goodDevice();
+  facts.missingFeatures = {"shaderFloat64 (pairs are solved in double precision)"};
+  facts.graphicsAndComputeQueue = false;
+  facts.maxLayers = 128;
+  facts.subPixelBits = 2;
+  const std::vector<std::string> reasons = radar::gpu::reasonsAgainst(facts);
+  REQUIRE(reasons.size() == 4);
+  CHECK(reasons[0].find("shaderFloat64") != std::string::npos);
+  CHECK(reasons[1].find("queue family") != std::string::npos);
+  CHECK(reasons[2].find("128") != std::string::npos);
+  CHECK(reasons[3].find("subpixel") != std::string::npos);
+}
+
+TEST_CASE("every required feature is switched on for a device that is opened") {
+  radar::gpu::Features features;
+  radar::gpu::enableRequired(features);
+  CHECK(features.core.features.shaderFloat64 == VK_TRUE);
+  CHECK(features.v12.shaderOutputLayer == VK_TRUE);
+  CHECK(features.v12.scalarBlockLayout == VK_TRUE);
+  CHECK(features.v13.synchronization2 == VK_TRUE);
+  CHECK(features.v13.maintenance4 == VK_TRUE);
+}

@@ -1,0 +1,166 @@
+// The scene: ids, contracts, boxes and the hierarchy.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/hierarchy.h"
+#include "sweep/frame.h"
+#include "workloads/generate.h"
+
+namespace {
+
+using namespace radar;
+
+MeshId addBox(Scene& scene) {
+  const tools::MeshData box = tools::makeBox({1, 2, 3});
+  return scene.addMesh(box.positions, box.indices);
+}
+
+Box placedBox(const Mesh& mesh, const Pose& pose) {
+  Box box;
+  for (uint32_t v : mesh.indices) box.add(place(pose, &mesh.positions[3 * size_t{v}]));
+  return box;
+}
+
+}  // namespace
+
+TEST_CASE("ids survive the removal of others, and the least free one is given next") {
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  CHECK(scene.addObject({mesh, {}, 1u}) == 0);
+  CHECK(scene.addObject({mesh, {}, 2u}) == 1);
+  CHECK(scene.addObject({mesh, {}, 4u}) == 2);
+  scene.removeObject(1);
+  scene.removeObject(0);
+  CHECK(scene.hasObject(2));
+  CHECK(scene.object(2).mask == 4u);
+  CHECK_FALSE(scene.hasObject(0));
+  CHECK(scene.addObject({mesh, {}, 8u}) == 0);
+  CHECK(scene.addObject({mesh, {}, 16u}) == 1);
+  CHECK(scene.addObject({mesh, {}, 32u}) == 3);
+}
+
+TEST_CASE("a mesh in use cannot be removed, and a version tells every change") {
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  uint64_t version = scene.version();
+  const auto changed = [&] { return std::exchange(version, scene.version()) != scene.version(); };
+  const ObjectId object = scene.addObject({mesh, {}, ~0u});
+  CHECK(changed());
+  CHECK_FALSE(changed());
+  CHECK_THROWS_WITH(scene.removeMesh(mesh), Catch::Contains("used by 1"));
+  scene.setPose(object, {{2, 0, 0, 1, 0, 2, 0, 1, 0, 0, 2, 1}});
+  CHECK(changed());
+  scene.removeObject(object);
+  CHECK(changed());
+  scene.removeMesh(mesh);
+  CHECK(changed());
+  CHECK(addBox(scene) == mesh);
+}
+
+TEST_CASE("what breaks a contract is refused in words") {
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  const std::vector<float> corner{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  CHECK_THROWS_WITH(scene.addMesh(corner, {}), Catch::Contains("at least one triangle"));
+  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1, 3}), Catch::Contains("vertex 3 of 3"));
+  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1}), Catch::Contains("3 per triangle"));
+  CHECK_THROWS_WITH(scene.addMesh(std::vector<float>{0, 0, NAN}, std::vector<uint32_t>{0, 0, 0}),
+                    Catch::Contains("vertex 0 is not finite"));
+  CHECK_THROWS_WITH(scene.addObject({mesh + 1, {}, ~0u}), Catch::Contains("does not exist"));
+  CHECK_THROWS_WITH(scene.addObject({mesh, {{1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0}}, ~0u}), Catch::Contains("singular"));
+  CHECK_THROWS_WITH(scene.setPose(0, {}), Catch::Contains("does not exist"));
+  CHECK_THROWS_WITH(scene.removeObject(7), Catch::Contains("does not exist"));
+  CHECK(whatIsWrong(Pose{{1e-6, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 1e-6, 0}}).empty());
+  CHECK(whatIsWrong(Pose{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
+}
+
+TEST_CASE("a mesh's box holds every placed vertex, near and far from the origin") {
+  tools::Random random(5);
+  Scene scene;
+  for (const tools::Soup soup : tools::kSoups) {
+    const tools::MeshData data = tools::makeSoup(soup, 50, random);
+    const Mesh& mesh = scene.impl().meshes[scene.addMesh(data.positions, data.indices)];
+    for (int i = 0; i < 50; ++i) {
+      const double away = std::pow(10.0, random.uniform(-3, 8));
+      const double s = std::pow(10.0, random.uniform(-4, 4));
+      const Pose pose =
+          tools::makePose(random.rotation(), {s, s, s}, random.inBox({-away, -away, -away}, {away, away, away}));
+      const Box outer = boxOf(mesh, pose.m), inner = placedBox(mesh, pose);
+      for (int k = 0; k < 3; ++k) {
+        CHECK(outer.lo[k] <= inner.lo[k]);
+        CHECK(outer.hi[k] >= inner.hi[k]);
+      }
+    }
+  }
+}
+
+TEST_CASE("axes along a direction are orthonormal, right-handed, and exact along the world's") {
+  tools::Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    Vector direction = random.direction();
+    const double length = std::pow(10.0, random.uniform(-100, 100));
+    for (double& c : direction) c *= length;
+    const std::array<Vector, 3> axes = axesAlong(direction);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) CHECK(dot(axes[a], axes[b]) == Approx(a == b).margin(1e-15));
+    }
+    CHECK(dot(axes[2], direction) == Approx(length));
+  }
+  for (int k = 0; k < 3; ++k) {
+    Vector direction{};
+    direction[k] = -2.5;
+    for (const Vector& axis : axesAlong(direction)) {
+      for (double c : axis) CHECK((c == 0 || std::abs(c) == 1));
+    }
+  }
+}
+
+TEST_CASE("the hierarchy names every object whose placed vertices reach into a prism, as the scene changes") {
+  tools::Random random(11);
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  Hierarchy hierarchy;
+  std::vector<ObjectId> objects;
+  const auto randomPose = [&] {
+    return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, random.inBox({-20, -20, -20}, {20, 20, 20}));
+  };
+  size_t named = 0, inside = 0;
+  for (int round = 0; round < 60; ++round) {
+    // Grow, move some, remove some.
+    for (int i = 0; i < 10; ++i) objects.push_back(scene.addObject({mesh, randomPose(), ~0u}));
+    for (int i = 0; i < 5; ++i) scene.setPose(objects[random.below(uint32_t(objects.size()))], randomPose());
+    if (round % 3 == 2) {
+      scene.removeObject(objects.back());
+      objects.pop_back();
+    }
+    hierarchy.update(scene.impl());
+    const Prism prism{random.inBox({-20, -20, -20}, {20, 20, 20}),
+                      axesAlong(random.direction()),
+                      {{-2, -1, 0}, {2, 1, random.uniform(0, 30)}}};
+    std::vector<ObjectId> collected;
+    hierarchy.collect(prism, collected);
+    std::sort(collected.begin(), collected.end());
+    CHECK(std::adjacent_find(collected.begin(), collected.end()) == collected.end());
+    named += collected.size();
+    for (ObjectId id : objects) {
+      const Mesh& m = scene.impl().meshes[mesh];
+      bool reaches = false;
+      for (uint32_t v : m.indices) {
+        std::array<double, 3> p = place(scene.object(id).worldFromMesh, &m.positions[3 * size_t{v}]);
+        bool in = true;
+        for (int k = 0; k < 3; ++k) p[k] -= prism.origin[k];
+        for (int k = 0; k < 3; ++k) {
+          const double c = dot(prism.axes[k], p);
+          in = in && c >= prism.box.lo[k] && c <= prism.box.hi[k];
+        }
+        reaches = reaches || in;
+      }
+      inside += reaches;
+      if (reaches) CHECK(std::binary_search(collected.begin(), collected.end(), id));
+    }
+  }
+  CHECK(inside > 50);
+  CHECK(named < 4 * inside);
+}

@@ -1,0 +1,69 @@
+#include <catch2/catch.hpp>
+
+#include "workloads/generate.h"
+
+using namespace radar;
+using namespace radar::tools;
+
+namespace {
+
+Instance at(uint32_t mesh, double x) {
+  Instance instance{mesh, {}};
+  instance.worldFromMesh.m[3] = x;
+  return instance;
+}
+
+void requireShows(const Scene& scene, const std::vector<Instance>& instances, const std::vector<uint32_t>& masks) {
+  REQUIRE(scene.objectLimit() >= instances.size());
+  for (uint32_t id = 0; id < scene.objectLimit(); ++id) REQUIRE(scene.hasObject(id) == (id < instances.size()));
+  for (uint32_t id = 0; id < instances.size(); ++id) {
+    CHECK(scene.object(id).mesh == instances[id].mesh);
+    CHECK(scene.object(id).worldFromMesh == instances[id].worldFromMesh);
+    CHECK(scene.object(id).mask == masks[id]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a player shows each scene with object ids that are positions, in whatever order") {
+  Workload workload;
+  workload.meshes = {makeBox({1, 1, 1}), makePlate(2, 2, 0.1)};
+  workload.scenes = {
+      {"still", {}, {at(0, 1), at(1, 2)}, {}},     {"more", 0, {at(0, 3), at(1, 4)}, {}},
+      {"moved", 0, {at(0, 5), at(1, 6)}, {}},      {"other meshes", 0, {at(1, 5), at(0, 6), at(0, 7)}, {}},
+      {"masked", 0, {at(1, 5)}, {{0, 6}, {2, 9}}}, {"alone", {}, {at(1, 8)}, {}}};
+  const std::vector<std::vector<Instance>> expected{{at(0, 1), at(1, 2)},
+                                                    {at(0, 1), at(1, 2), at(0, 3), at(1, 4)},
+                                                    {at(0, 1), at(1, 2), at(0, 5), at(1, 6)},
+                                                    {at(0, 1), at(1, 2), at(1, 5), at(0, 6), at(0, 7)},
+                                                    {at(0, 1), at(1, 2), at(1, 5)},
+                                                    {at(1, 8)}};
+  ScenePlayer player(workload);
+  for (uint32_t scene : {0, 1, 2, 3, 4, 1, 4, 2, 5, 3, 0, 5, 5, 4}) {
+    CAPTURE(scene);
+    player.show(scene);
+    std::vector<uint32_t> masks(expected[scene].size(), ~0u);
+    if (scene == 4) masks = {6, ~0u, 9};
+    requireShows(player.scene(), expected[scene], masks);
+  }
+}
+
+TEST_CASE("queries of one scene and one batch number belong together, wherever they stand") {
+  Workload workload;
+  workload.scenes.resize(2);
+  workload.queries.resize(5);
+  workload.queries[0].batch = 7;
+  workload.queries[1].scene = 1;
+  workload.queries[2].batch = 7;
+  workload.queries[3].scene = 1;
+  workload.queries[3].batch = 7;
+  workload.queries[4].batch = 0;
+  const std::vector<Batch> batches = batchesOf(workload);
+  REQUIRE(batches.size() == 4);
+  CHECK(batches[0].scene == 0);
+  CHECK(batches[0].queries == std::vector<uint32_t>{0, 2});
+  CHECK(batches[1].scene == 1);
+  CHECK(batches[1].queries == std::vector<uint32_t>{1});
+  CHECK(batches[2].queries == std::vector<uint32_t>{3});
+  CHECK(batches[3].queries == std::vector<uint32_t>{4});
+}

@@ -1,0 +1,29 @@
+// Query files, format cyber-radar-queries-1.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "import/input_error.h"
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+/// Reads a query file with its meshes and instance files. Everything is checked: what is returned keeps the contracts
+/// of radar::Scene and radar::Query. Throws InputError that names the file, the JSON path (or line) and what was
+/// expected. Appends to `warnings` what a mesh file gives reason for.
+Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+
+/// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
+/// instances as an instance file; makes the folder. Reading it gives the same workload to the bit (a mesh's name is its
+/// file's then). Returns the query file. Throws std::runtime_error if something cannot be written.
+std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
+
+/// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them, or says that the
+/// mode is not available in this version.
+const char* nameOf(Mode mode);
+Mode modeFrom(std::string_view name);
+
+}  // namespace radar::tools

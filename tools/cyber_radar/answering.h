@@ -1,0 +1,69 @@
+// A workload answered: the one place where the program meets the engine and the reference.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cyber_radar/progress.h"
+#include "reference/reference.h"
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+struct AnsweringOptions {
+  Mode mode = Mode::reference;  ///< of queries that do not choose one
+  uint32_t resolution = 0;      ///< 0: chosen per sensor
+  uint32_t device = kNone;      ///< kNone: the best
+  bool timestamps = false;      ///< measure each stage
+};
+
+struct Answer {
+  Result result;
+  Mode mode = Mode::reference;
+  std::string reason;  ///< why the status is invalid
+};
+
+class Answering {
+ public:
+  /// Opens a device if a query needs one; throws radar::Error if none is usable. The workload must outlive this.
+  Answering(const Workload& workload, const AnsweringOptions& options);
+
+  /// Shows the scene of the first batch and brings it to where it is needed. Returns milliseconds.
+  double setUp();
+
+  struct Pass {
+    std::vector<Answer> answers;  ///< in the workload's order
+    double ms = 0;                ///< from handing over the queries to having the answers, scene changes included
+    uint64_t pairs = 0;           ///< triangle pairs that reached a box test, or were nominated by pixels
+    uint64_t cpuPairs = 0;        ///< those of them decided on the CPU
+    std::vector<StageTime> stages;
+  };
+  /// Answers everything, batch by batch. setUp() comes before each pass.
+  Pass run(const std::string& label);
+
+  size_t batchCount() const { return groups_.size(); }
+  const Device* device() const { return device_ ? &*device_ : nullptr; }
+
+ private:
+  struct Part {
+    std::vector<uint32_t> numbers;  ///< in the workload
+    std::vector<Query> queries;
+  };
+  struct Group {
+    uint32_t scene = 0;
+    Part sampled, reference;
+  };
+  void sample(const Part& part, Pass& pass, Progress& progress);
+  void refer(const Part& part, Pass& pass, Progress& progress);
+
+  const Workload& workload_;
+  std::vector<Group> groups_;
+  ScenePlayer player_;
+  std::optional<Device> device_;
+  std::optional<Sweeper> sweeper_;
+  std::unique_ptr<reference::Reference> reference_;
+};
+
+}  // namespace radar::tools

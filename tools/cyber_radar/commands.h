@@ -1,0 +1,19 @@
+// The commands of the program, each in its own file. A command's callback throws on bad input; `status` is the exit
+// status of one that ran.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace radar::tools {
+
+constexpr int kStatusSomeInvalid = 1;
+constexpr int kStatusBadInput = 2;
+
+void addSweepCommand(CLI::App& app, int& status);
+void addQueryCommand(CLI::App& app, int& status);
+void addScopesCommand(CLI::App& app);
+void addDevicesCommand(CLI::App& app, int& status);
+void addDemoCommand(CLI::App& app, int& status);
+void addWorkloadCommand(CLI::App& app);
+
+}  // namespace radar::tools

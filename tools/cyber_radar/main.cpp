@@ -1,0 +1,60 @@
+#include <iostream>
+
+#include "cyber_radar/commands.h"
+#include "radar/radar.h"
+
+namespace {
+
+constexpr const char* kAbout =
+    "Cyber Radar: how far can a shape move along a direction before its surface first touches anything?";
+
+constexpr const char* kExamples = R"(Try:
+  cyber-radar demo                          teapots among boxes: a table, and pictures in a folder
+  cyber-radar sweep hall.glb robot.ply --direction 1 0 0 --distance 5
+                                            one sweep, answered in words
+  cyber-radar query batch.json --out answers.jsonl
+                                            many sweeps from a file, one JSON line each
+  cyber-radar workload table1 --out DIR     a batch to try that with
+  cyber-radar devices                       what could compute here, and what speaks against it
+
+Each command explains itself: cyber-radar sweep --help
+Exit status: 0, or 1 if some query could not be answered, or 2 for bad input or no usable device.)";
+
+constexpr const char* kNoDeviceHint =
+    "To compute without a GPU, install Mesa's software device: apt install mesa-vulkan-drivers\n"
+    "--mode reference needs no Vulkan device at all.";
+
+int fail(const std::string& message) {
+  std::cout.flush();
+  std::cerr << "cyber-radar: " << message << "\n";
+  return radar::tools::kStatusBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{kAbout, "cyber-radar"};
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  int status = 0;
+  radar::tools::addSweepCommand(app, status);
+  radar::tools::addQueryCommand(app, status);
+  radar::tools::addScopesCommand(app);
+  radar::tools::addDevicesCommand(app, status);
+  radar::tools::addDemoCommand(app, status);
+  radar::tools::addWorkloadCommand(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : radar::tools::kStatusBadInput;
+  } catch (const radar::Error& error) {
+    std::string message = error.what();
+    for (const std::string& reason : error.reasons) message += "\n  " + reason;
+    // A failed Vulkan call, or no device: what a person can do about it.
+    if (error.result != VK_SUCCESS || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
+    return fail(message);
+  } catch (const std::exception& error) {
+    return fail(error.what());
+  }
+  return status;
+}

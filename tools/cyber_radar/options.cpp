@@ -1,0 +1,142 @@
+#include "cyber_radar/options.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "batch/query_file.h"
+#include "import/mesh_import.h"
+
+namespace radar::tools {
+
+namespace {
+
+void requireFinite(const char* option, const std::vector<double>& values) {
+  for (double value : values) {
+    if (!std::isfinite(value)) throw InputError(option, "", "expected finite numbers, got " + std::to_string(value));
+  }
+}
+
+Pose poseFrom(const std::vector<double>& at, const std::vector<double>& rotate) {
+  Pose pose;
+  if (!rotate.empty()) {
+    const double length = std::hypot(rotate[0], rotate[1], rotate[2]);
+    if (length == 0) throw InputError("--rotate", "", "expected an axis that is not zero");
+    const double x = rotate[0] / length, y = rotate[1] / length, z = rotate[2] / length;
+    const double angle = rotate[3] * (std::acos(-1.0) / 180), c = std::cos(angle), s = std::sin(angle), u = 1 - c;
+    pose.m = {c + x * x * u,     x * y * u - z * s, x * z * u + y * s, 0,  //
+              y * x * u + z * s, c + y * y * u,     y * z * u - x * s, 0,  //
+              z * x * u - y * s, z * y * u + x * s, c + z * z * u,     0};
+  }
+  for (size_t k = 0; k < at.size(); ++k) pose.m[4 * k + 3] = at[k];
+  return pose;
+}
+
+uint32_t resolutionFrom(const std::string& text) {
+  if (text == "auto") return 0;
+  uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > kMaxResolution) {
+    throw InputError(
+        "--resolution", "",
+        "expected auto or a whole number from 1 to " + std::to_string(kMaxResolution) + ", got \"" + text + "\"");
+  }
+  return value;
+}
+
+}  // namespace
+
+void EngineOptions::addTo(CLI::App& command) {
+  command
+      .add_option("--mode", mode,
+                  "How to answer: reference, exact on the CPU; or sampled, the paper's method on a Vulkan device: "
+                  "an upper bound of the distance")
+      ->type_name("sampled|reference")
+      ->capture_default_str();
+  addResolutionTo(command);
+  command.add_option("--tolerance", tolerance, "Not available in this version")->type_name("T");
+}
+
+void EngineOptions::addResolutionTo(CLI::App& command) {
+  command
+      .add_option("--resolution", resolution,
+                  "Pixels of the longer side of a sensor's window in mode sampled; pixels are square; auto chooses "
+                  "from the size of the sensor and of its triangles")
+      ->type_name("N|auto")
+      ->capture_default_str();
+  command.add_option("--device", device, "Number of the device, as cyber-radar devices lists them; else the best one")
+      ->type_name("I");
+}
+
+AnsweringOptions EngineOptions::checked() const {
+  if (tolerance) throw InputError("--tolerance", "", "expected no such option: it is not available in this version");
+  AnsweringOptions options;
+  try {
+    options.mode = modeFrom(mode);
+  } catch (const std::invalid_argument& error) {
+    throw InputError("--mode", "", error.what());
+  }
+  options.resolution = resolutionFrom(resolution);
+  options.device = device;
+  return options;
+}
+
+void SweepOptions::addMotionTo(CLI::App& command) {
+  command.add_option("--direction", direction, "Where the sensor moves; the length does not matter")
+      ->type_size(3)
+      ->expected(1)
+      ->type_name("X Y Z");
+  command.add_option("--distance", distance, "How far, in the meshes' units")->type_name("D");
+  command.add_option("--at", at, "Puts the sensor's origin here")->type_size(3)->expected(1)->type_name("X Y Z");
+  command.add_option("--rotate", rotate, "Turns the sensor first: an axis and degrees")
+      ->type_size(4)
+      ->expected(1)
+      ->type_name("X Y Z ANGLE");
+}
+
+Workload SweepOptions::load() const {
+  if (direction.empty()) throw InputError("--direction", "", "expected three numbers, got none");
+  if (!distance) throw InputError("--distance", "", "expected a number, got none");
+  requireFinite("--direction", direction);
+  requireFinite("--distance", {*distance});
+  requireFinite("--at", at);
+  requireFinite("--rotate", rotate);
+  QuerySpec query;
+  query.id = "sweep";
+  std::copy(direction.begin(), direction.end(), query.direction.begin());
+  if (query.direction == std::array<double, 3>{}) {
+    throw InputError("--direction", "", "expected a vector that is not zero");
+  }
+  query.distance = *distance;
+  if (query.distance < 0) throw InputError("--distance", "", "expected a number of 0 or more");
+  if (speed && !(*speed > 0 && std::isfinite(*speed))) {
+    throw InputError("--speed", "", "expected a finite number above 0, got " + std::to_string(*speed));
+  }
+  query.speed = speed;
+  query.sensor = {1, poseFrom(at, rotate)};
+
+  std::vector<std::string> warnings;
+  Workload workload;
+  workload.meshes.push_back(readMesh(scene, warnings));
+  workload.meshes.push_back(readMesh(sensor, warnings));
+  workload.scenes.push_back({"scene", {}, {{0, {}}}, {}});
+  workload.queries.push_back(query);
+  printWarnings(warnings);
+  return workload;
+}
+
+void printWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::cerr << "cyber-radar: warning: " << warning << "\n";
+}
+
+void requireFolderOf(const char* option, const std::string& file) {
+  const std::filesystem::path path(file), folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError(option, file, "expected a file in a folder that exists, got no folder " + folder.string());
+  }
+  if (std::filesystem::is_directory(path, error)) throw InputError(option, file, "expected a file, got a folder");
+}
+
+}  // namespace radar::tools

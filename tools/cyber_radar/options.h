@@ -1,0 +1,44 @@
+// Options that several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cyber_radar/answering.h"
+
+namespace radar::tools {
+
+/// --mode, --resolution, --device, --tolerance.
+struct EngineOptions {
+  std::string mode = "reference", resolution = "auto";
+  uint32_t device = kNone;
+  std::optional<double> tolerance;
+
+  void addTo(CLI::App& command);
+  void addResolutionTo(CLI::App& command);
+  /// Throws InputError that names the option.
+  AnsweringOptions checked() const;
+};
+
+/// One sweep given on the command line: a scene file, a sensor file, and how the sensor moves.
+struct SweepOptions {
+  std::string scene, sensor;
+  std::vector<double> direction, at, rotate;
+  std::optional<double> distance, speed;
+
+  /// All but the two files.
+  void addMotionTo(CLI::App& command);
+  /// Reads both files: mesh 0 and object 0 are the scene's, mesh 1 the sensor's. Prints warnings to standard error.
+  /// Throws InputError that names the option or file.
+  Workload load() const;
+};
+
+void printWarnings(const std::vector<std::string>& warnings);
+
+/// Refuses a file whose folder does not exist, before long work. Throws InputError.
+void requireFolderOf(const char* option, const std::string& file);
+
+}  // namespace radar::tools

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "batch/answer_file.h"
+#include "batch/query_file.h"
+#include "batch/whole_file.h"
+#include "cyber_radar/commands.h"
+#include "cyber_radar/options.h"
+#include "cyber_radar/words.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  cyber-radar query batch.json                       answers to standard output
+  cyber-radar query batch.json --out answers.jsonl --mode sampled --resolution 256
+  cyber-radar query batch.json --repeat 9 --stats stats.json --out answers.jsonl
+
+A query file is one JSON object of meshes, scenes and queries (format cyber-radar-queries-1); the answers are JSON
+Lines, one per query, in the file's order. cyber-radar workload writes query files to try.)";
+
+struct Options {
+  EngineOptions engine;
+  std::string file, out, stats;
+  uint32_t repeat = 1;
+  bool measure = false;
+};
+
+double medianOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::string statsOf(const Workload& workload, const Answering& answering, const Answering::Pass& pass, double loadMs,
+                    double setupMs, double sweepMs) {
+  nlohmann::ordered_json stats;
+  stats["queries"] = workload.queries.size();
+  stats["batches"] = answering.batchCount();
+  stats["load_ms"] = loadMs;
+  stats["setup_ms"] = setupMs;
+  stats["sweep_ms"] = sweepMs;
+  stats["stages"] = nlohmann::ordered_json::object();
+  for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
+  stats["pairs"] = pass.pairs;
+  stats["cpu_pairs"] = pass.cpuPairs;
+  const Device* device = answering.device();
+  stats["device"] = device ? nlohmann::ordered_json(device->name()) : nullptr;
+  stats["driver"] = device ? nlohmann::ordered_json(device->driver()) : nullptr;
+  stats["commit"] = RADAR_COMMIT;
+  return stats.dump(2) + "\n";
+}
+
+std::string linesOf(const Workload& workload, const std::vector<Answer>& answers) {
+  std::string lines;
+  for (size_t i = 0; i < answers.size(); ++i) {
+    lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
+  }
+  return lines;
+}
+
+int query(const Options& options) {
+  AnsweringOptions engine = options.engine.checked();
+  if (!options.out.empty()) requireFolderOf("--out", options.out);
+  if (!options.stats.empty()) requireFolderOf("--stats", options.stats);
+
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::string> warnings;
+  const Workload workload = readQueryFile(options.file, warnings);
+  const std::chrono::duration<double, std::milli> load = std::chrono::steady_clock::now() - start;
+  printWarnings(warnings);
+
+  Answering answering(workload, engine);
+  const double setupMs = answering.setUp();
+  if (options.measure) {
+    answering.run("warming up");
+    answering.setUp();
+  }
+  Answering::Pass pass = answering.run("answering");
+  std::vector<double> times{pass.ms};
+  for (uint32_t i = 1; i < options.repeat; ++i) {
+    answering.setUp();
+    times.push_back(answering.run("answering again").ms);
+  }
+  if (!options.stats.empty()) {
+    // Stages in a pass of their own: the clocks that measure them would slow the others.
+    engine.timestamps = true;
+    Answering profile(workload, engine);
+    profile.setUp();
+    pass.stages = profile.run("measuring stages").stages;
+    writeWhole(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, medianOf(times)));
+  }
+  const std::string lines = linesOf(workload, pass.answers);
+  if (options.out.empty()) {
+    std::cout << lines << std::flush;
+    if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
+  } else {
+    writeWhole(options.out, lines);
+  }
+  if (options.engine.resolution == "auto") {
+    const std::string chosen = resolutionsInWords(pass.answers);
+    if (!chosen.empty()) std::cerr << "cyber-radar: " << chosen << " (chosen per sensor)\n";
+  }
+  const bool someInvalid = std::any_of(pass.answers.begin(), pass.answers.end(),
+                                       [](const Answer& a) { return a.result.status == Status::invalid; });
+  return someInvalid ? kStatusSomeInvalid : 0;
+}
+
+}  // namespace
+
+void addQueryCommand(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
+  command->footer(kExamples);
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE.json", options->file, "Query file")->required();
+  command->add_option("--out", options->out, "Where the answers go; else to standard output")->type_name("FILE.jsonl");
+  options->engine.addTo(*command);
+  CLI::Option* repeat =
+      command->add_option("--repeat", options->repeat, "Answers N times, after one warm-up, and takes the median time")
+          ->check(CLI::Range(1u, 1'000'000u))
+          ->type_name("N")
+          ->capture_default_str();
+  CLI::Option* stats =
+      command->add_option("--stats", options->stats, "Writes times and counts here, as one JSON object")
+          ->type_name("FILE.json");
+  command->callback([=, &status] {
+    options->measure = repeat->count() > 0 || stats->count() > 0;
+    status = query(*options);
+  });
+}
+
+}  // namespace radar::tools

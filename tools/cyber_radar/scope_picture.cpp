@@ -1,0 +1,210 @@
+#include "cyber_radar/scope_picture.h"
+
+#include <cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "batch/whole_file.h"
+#include "cyber_radar/colour_map.h"
+#include "cyber_radar/words.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr double kSide = 512;  // what the longer side of a small scope is enlarged towards
+constexpr double kMargin = 16, kTitle = 34, kPanelTitle = 22, kCaption = 40;
+constexpr double kBarGap = 12, kBarWidth = 18, kBarText = 96;
+constexpr double kLeastWidth = 330;  // of a panel's picture, so that titles and captions find room
+constexpr int kTicks = 5;
+
+struct Range {
+  double low = 0, high = 0;
+  size_t lowest = 0;  ///< the first pixel of the least value
+  bool empty = true;
+};
+
+Range rangeOf(const std::vector<float>& values) {
+  Range range;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    if (range.empty || values[i] < range.low) {
+      range.low = values[i];
+      range.lowest = i;
+    }
+    range.high = range.empty ? values[i] : std::max(range.high, double(values[i]));
+    range.empty = false;
+  }
+  return range;
+}
+
+class Canvas {
+ public:
+  Canvas(double width, double height)
+      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, int(std::ceil(width)), int(std::ceil(height))),
+                 cairo_surface_destroy),
+        cairo_(cairo_create(surface_.get()), cairo_destroy) {
+    colour({1, 1, 1});
+    cairo_paint(get());
+    cairo_select_font_face(get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  }
+
+  cairo_t* get() const { return cairo_.get(); }
+  void colour(const Colour& c) const { cairo_set_source_rgb(get(), c[0], c[1], c[2]); }
+  void fill(double x, double y, double width, double height) const {
+    cairo_rectangle(get(), x, y, width, height);
+    cairo_fill(get());
+  }
+  void outline(double x, double y, double width, double height) const {
+    colour({0.3, 0.3, 0.3});
+    cairo_set_line_width(get(), 1);
+    cairo_rectangle(get(), x - 0.5, y - 0.5, width + 1, height + 1);
+    cairo_stroke(get());
+  }
+  void text(double x, double baseline, double size, const std::string& words) const {
+    colour({0.1, 0.1, 0.1});
+    cairo_set_font_size(get(), size);
+    cairo_move_to(get(), x, baseline);
+    cairo_show_text(get(), words.c_str());
+  }
+
+  void write(const std::filesystem::path& file) const {
+    std::string png;
+    const auto append = [](void* to, const unsigned char* bytes, unsigned count) {
+      static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+      return CAIRO_STATUS_SUCCESS;
+    };
+    const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
+    if (status != CAIRO_STATUS_SUCCESS) {
+      throw std::runtime_error(file.string() + ": expected a picture, got " + cairo_status_to_string(status));
+    }
+    writeWhole(file, png);
+  }
+
+ private:
+  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
+  std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
+};
+
+void hatch(const Canvas& canvas, double x, double y, double width, double height) {
+  cairo_t* cairo = canvas.get();
+  canvas.colour({0.93, 0.93, 0.93});
+  canvas.fill(x, y, width, height);
+  cairo_save(cairo);
+  cairo_rectangle(cairo, x, y, width, height);
+  cairo_clip(cairo);
+  canvas.colour({0.8, 0.8, 0.8});
+  cairo_set_line_width(cairo, 1);
+  for (double offset = -height; offset < width; offset += 8) {
+    cairo_move_to(cairo, x + offset, y + height);
+    cairo_line_to(cairo, x + offset + height, y);
+  }
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+}
+
+/// A scale bar from `range.low` at the bottom to `range.high` at the top.
+void drawBar(const Canvas& canvas, const Range& range, double x, double y, double height) {
+  const int rows = static_cast<int>(height);
+  for (int row = 0; row < rows; ++row) {
+    canvas.colour(viridis(1 - (row + 0.5) / rows));
+    canvas.fill(x, y + row, kBarWidth, 1);
+  }
+  canvas.outline(x, y, kBarWidth, rows);
+  const int ticks = range.high > range.low ? kTicks : 1;
+  for (int i = 0; i < ticks; ++i) {
+    const double part = ticks == 1 ? 0.5 : double(i) / (ticks - 1);
+    const double level = y + (1 - part) * rows;
+    canvas.colour({0.3, 0.3, 0.3});
+    canvas.fill(x + kBarWidth, level - 0.5, 5, 1);
+    canvas.text(x + kBarWidth + 9, level + 4, 12, inDigits(range.low + part * (range.high - range.low)));
+  }
+}
+
+/// A ring and a cross hair that leave the pixel itself free, light on dark so that they show on any colour.
+void drawMark(const Canvas& canvas, double x, double y, double pixel) {
+  const double radius = std::max(9.0, 1.5 * pixel);
+  for (const auto& [width, colour] : {std::pair{4.0, Colour{0, 0, 0}}, std::pair{2.0, Colour{1, 1, 1}}}) {
+    canvas.colour(colour);
+    cairo_set_line_width(canvas.get(), width);
+    cairo_new_path(canvas.get());
+    cairo_arc(canvas.get(), x, y, radius, 0, 2 * std::acos(-1.0));
+    for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{-1, 0}, std::pair{0, 1}, std::pair{0, -1}}) {
+      cairo_move_to(canvas.get(), x + radius * dx, y + radius * dy);
+      cairo_line_to(canvas.get(), x + 1.8 * radius * dx, y + 1.8 * radius * dy);
+    }
+    cairo_stroke(canvas.get());
+  }
+}
+
+struct Layout {
+  double pixel, width, height, panelWidth;
+};
+
+Layout layoutOf(const Scopes& scopes) {
+  const double longer = std::max({scopes.width, scopes.height, 1u});
+  Layout layout;
+  layout.pixel = std::max(1.0, std::floor(kSide / longer));
+  layout.width = layout.pixel * scopes.width;
+  layout.height = layout.pixel * scopes.height;
+  layout.panelWidth = std::max(layout.width, kLeastWidth) + kBarGap + kBarWidth + kBarText;
+  return layout;
+}
+
+void drawPanel(const Canvas& canvas, const Scopes& scopes, const ScopePanel& panel, const Layout& layout, double x,
+               double y) {
+  const std::vector<float>& values = *panel.values;
+  const Range range = rangeOf(values);
+  canvas.text(x, y + 15, 15, panel.title);
+  y += kPanelTitle;
+  hatch(canvas, x, y, layout.width, layout.height);
+  const double span = range.high > range.low ? range.high - range.low : 1;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    canvas.colour(viridis(range.high > range.low ? (values[i] - range.low) / span : 0.5));
+    canvas.fill(x + layout.pixel * double(i % scopes.width),
+                y + layout.height - layout.pixel * double(i / scopes.width + 1), layout.pixel, layout.pixel);
+  }
+  canvas.outline(x, y, layout.width, layout.height);
+  const double below = y + layout.height + 17;
+  if (range.empty) {
+    canvas.text(x, below, 12, "no pixel has a value: " + panel.noValue);
+    return;
+  }
+  drawBar(canvas, range, x + layout.width + kBarGap, y, layout.height);
+  canvas.text(x, below, 12, "world units; hatched: " + panel.noValue);
+  if (panel.markMinimum) {
+    const size_t column = range.lowest % scopes.width, row = range.lowest / scopes.width;
+    drawMark(canvas, x + layout.pixel * (double(column) + 0.5), y + layout.height - layout.pixel * (double(row) + 0.5),
+             layout.pixel);
+    canvas.text(x, below + 16, 12,
+                "least value " + inDigits(range.low) + " at pixel (" + std::to_string(column) + ", " +
+                    std::to_string(row) + "), ringed");
+  }
+}
+
+}  // namespace
+
+std::vector<ScopePanel> panelsOf(const Scopes& scopes) {
+  return {{"R: from the back plane to the scene", "nothing there", &scopes.R, false},
+          {"M: from the far end back to the sensor", "no sensor there", &scopes.M, false},
+          {"L = R + M - d: free distance", "sensor or scene missing", &scopes.L, true}};
+}
+
+void writeScopePicture(const std::filesystem::path& file, const std::string& title, const Scopes& scopes,
+                       const std::vector<ScopePanel>& panels) {
+  const Layout layout = layoutOf(scopes);
+  const double panelStep = layout.panelWidth + kMargin;
+  const Canvas canvas(kMargin + panelStep * double(panels.size()),
+                      2 * kMargin + kTitle + kPanelTitle + layout.height + kCaption);
+  canvas.text(kMargin, kMargin + 17, 17, title);
+  for (size_t i = 0; i < panels.size(); ++i) {
+    drawPanel(canvas, scopes, panels[i], layout, kMargin + panelStep * double(i), kMargin + kTitle);
+  }
+  canvas.write(file);
+}
+
+}  // namespace radar::tools

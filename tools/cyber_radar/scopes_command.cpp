@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "batch/answer_file.h"
+#include "batch/query_file.h"
+#include "batch/whole_file.h"
+#include "cyber_radar/commands.h"
+#include "cyber_radar/options.h"
+#include "cyber_radar/scope_picture.h"
+#include "cyber_radar/words.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  cyber-radar scopes batch.json --query ring/0 --out pictures
+  cyber-radar scopes ring.obj peg.stl --direction 0 0 1 --distance 8 --out pictures --raw
+
+Writes R.png, M.png, L.png and scopes.png, which holds all three. With --raw also R.f32, M.f32 and L.f32: the values as
+little-endian 32-bit floats, row by row from the window's lower left corner, NaN where a pixel has no value; and
+scopes.json, which gives width, height, the side of a pixel, d, the sensor's length along the motion, the window's
+corner and axes in the world, and the answer.)";
+
+struct Options {
+  std::vector<std::string> files;
+  std::string query, out;
+  SweepOptions sweep;
+  EngineOptions engine;
+  bool raw = false;
+};
+
+Workload load(Options& options) {
+  if (options.files.size() == 2) {
+    if (!options.query.empty()) throw InputError("--query", "", "expected one query file, got two files");
+    options.sweep.scene = options.files[0];
+    options.sweep.sensor = options.files[1];
+    return options.sweep.load();
+  }
+  if (options.query.empty()) throw InputError("--query", "", "expected the id of a query of the file, got none");
+  for (const auto& [name, given] :
+       {std::pair{"--direction", !options.sweep.direction.empty()},
+        std::pair{"--distance", options.sweep.distance.has_value()}, std::pair{"--at", !options.sweep.at.empty()},
+        std::pair{"--rotate", !options.sweep.rotate.empty()}}) {
+    if (given) throw InputError(name, "", "expected no such option beside a query file, which says it");
+  }
+  std::vector<std::string> warnings;
+  Workload workload = readQueryFile(options.files[0], warnings);
+  printWarnings(warnings);
+  return workload;
+}
+
+const QuerySpec& findQuery(const Workload& workload, const Options& options) {
+  if (options.query.empty()) return workload.queries.front();
+  const auto found = std::find_if(workload.queries.begin(), workload.queries.end(),
+                                  [&](const QuerySpec& query) { return query.id == options.query; });
+  if (found == workload.queries.end()) {
+    throw InputError(options.files[0], "queries", "expected a query with the id \"" + options.query + "\", got none");
+  }
+  return *found;
+}
+
+std::string rawOf(const std::vector<float>& values) {
+  std::string bytes;
+  bytes.reserve(4 * values.size());
+  for (float value : values) {
+    uint32_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
+  }
+  return bytes;
+}
+
+void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const Scopes& scopes) {
+  writeWhole(folder / "R.f32", rawOf(scopes.R));
+  writeWhole(folder / "M.f32", rawOf(scopes.M));
+  writeWhole(folder / "L.f32", rawOf(scopes.L));
+  nlohmann::ordered_json sidecar;
+  sidecar["width"] = scopes.width;
+  sidecar["height"] = scopes.height;
+  sidecar["pixel"] = scopes.pixel;
+  sidecar["d"] = scopes.d;
+  sidecar["length"] = scopes.length;
+  sidecar["origin"] = scopes.origin;
+  sidecar["right"] = scopes.right;
+  sidecar["up"] = scopes.up;
+  sidecar["forward"] = scopes.forward;
+  sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(query, scopes.result, Mode::sampled, ""));
+  writeWhole(folder / "scopes.json", sidecar.dump(2) + "\n");
+}
+
+void drawScopes(Options& options) {
+  const AnsweringOptions engine = options.engine.checked();
+  const Workload workload = load(options);
+  const QuerySpec& query = findQuery(workload, options);
+  ScenePlayer player(workload);
+  player.show(query.scene);
+  const Device device = Device::open({.index = engine.device});
+  Sweeper sweeper(device, player.scene());
+  const Scopes scopes = sweeper.scopes(toQuery(query, engine.resolution));
+  if (scopes.result.status == Status::invalid) {
+    throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");
+  }
+  std::filesystem::create_directories(options.out);
+  const std::filesystem::path folder = options.out;
+  const std::string leastL = std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
+  const std::string title = query.id + ":  d = " + inDigits(scopes.d) + ",  D = " + inDigits(query.distance) +
+                            ",  min(L) = " + leastL + ",  " + std::to_string(scopes.width) + " x " +
+                            std::to_string(scopes.height) + " pixels of " + inDigits(scopes.pixel);
+  const std::vector<ScopePanel> panels = panelsOf(scopes);
+  writeScopePicture(folder / "R.png", title, scopes, {panels[0]});
+  writeScopePicture(folder / "M.png", title, scopes, {panels[1]});
+  writeScopePicture(folder / "L.png", title, scopes, {panels[2]});
+  writeScopePicture(folder / "scopes.png", title, scopes, panels);
+  if (options.raw) writeRaw(folder, query, scopes);
+  std::cout << title << "\n"
+            << inWords(workload, query, {scopes.result, Mode::sampled, {}})
+            << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png"
+            << (options.raw ? "; values: R.f32, M.f32, L.f32, scopes.json" : "") << "\n";
+}
+
+}  // namespace
+
+void addScopesCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("scopes", "Draws the paper's scopes R, M and L of one query");
+  command->footer(kExamples);
+  auto options = std::make_shared<Options>();
+  command->add_option("FILES", options->files, "A query file; or two mesh files, scene and sensor")
+      ->required()
+      ->expected(1, 2);
+  command->add_option("--query", options->query, "Which query of the query file")->type_name("ID");
+  command->add_option("--out", options->out, "Folder for the pictures")->required()->type_name("DIR");
+  options->sweep.addMotionTo(*command);
+  options->engine.addResolutionTo(*command);
+  command->add_flag("--raw", options->raw, "Writes the 32-bit values too");
+  command->callback([options] { drawScopes(*options); });
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,84 @@
+#include "cyber_radar/words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace radar::tools {
+
+namespace {
+
+const Instance& instanceOf(const Workload& workload, uint32_t scene, uint32_t object) {
+  const SceneSpec& spec = workload.scenes[scene];
+  const size_t still = spec.base ? workload.scenes[*spec.base].instances.size() : 0;
+  return object < still ? workload.scenes[*spec.base].instances[object] : spec.instances[object - still];
+}
+
+std::string contactInWords(const Workload& workload, const QuerySpec& query, const Result& result) {
+  const Instance& touched = instanceOf(workload, query.scene, result.object);
+  std::string text = "  what    triangle " + std::to_string(result.triB) + " of object " +
+                     std::to_string(result.object) + " (" + workload.meshes[touched.mesh].name +
+                     "), by the sensor's triangle " + std::to_string(result.triA) + " (" +
+                     workload.meshes[query.sensor.mesh].name + ")\n";
+  if (!std::isnan(result.point[0])) text += "  where   " + inDigits(result.point) + "\n";
+  if (!std::isnan(result.normal[0])) {
+    text += "  normal  " + inDigits(result.normal) + ", from the touched surface towards the sensor\n";
+  }
+  if (query.speed) text += "  when    after " + inDigits(result.t / *query.speed) + " s\n";
+  return text;
+}
+
+std::string certaintyInWords(const Answer& answer) {
+  if (answer.mode == Mode::reference) return "exact, to rounding";
+  return "certainly no later; mode sampled does not say how much earlier";
+}
+
+}  // namespace
+
+std::string inDigits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string inDigits(const std::array<double, 3>& vector) {
+  return "(" + inDigits(vector[0]) + ", " + inDigits(vector[1]) + ", " + inDigits(vector[2]) + ")";
+}
+
+std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
+  const Result& result = answer.result;
+  const std::string distance = inDigits(query.distance);
+  switch (result.status) {
+    case Status::hit:
+      return "hit: first contact after " + inDigits(result.t) + " of " + distance + " (" +
+             inDigits(100 * result.fraction) + "% of the way)\n  how     " + certaintyInWords(answer) + "\n" +
+             contactInWords(workload, query, result);
+    case Status::overlap:
+      return "overlap: the surfaces meet at the start already\n" + contactInWords(workload, query, result);
+    case Status::clear:
+      return "clear: certainly no contact within " + distance + "\n";
+    case Status::undecided:
+      return std::string("undecided: ") +
+             (result.detected == Detected::no ? "no pixel saw anything in the way" : "no pixel found a contact") +
+             " within " + distance +
+             ", which is no proof; a higher --resolution may find one, --mode reference knows\n";
+    case Status::invalid:
+      break;
+  }
+  return "invalid: " + answer.reason + "\n";
+}
+
+std::string resolutionsInWords(const std::vector<Answer>& answers) {
+  uint32_t least = ~0u, most = 0;
+  for (const Answer& answer : answers) {
+    if (answer.result.resolution == 0) continue;
+    least = std::min(least, answer.result.resolution);
+    most = std::max(most, answer.result.resolution);
+  }
+  if (most == 0) return {};
+  std::string text = "resolution: " + std::to_string(least);
+  if (most != least) text += " to " + std::to_string(most);
+  return text;
+}
+
+}  // namespace radar::tools

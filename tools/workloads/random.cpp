@@ -1,0 +1,79 @@
+#include "workloads/random.h"
+
+#include <cmath>
+
+namespace radar::tools {
+
+namespace {
+
+/// Taylor series for 0 <= x <= pi/4, summed from the smallest term.
+std::array<double, 2> cosSin(double x) {
+  const double y = x * x;
+  double cosine = 0, sine = 0;
+  for (int k = 20; k > 0; k -= 2) {
+    cosine = (1 - cosine) * y / (k * (k - 1.0));
+    sine = (1 - sine) * y / (k * (k + 1.0));
+  }
+  return {1 - cosine, x * (1 - sine)};
+}
+
+}  // namespace
+
+double Random::uniform(double low, double high) {
+  const double unit = static_cast<double>(bits_() >> 11) * 0x1p-53;
+  return low + (high - low) * unit;
+}
+
+uint32_t Random::below(uint32_t limit) {
+  return static_cast<uint32_t>((bits_() >> 32) * limit >> 32);
+}
+
+Vec3 Random::inBox(const Vec3& low, const Vec3& high) {
+  return {uniform(low[0], high[0]), uniform(low[1], high[1]), uniform(low[2], high[2])};
+}
+
+Vec3 Random::direction() {
+  while (true) {
+    const Vec3 p = inBox({-1, -1, -1}, {1, 1, 1});
+    const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    if (square > 1 || square < 1e-4) continue;
+    const double length = std::sqrt(square);
+    return {p[0] / length, p[1] / length, p[2] / length};
+  }
+}
+
+std::array<double, 9> Random::rotation() {
+  while (true) {
+    const double w = uniform(-1, 1), x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
+    const double square = w * w + x * x + y * y + z * z;
+    if (square > 1 || square < 1e-4) continue;
+    const double s = 2 / square;
+    return {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
+            s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),
+            s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
+  }
+}
+
+Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at) {
+  Pose pose;
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) pose.m[4 * row + k] = rotation[3 * row + k] * scale[k];
+    pose.m[4 * row + 3] = at[row];
+  }
+  return pose;
+}
+
+std::array<double, 2> circlePoint(uint32_t k, uint32_t n) {
+  constexpr double kPi = 3.14159265358979323846;
+  // Folded into the first eighth of a turn by exact integers, so that symmetric points are symmetric to the bit.
+  const uint64_t eighths = 8ull * (k % n);
+  const uint64_t octant = eighths / n;
+  const uint64_t rest = octant % 2 == 0 ? eighths % n : n - eighths % n;
+  auto [c, s] = cosSin(kPi / 4 * (static_cast<double>(rest) / n));
+  if (octant % 4 == 1 || octant % 4 == 2) std::swap(c, s);
+  if (octant >= 2 && octant < 6) c = -c;
+  if (octant >= 4) s = -s;
+  return {c, s};
+}
+
+}  // namespace radar::tools

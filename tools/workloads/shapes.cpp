@@ -1,0 +1,182 @@
+#include "workloads/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::tools {
+
+namespace {
+
+void addVertex(MeshData& mesh, const Vec3& p) {
+  for (double value : p) mesh.positions.push_back(static_cast<float>(value));
+}
+
+void addTriangle(MeshData& mesh, uint32_t a, uint32_t b, uint32_t c) {
+  mesh.indices.insert(mesh.indices.end(), {a, b, c});
+}
+
+MeshData named(const char* name, MeshData mesh) {
+  mesh.name = name;
+  return mesh;
+}
+
+}  // namespace
+
+MeshData makeBox(const Vec3& size) {
+  MeshData mesh{"box", {}, {}};
+  for (int i = 0; i < 8; ++i) {
+    addVertex(mesh, {(i & 1 ? 0.5 : -0.5) * size[0], (i & 2 ? 0.5 : -0.5) * size[1], (i & 4 ? 0.5 : -0.5) * size[2]});
+  }
+  mesh.indices = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                  2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  return mesh;
+}
+
+MeshData makeLathe(std::span<const std::array<double, 2>> profile, bool closed, uint32_t segments) {
+  MeshData mesh;
+  std::vector<uint32_t> first;  // of each profile point's circle; a pole has one vertex only
+  for (const auto& [radius, height] : profile) {
+    first.push_back(mesh.vertexCount());
+    for (uint32_t s = 0; s < (radius == 0 ? 1 : segments); ++s) {
+      const auto [c, n] = circlePoint(s, segments);
+      addVertex(mesh, {radius * c, radius * n, height});
+    }
+  }
+  const size_t count = profile.size();
+  for (size_t i = 0; i + (closed ? 0 : 1) < count; ++i) {
+    const size_t j = (i + 1) % count;
+    const auto corner = [&](size_t point, uint32_t s) {
+      return first[point] + (profile[point][0] == 0 ? 0 : s % segments);
+    };
+    for (uint32_t s = 0; s < segments; ++s) {
+      if (profile[i][0] != 0) addTriangle(mesh, corner(i, s), corner(i, s + 1), corner(j, s));
+      if (profile[j][0] != 0) addTriangle(mesh, corner(i, s + 1), corner(j, s + 1), corner(j, s));
+    }
+  }
+  return mesh;
+}
+
+MeshData makeUvSphere(uint32_t rings, uint32_t segments) {
+  std::vector<std::array<double, 2>> profile;
+  for (uint32_t i = 0; i <= rings; ++i) {
+    const auto [c, s] = circlePoint(i, 2 * rings);
+    profile.push_back({i == 0 || i == rings ? 0.0 : s, -c});
+  }
+  return named("sphere", makeLathe(profile, false, segments));
+}
+
+MeshData makeTorus(double radius, double tube, uint32_t segments, uint32_t tubeSegments) {
+  std::vector<std::array<double, 2>> profile;
+  for (uint32_t i = 0; i < tubeSegments; ++i) {
+    const auto [c, s] = circlePoint(i, tubeSegments);
+    profile.push_back({radius + tube * c, tube * s});
+  }
+  return named("torus", makeLathe(profile, true, segments));
+}
+
+MeshData makeRod(double radius, double length, uint32_t segments) {
+  const double h = 0.5 * length;
+  const std::array<std::array<double, 2>, 4> profile{{{0, -h}, {radius, -h}, {radius, h}, {0, h}}};
+  return named("rod", makeLathe(profile, false, segments));
+}
+
+MeshData makeCup(double radius, double height, double wall, uint32_t segments) {
+  const std::array<std::array<double, 2>, 6> profile{
+      {{0, 0}, {radius, 0}, {radius, height}, {radius - wall, height}, {radius - wall, wall}, {0, wall}}};
+  return named("cup", makeLathe(profile, false, segments));
+}
+
+MeshData makePlate(double width, double depth, double thickness) {
+  return named("plate", makeBox({width, depth, thickness}));
+}
+
+MeshData makeComb(uint32_t teeth, double pitch, double toothLength, double thickness) {
+  const double width = pitch * (teeth - 0.5);
+  MeshData mesh = named("comb", makeBox({width, thickness, thickness}));
+  const MeshData tooth = makeBox({0.5 * pitch, thickness, toothLength});
+  for (uint32_t i = 0; i < teeth; ++i) {
+    append(mesh, tooth, {pitch * (i + 0.25) - 0.5 * width, 0, 0.5 * (thickness + toothLength)});
+  }
+  return mesh;
+}
+
+MeshData makeHook(double length, double reach, double tip, double thickness) {
+  MeshData mesh = named("hook", makeBox({thickness, thickness, length}));
+  append(mesh, makeBox({reach, thickness, thickness}), {0.5 * (reach - thickness), 0, -0.5 * (length - thickness)});
+  append(mesh, makeBox({thickness, thickness, tip}), {reach - thickness, 0, -0.5 * (length - tip)});
+  return mesh;
+}
+
+const char* nameOf(Soup soup) {
+  constexpr std::array<const char*, kSoups.size()> kNames{"plain", "needles", "degenerate", "lattice", "tiny", "far"};
+  return kNames[static_cast<size_t>(soup)];
+}
+
+MeshData makeSoup(Soup soup, uint32_t triangles, Random& random) {
+  MeshData mesh{std::string("soup-") + nameOf(soup), {}, {}};
+  const Vec3 low{-1, -1, -1}, high{1, 1, 1};
+  for (uint32_t i = 0; i < triangles; ++i) {
+    const Vec3 middle = random.inBox(low, high);
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) {
+      const Vec3 offset = random.inBox(low, high);
+      for (int k = 0; k < 3; ++k) corner[k] = middle[k] + 0.2 * offset[k];
+    }
+    if (soup == Soup::needles) {
+      for (int k = 0; k < 3; ++k) corners[2][k] = corners[0][k] + 1e-6 * (corners[2][k] - middle[k]);
+    }
+    if (soup == Soup::degenerate) {
+      const uint32_t kind = random.below(4);  // 0: a triangle
+      const double along = random.uniform(-0.5, 1.5);
+      for (int k = 0; k < 3; ++k) {
+        if (kind == 1) corners[1][k] = corners[2][k] = corners[0][k];
+        if (kind == 2) corners[2][k] = corners[0][k] + along * (corners[1][k] - corners[0][k]);
+        if (kind == 3) corners[2][k] = corners[1][k];
+      }
+    }
+    for (Vec3& corner : corners) {
+      for (double& value : corner) {
+        if (soup == Soup::lattice) value = std::floor(4 * value + 0.5) / 4;
+        if (soup == Soup::tiny) value *= 1e-6;
+        if (soup == Soup::far) value += 2000;
+      }
+      addVertex(mesh, corner);
+    }
+    addTriangle(mesh, 3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return mesh;
+}
+
+void append(MeshData& mesh, const MeshData& part, const Vec3& offset) {
+  const uint32_t first = mesh.vertexCount();
+  for (size_t i = 0; i < part.positions.size(); ++i) {
+    mesh.positions.push_back(static_cast<float>(part.positions[i] + offset[i % 3]));
+  }
+  for (uint32_t index : part.indices) mesh.indices.push_back(first + index);
+}
+
+Bounds boundsOf(const MeshData& mesh) {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  for (uint32_t vertex : mesh.indices) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], double(mesh.positions[3 * vertex + k]));
+      high[k] = std::max(high[k], double(mesh.positions[3 * vertex + k]));
+    }
+  }
+  Bounds bounds;
+  for (int k = 0; k < 3; ++k) {
+    bounds.middle[k] = 0.5 * (low[k] + high[k]);
+    bounds.longest = std::max(bounds.longest, high[k] - low[k]);
+  }
+  for (uint32_t vertex : mesh.indices) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double offset = mesh.positions[3 * vertex + k] - bounds.middle[k];
+      square += offset * offset;
+    }
+    bounds.radius = std::max(bounds.radius, std::sqrt(square));
+  }
+  return bounds;
+}
+
+}  // namespace radar::tools

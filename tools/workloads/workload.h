@@ -1,0 +1,95 @@
+// A workload: meshes, scenes that place them, and queries. It is what a query file says, in memory: the generators make
+// one, tools/batch reads and writes one. Numbers are as in radar.h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "radar/radar.h"
+
+namespace radar::tools {
+
+/// A triangle mesh that owns its numbers. `name` is for people, and for the file it is written to.
+struct MeshData {
+  std::string name;
+  std::vector<float> positions;   ///< 3 per vertex
+  std::vector<uint32_t> indices;  ///< 3 per triangle
+  uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
+  uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
+};
+
+/// A mesh of the workload, placed.
+struct Instance {
+  uint32_t mesh = 0;
+  Pose worldFromMesh;
+  friend bool operator==(const Instance&, const Instance&) = default;
+};
+
+using ObjectMask = std::pair<uint32_t, uint32_t>;  ///< object, bits
+
+/// Objects are numbered through: those of the base, then `instances`. A base has no base itself and comes earlier.
+struct SceneSpec {
+  std::string id;
+  std::optional<uint32_t> base;
+  std::vector<Instance> instances;
+  std::vector<ObjectMask> masks;  ///< every other object has all bits; not inherited from the base
+};
+
+/// How an answer is found.
+enum class Mode { sampled, reference };
+
+struct QuerySpec {
+  std::string id;
+  uint32_t scene = 0;
+  uint64_t batch = 0;  ///< queries of one scene and one batch number are answered in one submission
+  Instance sensor;
+  std::vector<uint32_t> exclude;
+  std::array<double, 3> direction{};
+  double distance = 0;
+  uint32_t mask = ~0u;
+  std::optional<Mode> mode;     ///< overrides the command's
+  std::optional<double> speed;  ///< units per second
+};
+
+struct Workload {
+  std::vector<MeshData> meshes;
+  std::vector<SceneSpec> scenes;
+  std::vector<QuerySpec> queries;
+
+  /// Objects of a scene, its base's included.
+  uint32_t objectCount(uint32_t scene) const;
+};
+
+/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
+Query toQuery(const QuerySpec& spec, uint32_t resolution = 0);
+
+/// The queries of one scene and one batch number, as positions in Workload::queries, in the order of first appearance.
+struct Batch {
+  uint32_t scene = 0;
+  std::vector<uint32_t> queries;
+};
+std::vector<Batch> batchesOf(const Workload& workload);
+
+/// Plays a workload's scenes in one radar::Scene, whose mesh and object ids are the workload's numbers. From one scene
+/// to the next, objects that are the same stay untouched and those that only moved are moved.
+class ScenePlayer {
+ public:
+  /// Adds all meshes, shows nothing yet. The workload must outlive the player.
+  explicit ScenePlayer(const Workload& workload);
+
+  void show(uint32_t scene);
+  const Scene& scene() const { return scene_; }
+
+ private:
+  void showObject(uint32_t object, const Instance& instance, uint32_t mask);
+
+  const Workload& workload_;
+  Scene scene_;
+  std::optional<uint32_t> shown_;
+};
+
+}  // namespace radar::tools

@@ -4,6 +4,7 @@
 
 #include "exact/determinant.h"
 #include "exact/event.h"
+#include "exact/whole.h"
 
 namespace radar::exact {
 
@@ -18,29 +19,48 @@ constexpr int next(int i) {
 class Ends {
  public:
   void add(const Event& event) {
-    if (!ends_) {
-      ends_ = Interval{event, event};
-      return;
-    }
-    const int first = compare(event, ends_->first);
-    if (first < 0 || (first == 0 && precedes(event, ends_->first))) ends_->first = event;
-    const int last = compare(event, ends_->last);
-    if (last > 0 || (last == 0 && precedes(event, ends_->last))) ends_->last = event;
+    const int own = count_++;
+    events_[own] = event;
+    hasRatio_[own] = false;
+    if (own == 0) return;
+    const int first = order(own, first_), last = isPoint_ ? first : order(own, last_);
+    isPoint_ = isPoint_ && first == 0;
+    if (first < 0 || (first == 0 && precedes(event, events_[first_]))) first_ = own;
+    if (last > 0 || (last == 0 && precedes(event, events_[last_]))) last_ = own;
   }
-  const std::optional<Interval>& interval() const { return ends_; }
+  std::optional<Interval> interval() const {
+    if (count_ == 0) return std::nullopt;
+    return Interval{events_[first_], events_[last_]};
+  }
 
  private:
-  std::optional<Interval> ends_;
+  const Ratio& ratioOf(int i) {
+    if (!hasRatio_[i]) ratios_[i] = ratio(events_[i]);
+    hasRatio_[i] = true;
+    return ratios_[i];
+  }
+  int order(int p, int q) {
+    if (const auto sure = compareRoughly(events_[p], events_[q])) return *sure;
+    return compare(ratioOf(p), ratioOf(q));
+  }
+
+  static constexpr int kMost = 18;  // 9 vertices on edges either way; in space 3 + 3 + 9
+  int count_ = 0, first_ = 0, last_ = 0;
+  bool isPoint_ = true;  // so far all events have one parameter
+  std::array<Event, kMost> events_;
+  std::array<bool, kMost> hasRatio_;
+  std::array<Ratio, kMost> ratios_;  // large, and hardly ever touched
 };
 
 /// All signs of orientation that the two triangles have as seen along the direction: 18 minors of the 9 differences
 /// b[k] - a[i]. Reversing the direction and swapping the triangles changes no bit of their magnitudes.
-struct Signs {
+class Signs {
+ public:
   int edgeOfA[3][3];  ///< [i][k]: vertex k of b against the edge of a from i to next(i)
   int edgeOfB[3][3];  ///< [k][i]: vertex i of a against the edge of b from k to next(k)
   bool allZero = true;
 
-  Signs(const Triangle& a, const Triangle& b, const Vec& direction) {
+  Signs(const Triangle& a, const Triangle& b, const Vec& direction) : a_(a), b_(b), direction_(direction) {
     Vec gap[3][3];
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) gap[i][k] = rounded({a[i], b[k]});
@@ -48,9 +68,7 @@ struct Signs {
     const double floor = underflowOf(direction);
     const auto minor = [&](int i, int k, int j, int l) {
       const Estimate rough = estimate(direction, gap[i][k], gap[j][l], floor);
-      if (std::abs(rough.value) > rough.error) return signOf(rough.value);
-      countExactDecision();
-      return exactly({{kOrigin, direction}, {a[i], b[k]}, {a[j], b[l]}}).sign();
+      return std::abs(rough.value) > rough.error ? signOf(rough.value) : exactMinor(i, k, j, l);
     };
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -60,11 +78,43 @@ struct Signs {
       }
     }
   }
-};
 
-bool inside(int p, int q, int r) {
-  return (p | q | r) != 0 && ((p >= 0 && q >= 0 && r >= 0) || (p <= 0 && q <= 0 && r <= 0));
-}
+  /// Whether vertex i of a lies over the closed face b, which is not edge-on; and the other way round.
+  bool vertexOverFace(int i) const { return oneSided(edgeOfB[0][i], edgeOfB[1][i], edgeOfB[2][i]); }
+  bool faceOverVertex(int k) const { return oneSided(edgeOfA[0][k], edgeOfA[1][k], edgeOfA[2][k]); }
+  /// Whether edge i of a crosses edge k of b, not in parallel, and not where one of the former two says the same.
+  bool edgesCross(int i, int k) const {
+    const int p = edgeOfA[i][k], q = edgeOfA[i][next(k)], r = edgeOfB[k][i], s = edgeOfB[k][next(i)];
+    if (p * q > 0 || r * s > 0 || (p == 0 && q == 0)) return false;
+    if ((r == 0 && vertexOverFace(i)) || (s == 0 && vertexOverFace(next(i)))) return false;
+    return !(p == 0 && faceOverVertex(k)) && !(q == 0 && faceOverVertex(next(k)));
+  }
+
+ private:
+  static bool oneSided(int p, int q, int r) {
+    return (p != 0 || q != 0 || r != 0) && ((p >= 0 && q >= 0 && r >= 0) || (p <= 0 && q <= 0 && r <= 0));
+  }
+
+  int exactMinor(int i, int k, int j, int l) {
+    // Where one sign is hard, others are: the pair is taken to integers once.
+    if (fit_ == Fit::unknown) {
+      const std::array<const Vec*, 6> corners{&a_[0], &a_[1], &a_[2], &b_[0], &b_[1], &b_[2]};
+      const std::array<const Vec*, 1> way{&direction_};
+      int exponent;
+      fit_ = toWhole(corners, corners_, exponent) && toWhole(way, way_, exponent) ? Fit::yes : Fit::no;
+    }
+    if (fit_ == Fit::no) return exactSign({{kOrigin, direction_}, {a_[i], b_[k]}, {a_[j], b_[l]}});
+    countExactDecision();
+    return determinant(way_[0], corners_[3 + k] - corners_[i], corners_[3 + l] - corners_[j]).sign();
+  }
+
+  enum class Fit { unknown, yes, no };
+  const Triangle &a_, &b_;
+  const Vec& direction_;
+  Fit fit_ = Fit::unknown;
+  std::array<WholeVec, 6> corners_;
+  std::array<WholeVec, 1> way_;
+};
 
 /// Both triangles lie on one line as seen along the direction, or on two points: a problem in a plane that contains the
 /// direction. Its basic solutions are a vertex on an edge or, where all is on one line, a vertex on a vertex.
@@ -107,18 +157,10 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vec&
   }
   // Every basic solution of the linear programme "least s with a point of a, moved, on a point of b" is one of these.
   for (int i = 0; i < 3; ++i) {
-    if (inside(signs.edgeOfB[0][i], signs.edgeOfB[1][i], signs.edgeOfB[2][i])) {
-      ends.add(vertexFace(direction, a[i], b));
-    }
-    if (inside(signs.edgeOfA[0][i], signs.edgeOfA[1][i], signs.edgeOfA[2][i])) {
-      ends.add(faceVertex(direction, a, b[i]));
-    }
+    if (signs.vertexOverFace(i)) ends.add(vertexFace(direction, a[i], b));
+    if (signs.faceOverVertex(i)) ends.add(faceVertex(direction, a, b[i]));
     for (int k = 0; k < 3; ++k) {
-      const int p = signs.edgeOfA[i][k], q = signs.edgeOfA[i][next(k)];
-      const int r = signs.edgeOfB[k][i], s = signs.edgeOfB[k][next(i)];
-      if (p * q <= 0 && (p | q) != 0 && r * s <= 0) {
-        ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]));
-      }
+      if (signs.edgesCross(i, k)) ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]));
     }
   }
   return ends.interval();

@@ -26,12 +26,12 @@ enum class Kind : uint8_t { vertexFace, faceVertex, edgeEdge, vertexEdge, edgeVe
 /// in an order that depends on their coordinates only, so that the same two features give the same bits, whichever
 /// triangles they were found in.
 struct Event {
-  Kind kind = Kind::vertexFace;
-  Vec direction{};
-  Vec from{}, to{};  ///< a vertex of the moving feature, a vertex of the resting one
-  Vec x0{}, x1{}, y0{}, y1{};
-  double s = 0;      ///< the parameter, approximately
-  double error = 0;  ///< bound on |s - exact parameter|; may be infinite
+  Kind kind;
+  Vec direction;
+  Vec from, to;  ///< a vertex of the moving feature, a vertex of the resting one
+  Vec x0, x1, y0, y1;
+  double s;      ///< the parameter, approximately
+  double error;  ///< bound on |s - exact parameter|; may be infinite
 };
 
 struct Interval {

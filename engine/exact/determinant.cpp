@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "exact/whole.h"
+
 namespace radar::exact {
 
 namespace {
@@ -50,9 +52,7 @@ Dyadic component(const Difference& v, int k) {
   return Dyadic(v.to[k]) - Dyadic(v.from[k]);
 }
 
-}  // namespace
-
-Dyadic exactly(const Determinant& d) {
+Dyadic longDeterminant(const Determinant& d) {
   Dyadic value;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
@@ -64,11 +64,23 @@ Dyadic exactly(const Determinant& d) {
   return value;
 }
 
+}  // namespace
+
+Dyadic exactly(const Determinant& d) {
+  const auto w = whole(d.w), x = whole(d.x), y = whole(d.y);
+  if (!w || !x || !y) return longDeterminant(d);
+  return determinant(w->c, x->c, y->c).value(w->exponent + x->exponent + y->exponent);
+}
+
+int exactSign(const Determinant& d) {
+  countExactDecision();
+  const auto w = whole(d.w), x = whole(d.x), y = whole(d.y);
+  return w && x && y ? determinant(w->c, x->c, y->c).sign() : longDeterminant(d).sign();
+}
+
 int sign(const Determinant& d) {
   const Estimate rough = estimate(d);
-  if (std::abs(rough.value) > rough.error) return signOf(rough.value);
-  countExactDecision();
-  return exactly(d).sign();
+  return std::abs(rough.value) > rough.error ? signOf(rough.value) : exactSign(d);
 }
 
 int crossSign(const Difference& v, const Difference& w, int axis) {
@@ -76,6 +88,8 @@ int crossSign(const Difference& v, const Difference& w, int axis) {
   const double p = (v.to[i] - v.from[i]) * (w.to[j] - w.from[j]), q = (v.to[j] - v.from[j]) * (w.to[i] - w.from[i]);
   if (std::abs(p - q) > kRelative * (std::abs(p) + std::abs(q)) + kUnderflow) return signOf(p - q);
   countExactDecision();
+  const auto a = whole(v), b = whole(w);
+  if (a && b) return determinant({axis == 0, axis == 1, axis == 2}, a->c, b->c).sign();
   return (component(v, i) * component(w, j) - component(v, j) * component(w, i)).sign();
 }
 

@@ -34,8 +34,10 @@ Estimate estimate(const Determinant& d);
 FineEstimate fineEstimate(const Determinant& d);
 Dyadic exactly(const Determinant& d);
 
-/// -1, 0 or 1: of the first and exact arithmetic only; an answer of 0 is what needs the exact one, mostly.
+/// -1, 0 or 1, by doubles where they suffice.
 int sign(const Determinant& d);
+/// The same where doubles are known not to suffice.
+int exactSign(const Determinant& d);
 
 /// Sign of component `axis` of v cross w.
 int crossSign(const Difference& v, const Difference& w, int axis);

@@ -28,6 +28,12 @@ Dyadic::Dyadic(double value) {
   exponent_ = std::max(field, 1) - 1075 + zeros;
 }
 
+Dyadic::Dyadic(bool negative, const std::array<uint64_t, 3>& limbs, int exponent)
+    : size_(3), negative_(negative), exponent_(exponent) {
+  std::copy_n(limbs.begin(), 3, limbs_.begin());
+  trim();
+}
+
 Dyadic& Dyadic::operator=(const Dyadic& other) {
   size_ = other.size_;
   negative_ = other.negative_;

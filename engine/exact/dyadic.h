@@ -15,6 +15,8 @@ class Dyadic {
  public:
   Dyadic() {}
   explicit Dyadic(double value);  ///< finite
+  /// (negative ? -1 : 1) * (limbs, lowest first, as one integer) * 2^exponent.
+  Dyadic(bool negative, const std::array<uint64_t, 3>& limbs, int exponent);
   Dyadic(const Dyadic& other) { *this = other; }
   Dyadic& operator=(const Dyadic& other);
 

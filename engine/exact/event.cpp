@@ -23,7 +23,9 @@ Determinant denominator(const Event& e) {
 }
 
 /// Fills in the parameter. With num = n + dn, den = d + dd: n/d - num/den = (dn - (n/d) dd) / -den.
-Event evaluated(Event e) {
+Event evaluated(Kind kind, const Vec& direction, const Vec& from, const Vec& to, const Vec& x0, const Vec& x1,
+                const Vec& y0, const Vec& y1) {
+  Event e{kind, direction, from, to, x0, x1, y0, y1, 0, 0};
   const Estimate num = estimate(numerator(e)), den = estimate(denominator(e));
   e.s = num.value / den.value;
   const double sure = std::abs(den.value) - den.error;
@@ -37,6 +39,13 @@ Vec unit(int axis) {
   Vec v{};
   v[axis % 3] = 1;
   return v;
+}
+
+Triangle sorted(Triangle t) {
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  if (t[2] < t[1]) std::swap(t[1], t[2]);
+  if (t[1] < t[0]) std::swap(t[0], t[1]);
+  return t;
 }
 
 struct FineParameter {
@@ -59,37 +68,35 @@ FineParameter fineParameter(const Event& e) {
 }  // namespace
 
 Event vertexFace(const Vec& direction, const Vec& a, const Triangle& b) {
-  Triangle f = b;
-  std::sort(f.begin(), f.end());
-  return evaluated({Kind::vertexFace, direction, a, f[0], f[0], f[1], f[0], f[2]});
+  const Triangle f = sorted(b);
+  return evaluated(Kind::vertexFace, direction, a, f[0], f[0], f[1], f[0], f[2]);
 }
 
 Event faceVertex(const Vec& direction, const Triangle& a, const Vec& b) {
-  Triangle f = a;
-  std::sort(f.begin(), f.end());
-  return evaluated({Kind::faceVertex, direction, f[0], b, f[0], f[1], f[0], f[2]});
+  const Triangle f = sorted(a);
+  return evaluated(Kind::faceVertex, direction, f[0], b, f[0], f[1], f[0], f[2]);
 }
 
 Event edgeEdge(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b0, const Vec& b1) {
   const auto [p0, p1] = std::minmax(a0, a1);
   const auto [q0, q1] = std::minmax(b0, b1);
-  return evaluated({Kind::edgeEdge, direction, p0, q0, p0, p1, q0, q1});
+  return evaluated(Kind::edgeEdge, direction, p0, q0, p0, p1, q0, q1);
 }
 
 Event vertexEdge(const Vec& direction, const Vec& a, const Vec& b0, const Vec& b1, int axis) {
   const auto [q0, q1] = std::minmax(b0, b1);
-  return evaluated({Kind::vertexEdge, direction, a, q0, q0, q1, kOrigin, unit(axis)});
+  return evaluated(Kind::vertexEdge, direction, a, q0, q0, q1, kOrigin, unit(axis));
 }
 
 Event edgeVertex(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b, int axis) {
   const auto [p0, p1] = std::minmax(a0, a1);
-  return evaluated({Kind::edgeVertex, direction, p0, b, p0, p1, kOrigin, unit(axis)});
+  return evaluated(Kind::edgeVertex, direction, p0, b, p0, p1, kOrigin, unit(axis));
 }
 
 Event vertexVertex(const Vec& direction, const Vec& a, const Vec& b) {
   int axis = 0;
   while (direction[axis] == 0) ++axis;
-  return evaluated({Kind::vertexVertex, direction, a, b, kOrigin, unit(axis + 1), kOrigin, unit(axis + 2)});
+  return evaluated(Kind::vertexVertex, direction, a, b, kOrigin, unit(axis + 1), kOrigin, unit(axis + 2));
 }
 
 bool precedes(const Event& p, const Event& q) {
@@ -101,17 +108,30 @@ int sign(const Event& e) {
   return sign(numerator(e)) * sign(denominator(e));
 }
 
-int compare(const Event& p, const Event& q) {
+Ratio ratio(const Event& e) {
+  return {exactly(numerator(e)), exactly(denominator(e))};
+}
+
+int compare(const Ratio& p, const Ratio& q) {
+  countExactDecision();
+  return (p.num * q.den - q.num * p.den).sign() * p.den.sign() * q.den.sign();
+}
+
+std::optional<int> compareRoughly(const Event& p, const Event& q) {
   const double apart = p.s - q.s, margin = (1 + 8 * kUnit) * (p.error + q.error);
   if (std::abs(apart) > margin) return signOf(apart);
   if (!precedes(p, q) && !precedes(q, p)) return 0;
+  // Equal estimates are a tie, most likely, which only exact arithmetic can tell.
+  if (apart == 0) return std::nullopt;
   const FineParameter fp = fineParameter(p), fq = fineParameter(q);
   const Twofold fine = fp.s - fq.s;
   if (std::abs(fine.high) > (1 + 8 * kUnit) * (fp.error + fq.error)) return signOf(fine.high);
-  countExactDecision();
-  const Dyadic denP = exactly(denominator(p)), denQ = exactly(denominator(q));
-  const Dyadic difference = exactly(numerator(p)) * denQ - exactly(numerator(q)) * denP;
-  return difference.sign() * denP.sign() * denQ.sign();
+  return std::nullopt;
+}
+
+int compare(const Event& p, const Event& q) {
+  if (const auto order = compareRoughly(p, q)) return *order;
+  return compare(ratio(p), ratio(q));
 }
 
 int compareToDistance(const Event& e, double distance) {

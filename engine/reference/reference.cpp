@@ -7,6 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "reference/common_point.h"
 #include "reference/search.h"
 
 namespace radar::reference {
@@ -141,14 +142,17 @@ Result Reference::Impl::answer(const Query& query) {
   result.triB = best.triB;
   result.triA = best.triA;
   result.t = result.lo = result.hi = result.fraction = 0;
+  const double s = best.overlap ? 0 : exact::parameter(best.event);
   const bool touching = !best.overlap || exact::sign(best.event) == 0;
   if (touching) {
-    result.point = exact::point(best.event, best.parameter);
+    result.point = exact::point(best.event, s);
     result.normal = exact::normal(best.event);
+  } else {
+    result.point = commonPoint(best.a, best.b);
   }
   if (best.overlap) return result;
 
-  const double distance = query.distance, t = best.parameter * search.length();
+  const double distance = query.distance, t = s * search.length();
   const bool atEnd = exact::compareToDistance(best.event, distance) == 0;
   result.t = atEnd ? distance : std::min(t, distance);
   // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is

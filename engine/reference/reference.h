@@ -23,8 +23,9 @@ class Reference {
   ~Reference();
 
   /// Status is hit, clear or overlap. `lo` and `hi` are t rounded outwards; the pair is the least (object, triB, triA)
-  /// of those that attain t*; `point` and `normal` are of that pair, NaN where they have none (a normal where the two
-  /// triangles only slide along each other, or meet at the start already). Throws if the query breaks its contract.
+  /// of those that attain t*; `point` and `normal` are of that pair. There is no normal where the two triangles
+  /// meet at the start already, other than by just touching, or where they lie in one plane that contains the motion;
+  /// no point where they meet at the start and lie in one plane. Throws if the query breaks its contract.
   Result answer(const Query& query);
   std::vector<Result> run(std::span<const Query> queries);
 

@@ -157,10 +157,14 @@ void Search::meet(const PlacedTriangle& a, const PlacedTriangle& b) {
     if (order > 0) return;
     if (order == 0 && std::tie(placed_->id, b.id, a.id) > std::tie(best_.object, best_.triB, best_.triA)) return;
   }
-  // A distance a little beyond t*, three roundings at most below it.
-  const double parameter = overlap ? 0 : exact::parameter(interval->first);
-  const double latest = parameter * length_ * (1 + 8 * kUnit);
-  best_ = {true,    overlap, placed_->id, b.id, a.id, interval->first, parameter, a.world, b.world,
+  // A distance a little beyond t*: what the parameter, the length and the product may have lost.
+  double latest = 0;
+  if (!overlap) {
+    const bool rough = interval->first.error > 1e-12 * interval->first.s;
+    const double s = rough ? exact::parameter(interval->first) : interval->first.s + interval->first.error;
+    latest = s * length_ * (1 + 8 * kUnit);
+  }
+  best_ = {true,    overlap, placed_->id, b.id, a.id, interval->first, a.world, b.world,
            std::min(query_->distance, latest)};
 }
 

@@ -25,9 +25,8 @@ struct Best {
   bool overlap = false;  ///< t* = 0
   ObjectId object = kNone;
   uint32_t triB = kNone, triA = kNone;
-  exact::Event event;      ///< where the pair's interval begins
-  double parameter = 0;    ///< of that event, rounded; 0 for an overlap
-  exact::Triangle a, b;    ///< the pair
+  exact::Event event{};    ///< where the pair's interval begins
+  exact::Triangle a{}, b{};  ///< the pair
   double latest = kNever;  ///< upper bound on t*
 };
 

@@ -111,6 +111,84 @@ std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene
   return reached;
 }
 
+// Where the sensor is, as its view sees it.
+struct SensorWindow {
+  Vector origin;         // of the view's frame: the sensor's centre, world
+  Affine frameFromMesh;  // from recentred vertices
+  Box box;               // the sensor's extents in the frame; widened by `margin` across
+  double margin, error, size;
+};
+
+SensorWindow lookAlong(const std::array<Vector, 3>& axes, const Query& query, const Mesh& sensor) {
+  SensorWindow w;
+  w.origin = transform(query.worldFromMesh, sensor.centre);
+  w.frameFromMesh = frameFromRecentred(axes, w.origin, query.worldFromMesh, sensor.centre);
+  w.error = placementError(sensor, w.frameFromMesh) + doubleError(sensor, query.worldFromMesh, w.origin);
+  w.box = tightBox(sensor, w.frameFromMesh);
+  w.size = 0;
+  for (int k = 0; k < 3; ++k) w.size = std::max(w.size, w.box.hi[k] - w.box.lo[k]);
+  w.margin = std::max(64 * w.error, 1e-5 * w.size);
+  // A sensor without extent (a point) still gets a window.
+  if (w.margin == 0) w.margin = std::max(1e-5 * query.distance, 1e-30);
+  for (int k = 0; k < 2; ++k) {
+    w.box.lo[k] -= w.margin;
+    w.box.hi[k] += w.margin;
+  }
+  return w;
+}
+
+// What the scene in reach adds to a view.
+struct Reach {
+  std::vector<Reached> objects;
+  double depth = 0;  // from the back plane to the farthest of them, d at most
+  double error = 0;  // the greatest placement error
+};
+
+Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, const SensorWindow& window,
+              const ViewPlan& plan) {
+  Prism prism{window.origin, plan.axes, window.box};
+  prism.box.hi[2] = window.box.lo[2] + plan.d;
+  for (int k = 0; k < 3; ++k) {
+    prism.box.lo[k] -= window.error;
+    prism.box.hi[k] += window.error;
+  }
+  Reach reach;
+  double farthest = window.box.lo[2];
+  reach.objects = collectReached(query, scene, hierarchy, prism, farthest, reach.error);
+  reach.depth = std::min(plan.d, std::max(farthest - window.box.lo[2], 0.0));
+  return reach;
+}
+
+uint32_t pixelsAcross(const SensorWindow& window, int axis, double pixel, uint32_t resolution) {
+  const double pixels = std::ceil((window.box.hi[axis] - window.box.lo[axis]) / pixel);
+  return std::clamp(static_cast<uint32_t>(pixels), 1u, resolution);
+}
+
+void fillView(gpu::View& view, const Query& query, const SensorWindow& window, const Reach& reach, const ViewPlan& plan,
+              uint32_t resolution, uint32_t subPixelBits) {
+  // The far plane lies a little behind what must be seen, so that contact exactly at D is not cut off.
+  const double rangeScale = reach.depth + std::max({64 * kU * reach.depth, 2 * reach.error, window.margin});
+  const double maskScale = plan.length + 2 * window.margin;
+  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), view.pose);
+  std::copy(query.direction.begin(), query.direction.end(), view.direction);
+  view.directionLength = lengthOf(query.direction);
+  view.distance = query.distance;
+  view.size = window.size;
+  view.mesh = query.mesh;
+  view.resolution = resolution;
+  view.width = pixelsAcross(window, 0, plan.pixel, resolution);
+  view.height = pixelsAcross(window, 1, plan.pixel, resolution);
+  view.cell = std::max(2u, 2 * ((resolution + 2 * gpu::kCellsPerSide - 1) / (2 * gpu::kCellsPerSide)));
+  view.rangeScale = static_cast<float>(rangeScale);
+  view.maskBase = static_cast<float>(plan.length + window.margin);
+  view.maskScale = static_cast<float>(maskScale);
+  view.slack = static_cast<float>(reach.error + window.error + 4 * kU * (rangeScale + maskScale));
+  view.snap = static_cast<float>(std::ldexp(1.0, -static_cast<int>(subPixelBits)) +
+                                 (reach.error + window.error) / plan.pixel + 6 * kU * resolution);
+  view.rangeSlack = static_cast<float>(reach.error / rangeScale + 8 * kU);
+  view.maskSlack = static_cast<float>(window.error / maskScale + 8 * kU);
+}
+
 }  // namespace
 
 uint32_t chooseResolution(double windowSide, double meanEdge) {
@@ -123,93 +201,44 @@ ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& h
   ViewPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   plan.axes = axesAlong(query.direction);
-  const Vector origin = transform(query.worldFromMesh, sensor.centre);
-  const Affine sensorFrame = frameFromRecentred(plan.axes, origin, query.worldFromMesh, sensor.centre);
-  const double sensorError = placementError(sensor, sensorFrame) + doubleError(sensor, query.worldFromMesh, origin);
-
-  // The window: the sensor's extents, a margin wider. A sensor without width (edge-on, a point) still gets a window.
-  Box window = tightBox(sensor, sensorFrame);
-  plan.length = window.hi[2] - window.lo[2];
+  const SensorWindow window = lookAlong(plan.axes, query, sensor);
+  plan.length = window.box.hi[2] - window.box.lo[2];
   plan.d = plan.length + query.distance;
-  const double extent = std::max(window.hi[0] - window.lo[0], window.hi[1] - window.lo[1]);
-  const double size = std::max(extent, plan.length);
-  double margin = std::max(64 * sensorError, 1e-5 * size);
-  if (margin == 0) margin = std::max(1e-5 * query.distance, 1e-30);
-  for (int k = 0; k < 2; ++k) {
-    window.lo[k] -= margin;
-    window.hi[k] += margin;
-  }
-  const double side = std::max(window.hi[0] - window.lo[0], window.hi[1] - window.lo[1]);
+  const double side = std::max(window.box.hi[0] - window.box.lo[0], window.box.hi[1] - window.box.lo[1]);
   const double scale = std::cbrt(std::abs(determinant(query.worldFromMesh)));
   const uint32_t resolution =
       query.resolution != 0 ? query.resolution : chooseResolution(side, scale * sensor.meanEdge);
   plan.pixel = side / resolution;
-  const auto pixels = [&](int axis) {
-    return std::clamp<uint32_t>(static_cast<uint32_t>(std::ceil((window.hi[axis] - window.lo[axis]) / plan.pixel)), 1,
-                                resolution);
-  };
-
-  Prism prism{origin, plan.axes, window};
-  prism.box.hi[2] = window.lo[2] + plan.d;
-  for (int k = 0; k < 3; ++k) {
-    prism.box.lo[k] -= sensorError;
-    prism.box.hi[k] += sensorError;
-  }
-  double farthest = window.lo[2], sceneError = 0;
-  const std::vector<Reached> reached = collectReached(query, scene, hierarchy, prism, farthest, sceneError);
-
-  const double backPlane = window.lo[2];
-  const double maskScale = plan.length + 2 * margin, maskBase = plan.length + margin;
-  // The far plane lies a little behind what must be seen, so that contact exactly at D is not cut off.
-  const double depth = std::min(plan.d, std::max(farthest - backPlane, 0.0));
-  const double rangeScale = depth + std::max({64 * kU * depth, 2 * sceneError, margin});
-  const double snap = std::ldexp(1.0, -static_cast<int>(subPixelBits)) + (sceneError + sensorError) / plan.pixel +
-                      3 * kU * 2 * resolution;
-
-  gpu::View& view = plan.view;
-  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), view.pose);
-  std::copy(query.direction.begin(), query.direction.end(), view.direction);
-  view.directionLength = lengthOf(query.direction);
-  view.distance = query.distance;
-  view.size = size;
-  view.mesh = query.mesh;
-  view.resolution = resolution;
-  view.width = pixels(0);
-  view.height = pixels(1);
-  view.cell = std::max(2u, 2 * ((resolution + 2 * gpu::kCellsPerSide - 1) / (2 * gpu::kCellsPerSide)));
-  view.rangeScale = static_cast<float>(rangeScale);
-  view.maskBase = static_cast<float>(maskBase);
-  view.maskScale = static_cast<float>(maskScale);
-  view.slack = static_cast<float>(sceneError + sensorError + 4 * kU * (rangeScale + maskScale));
-  view.snap = static_cast<float>(snap);
-  view.rangeSlack = static_cast<float>(sceneError / rangeScale + 8 * kU);
-  view.maskSlack = static_cast<float>(sensorError / maskScale + 8 * kU);
   for (int i = 0; i < 3; ++i) {
-    plan.corner[i] = origin[i];
-    for (int k = 0; k < 3; ++k) plan.corner[i] += plan.axes[k][i] * window.lo[k];
+    plan.corner[i] = window.origin[i];
+    for (int k = 0; k < 3; ++k) plan.corner[i] += plan.axes[k][i] * window.box.lo[k];
   }
+  const Reach reach = reachOf(query, scene, hierarchy, window, plan);
+  fillView(plan.view, query, window, reach, plan, resolution, subPixelBits);
 
-  const double rangeZ = 1 / rangeScale, rangeOffset = -backPlane / rangeScale;
+  // The scales as the shaders see them, rounded to float: pictures and what is read from them agree.
+  const double backPlane = window.box.lo[2];
+  const double rangeScale = plan.view.rangeScale, maskScale = plan.view.maskScale, maskBase = plan.view.maskBase;
+  plan.mask = {kNone, query.mesh,
+               clipFrom(window.frameFromMesh, window.box, plan.pixel, resolution, -1 / maskScale,
+                        (maskBase + backPlane) / maskScale)};
+  if (reach.objects.empty()) return plan;
   const auto addRange = [&](std::vector<Placed>& to, ObjectId id, const Affine& m) {
     const MeshId mesh = scene.objects[id].object.mesh;
-    to.push_back({id, mesh, clipFrom(m, window, plan.pixel, resolution, rangeZ, rangeOffset)});
+    to.push_back({id, mesh, clipFrom(m, window.box, plan.pixel, resolution, 1 / rangeScale, -backPlane / rangeScale)});
     plan.triangles += scene.meshes[mesh].triangleCount();
   };
-  plan.mask = {
-      kNone, query.mesh,
-      clipFrom(sensorFrame, window, plan.pixel, resolution, -1 / maskScale, (maskBase + backPlane) / maskScale)};
-  if (reached.empty()) return plan;
   plan.triangles += sensor.triangleCount();
-  for (const Reached& r : reached) addRange(plan.inReach, r.object, r.frameFromMesh);
+  for (const Reached& r : reach.objects) addRange(plan.inReach, r.object, r.frameFromMesh);
   if (select) return plan;
-  auto next = reached.begin();
+  auto next = reach.objects.begin();
   for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-    if (next != reached.end() && next->object == id) {
+    if (next != reach.objects.end() && next->object == id) {
       ++next;
     } else if (scene.objects[id].used && (scene.objects[id].object.mask & query.mask) != 0 && !excluded(query, id)) {
       const Object& object = scene.objects[id].object;
-      addRange(plan.others, id,
-               frameFromRecentred(plan.axes, origin, object.worldFromMesh, scene.meshes[object.mesh].centre));
+      const Mesh& mesh = scene.meshes[object.mesh];
+      addRange(plan.others, id, frameFromRecentred(plan.axes, window.origin, object.worldFromMesh, mesh.centre));
     }
   }
   return plan;

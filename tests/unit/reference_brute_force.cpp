@@ -56,6 +56,26 @@ TEST_CASE("the reference equals brute force at every scale and far from the orig
   }
 }
 
+TEST_CASE("the reference equals brute force for tiny sensors beside huge objects, and the other way round") {
+  for (uint64_t seed = 0; seed < 150; ++seed) {
+    Random random(7000 + seed);
+    INFO("seed " << seed);
+    Scene scene;
+    const MeshId a = add(scene, soups::soup(random, 10, 0.6, 0.1)), b = add(scene, soups::soup(random, 10, 1.5, 0.1));
+    const double sizeA = std::pow(10, random.uniform(-4, 4)), sizeB = std::pow(10, random.uniform(-4, 4));
+    scene.addObject({b, random.pose(sizeB, {0, 0, 0})});
+    scene.addObject({a, random.pose(sizeA, {0, 0, 5 * sizeA})});
+    reference::Reference reference(scene);
+    Query query;
+    query.mesh = a;
+    const double size = std::max(sizeA, sizeB);
+    query.worldFromMesh = random.pose(sizeA, {0.5 * sizeB * random.uniform(-1, 1), 0.5 * sizeB * random.uniform(-1, 1), -2 * size});
+    query.direction = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1};
+    query.distance = 20 * size;
+    soups::check(scene, query, reference.answer(query));
+  }
+}
+
 TEST_CASE("the reference equals brute force on integer lattices, where everything is degenerate") {
   for (uint64_t seed = 0; seed < 400; ++seed) {
     Random random(seed);

@@ -116,6 +116,65 @@ inline radar::MeshId add(radar::Scene& scene, const Mesh& mesh) {
   return scene.addMesh(mesh.positions, mesh.indices);
 }
 
+/// Distance from `p` to a triangle, which may be degenerate.
+inline double distance(const std::array<double, 3>& p, const oracle::Corners& t) {
+  using V = std::array<double, 3>;
+  const auto minus = [](const V& x, const V& y) { return V{x[0] - y[0], x[1] - y[1], x[2] - y[2]}; };
+  const auto dot = [](const V& x, const V& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
+  const auto cross = [](const V& x, const V& y) {
+    return V{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  };
+  const auto unit = [&](V v) {
+    const double length = std::hypot(v[0], v[1], v[2]);
+    for (double& c : v) c /= length;
+    return v;
+  };
+  double best = INFINITY;
+  for (size_t i = 0; i < 3; ++i) {
+    const V edge = minus(t[(i + 1) % 3], t[i]), to = minus(p, t[i]);
+    const double length = std::hypot(edge[0], edge[1], edge[2]);
+    const V along = length > 0 ? unit(edge) : V{};
+    const double at = std::clamp(dot(along, to), 0.0, length);
+    const V rest{to[0] - at * along[0], to[1] - at * along[1], to[2] - at * along[2]};
+    best = std::min(best, std::hypot(rest[0], rest[1], rest[2]));
+  }
+  const V n = unit(cross(minus(t[1], t[0]), minus(t[2], t[0])));
+  bool inside = true;
+  for (size_t i = 0; i < 3; ++i) {
+    inside = inside && dot(n, cross(minus(t[(i + 1) % 3], t[i]), minus(p, t[i]))) >= 0;
+  }
+  return inside ? std::min(best, std::abs(dot(n, minus(p, t[0])))) : best;
+}
+
+/// The point lies on both triangles at the moment of contact, the normal is a unit vector against the motion.
+inline void checkContact(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
+  const radar::Object& object = scene.object(result.object);
+  const oracle::Corners b = oracle::corners(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
+  oracle::Corners a = oracle::corners(scene.mesh(query.mesh), query.worldFromMesh, result.triA);
+  const auto& d = query.direction;
+  const double length = std::hypot(d[0], d[1], d[2]);
+  double size = 0;
+  for (auto& corner : a) {
+    for (size_t k = 0; k < 3; ++k) {
+      size = std::max({size, std::abs(corner[k]), result.t});
+      corner[k] += result.t * (d[k] / length);
+    }
+  }
+  for (const auto& corner : b) {
+    for (double c : corner) size = std::max(size, std::abs(c));
+  }
+  if (!std::isnan(result.point[0])) {
+    REQUIRE(distance(result.point, a) <= 1e-13 * size);
+    REQUIRE(distance(result.point, b) <= 1e-13 * size);
+  } else {
+    REQUIRE(result.status == radar::Status::overlap);
+  }
+  const auto& n = result.normal;
+  if (std::isnan(n[0])) return;
+  REQUIRE(std::abs(std::hypot(n[0], n[1], n[2]) - 1) <= 1e-15);
+  REQUIRE(n[0] * d[0] + n[1] * d[1] + n[2] * d[2] <= 1e-15 * length);
+}
+
 /// Checks everything that the oracle knows about an answer.
 inline void check(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
   const oracle::Answer truth = oracle::answer(scene, query);
@@ -134,6 +193,7 @@ inline void check(const radar::Scene& scene, const radar::Query& query, const ra
   REQUIRE(oracle::compareToDistance(truth.s, query.direction, result.hi) <= 0);
   REQUIRE(result.hi - result.lo <= 4e-15 * result.hi + 1e-300);
   if (result.status == radar::Status::overlap) REQUIRE(result.t == 0);
+  checkContact(scene, query, result);
 }
 
 }  // namespace soups

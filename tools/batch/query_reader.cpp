@@ -39,7 +39,7 @@ void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string
       object.member(key.c_str()).refuse("expected no such key: \"" + key + "\" is not available in this version");
     }
     std::string list;
-    for (std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string(name);
+    for (std::string_view name : known) list.append(list.empty() ? "" : ", ").append(name);
     object.member(key.c_str()).refuse("expected one of the keys " + list + ", got \"" + key + "\"");
   }
 }

@@ -134,7 +134,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     appendQuery(text, workload.queries[i]);
   }
   text += "]}\n";
-  const std::filesystem::path file = folder / "queries.json";
+  std::filesystem::path file = folder / "queries.json";
   writeWhole(file, text);
   return file;
 }

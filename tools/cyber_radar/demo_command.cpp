@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <cstdio>
 #include <iostream>
-#include <sstream>
 
 #include "batch/answer_file.h"
 #include "batch/query_file.h"
 #include "batch/whole_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
+#include "cyber_radar/scene_picture.h"
 #include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
 #include "workloads/generate.h"
@@ -17,7 +17,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr uint32_t kTeapots = 8, kPictures = 3, kSceneResolution = 1024;
+constexpr uint32_t kTeapots = 12, kPictures = 3;
 
 struct Row {
   const QuerySpec& query;
@@ -25,24 +25,33 @@ struct Row {
   const Answer& exact;
 };
 
+std::string number(double value, const char* format) {
+  if (std::isnan(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 std::string cell(const Answer& answer) {
-  std::ostringstream text;
-  text << std::left << std::setw(10) << nameOf(answer.result.status) << std::right << std::setw(9)
-       << (std::isnan(answer.result.t) ? "-" : inDigits(answer.result.t)) << std::setw(8)
-       << (answer.result.object == kNone ? "-" : std::to_string(answer.result.object));
-  return text.str();
+  const std::string object = answer.result.object == kNone ? "-" : std::to_string(answer.result.object);
+  char text[64];
+  std::snprintf(text, sizeof text, "%-10s%9s%8s", nameOf(answer.result.status), number(answer.result.t, "%.4f").c_str(),
+                object.c_str());
+  return text;
 }
 
 std::string tableOf(const std::vector<Row>& rows) {
-  std::ostringstream text;
-  text << "                    the paper's method (sampled)    exact (reference)\n"
-       << "teapot              status            t  object     status            t  object   late by\n";
+  std::string text =
+      "                    the paper's method (sampled)   exact (reference)\n"
+      "teapot              status            t  object    status            t  object    late by\n";
   for (const Row& row : rows) {
     const double late = row.sampled.result.t - row.exact.result.t;
-    text << std::left << std::setw(20) << row.query.id << cell(row.sampled) << "     " << cell(row.exact) << std::right
-         << std::setw(10) << (std::isnan(late) ? "-" : inDigits(late)) << "\n";
+    char line[160];
+    std::snprintf(line, sizeof line, "%-20s%s    %s%11s\n", row.query.id.c_str(), cell(row.sampled).c_str(),
+                  cell(row.exact).c_str(), number(late, "%.1e").c_str());
+    text += line;
   }
-  return text.str();
+  return text;
 }
 
 std::vector<Answer> answersIn(const Workload& workload, Mode mode, const AnsweringOptions& engine,
@@ -62,27 +71,6 @@ void writeAnswers(const std::filesystem::path& file, const Workload& workload, c
     lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
   }
   writeWhole(file, lines);
-}
-
-/// The whole scene: R of a plate as large as the cube's diagonal that looks in from a corner.
-void drawScene(const std::filesystem::path& file, Workload workload, uint32_t scene, const Device& device) {
-  const double diagonal = std::sqrt(3.0) * kCubeSide;
-  workload.meshes.push_back(makePlate(diagonal, diagonal, 0.01 * diagonal));
-  QuerySpec query;
-  query.scene = scene;
-  // Columns: an orthonormal frame whose third axis looks from the corner into the cube.
-  const double a = 1 / std::sqrt(2.0), b = 1 / std::sqrt(6.0), c = 1 / std::sqrt(3.0);
-  const double back = 0.55 * diagonal * c;
-  query.sensor = {static_cast<uint32_t>(workload.meshes.size() - 1),
-                  {{a, -b, -c, back, -a, -b, -c, back, 0, 2 * b, -c, back}}};
-  query.direction = {-c, -c, -c};
-  query.distance = 1.2 * diagonal;
-  ScenePlayer player(workload);
-  player.show(scene);
-  Sweeper sweeper(device, player.scene());
-  const Scopes scopes = sweeper.scopes(toQuery(query, kSceneResolution));
-  writeScopePicture(file, "The scene, seen from a corner of its cube", scopes,
-                    {{"R of a plate that looks in: distance", "nothing there", &scopes.R, false}});
 }
 
 /// The scopes of the first few teapots that hit something.
@@ -131,7 +119,13 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
   Sweeper sweeper(device, player.scene());
   std::string pictures = "scene.png";
   for (const std::string& name : drawHits(folder, rows, sweeper)) pictures += ", " + name;
-  drawScene(folder / "scene.png", workload, scene, device);
+  std::vector<Flight> flights;
+  for (const Row& row : rows) {
+    const Result& result = row.exact.result;
+    const bool touches = result.status != Status::clear;
+    flights.push_back({row.query, touches ? result.t : row.query.distance, touches});
+  }
+  writeScenePicture(folder / "scene.png", workload, scene, flights, device);
 
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ":\n  pictures   " << pictures
             << "\n  answers    table.txt, answers-sampled.jsonl, answers-reference.jsonl\n  questions  "

@@ -32,7 +32,7 @@ int fail(const std::string& message) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{kAbout, "cyber-radar"};
   app.footer(kExamples);
   app.require_subcommand(1);
@@ -47,14 +47,14 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : radar::tools::kStatusBadInput;
-  } catch (const radar::Error& error) {
-    std::string message = error.what();
-    for (const std::string& reason : error.reasons) message += "\n  " + reason;
-    // A failed Vulkan call, or no device: what a person can do about it.
-    if (error.result != VK_SUCCESS || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
-    return fail(message);
-  } catch (const std::exception& error) {
-    return fail(error.what());
   }
   return status;
+} catch (const radar::Error& error) {
+  std::string message = error.what();
+  for (const std::string& reason : error.reasons) message += "\n  " + reason;
+  // A failed Vulkan call, or no device: what a person can do about it.
+  if (error.result != VK_SUCCESS || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
+  return fail(message);
+} catch (const std::exception& error) {
+  return fail(error.what());
 }

@@ -1,14 +1,9 @@
 #include "cyber_radar/scope_picture.h"
 
-#include <cairo.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <stdexcept>
 
-#include "batch/whole_file.h"
-#include "cyber_radar/colour_map.h"
+#include "cyber_radar/canvas.h"
 #include "cyber_radar/words.h"
 
 namespace radar::tools {
@@ -40,54 +35,6 @@ Range rangeOf(const std::vector<float>& values) {
   }
   return range;
 }
-
-class Canvas {
- public:
-  Canvas(double width, double height)
-      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, int(std::ceil(width)), int(std::ceil(height))),
-                 cairo_surface_destroy),
-        cairo_(cairo_create(surface_.get()), cairo_destroy) {
-    colour({1, 1, 1});
-    cairo_paint(get());
-    cairo_select_font_face(get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  }
-
-  cairo_t* get() const { return cairo_.get(); }
-  void colour(const Colour& c) const { cairo_set_source_rgb(get(), c[0], c[1], c[2]); }
-  void fill(double x, double y, double width, double height) const {
-    cairo_rectangle(get(), x, y, width, height);
-    cairo_fill(get());
-  }
-  void outline(double x, double y, double width, double height) const {
-    colour({0.3, 0.3, 0.3});
-    cairo_set_line_width(get(), 1);
-    cairo_rectangle(get(), x - 0.5, y - 0.5, width + 1, height + 1);
-    cairo_stroke(get());
-  }
-  void text(double x, double baseline, double size, const std::string& words) const {
-    colour({0.1, 0.1, 0.1});
-    cairo_set_font_size(get(), size);
-    cairo_move_to(get(), x, baseline);
-    cairo_show_text(get(), words.c_str());
-  }
-
-  void write(const std::filesystem::path& file) const {
-    std::string png;
-    const auto append = [](void* to, const unsigned char* bytes, unsigned count) {
-      static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-      return CAIRO_STATUS_SUCCESS;
-    };
-    const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
-    if (status != CAIRO_STATUS_SUCCESS) {
-      throw std::runtime_error(file.string() + ": expected a picture, got " + cairo_status_to_string(status));
-    }
-    writeWhole(file, png);
-  }
-
- private:
-  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
-  std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
-};
 
 void hatch(const Canvas& canvas, double x, double y, double width, double height) {
   cairo_t* cairo = canvas.get();
@@ -165,8 +112,9 @@ void drawPanel(const Canvas& canvas, const Scopes& scopes, const ScopePanel& pan
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     canvas.colour(viridis(range.high > range.low ? (values[i] - range.low) / span : 0.5));
-    canvas.fill(x + layout.pixel * double(i % scopes.width),
-                y + layout.height - layout.pixel * double(i / scopes.width + 1), layout.pixel, layout.pixel);
+    const size_t column = i % scopes.width, row = i / scopes.width;
+    canvas.fill(x + layout.pixel * double(column), y + layout.height - layout.pixel * double(row + 1), layout.pixel,
+                layout.pixel);
   }
   canvas.outline(x, y, layout.width, layout.height);
   const double below = y + layout.height + 17;

@@ -1,6 +1,7 @@
 #include "workloads/random.h"
 
 #include <cmath>
+#include <utility>
 
 namespace radar::tools {
 
@@ -70,6 +71,7 @@ std::array<double, 2> circlePoint(uint32_t k, uint32_t n) {
   const uint64_t octant = eighths / n;
   const uint64_t rest = octant % 2 == 0 ? eighths % n : n - eighths % n;
   auto [c, s] = cosSin(kPi / 4 * (static_cast<double>(rest) / n));
+  if (rest == n) c = s = std::sqrt(0.5);
   if (octant % 4 == 1 || octant % 4 == 2) std::swap(c, s);
   if (octant >= 2 && octant < 6) c = -c;
   if (octant >= 4) s = -s;

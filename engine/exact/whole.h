@@ -1,0 +1,45 @@
+// Points as 64-bit integers times a common power of two: the fast lane of exact arithmetic. Nearly all coordinates fit
+// that are not spread over more than sixty binary places; the others take the long way (dyadic.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "exact/determinant.h"
+#include "exact/dyadic.h"
+
+namespace radar::exact {
+
+using WholeVec = std::array<int64_t, 3>;
+
+/// points[n] = out[n] * 2^exponent, components below 2^61. False if they do not fit.
+bool toWhole(std::span<const Vec* const> points, std::span<WholeVec> out, int& exponent);
+
+/// A difference, components below 2^62.
+struct Whole {
+  WholeVec c;
+  int exponent;
+};
+std::optional<Whole> whole(const Difference& v);
+
+inline WholeVec operator-(const WholeVec& p, const WholeVec& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+/// 192 bits of two's complement.
+class WholeDeterminant {
+ public:
+  int sign() const;
+  Dyadic value(int exponent) const;  ///< this, times 2^exponent
+
+ private:
+  friend WholeDeterminant determinant(const WholeVec& w, const WholeVec& x, const WholeVec& y);
+  std::array<uint64_t, 3> limbs_{};
+};
+
+/// w . (x cross y), components below 2^62: the minors are below 2^125, the sum is below 2^189.
+WholeDeterminant determinant(const WholeVec& w, const WholeVec& x, const WholeVec& y);
+
+}  // namespace radar::exact

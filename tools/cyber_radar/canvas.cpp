@@ -1,0 +1,55 @@
+#include "cyber_radar/canvas.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "batch/whole_file.h"
+
+namespace radar::tools {
+
+Canvas::Canvas(double width, double height)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, int(std::ceil(width)), int(std::ceil(height))),
+               cairo_surface_destroy),
+      cairo_(cairo_create(surface_.get()), cairo_destroy) {
+  colour({1, 1, 1});
+  cairo_paint(get());
+  cairo_select_font_face(get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+}
+
+void Canvas::colour(const Colour& colour) const {
+  cairo_set_source_rgb(get(), colour[0], colour[1], colour[2]);
+}
+
+void Canvas::fill(double x, double y, double width, double height) const {
+  cairo_rectangle(get(), x, y, width, height);
+  cairo_fill(get());
+}
+
+void Canvas::outline(double x, double y, double width, double height) const {
+  colour({0.3, 0.3, 0.3});
+  cairo_set_line_width(get(), 1);
+  cairo_rectangle(get(), x - 0.5, y - 0.5, width + 1, height + 1);
+  cairo_stroke(get());
+}
+
+void Canvas::text(double x, double baseline, double size, const std::string& words) const {
+  colour({0.1, 0.1, 0.1});
+  cairo_set_font_size(get(), size);
+  cairo_move_to(get(), x, baseline);
+  cairo_show_text(get(), words.c_str());
+}
+
+void Canvas::write(const std::filesystem::path& file) const {
+  std::string png;
+  const auto append = [](void* to, const unsigned char* bytes, unsigned count) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
+  if (status != CAIRO_STATUS_SUCCESS) {
+    throw std::runtime_error(file.string() + ": expected a picture, got " + cairo_status_to_string(status));
+  }
+  writeWhole(file, png);
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,122 @@
+#include "cyber_radar/scene_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cyber_radar/canvas.h"
+#include "workloads/generate.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr uint32_t kResolution = 1024;
+constexpr double kMargin = 16, kCaption = 44;
+constexpr Colour kStill{0.55, 0.62, 0.70}, kMoving{0.90, 0.45, 0.05}, kPath{0.75, 0.15, 0.10};
+constexpr Vec3 kLight{-0.4, 0.6, -0.69};  // towards the light: from the left, above and the viewer
+
+double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// A disc that covers the cube, seen from a corner, and looks to the opposite one.
+QuerySpec viewOf(uint32_t scene, uint32_t discMesh) {
+  const double a = 1 / std::sqrt(2.0), b = 1 / std::sqrt(6.0), c = 1 / std::sqrt(3.0);
+  const double diagonal = kCubeSide / c, back = 0.55 * diagonal * c;
+  QuerySpec query;
+  query.scene = scene;
+  // The columns of the rotation are orthonormal; the third is the disc's axis.
+  query.sensor = {discMesh, {{a, -b, -c, back, -a, -b, -c, back, 0, 2 * b, -c, back}}};
+  query.direction = {-c, -c, -c};
+  query.distance = 1.1 * diagonal;
+  return query;
+}
+
+/// The slope of the depth across a pixel, on the side where it is less: an edge behind is no slope.
+double slope(const std::vector<float>& depth, size_t before, size_t here, size_t after, double pixel) {
+  const double down = depth[here] - depth[before], up = depth[after] - depth[here];
+  if (std::isnan(down)) return std::isnan(up) ? 0 : up / pixel;
+  if (std::isnan(up)) return down / pixel;
+  return (std::abs(down) < std::abs(up) ? down : up) / pixel;
+}
+
+void drawSurfaces(const Canvas& canvas, const Scopes& all, const Scopes& moving) {
+  const auto& depth = all.R;
+  for (uint32_t row = 1; row + 1 < all.height; ++row) {
+    for (uint32_t column = 1; column + 1 < all.width; ++column) {
+      const size_t here = size_t{row} * all.width + column;
+      if (std::isnan(depth[here])) continue;
+      const double x = slope(depth, here - 1, here, here + 1, all.pixel);
+      const double y = slope(depth, here - all.width, here, here + all.width, all.pixel);
+      const Vec3 normal{x, y, -1};  // towards the viewer
+      const double light = std::max(0.0, dot(normal, kLight)) / std::sqrt(dot(normal, normal));
+      // Far things fade, so that near ones stand out.
+      const double fade = 0.5 * std::min(1.0, depth[here] / (1.9 * kCubeSide));
+      const bool moves = std::abs(moving.R[here] - depth[here]) < all.pixel;
+      const Colour& base = moves ? kMoving : kStill;
+      Colour colour;
+      for (int k = 0; k < 3; ++k) {
+        const double lit = base[k] * (0.45 + 0.75 * light);
+        colour[k] = moves ? lit : lit + fade * (1 - lit);
+      }
+      canvas.colour(colour);
+      canvas.fill(kMargin + column, kMargin + all.height - 1 - row, 1, 1);
+    }
+  }
+}
+
+void drawFlight(const Canvas& canvas, const Scopes& view, const Workload& workload, const Flight& flight) {
+  const Bounds bounds = boundsOf(workload.meshes[flight.query.sensor.mesh]);
+  const Vec3& direction = flight.query.direction;
+  const double part = flight.distance / std::sqrt(dot(direction, direction));
+  std::array<Vec3, 2> ends;
+  for (int k = 0; k < 3; ++k) {
+    const double* row = &flight.query.sensor.worldFromMesh.m[4 * k];
+    ends[0][k] = row[0] * bounds.middle[0] + row[1] * bounds.middle[1] + row[2] * bounds.middle[2] + row[3];
+    ends[1][k] = ends[0][k] + part * direction[k];
+  }
+  std::array<std::pair<double, double>, 2> points;
+  for (int i = 0; i < 2; ++i) {
+    Vec3 offset;
+    for (int k = 0; k < 3; ++k) offset[k] = ends[i][k] - view.origin[k];
+    points[i] = {kMargin + dot(offset, view.right) / view.pixel,
+                 kMargin + view.height - dot(offset, view.up) / view.pixel};
+  }
+  canvas.colour(kPath);
+  cairo_set_line_width(canvas.get(), 2.5);
+  cairo_move_to(canvas.get(), points[0].first, points[0].second);
+  cairo_line_to(canvas.get(), points[1].first, points[1].second);
+  cairo_stroke(canvas.get());
+  if (!flight.touches) return;
+  cairo_arc(canvas.get(), points[1].first, points[1].second, 5.5, 0, 2 * std::acos(-1.0));
+  cairo_fill(canvas.get());
+}
+
+}  // namespace
+
+void writeScenePicture(const std::filesystem::path& file, Workload workload, uint32_t scene,
+                       const std::vector<Flight>& flights, const Device& device) {
+  const uint32_t disc = static_cast<uint32_t>(workload.meshes.size());
+  workload.meshes.push_back(makeRod(0.5 * std::sqrt(8.0 / 3) * kCubeSide + 1, 1, 48));
+  const uint32_t moving = static_cast<uint32_t>(workload.scenes.size());
+  workload.scenes.push_back({"what moves", {}, workload.scenes[scene].instances, {}});
+  ScenePlayer player(workload);
+  Sweeper sweeper(device, player.scene());
+  const Query query = toQuery(viewOf(scene, disc), kResolution);
+  player.show(scene);
+  const Scopes all = sweeper.scopes(query);
+  player.show(moving);
+  const Scopes movers = sweeper.scopes(query);
+
+  const Canvas canvas(2 * kMargin + all.width, 2 * kMargin + all.height + kCaption);
+  drawSurfaces(canvas, all, movers);
+  for (const Flight& flight : flights) drawFlight(canvas, all, workload, flight);
+  canvas.text(kMargin, kMargin + all.height + 20, 15,
+              "The scene as the method sees it: the depth picture R of a disc that looks in from a corner, shaded.");
+  canvas.text(kMargin, kMargin + all.height + 40, 15,
+              "Orange: what flies. A line shows how far each gets, a dot that something is touched there.");
+  canvas.write(file);
+}
+
+}  // namespace radar::tools

@@ -1,9 +1,9 @@
 // Contact of two triangles along a direction, decided exactly.
 //
-// Triangle a moves by s * direction, s a real number. The s at which its surface meets that of b, if any, are one closed
-// interval, because the difference set b - a is convex. Its ends are Events: a vertex over a closed face, or a crossing
-// of two edges, as seen along the direction. Coordinates are taken as the doubles they are; every decision below is the
-// one that real arithmetic would make, for all finite doubles.
+// Triangle a moves by s * direction, s a real number. The s at which its surface meets that of b, if any, are one
+// closed interval, because the difference set b - a is convex. Its ends are Events: a vertex over a closed face, or a
+// crossing of two edges, as seen along the direction. Coordinates are taken as the doubles they are; every decision
+// below is the one that real arithmetic would make, for all finite doubles.
 //
 // Degenerate triangles count as what they are (a segment, a point), and so do triangles edge-on to the direction.
 #pragma once

@@ -100,7 +100,8 @@ Event vertexVertex(const Vec& direction, const Vec& a, const Vec& b) {
 }
 
 bool precedes(const Event& p, const Event& q) {
-  return std::tie(p.kind, p.from, p.to, p.x0, p.x1, p.y0, p.y1) < std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1);
+  return std::tie(p.kind, p.from, p.to, p.x0, p.x1, p.y0, p.y1) <
+         std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1);
 }
 
 int sign(const Event& e) {
@@ -188,7 +189,8 @@ double length(const Vec& d) {
   Twofold square;
   for (double c : d) square = square + product(c, c);
   // |d| - root = (|d|^2 - root^2) / (|d| + root), of which 40 bits are right.
-  const double rest = (square - product(root, root)).high / (2 * root), error = 0x1p-40 * std::abs(rest) + 0x1p-90 * root;
+  const double rest = (square - product(root, root)).high / (2 * root),
+               error = 0x1p-40 * std::abs(rest) + 0x1p-90 * root;
   const double below = root + (rest - error), above = root + (rest + error);
   return below == above ? below : exactLength(d, root);
 }

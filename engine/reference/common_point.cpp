@@ -27,7 +27,8 @@ void pierce(const std::array<Point, 3>& face, const std::array<Point, 3>& other,
   for (int i = 0; i < 3; ++i) {
     const Point &p = other[i], &q = other[(i + 1) % 3];
     const double above = normal.dot(p - face[0]), below = normal.dot(q - face[0]);
-    if (above * below > 0 || above == below) continue;
+    if ((above > 0) == (below > 0) && above != 0 && below != 0) continue;
+    if (above == below) continue;
     const Point at = p + above / (above - below) * (q - p);
     double inside = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
@@ -44,14 +45,21 @@ exact::Vec commonPoint(const exact::Triangle& a, const exact::Triangle& b) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Point origin = point(b[0]);
   std::array<Point, 3> pa, pb;
+  double size = 0;
   for (int i = 0; i < 3; ++i) {
     pa[i] = point(a[i]) - origin;
     pb[i] = point(b[i]) - origin;
+    size = std::max({size, pa[i].cwiseAbs().maxCoeff(), pb[i].cwiseAbs().maxCoeff()});
+  }
+  // Of unit size, so that products neither under- nor overflow.
+  for (int i = 0; i < 3; ++i) {
+    pa[i] /= size;
+    pb[i] /= size;
   }
   Candidate best{-1e-9, {kNaN, kNaN, kNaN}};
   pierce(pb, pa, best);
   pierce(pa, pb, best);
-  best.at += origin;
+  best.at = best.at * size + origin;
   return {best.at[0], best.at[1], best.at[2]};
 }
 

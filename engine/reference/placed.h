@@ -24,7 +24,7 @@ struct PlacedTriangle {
   std::array<Lanes, 3> corners;  ///< in the view
   Lanes lo, hi;                  ///< their box, widened by `error`
   double error;                  ///< bounds what rounding did to each lane of each corner
-  double area, areaError;        ///< of the triangle seen along the motion, signed, in lanes 0 and 1; bound on its error
+  double area, areaError;  ///< of the triangle seen along the motion, signed, in lanes 0 and 1; bound on its error
   uint32_t id;
   exact::Triangle world;
 };
@@ -54,8 +54,5 @@ class LeafCache {
   const Pose* pose_ = nullptr;
   const View* view_ = nullptr;
 };
-
-/// False if this pair certainly gives no contact in [0, latest]. A filter in doubles: true means "look closer".
-bool mayMeet(const PlacedTriangle& a, const PlacedTriangle& b, double latest);
 
 }  // namespace radar::reference

@@ -106,9 +106,8 @@ void Reference::Impl::syncObjects() {
     const Object& object = scene.object(id);
     now.push_back({id, &mesh(object.mesh), object});
   }
-  const bool sameItems =
-      std::equal(now.begin(), now.end(), world.objects.begin(), world.objects.end(),
-                 [](const World::Placed& p, const World::Placed& q) { return p.id == q.id; });
+  const bool sameItems = std::equal(now.begin(), now.end(), world.objects.begin(), world.objects.end(),
+                                    [](const World::Placed& p, const World::Placed& q) { return p.id == q.id; });
   world.objects = std::move(now);
 
   std::vector<Bounds<double>> boxes(world.objects.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "reference/may_meet.h"
+
 namespace radar::reference {
 
 namespace {
@@ -152,8 +154,8 @@ void Search::meet(const PlacedTriangle& a, const PlacedTriangle& b) {
   const bool overlap = exact::sign(interval->first) <= 0;
   if (!overlap && exact::compareToDistance(interval->first, query_->distance) > 0) return;
   if (best_.found) {
-    const int order = overlap || best_.overlap ? int(best_.overlap) - int(overlap)
-                                               : exact::compare(interval->first, best_.event);
+    const int order =
+        overlap || best_.overlap ? int(best_.overlap) - int(overlap) : exact::compare(interval->first, best_.event);
     if (order > 0) return;
     if (order == 0 && std::tie(placed_->id, b.id, a.id) > std::tie(best_.object, best_.triB, best_.triA)) return;
   }
@@ -164,8 +166,8 @@ void Search::meet(const PlacedTriangle& a, const PlacedTriangle& b) {
     const double s = rough ? exact::parameter(interval->first) : interval->first.s + interval->first.error;
     latest = s * length_ * (1 + 8 * kUnit);
   }
-  best_ = {true,    overlap, placed_->id, b.id, a.id, interval->first, a.world, b.world,
-           std::min(query_->distance, latest)};
+  best_ = {
+      true, overlap, placed_->id, b.id, a.id, interval->first, a.world, b.world, std::min(query_->distance, latest)};
 }
 
 }  // namespace radar::reference

@@ -25,9 +25,9 @@ struct Best {
   bool overlap = false;  ///< t* = 0
   ObjectId object = kNone;
   uint32_t triB = kNone, triA = kNone;
-  exact::Event event{};    ///< where the pair's interval begins
+  exact::Event event{};      ///< where the pair's interval begins
   exact::Triangle a{}, b{};  ///< the pair
-  double latest = kNever;  ///< upper bound on t*
+  double latest = kNever;    ///< upper bound on t*
 };
 
 class Search {

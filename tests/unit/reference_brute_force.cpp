@@ -69,7 +69,8 @@ TEST_CASE("the reference equals brute force for tiny sensors beside huge objects
     Query query;
     query.mesh = a;
     const double size = std::max(sizeA, sizeB);
-    query.worldFromMesh = random.pose(sizeA, {0.5 * sizeB * random.uniform(-1, 1), 0.5 * sizeB * random.uniform(-1, 1), -2 * size});
+    query.worldFromMesh =
+        random.pose(sizeA, {0.5 * sizeB * random.uniform(-1, 1), 0.5 * sizeB * random.uniform(-1, 1), -2 * size});
     query.direction = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1};
     query.distance = 20 * size;
     soups::check(scene, query, reference.answer(query));

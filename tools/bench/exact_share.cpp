@@ -51,9 +51,12 @@ Pose randomPose(double scale, double side) {
   for (double& c : q) c /= std::sqrt(square);
   const auto [w, x, y, z] = q;
   Pose pose;
-  pose.m = {scale * (1 - 2 * (y * y + z * z)), scale * 2 * (x * y - z * w), scale * 2 * (x * z + y * w), uniform(0, side),
-            scale * 2 * (x * y + z * w), scale * (1 - 2 * (x * x + z * z)), scale * 2 * (y * z - x * w), uniform(0, side),
-            scale * 2 * (x * z - y * w), scale * 2 * (y * z + x * w), scale * (1 - 2 * (x * x + y * y)), uniform(0, side)};
+  pose.m = {scale * (1 - 2 * (y * y + z * z)), scale * 2 * (x * y - z * w),
+            scale * 2 * (x * z + y * w),       uniform(0, side),
+            scale * 2 * (x * y + z * w),       scale * (1 - 2 * (x * x + z * z)),
+            scale * 2 * (y * z - x * w),       uniform(0, side),
+            scale * 2 * (x * z - y * w),       scale * 2 * (y * z + x * w),
+            scale * (1 - 2 * (x * x + y * y)), uniform(0, side)};
   return pose;
 }
 
@@ -74,7 +77,8 @@ MeshId addTorus(Scene& scene, uint32_t around, uint32_t along) {
   for (uint32_t i = 0; i < around; ++i) {
     for (uint32_t k = 0; k < along; ++k) {
       const double u = 2 * M_PI * i / around, v = 2 * M_PI * k / along, r = 0.35 + 0.15 * std::cos(v);
-      for (double c : {r * std::cos(u), r * std::sin(u), 0.15 * std::sin(v)}) positions.push_back(static_cast<float>(c));
+      for (double c : {r * std::cos(u), r * std::sin(u), 0.15 * std::sin(v)})
+        positions.push_back(static_cast<float>(c));
       const uint32_t i1 = (i + 1) % around, k1 = (k + 1) % along;
       const uint32_t corner[4] = {i * along + k, i1 * along + k, i * along + k1, i1 * along + k1};
       indices.insert(indices.end(), {corner[0], corner[1], corner[2], corner[1], corner[3], corner[2]});
@@ -211,7 +215,8 @@ void grid(double perDecision) {
 
 int main() {
   const double perDecision = costOfDecision();
-  std::printf("# one exact decision: %.0f ns\nscene,us_per_query,pairs_per_query,exact_pairs,exact_time\n", 1e9 * perDecision);
+  std::printf("# one exact decision: %.0f ns\nscene,us_per_query,pairs_per_query,exact_pairs,exact_time\n",
+              1e9 * perDecision);
   ordinary(perDecision);
   aligned(perDecision);
   grid(perDecision);

@@ -8,7 +8,7 @@
 
 namespace radar::reference {
 
-inline constexpr uint32_t kLeafSize = 4;
+inline constexpr uint32_t kLeafSize = 2;
 
 /// A mesh with its tree. The views are the scene's own memory.
 struct TreeMesh {
@@ -45,7 +45,7 @@ class LeafCache {
   const PlacedLeaf& leaf(uint32_t node);
 
  private:
-  static constexpr uint32_t kLeaves = 64;  // 64 kB: stays in the second-level cache
+  static constexpr uint32_t kLeaves = 128;  // 72 kB: stays in the second-level cache
   void place(PlacedLeaf& leaf, const Tree<float>::Node& node) const;
 
   std::vector<PlacedLeaf> leaves_;

@@ -81,7 +81,7 @@ void scale(Triangle& t, double by) {
 
 TEST_CASE("the contact interval is exact on integer lattices") {
   Random random(1);
-  for (int i = 0; i < 30000; ++i) {
+  for (int i = 0; i < 20000; ++i) {
     INFO("case " << i);
     const int side = random.integer(1, 4);
     check(latticeTriangle(random, side), latticeTriangle(random, side), latticeDirection(random, 3));
@@ -90,7 +90,7 @@ TEST_CASE("the contact interval is exact on integer lattices") {
 
 TEST_CASE("the contact interval is exact one place beside integer lattices") {
   Random random(2);
-  for (int i = 0; i < 15000; ++i) {
+  for (int i = 0; i < 8000; ++i) {
     INFO("case " << i);
     Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
     for (int n = random.integer(1, 3); n-- > 0;) nudge(random, random.chance(0.5) ? a : b);
@@ -102,7 +102,7 @@ TEST_CASE("the contact interval is exact one place beside integer lattices") {
 
 TEST_CASE("the contact interval is exact for triangles in general position, needles and slivers") {
   Random random(3);
-  for (int i = 0; i < 10000; ++i) {
+  for (int i = 0; i < 6000; ++i) {
     INFO("case " << i);
     const soups::Mesh mesh = soups::soup(random, 2, random.uniform(0.3, 2), 0.4);
     const radar::Pose pose = random.pose(1, {0, 0, 0});

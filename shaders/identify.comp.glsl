@@ -47,6 +47,7 @@ struct Surface {
 // Names the triangle (pixels across, stored depth along) at the candidates that it covers.
 void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec3 low = min(min(p0, p1), p2), high = max(max(p0, p1), p2);
+  if (!(all(lessThanEqual(low, high)))) return;  // not a number
   const vec2 lowEdge = low.xy - s.snap, highEdge = high.xy + s.snap;
   if (any(greaterThan(lowEdge, s.window)) || any(lessThan(highEdge, vec2(0.0))) || low.z > 1.0 || high.z < 0.0) return;
 
@@ -108,8 +109,8 @@ void main() {
   Surface surface;
   surface.view = v;
   surface.isSensor = draw.object == kNobody;
-  surface.snap = views[v].snap;
-  surface.slack = surface.isSensor ? views[v].maskSlack : views[v].rangeSlack;
+  surface.snap = draw.snap;
+  surface.slack = draw.slack;
   surface.cellSide = float(views[v].cell);
   surface.window = vec2(views[v].width, views[v].height);
   const MeshRecord mesh = meshes[draw.mesh];

@@ -20,6 +20,8 @@ INTEROP_CONST kCellsPerSide = 16;
 INTEROP_CONST kCells = 256;
 // Candidates are identified and solved in the order of (L, pixel), kRound at a time, until one meets.
 INTEROP_CONST kRound = 64;
+// Pairs of one sensor that double precision cannot decide, kept for the CPU, in the order of their candidates.
+INTEROP_CONST kOpenPairs = 16;
 // An identify workgroup takes this many triangles of one draw, each invocation several: loading the draw's matrix costs
 // as much as a triangle.
 INTEROP_CONST kItemTriangles = 512;
@@ -38,11 +40,32 @@ INTEROP_CONST kBindRanks = 9;       // uint, kCells per view: which candidate a 
 INTEROP_CONST kBindAnswers = 10;    // Answer
 INTEROP_CONST kBindRange = 11;      // depth of R, one layer per view
 INTEROP_CONST kBindMask = 12;       // depth of M, one layer per view
-INTEROP_CONST kBindings = 13;
+INTEROP_CONST kBindTriangleIds = 13; // uint: the triangle at a slot of the cluster order
+INTEROP_CONST kBindOpenPairs = 14;    // OpenPair, kOpenPairs per view
+INTEROP_CONST kBindings = 15;
+
+// The contact tier has a set of its own: the scene's buffers at the numbers above, and these.
+INTEROP_CONST kBindNodes = 5;         // ClusterRecord
+INTEROP_CONST kBindTargets = 6;       // Target
+INTEROP_CONST kBindPlacements = 7;    // Placement
+INTEROP_CONST kBindRefs = 8;          // ClusterRef
+INTEROP_CONST kBindBoxes = 9;         // RefBox, one per ClusterRef
+INTEROP_CONST kBindPairItems = 10;    // PairItem
+INTEROP_CONST kBindClusterPairs = 11; // ClusterPair
+INTEROP_CONST kBindStates = 12;       // State, one per Target
+INTEROP_CONST kBindContenders = 13;   // Contender
+INTEROP_CONST kContactBindings = 14;
+
+// Triangles of a cluster, at most.
+INTEROP_CONST kCluster = 64;
+// Sensor clusters of one PairItem, and how many scene clusters each is held against.
+INTEROP_CONST kPairItemA = 64;
+INTEROP_CONST kPairItemB = 4096;
 
 struct MeshRecord {
   uint firstVertex;
   uint firstIndex;
+  uint firstNode;
 };
 
 struct ObjectRecord {
@@ -68,15 +91,15 @@ struct View {
   float maskBase;        // position of the sensor's surface = maskBase - maskScale * stored
   float maskScale;
   float slack;           // L this far below 0 may be a contact at the start: the rounding of R and M
-  float snap;            // how far from a triangle a covered centre may lie, pixels
-  float rangeSlack;      // rounding of stored R
-  float maskSlack;       // rounding of stored M
+  float rangeLimit;      // stored R of d: what lies beyond is not in the target volume
   uint pad;
 };
 
 // One mesh placed in one view: an instance of a depth-only draw.
 struct Draw {
   float clipFromMesh[12];  // recentred mesh -> normalised device coordinates, w = 1
+  float snap;              // how far from a triangle a covered centre may lie, pixels
+  float slack;             // rounding of the depth it stores
   uint view;
   uint layer;              // within the render pass
   uint mesh;
@@ -109,12 +132,105 @@ struct Answer {
   uint flags;      // kAnswer*
   uint candidates;
   uint pairs;      // distinct pairs solved
+  uint openPairs;
+  uint pad;
+};
+
+struct OpenPair {
+  double low;  // it does not meet before, world units
+  uint object;
+  uint triB;
+  uint triA;
+  uint pad;
 };
 INTEROP_CONST kAnswerDetected = 1;  // some R < d
 INTEROP_CONST kAnswerHasL = 2;      // minL exists
 
+// ---- the contact tier --------------------------------------------------------------------------------------------------
+
+struct ClusterRecord {
+  float centre[3];  // of recentred vertices
+  float halfExtent[3];
+  uint first;       // triangle slot
+  uint count;       // triangles; 0: not a cluster
+};
+
+// One sensor, one search for its first contact.
+struct Target {
+  double pose[12];
+  double direction[3];
+  double directionLength;
+  double distance;          // D
+  uint mesh;
+  uint firstPair;           // of ClusterPair
+  uint pairCapacity;
+  uint firstContender;
+  uint contenderCapacity;
+  uint pad;
+};
+
+// A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.
+struct Placement {
+  float frameFromMesh[12];  // from recentred vertices
+  float error;              // how far a vertex placed by it may be off, world units
+  uint mesh;
+  uint object;              // kNobody: the sensor
+  uint pad;
+};
+
+struct ClusterRef {
+  uint placement;
+  uint node;  // of the mesh
+};
+
+struct RefBox {
+  float lo[3];
+  float hi[3];
+};
+
+struct PairItem {
+  uint target;
+  uint firstA, endA;  // of ClusterRef: the sensor's
+  uint firstB, endB;  // the scene's
+};
+
+// Two clusters whose boxes can meet; gap: the least distance between them along the motion. -1: dealt with.
+struct ClusterPair {
+  float gap;
+  uint a;
+  uint b;
+};
+
+// A pair of triangles that may hold the first contact. Parameters are multiples of the direction.
+struct Contender {
+  double low;     // it does not meet before
+  double at;      // where it meets, and how far that may be off; only if kContenderSharp
+  double error;
+  uint object;
+  uint slotB;     // triangle slots, in cluster order
+  uint slotA;
+  uint flags;     // kContenderSharp, and the feature that attains `at` in the low bits
+};
+INTEROP_CONST kContenderSharp = 0x100;  // certain: it meets, first at `at`, and nothing of it may come earlier
+
+INTEROP_CONST kSearchDone = 0;
+INTEROP_CONST kSearchUnfinished = 1;  // cluster pairs are left: dispatch again
+INTEROP_CONST kSearchOverflow = 2;    // more contenders than room: begin again with more
+
+struct State {
+  double hi;            // first contact is certainly no later, world units; kFarAway: none known
+  uint pairCount;       // cluster pairs found, kept up to the capacity
+  uint contenderCount;  // likewise
+  uint progress;        // kSearch*
+  uint boxPairs;        // triangle pairs that reached the box test
+  uint solved;          // triangle pairs solved
+  uint round;
+  uint cursor;          // cluster pairs before this one are dealt with
+  uint pad;
+};
+
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the
-// sensor's face; 6 + 3*i + j: edge i (from vertex i to i+1) of the sensor's triangle and edge j of the scene's.
+// sensor's face; 6 + 3*i + j: edge i of the sensor's triangle and edge j of the scene's, edges being (0,1), (1,2), (0,2).
 INTEROP_CONST kFeatureEdges = 6;
 INTEROP_CONST kFeatures = 15;
 

@@ -62,7 +62,7 @@ void main() {
       const uvec4 column = x + u;
       const uvec4 seen = uvec4(lessThan(column, end.xxxx)) & uvec4(lessThan(row, end.yyyy)) & uvec4(lessThan(range, vec4(1.0)));
       const uvec4 both = seen & uvec4(lessThan(mask, vec4(1.0)));
-      detected4 |= seen;
+      detected4 |= seen & uvec4(lessThanEqual(range, vec4(view.rangeLimit)));
       const vec4 L = mix(vec4(kFar), view.rangeScale * range - (view.maskBase - view.maskScale * mask), bvec4(both));
       minL4 = min(minL4, L);
       // Rows and columns ascend, so at equal L the earlier pixel stays.
@@ -108,6 +108,6 @@ void main() {
   if (cell == 0) {
     const float least = unordered(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
-    answers[v] = Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, least, flags, count, 0);
+    answers[v] = Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
   }
 }

@@ -10,6 +10,7 @@ layout(local_size_x = kRound) in;
 
 layout(scalar, binding = kBindOriginals) readonly restrict buffer Originals { vec3 originals[]; };
 layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uint indices[]; };
+layout(scalar, binding = kBindTriangleIds) readonly restrict buffer TriangleIds { uint triangleIds[]; };
 layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 layout(scalar, binding = kBindObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kBindViews) readonly restrict buffer Views { View views[]; };
@@ -17,11 +18,16 @@ layout(scalar, binding = kBindDraws) readonly restrict buffer Draws { Draw draws
 layout(scalar, binding = kBindItems) readonly restrict buffer Items { Item items[]; };
 layout(scalar, binding = kBindCandidates) readonly restrict buffer Candidates { Candidate candidates[]; };
 layout(scalar, binding = kBindAnswers) restrict buffer Answers { Answer answers[]; };
+layout(scalar, binding = kBindOpenPairs) writeonly restrict buffer OpenPairs { OpenPair openPairs[]; };
+
+// A pair's t may be given this much late, relative to max(sensor's size, t), 2^-21; beyond, it counts as not decided.
+const double kTolerance = 4.76837158203125e-7LF;
 
 shared uvec2 named[kRound];    // (itemB, itemA) of the round's candidates
 shared uvec2 pairs[kRound];    // the distinct ones
 shared uint pairCount;
 shared double pairHi[kRound];
+shared double pairLow[kRound];  // kNever: decided
 shared uvec4 pairIds[kRound];  // object, triB, triA, feature
 
 dvec3 placed(double pose[12], uint vertex) {
@@ -48,25 +54,37 @@ bool before(uint x, uint y) {
 
 void solvePair(uint v, uint lane) {
   const Item itemB = items[pairs[lane].x / kItemTriangles], itemA = items[pairs[lane].y / kItemTriangles];
-  const uint triB = itemB.firstTriangle + pairs[lane].x % kItemTriangles;
-  const uint triA = itemA.firstTriangle + pairs[lane].y % kItemTriangles;
+  const uint slotB = itemB.firstTriangle + pairs[lane].x % kItemTriangles;
+  const uint slotA = itemA.firstTriangle + pairs[lane].y % kItemTriangles;
   const uint object = draws[itemB.draw].object;
   dvec3 a[3], b[3];
-  corners(views[v].pose, views[v].mesh, triA, a);
-  corners(objects[object].pose, objects[object].mesh, triB, b);
+  corners(views[v].pose, views[v].mesh, slotA, a);
+  corners(objects[object].pose, objects[object].mesh, slotB, b);
   const dvec3 direction = dvec3(views[v].direction[0], views[v].direction[1], views[v].direction[2]);
   const double length = views[v].directionLength;
-  const Contact contact = firstContact(a, b, direction, views[v].size / length);
-  const double hi = contact.s * length * (1.0LF + 8.881784197001252e-16LF);
+  const Meeting meeting = meetingOf(a, b, direction);
+  // Never early: something certain lies at or after the start, so all up to it is met. Not late either: nothing that may
+  // count comes earlier by more than the tolerance. Features without a parameter are
+  // bounded by the extent of their parts.
+  const double s = max(meeting.by, 0.0LF);
+  const double tolerance = kTolerance * max(views[v].size / length, s);
+  const double earliest = max(min(meeting.earliest, meeting.unknown), 0.0LF);
+  const bool meets = meeting.ahead && s - earliest <= tolerance;
+  const double hi = s * length * (1.0LF + 8.881784197001252e-16LF);
   pairHi[lane] = hi;
-  pairIds[lane] = uvec4(object, triB, triA, contact.meets && hi <= views[v].distance ? contact.feature : kNobody);
+  const double low = earliest * length * (1.0LF - 8.881784197001252e-16LF);
+  const bool open = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
+  pairLow[lane] = open ? low : kNever;
+  const uint triA = triangleIds[meshes[views[v].mesh].firstIndex / 3 + slotA];
+  const uint triB = triangleIds[meshes[objects[object].mesh].firstIndex / 3 + slotB];
+  pairIds[lane] = uvec4(object, triB, triA, meets && hi <= views[v].distance ? meeting.feature : kNobody);
 }
 
 void main() {
   const uint v = gl_WorkGroupID.x;
   const uint lane = gl_LocalInvocationID.x;
   const uint count = answers[v].candidates;
-  uint solved = 0;
+  uint solved = 0, open = 0;
   uint winner = kNobody;
   for (uint first = 0; first < count && winner == kNobody; first += kRound) {
     const bool inRound = first + lane < count;
@@ -89,6 +107,13 @@ void main() {
       if (pairIds[i].w != kNobody && (winner == kNobody || before(i, winner))) winner = i;
     }
     solved += pairCount;
+    for (uint i = 0; i < pairCount && open < kOpenPairs; ++i) {
+      if (pairLow[i] >= kNever) continue;
+      if (lane == 0) {
+        openPairs[kOpenPairs * v + open] = OpenPair(pairLow[i], pairIds[i].x, pairIds[i].y, pairIds[i].z, 0);
+      }
+      ++open;
+    }
     if (lane == 0 && winner != kNobody) {
       answers[v].hi = pairHi[winner];
       answers[v].object = pairIds[winner].x;
@@ -98,5 +123,8 @@ void main() {
     }
     barrier();
   }
-  if (lane == 0) answers[v].pairs = solved;
+  if (lane == 0) {
+    answers[v].pairs = solved;
+    answers[v].openPairs = open;
+  }
 }

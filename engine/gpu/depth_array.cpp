@@ -9,6 +9,8 @@ namespace radar::gpu {
 namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+// Framebuffers kept for ranges of layers drawn before; batches of one shape need a few dozen.
+constexpr size_t kKeptTargets = 512;
 
 ImageView layerView(const Device::Impl& device, VkImage image, uint32_t first, uint32_t count) {
   const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
@@ -107,6 +109,7 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
 }
 
 void DepthArray::recordFirstUse(VkCommandBuffer commands) {
+  if (targets_.size() > kKeptTargets) targets_.clear();
   if (used_) return;
   used_ = true;
   undefinedToSampledDepth(commands, image_.get());

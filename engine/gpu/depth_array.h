@@ -21,13 +21,12 @@ class DepthArray {
   /// `side` x `side` pixels of D32, `layers` layers.
   DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side, uint32_t layers);
 
-  VkImage image() const { return image_.get(); }
   /// All layers, for sampling.
   VkImageView view() const { return view_.get(); }
-  uint32_t side() const { return side_; }
   uint32_t layers() const { return layers_; }
 
-  /// Once after creation: puts all layers in SHADER_READ_ONLY layout, since a batch may draw only some of them.
+  /// Before the passes of a submission, while none is pending. Puts all layers in SHADER_READ_ONLY layout where they
+  /// are not, since a batch may draw only some of them.
   void recordFirstUse(VkCommandBuffer commands);
   /// Begins the render pass on `count` layers from `first`, over `side` x `side` pixels from the corner; made on first
   /// use, so callers keep to few distinct ranges.

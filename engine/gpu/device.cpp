@@ -180,6 +180,10 @@ Device::Impl::Impl(const HostDevice& given) : host(given) {
   vkGetPhysicalDeviceMemoryProperties(host.physicalDevice, &memory);
   name = properties.deviceName;
   driver = driverText(host.physicalDevice, properties);
+  VkPhysicalDeviceVulkan11Properties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+  VkPhysicalDeviceProperties2 chain{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
+  vkGetPhysicalDeviceProperties2(host.physicalDevice, &chain);
+  subgroupSize = subgroup.subgroupSize;
   maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers);
   if (!host.debugNames) return;
   setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(

@@ -27,6 +27,7 @@ struct Device::Impl {
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
   uint32_t maxLayers = 0;
+  uint32_t subgroupSize = 0;
 
   VkDevice device() const { return host.device; }
   /// Names an object for debuggers and validation messages.

@@ -1,5 +1,6 @@
 #include "gpu/pipeline.h"
 
+#include <algorithm>
 #include <map>
 
 #include "gpu/check.h"
@@ -71,8 +72,10 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
   check(vkAllocateDescriptorSets(device.device(), &allocate, &set_), "vkAllocateDescriptorSets");
 }
 
-void Bindings::setBuffer(uint32_t number, VkBuffer buffer) {
-  const VkDescriptorBufferInfo info{buffer, 0, VK_WHOLE_SIZE};
+void Bindings::setBuffer(uint32_t number, const Buffer& buffer) {
+  const VkDeviceSize range =
+      std::min<VkDeviceSize>(buffer.capacity(), device_->properties.limits.maxStorageBufferRange);
+  const VkDescriptorBufferInfo info{buffer.get(), 0, range};
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                    .dstSet = set_,
                                    .dstBinding = number,
@@ -94,11 +97,14 @@ void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
 }
 
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name) {
+                         const char* name, uint32_t lanes) {
   const ShaderModule module = shaderModule(device, spirv, name);
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module),
-                                         .layout = layout};
+  const VkSpecializationMapEntry entry{0, 0, sizeof(lanes)};
+  const VkSpecializationInfo constants{1, &entry, sizeof(lanes), &lanes};
+  VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
+  if (lanes != 0) stage.pSpecializationInfo = &constants;
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
   VkPipeline pipeline;
   check(vkCreateComputePipelines(device.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
         std::string("vkCreateComputePipelines ") + name);

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "gpu/buffer.h"
 #include "gpu/device.h"
 #include "gpu/handle.h"
 
@@ -18,7 +19,8 @@ class Bindings {
  public:
   Bindings(const Device::Impl& device, std::span<const Binding> bindings, uint32_t pushBytes);
 
-  void setBuffer(uint32_t number, VkBuffer buffer);
+  /// What lies beyond the device's maxStorageBufferRange is not bound.
+  void setBuffer(uint32_t number, const Buffer& buffer);
   void setImage(uint32_t number, VkImageView view, VkSampler sampler);
   VkPipelineLayout layout() const { return pipelineLayout_.get(); }
   VkDescriptorSet set() const { return set_; }
@@ -31,8 +33,9 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
+/// `lanes`: value of specialization constant 0, the workgroup's size, where the shader leaves that open; else 0.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name);
+                         const char* name, uint32_t lanes = 0);
 
 /// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
 /// dynamic; a fragment survives if its depth is less.

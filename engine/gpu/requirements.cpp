@@ -49,6 +49,8 @@ DeviceFacts factsOf(VkPhysicalDevice device) {
       .apiVersion = properties.apiVersion,
       .maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers),
       .subPixelBits = properties.limits.subPixelPrecisionBits,
+      .groupInvocations = properties.limits.maxComputeWorkGroupInvocations,
+      .stageBuffers = properties.limits.maxPerStageDescriptorStorageBuffers,
       .graphicsAndComputeQueue = queueFamilyOf(device) != kNone,
       .missingFeatures = {}};
   if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the feature structs below do not exist there
@@ -69,6 +71,12 @@ std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
   if (!facts.graphicsAndComputeQueue) reasons.push_back("has no queue family that does graphics and compute");
   if (facts.maxLayers < 256) {
     reasons.push_back("256 layers are needed, it has " + std::to_string(facts.maxLayers));
+  }
+  if (facts.groupInvocations < 256) {
+    reasons.push_back("256 invocations in a workgroup are needed, it has " + std::to_string(facts.groupInvocations));
+  }
+  if (facts.stageBuffers < 14) {
+    reasons.push_back("14 storage buffers in a stage are needed, it has " + std::to_string(facts.stageBuffers));
   }
   if (facts.subPixelBits < 4) {
     reasons.push_back("4 bits of subpixel precision are needed, it has " + std::to_string(facts.subPixelBits));

@@ -23,6 +23,8 @@ struct DeviceFacts {
   uint32_t apiVersion = 0;
   uint32_t maxLayers = 0;
   uint32_t subPixelBits = 0;
+  uint32_t groupInvocations = 0;
+  uint32_t stageBuffers = 0;
   bool graphicsAndComputeQueue = false;
   std::vector<std::string> missingFeatures;
 };

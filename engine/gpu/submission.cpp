@@ -1,5 +1,6 @@
 #include "gpu/submission.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "gpu/barrier.h"
@@ -36,6 +37,7 @@ Submission::Submission(const Device::Impl& device, bool timestamps)
 VkCommandBuffer Submission::begin() {
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // a failed recording may have been left
   check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
   stages_.clear();
   if (timestamps_) {
@@ -76,19 +78,24 @@ void Submission::submitAndWait() {
   check(vkResetFences(device_->device(), 1, &fence), "vkResetFences");
 }
 
-std::vector<StageTime> Submission::stageTimes() const {
-  if (!timestamps_ || stages_.empty()) return {};
+void Submission::addTimes(std::vector<StageTime>& stages) const {
+  if (!timestamps_ || stages_.empty()) return;
   std::vector<uint64_t> ticks(stages_.size() + 1);
   check(vkGetQueryPoolResults(device_->device(), queries_.get(), 0, static_cast<uint32_t>(ticks.size()),
                               ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
                               VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
-  std::vector<StageTime> times;
   const double msPerTick = 1e-6 * device_->properties.limits.timestampPeriod;
   for (size_t i = 0; i < stages_.size(); ++i) {
-    times.push_back({stages_[i], msPerTick * static_cast<double>(ticks[i + 1] - ticks[i])});
+    const double ms = msPerTick * static_cast<double>(ticks[i + 1] - ticks[i]);
+    const auto found =
+        std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == stages_[i]; });
+    if (found == stages.end()) {
+      stages.push_back({stages_[i], ms});
+    } else {
+      found->ms += ms;
+    }
   }
-  return times;
 }
 
 }  // namespace radar::gpu

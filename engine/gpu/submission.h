@@ -18,8 +18,8 @@ class Submission {
   void stage(const char* name);
   /// Submits and blocks until the device is done. Throws Error with VK_ERROR_DEVICE_LOST if it is lost.
   void submitAndWait();
-  /// Milliseconds per stage of the last submission; empty without timestamps.
-  std::vector<StageTime> stageTimes() const;
+  /// Adds the milliseconds of each stage of the last submission to those of its name; nothing without timestamps.
+  void addTimes(std::vector<StageTime>& stages) const;
 
  private:
   static constexpr uint32_t kMaxStages = 32;

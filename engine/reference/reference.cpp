@@ -7,7 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "reference/common_point.h"
+#include "exact/common_point.h"
 #include "reference/search.h"
 
 namespace radar::reference {
@@ -147,7 +147,7 @@ Result Reference::Impl::answer(const Query& query) {
     result.point = exact::point(best.event, s);
     result.normal = exact::normal(best.event);
   } else {
-    result.point = commonPoint(best.a, best.b);
+    result.point = exact::commonPoint(best.a, best.b);
   }
   if (best.overlap) return result;
 

@@ -48,6 +48,12 @@ bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double sla
 }  // namespace
 
 void Hierarchy::update(const Scene::Impl& scene) {
+  if (seenScene_ != scene.identity) {
+    seenScene_ = scene.identity;
+    seenStructure_ = seenPose_ = 0;
+    objects_.clear();
+    nodes_.clear();
+  }
   if (seenPose_ == scene.poseVersion) return;
   boxes_.resize(scene.objects.size());
   for (size_t i = 0; i < boxes_.size(); ++i) {

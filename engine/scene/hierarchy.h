@@ -43,7 +43,7 @@ class Hierarchy {
   std::vector<ObjectId> objects_;
   std::vector<Box> boxes_;  // of every object id
   double builtCost_ = 0;
-  uint64_t seenStructure_ = 0, seenPose_ = 0;
+  uint64_t seenScene_ = 0, seenStructure_ = 0, seenPose_ = 0;
 };
 
 }  // namespace radar

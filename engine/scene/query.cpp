@@ -11,13 +11,18 @@ std::string whatIsWrong(const Pose& pose) {
   for (double value : pose.m) {
     if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
   }
-  // Rows scaled to length 1, so that an honest 1e-5 scale is no singular matrix.
-  Pose scaled;
+  // Columns, then rows scaled to length 1, so that an honest 1e-5 scale along one axis is no singular matrix.
+  Pose scaled = pose;
+  for (int k = 0; k < 3; ++k) {
+    const double length = std::hypot(pose.m[k], pose.m[4 + k], pose.m[8 + k]);
+    if (length == 0) return "expected an invertible matrix, got a singular one, with a zero column";
+    for (int i = 0; i < 3; ++i) scaled.m[4 * i + k] /= length;
+  }
   for (int i = 0; i < 3; ++i) {
-    const double* r = &pose.m[4 * i];
+    double* r = &scaled.m[4 * i];
     const double length = std::hypot(r[0], r[1], r[2]);
-    if (length == 0) return "expected an invertible matrix, got one with a zero row";
-    for (int k = 0; k < 3; ++k) scaled.m[4 * i + k] = r[k] / length;
+    if (length == 0) return "expected an invertible matrix, got a singular one, with a zero row";
+    for (int k = 0; k < 3; ++k) r[k] /= length;
   }
   if (std::abs(determinant(scaled)) < 1e-12) return "expected an invertible matrix, got a singular one";
   return {};

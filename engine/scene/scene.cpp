@@ -51,6 +51,7 @@ void derive(Mesh& mesh) {
     sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
   }
   mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
+  mesh.clusters = clustersOf(mesh);
 }
 
 template <class Slots>
@@ -76,6 +77,13 @@ void Box::add(const std::array<double, 3>& p) {
 void Box::merge(const Box& b) {
   add(b.lo);
   add(b.hi);
+}
+
+bool overlap(const Box& a, const Box& b, double slack) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.lo[k] > b.hi[k] + slack || a.hi[k] < b.lo[k] - slack) return false;
+  }
+  return true;
 }
 
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
@@ -125,6 +133,8 @@ std::array<double, 3> place(const Pose& pose, const float* p) {
   }
   return out;
 }
+
+Scene::Impl::Impl() : identity(nextVersion()) {}
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
 Scene::~Scene() = default;

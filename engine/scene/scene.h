@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radar/radar.h"
+#include "scene/clusters.h"
 
 namespace radar {
 
@@ -33,6 +34,8 @@ struct Mesh {
   std::array<float, 3> halfExtent{};  ///< of the recentred vertices' box, which is centred at 0 up to rounding
   double meanEdge = 0;                ///< mean length of the triangles' edges
 
+  Clusters clusters;
+
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
@@ -40,10 +43,13 @@ struct Mesh {
 using FreeIds = std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>>;
 
 struct Scene::Impl {
+  Impl();
   struct ObjectSlot {
     Object object;
     bool used = false;
   };
+  /// Unlike that of any other scene: a Scene may be moved into another's place, where versions mean nothing.
+  uint64_t identity;
   std::vector<Mesh> meshes;
   std::vector<ObjectSlot> objects;
   FreeIds freeMeshes, freeObjects;  ///< the least is given next
@@ -54,6 +60,9 @@ struct Scene::Impl {
   /// For each object, the poseVersion at which it last changed.
   std::vector<uint64_t> changedAt;
 };
+
+/// Whether two boxes, one of them widened by `slack`, have a point in common.
+bool overlap(const Box& a, const Box& b, double slack);
 
 /// A box around the placed mesh, in a frame: parentFromMesh is row-major 3x4 in double precision. Holds every vertex
 /// that `place` computes and every one a shader computes from the recentred floats.

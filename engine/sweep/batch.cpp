@@ -10,6 +10,8 @@ namespace {
 // Triangles that one render pass should draw: more, and lavapipe's bins outgrow its caches (30 dense sensors in one
 // pass were 1.5 times slower than a pass each).
 constexpr uint64_t kPassTriangles = 8192;
+// Most layers that one render pass draws into.
+constexpr uint32_t kMaxPassLayers = 64;
 
 uint32_t layersPerPass(std::span<const ViewPlan* const> plans) {
   uint64_t triangles = 0;
@@ -22,6 +24,8 @@ uint32_t layersPerPass(std::span<const ViewPlan* const> plans) {
 gpu::Draw drawOf(const Placed& placed, uint32_t view, uint32_t layer) {
   gpu::Draw draw{};
   std::copy(placed.clipFromMesh.begin(), placed.clipFromMesh.end(), draw.clipFromMesh);
+  draw.snap = placed.snap;
+  draw.slack = placed.slack;
   draw.view = view;
   draw.layer = layer;
   draw.mesh = placed.mesh;
@@ -73,13 +77,12 @@ void addItems(Batch& batch, uint32_t draw, uint32_t triangles) {
 void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView, const Scene::Impl& scene) {
   const uint32_t perPass = layersPerPass(plans);
   const uint32_t resolution = plans[0]->view.resolution;
-  // Passes start at multiples of their size, so that a sweeper makes few framebuffers.
-  const uint32_t firstLayer = (batch.layers + perPass - 1) / perPass * perPass;
+  const uint32_t firstLayer = batch.layers;
   std::vector<Pending> pending;
   std::vector<uint32_t> placedAt;  // draws to identify: by view, R then M, each by object
   for (uint32_t begin = 0; begin < plans.size(); begin += perPass) {
     const uint32_t end = std::min<uint32_t>(begin + perPass, static_cast<uint32_t>(plans.size()));
-    const DepthPass shape{firstLayer + begin, perPass, resolution, 0, 0};
+    const DepthPass shape{firstLayer + begin, end - begin, resolution, 0, 0};
     for (uint32_t i = begin; i < end; ++i) {
       for (const Placed& p : plans[i]->inReach) pending.push_back({&p, firstView + i, i - begin, true});
       for (const Placed& p : plans[i]->others) pending.push_back({&p, firstView + i, i - begin, false});
@@ -94,7 +97,7 @@ void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t fi
       batch.views.push_back(view);
       batch.triangles += plans[i]->triangles;
     }
-    batch.layers = firstLayer + begin + perPass;
+    batch.layers = firstLayer + end;
   }
   for (uint32_t draw : placedAt) addItems(batch, draw, scene.meshes[batch.draws[draw].mesh].triangleCount());
 }

@@ -26,7 +26,7 @@ struct Batch {
   std::vector<gpu::Item> items;
   std::vector<DrawCall> calls;
   std::vector<DepthPass> rangePasses, maskPasses;
-  uint32_t layers = 0;      ///< used, gaps included
+  uint32_t layers = 0;      ///< one a view
   uint32_t resolution = 0;  ///< the greatest
   uint64_t triangles = 0;
   uint64_t objects = 0;  ///< drawn for R
@@ -34,11 +34,7 @@ struct Batch {
   void clear();
 };
 
-/// Most layers that one render pass draws into.
-inline constexpr uint32_t kMaxPassLayers = 64;
-
-/// `plans`: ascending by resolution, each with something in reach. View i is plan i; layers() of the batch never exceed
-/// plans.size() + kMaxPassLayers per resolution.
+/// `plans`: ascending by resolution, each with something in reach. View i is plan i, in layer i.
 void fill(Batch& batch, std::span<const ViewPlan* const> plans, const Scene::Impl& scene);
 
 }  // namespace radar

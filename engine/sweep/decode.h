@@ -1,6 +1,8 @@
 // What the shaders wrote becomes a Result.
 #pragma once
 
+#include <span>
+
 #include "scene/scene.h"
 #include "shaders/interop.h"
 
@@ -9,7 +11,9 @@ namespace radar {
 /// Of a sensor with nothing in reach: certainly clear.
 Result decodeClear();
 
-/// Of a sensor whose scopes were drawn; `resolution` is its window's.
-Result decode(const gpu::Answer& answer, const Query& query, const Scene::Impl& scene, uint32_t resolution);
+/// Of a sensor whose scopes were drawn; `resolution` is its window's. Open pairs that may come before what the device
+/// found are decided exactly, and counted in `cpuPairs`.
+Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
+              const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
 
 }  // namespace radar

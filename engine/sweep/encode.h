@@ -4,9 +4,8 @@
 
 #include <vector>
 
-#include "scene/hierarchy.h"
 #include "shaders/interop.h"
-#include "sweep/frame.h"
+#include "sweep/reach.h"
 
 namespace radar {
 
@@ -15,6 +14,8 @@ struct Placed {
   ObjectId object = kNone;  ///< kNone: the sensor
   MeshId mesh = kNone;
   std::array<float, 12> clipFromMesh{};
+  float snap = 0;   ///< how far from a triangle a covered centre may lie, pixels
+  float slack = 0;  ///< rounding of stored depth
 };
 
 /// Everything a submission needs to know of one query.

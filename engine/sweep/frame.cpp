@@ -21,6 +21,13 @@ Vector unit(Vector v) {
 
 }  // namespace
 
+Vector scaledDirection(const Vector& direction) {
+  const int exponent = std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])}));
+  Vector out;
+  for (int k = 0; k < 3; ++k) out[k] = std::scalbn(direction[k], -exponent);
+  return out;
+}
+
 double lengthOf(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
 }

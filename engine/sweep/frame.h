@@ -18,6 +18,9 @@ inline double dot(const Vector& a, const Vector& b) {
 /// world axes, exactly.
 std::array<Vector, 3> axesAlong(const Vector& direction);
 
+/// `direction` times a power of two that makes its largest component 1 to 2: the same motion, far from underflow.
+Vector scaledDirection(const Vector& direction);
+
 /// Length of `v`, without overflow or underflow on the way.
 double lengthOf(const Vector& v);
 

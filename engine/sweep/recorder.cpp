@@ -16,8 +16,8 @@
 // mask       draws, positions, indices                 M                          the render pass's own
 // reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
 // identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
-// solve      scene, views, draws, items, candidates    answers                    computeWriteToCopy
-// readback   answers (and R, M for pictures)           readback                   copyToHost
+// solve      scene, views, draws, items, candidates    answers, open pairs        computeWriteToCopy
+// readback   answers, open pairs (R, M for pictures)   readback                   copyToHost
 
 namespace radar {
 
@@ -49,9 +49,10 @@ VkDeviceSize bytesOf(const std::vector<T>& v) {
 
 }  // namespace
 
-Recorder::Recorder(const Device::Impl& device, bool timestamps)
+Recorder::Recorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps)
     : device_(&device),
-      resident_(device),
+      pictureBytes_(pictureBytes),
+      resident_(resident),
       upload_(device),
       submission_(device, timestamps),
       bindings_(device, bindingList(), sizeof(IdentifyPush)),
@@ -67,6 +68,7 @@ Recorder::Recorder(const Device::Impl& device, bool timestamps)
       candidates_(device, "candidates", Residence::device, kComputed),
       ranks_(device, "ranks", Residence::device, kComputed),
       answers_(device, "answers", Residence::device, kComputed),
+      openPairs_(device, "open pairs", Residence::device, kComputed),
       readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void Recorder::sync(const Scene::Impl& scene) {
@@ -79,19 +81,19 @@ void Recorder::sync(const Scene::Impl& scene) {
   upload_.record(commands);
   gpu::uploadToRead(commands);
   submission_.submitAndWait();
+  resident_.confirm(scene);
 }
 
 Recorder::Pictures& Recorder::picturesFor(const Batch& batch) {
   const auto found = pictures_.find(batch.resolution);
-  if (found != pictures_.end()) {
-    if (found->second.range.layers() >= batch.layers) return found->second;
-    pictures_.erase(found);  // before its successor is allocated
-  }
-  // In steps, so that batches of slightly different size keep one image.
-  const uint32_t step = std::min(64u, device_->maxLayers);
-  const uint32_t layers = std::min((batch.layers + step - 1) / step * step, device_->maxLayers);
-  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers < 8 ? batch.layers : layers);
-  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, range.layers());
+  if (found != pictures_.end() && found->second.range.layers() >= batch.layers) return found->second;
+  if (found != pictures_.end()) pictures_.erase(found);  // before its successor is allocated
+  const auto bytes = [](uint64_t side, uint64_t layers) { return 2 * side * side * layers * sizeof(float); };
+  uint64_t kept = bytes(batch.resolution, batch.layers);
+  for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
+  if (kept > 2 * pictureBytes_) pictures_.clear();
+  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
   return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
 }
 
@@ -103,6 +105,7 @@ void Recorder::stage(const Batch& batch, const Scene::Impl& scene) {
   candidates_.reserve(cells * sizeof(gpu::Candidate));
   ranks_.reserve(cells * sizeof(uint32_t));
   answers_.reserve(batch.views.size() * sizeof(gpu::Answer));
+  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs * sizeof(gpu::OpenPair));
   upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
                 Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
   resident_.upload(scene, upload_);
@@ -123,8 +126,10 @@ void Recorder::bind(const Pictures& pictures) {
                                                              {gpu::kBindItems, &items_},
                                                              {gpu::kBindCandidates, &candidates_},
                                                              {gpu::kBindRanks, &ranks_},
-                                                             {gpu::kBindAnswers, &answers_}};
-  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, buffer->get());
+                                                             {gpu::kBindAnswers, &answers_},
+                                                             {gpu::kBindTriangleIds, &scene.triangleIds},
+                                                             {gpu::kBindOpenPairs, &openPairs_}};
+  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
   bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
   bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
 }
@@ -143,16 +148,18 @@ void Recorder::drawScopes(VkCommandBuffer commands, const Batch& batch, const st
   }
 }
 
-std::span<const gpu::Answer> Recorder::submit(const Batch& batch, const Scene::Impl& scene,
-                                              std::vector<StageTime>& stages, StoredScopes* scopes) {
+Answers Recorder::submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                         StoredScopes* scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
   bind(pictures);
   const auto views = static_cast<uint32_t>(batch.views.size());
   const VkDeviceSize answerBytes = views * sizeof(gpu::Answer);
+  const VkDeviceSize openBytes = views * gpu::kOpenPairs * sizeof(gpu::OpenPair);
+  const VkDeviceSize listBytes = answerBytes + openBytes;
   const uint32_t width = batch.views[0].width, height = batch.views[0].height;
   const VkDeviceSize pictureBytes = scopes != nullptr ? VkDeviceSize{width} * height * sizeof(float) : 0;
-  readback_.reserve(answerBytes + 2 * pictureBytes);
+  readback_.reserve(listBytes + 2 * pictureBytes);
 
   const VkCommandBuffer commands = submission_.begin();
   submission_.stage("upload");
@@ -193,35 +200,26 @@ std::span<const gpu::Answer> Recorder::submit(const Batch& batch, const Scene::I
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");
-  const VkBufferCopy copy{0, 0, answerBytes};
-  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &copy);
+  const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
+  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
+  vkCmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
   if (scopes != nullptr) {
     const uint32_t layer = batch.views[0].layer;
-    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), answerBytes);
-    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), answerBytes + pictureBytes);
+    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
+    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), listBytes + pictureBytes);
   }
   gpu::copyToHost(commands);
   submission_.submitAndWait();
+  resident_.confirm(scene);
 
-  addTimes(stages);
+  submission_.addTimes(stages);
   if (scopes != nullptr) {
-    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes);
+    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + listBytes);
     scopes->range.assign(at, at + pictureBytes / sizeof(float));
     scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
   }
-  return {reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views};
-}
-
-void Recorder::addTimes(std::vector<StageTime>& stages) const {
-  for (const StageTime& time : submission_.stageTimes()) {
-    const auto found =
-        std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == time.name; });
-    if (found == stages.end()) {
-      stages.push_back(time);
-    } else {
-      found->ms += time.ms;
-    }
-  }
+  return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
+          {reinterpret_cast<const gpu::OpenPair*>(readback_.mapped() + answerBytes), views * gpu::kOpenPairs}};
 }
 
 }  // namespace radar

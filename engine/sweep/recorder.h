@@ -12,6 +12,12 @@
 
 namespace radar {
 
+/// What the shaders say of a batch, by view; open pairs: kOpenPairs per view. Valid until the next submission.
+struct Answers {
+  std::span<const gpu::Answer> answers;
+  std::span<const gpu::OpenPair> openPairs;
+};
+
 /// Depth of one view, as stored: 0 near, 1 empty.
 struct StoredScopes {
   std::vector<float> range, mask;
@@ -19,14 +25,15 @@ struct StoredScopes {
 
 class Recorder {
  public:
-  Recorder(const Device::Impl& device, bool timestamps);
+  /// `resident`: the scene's copy, shared with other recorders of the device.
+  Recorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// Uploads what changed in the scene, and nothing else.
   void sync(const Scene::Impl& scene);
-  /// One upload, one command buffer, one readback. Answers are by view, valid until the next call. With `scopes`, the
-  /// pictures of view 0 come too. Adds each stage's time to `stages`.
-  std::span<const gpu::Answer> submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                                      StoredScopes* scopes = nullptr);
+  /// One upload, one command buffer, one readback. With `scopes`, the pictures of view 0 come too. Adds each stage's
+  /// time to `stages`.
+  Answers submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                 StoredScopes* scopes = nullptr);
 
  private:
   struct Pictures {
@@ -38,17 +45,17 @@ class Recorder {
   void bind(const Pictures& pictures);
   void drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
                   gpu::DepthArray& target, const Scene::Impl& scene) const;
-  void addTimes(std::vector<StageTime>& stages) const;
 
   const Device::Impl* device_;
-  ResidentScene resident_;
+  uint64_t pictureBytes_;
+  ResidentScene& resident_;
   gpu::Upload upload_;
   gpu::Submission submission_;
   gpu::Bindings bindings_;
   gpu::RenderPass renderPass_;
   gpu::Sampler sampler_;
   gpu::Pipeline depth_, reduce_, identify_, solve_;
-  gpu::Buffer views_, draws_, items_, candidates_, ranks_, answers_, readback_;
+  gpu::Buffer views_, draws_, items_, candidates_, ranks_, answers_, openPairs_, readback_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side
 };
 

@@ -12,21 +12,26 @@ class ResidentScene {
   explicit ResidentScene(const Device::Impl& device);
 
   struct Buffers {
-    gpu::Buffer positions, originals, indices, meshes, objects;
+    gpu::Buffer positions, originals, indices, triangleIds, nodes, meshes, objects;
   };
 
   /// Works out what changed and makes room for it; returns the bytes that `upload` will stage.
   VkDeviceSize prepare(const Scene::Impl& scene);
   /// Stages the changes found by the last `prepare`.
   void upload(const Scene::Impl& scene, gpu::Upload& upload);
+  /// What was staged has arrived: until then a failed submission leaves it to be staged again.
+  void confirm(const Scene::Impl& scene);
 
   const Buffers& buffers() const { return buffers_; }
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
 
  private:
+  void refuseAbove(const char* what, uint64_t bytes) const;
+
+  const Device::Impl* device_;
   Buffers buffers_;
   std::vector<gpu::MeshRecord> records_;
-  uint64_t seenMeshes_ = 0, seenPoses_ = 0;
+  uint64_t seenScene_ = 0, seenMeshes_ = 0, seenPoses_ = 0;
   bool meshesChanged_ = false;
   std::vector<ObjectId> changedObjects_;
 };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "gpu/device.h"
+#include "sweep/contact_decode.h"
 #include "sweep/decode.h"
 #include "sweep/recorder.h"
 
@@ -19,6 +20,10 @@ double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+// One submission of the contact tier holds at most so many sensors, and about so many clusters.
+constexpr size_t kMaxTargets = 2048;
+constexpr uint64_t kMaxRefs = 1u << 20;
+
 // One query of a slice on its way to the device.
 struct Pending {
   size_t query;
@@ -27,7 +32,7 @@ struct Pending {
 
 // What one submission has to hold.
 struct Load {
-  uint64_t views = 0, layers = 0, draws = 0, items = 0;
+  uint64_t views = 0, draws = 0, items = 0;
   uint32_t resolution = 0;
 };
 
@@ -35,10 +40,16 @@ struct Load {
 
 struct Sweeper::Impl {
   Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given)
-      : device(openDevice.impl()), scene(ownScene), options(given), recorder(device, given.timestamps) {
+      : device(openDevice.impl()),
+        scene(ownScene),
+        options(given),
+        resident(device),
+        recorder(device, resident, given.pictureBytes, given.timestamps),
+        contactRecorder(device, resident, given.timestamps) {
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
     // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
     bufferBytes = std::min<uint64_t>(limits.maxStorageBufferRange, 256ull << 20);
+    maxItems = std::min<uint64_t>(bufferBytes / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
   }
 
   bool fits(const Load& load) const;
@@ -46,26 +57,31 @@ struct Sweeper::Impl {
   std::string tooLarge(const ViewPlan& plan) const;
   void flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results);
   void submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results);
+  void runSampled(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
+  void runContact(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
+  void search(std::span<const size_t> which, std::span<const ContactPlan> plans, std::span<const Query> queries,
+              std::vector<Result>& results);
+  void giveUp(size_t query, const Error& error, std::vector<Result>& results);
   void addCpuTime(const char* name, double ms);
   void refuseWrong(std::span<const Query> queries) const;
 
   const Device::Impl& device;
   const Scene& scene;
   SweeperOptions options;
+  ResidentScene resident;
   Recorder recorder;
+  ContactRecorder contactRecorder;
   Hierarchy hierarchy;
   Batch batch;
   SweepStats stats;
   std::map<size_t, std::string> reasons;
   uint64_t bufferBytes;
+  uint64_t maxItems;  // items name triangles in 32 bits
 };
 
 void Sweeper::Impl::add(Load& load, const ViewPlan& plan) const {
   ++load.views;
-  // Passes are aligned: a gap of at most a pass where the resolution changes, and one behind the last.
-  const bool fresh = plan.view.resolution != load.resolution;
   load.resolution = plan.view.resolution;
-  load.layers += fresh ? 1 + 2 * (kMaxPassLayers - 1) : 1;
   load.draws += 1 + plan.inReach.size() + plan.others.size();
   const auto items = [&](const Placed& placed) {
     return (scene.impl().meshes[placed.mesh].triangleCount() + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
@@ -76,15 +92,16 @@ void Sweeper::Impl::add(Load& load, const ViewPlan& plan) const {
 
 bool Sweeper::Impl::fits(const Load& load) const {
   const uint64_t layer = 2ull * load.resolution * load.resolution * sizeof(float);
-  return load.layers <= device.maxLayers && load.views * layer <= options.pictureBytes &&
-         load.draws * sizeof(gpu::Draw) <= bufferBytes && load.items * sizeof(gpu::Item) <= bufferBytes;
+  return load.views <= device.maxLayers && load.views * layer <= options.pictureBytes &&
+         load.draws * sizeof(gpu::Draw) <= bufferBytes && load.items <= maxItems;
 }
 
 std::string Sweeper::Impl::tooLarge(const ViewPlan& plan) const {
   Load load;
   add(load, plan);
+  if (load.draws * sizeof(gpu::Draw) <= bufferBytes && load.items <= maxItems)
+    return {};  // too large a picture is drawn alone
   const uint64_t bytes = std::max(load.draws * sizeof(gpu::Draw), load.items * sizeof(gpu::Item));
-  if (bytes <= bufferBytes) return {};  // a picture too large for `pictureBytes` is drawn alone
   return "capacity: the objects in reach need a buffer of " + std::to_string(bytes) + " bytes, the device allows " +
          std::to_string(bufferBytes);
 }
@@ -116,20 +133,17 @@ void Sweeper::Impl::submit(std::span<Pending> part, std::span<const Query> queri
   fill(batch, plans, scene.impl());
   addCpuTime("encode", msSince(start));
   try {
-    const std::span<const gpu::Answer> answers = recorder.submit(batch, scene.impl(), stats.stages);
+    const Answers found = recorder.submit(batch, scene.impl(), stats.stages);
     const Clock::time_point decodeStart = Clock::now();
     for (size_t i = 0; i < part.size(); ++i) {
       const size_t query = part[i].query;
-      results[query] = decode(answers[i], queries[query], scene.impl(), batch.views[i].resolution);
-      stats.pairs += answers[i].pairs;
+      results[query] = decode(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs),
+                              queries[query], scene.impl(), batch.views[i].resolution, stats.cpuPairs);
+      stats.pairs += found.answers[i].pairs;
     }
     addCpuTime("decode", msSince(decodeStart));
   } catch (const Error& error) {
-    if (error.result == VK_SUCCESS) throw;
-    for (const Pending& pending : part) {
-      results[pending.query] = Result();
-      reasons[pending.query] = error.what();
-    }
+    for (const Pending& pending : part) giveUp(pending.query, error, results);
   }
   ++stats.submissions;
   stats.drawnObjects += batch.objects;
@@ -157,6 +171,91 @@ void Sweeper::Impl::flush(std::vector<Pending>& slice, std::span<const Query> qu
   slice.clear();
 }
 
+void Sweeper::Impl::giveUp(size_t query, const Error& error, std::vector<Result>& results) {
+  if (error.result == VK_SUCCESS) throw error;
+  results[query] = Result();
+  reasons[query] = error.what();
+}
+
+void Sweeper::Impl::runSampled(std::span<const Query> queries, std::span<const size_t> which,
+                               std::vector<Result>& results) {
+  // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
+  // stays bounded however many queries there are.
+  std::vector<Pending> slice;
+  Load load;
+  for (const size_t i : which) {
+    const Clock::time_point start = Clock::now();
+    ViewPlan plan =
+        encode(queries[i], scene.impl(), hierarchy, device.properties.limits.subPixelPrecisionBits, options.select);
+    addCpuTime("select", msSince(start));
+    if (plan.inReach.empty()) {
+      results[i] = decodeClear();
+      continue;
+    }
+    if (std::string reason = tooLarge(plan); !reason.empty()) {
+      reasons[i] = std::move(reason);
+      continue;
+    }
+    add(load, plan);
+    slice.push_back({i, std::move(plan)});
+    if (slice.size() >= device.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes || load.items > maxItems) {
+      flush(slice, queries, results);
+      load = {};
+    }
+  }
+  flush(slice, queries, results);
+}
+
+void Sweeper::Impl::search(std::span<const size_t> which, std::span<const ContactPlan> plans,
+                           std::span<const Query> queries, std::vector<Result>& results) {
+  if (plans.empty()) return;
+  std::vector<const ContactPlan*> pointers;
+  for (const ContactPlan& plan : plans) pointers.push_back(&plan);
+  double decodeMs = 0;
+  try {
+    const auto decodeOne = [&](size_t i, const Search& found) {
+      const Clock::time_point start = Clock::now();
+      results[which[i]] = decodeContact(found, queries[which[i]], scene.impl(), stats.cpuPairs);
+      stats.pairs += found.state.boxPairs;
+      decodeMs += msSince(start);
+    };
+    for (const size_t i : contactRecorder.search(pointers, scene.impl(), stats.stages, decodeOne)) {
+      reasons[which[i]] = "capacity: more clusters or triangles meet than a buffer of the device can list";
+    }
+  } catch (const Error& error) {
+    for (const size_t i : which) giveUp(i, error, results);
+  }
+  addCpuTime("decode", decodeMs);
+  ++stats.submissions;
+}
+
+void Sweeper::Impl::runContact(std::span<const Query> queries, std::span<const size_t> which,
+                               std::vector<Result>& results) {
+  std::vector<size_t> slice;
+  std::vector<ContactPlan> plans;
+  uint64_t refs = 0;
+  const auto flushSlice = [&] {
+    search(slice, plans, queries, results);
+    slice.clear();
+    plans.clear();
+    refs = 0;
+  };
+  for (const size_t i : which) {
+    const Clock::time_point start = Clock::now();
+    ContactPlan plan = planContact(queries[i], scene.impl(), hierarchy);
+    addCpuTime("select", msSince(start));
+    if (plan.scene.empty()) {
+      results[i] = decodeClear();
+      continue;
+    }
+    refs += plan.sensor.size() + plan.scene.size();
+    slice.push_back(i);
+    plans.push_back(std::move(plan));
+    if (slice.size() == kMaxTargets || refs >= kMaxRefs) flushSlice();
+  }
+  flushSlice();
+}
+
 Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options)
     : impl_(std::make_unique<Impl>(device, scene, options)) {}
 Sweeper::~Sweeper() = default;
@@ -177,33 +276,10 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
   const Clock::time_point start = Clock::now();
   self.hierarchy.update(self.scene.impl());
   self.addCpuTime("select", msSince(start));
-
-  // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
-  // stays bounded however many queries there are.
-  std::vector<Pending> slice;
-  Load load;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const Clock::time_point encodeStart = Clock::now();
-    ViewPlan plan = encode(queries[i], self.scene.impl(), self.hierarchy,
-                           self.device.properties.limits.subPixelPrecisionBits, self.options.select);
-    self.addCpuTime("select", msSince(encodeStart));
-    if (plan.inReach.empty()) {
-      results[i] = decodeClear();
-      continue;
-    }
-    if (std::string reason = self.tooLarge(plan); !reason.empty()) {
-      self.reasons[i] = std::move(reason);
-      continue;
-    }
-    self.add(load, plan);
-    slice.push_back({i, std::move(plan)});
-    if (slice.size() >= self.device.maxLayers || load.draws * sizeof(gpu::Draw) > self.bufferBytes ||
-        load.items * sizeof(gpu::Item) > self.bufferBytes) {
-      self.flush(slice, queries, results);
-      load = {};
-    }
-  }
-  self.flush(slice, queries, results);
+  std::vector<size_t> sampled, contact;
+  for (size_t i = 0; i < queries.size(); ++i) (queries[i].mode == Mode::sampled ? sampled : contact).push_back(i);
+  self.runSampled(queries, sampled, results);
+  self.runContact(queries, contact, results);
   return results;
 }
 
@@ -218,10 +294,12 @@ Scopes Sweeper::scopes(const Query& query) {
   fill(self.batch, plans, self.scene.impl());
   StoredScopes stored;
   self.stats = {};
-  const gpu::Answer answer = self.recorder.submit(self.batch, self.scene.impl(), self.stats.stages, &stored)[0];
+  const Answers found = self.recorder.submit(self.batch, self.scene.impl(), self.stats.stages, &stored);
 
   Scopes out;
-  out.result = plan.inReach.empty() ? decodeClear() : decode(answer, query, self.scene.impl(), plan.view.resolution);
+  out.result = plan.inReach.empty() ? decodeClear()
+                                    : decode(found.answers[0], found.openPairs, query, self.scene.impl(),
+                                             plan.view.resolution, self.stats.cpuPairs);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

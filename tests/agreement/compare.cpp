@@ -93,7 +93,7 @@ Tally compareWithReference(const tools::Workload& workload, uint32_t resolution)
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
     player.show(batch.scene);
     std::vector<Query> queries;
-    for (uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], resolution));
+    for (uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::sampled, resolution));
     const std::vector<Result> sampled = sweeper.run(queries);
     const std::vector<Result> truth = exact.run(queries);
     for (size_t i = 0; i < queries.size(); ++i) {

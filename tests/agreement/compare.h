@@ -1,4 +1,4 @@
-// Mode sampled held against the reference, answer by answer.
+// Modes sampled and contact held against the reference, answer by answer.
 #pragma once
 
 #include <cstdint>
@@ -15,5 +15,15 @@ struct Tally {
 
 /// Answers every query of the workload both ways and CHECKs every promise that a single sampled answer makes.
 Tally compareWithReference(const tools::Workload& workload, uint32_t resolution);
+
+struct ContactTally {
+  uint32_t queries = 0, hits = 0, overlaps = 0, clear = 0;
+};
+
+/// Answers the queries in mode contact, in one batch, and by the reference, and CHECKs that they agree in every
+/// promise.
+ContactTally compareContact(const Scene& scene, std::vector<Query> queries);
+/// Likewise every batch of the workload.
+ContactTally compareContact(const tools::Workload& workload);
 
 }  // namespace radar::test

@@ -1,23 +1,13 @@
 // Meshes that people made, as sensors and as scenes: from assimp's test models and CGAL's data, in several formats.
 #include <catch2/catch.hpp>
-#include <string>
 
 #include "agreement/compare.h"
-#include "import/mesh_import.h"
+#include "agreement/real_meshes.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
-
-std::vector<tools::MeshData> readAll(const std::string& folder, std::initializer_list<const char*> files) {
-  std::vector<tools::MeshData> meshes;
-  for (const char* file : files) {
-    std::vector<std::string> warnings;
-    meshes.push_back(tools::readMesh(folder + "/" + file, warnings));
-  }
-  return meshes;
-}
 
 void check(std::vector<tools::MeshData> meshes, uint32_t resolution) {
   const tools::Workload workload =
@@ -31,14 +21,9 @@ void check(std::vector<tools::MeshData> meshes, uint32_t resolution) {
 }  // namespace
 
 TEST_CASE("assimp's test models in OBJ, PLY, STL, Collada and glTF sweep through each other") {
-  check(readAll(RADAR_ASSIMP_MODELS,
-                {"OBJ/spider.obj", "OBJ/WusonOBJ.obj", "PLY/Wuson.ply", "PLY/cube.ply", "STL/sphereWithHole.stl",
-                 "STL/Spider_ascii.stl", "Collada/duck.dae", "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"}),
-        128);
+  check(test::assimpModels(), 128);
 }
 
 TEST_CASE("CGAL's meshes, closed and with holes, knotted and convoluted, sweep through each other") {
-  check(readAll(RADAR_CGAL_MESHES, {"elephant.off", "elephant-with-holes.off", "knot1.off", "eight.off", "camel.off",
-                                    "hand.off", "anchor.off", "pig.stl"}),
-        128);
+  check(test::cgalMeshes(), 128);
 }

@@ -85,7 +85,7 @@ TEST_CASE("options that do not work yet, or do not exist, are refused by name") 
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));
   for (const auto& [options, words] :
-       {std::pair{"--mode bounded", "--mode: expected mode"}, std::pair{"--mode contact", "not available"},
+       {std::pair{"--mode bounded", "--mode: expected mode"}, std::pair{"--mode bounded", "not available"},
         std::pair{"--mode exact", "got \"exact\""}, std::pair{"--tolerance 0.1", "--tolerance"},
         std::pair{"--resolution 0", "--resolution"}, std::pair{"--resolution 4096", "--resolution"},
         std::pair{"--resolution 64x", "\"64x\""}, std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},

@@ -47,7 +47,7 @@ TEST_CASE("an adopted device answers like an opened one and is still the host's 
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
-  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled};
   Sweeper own(test::device(), scene);
   const Result expected = own.run({&query, 1})[0];
 
@@ -68,7 +68,7 @@ TEST_CASE("several sweepers share one device and one scene") {
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   const ObjectId object = scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
   Sweeper first(test::device(), scene), second(test::device(), scene);
-  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled};
   CHECK(first.run({&query, 1})[0].t == second.run({&query, 1})[0].t);
   scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
   CHECK(second.run({&query, 1})[0].t == first.run({&query, 1})[0].t);

@@ -1,5 +1,6 @@
 // The validation layer must see what it is there for: a missing barrier between an upload and a dispatch.
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
@@ -17,20 +18,24 @@ using namespace radar;
 std::vector<std::string> messagesOf(bool withBarrier) {
   const Device::Impl& device = test::device().impl();
   std::vector<gpu::Binding> list;
-  for (uint32_t i = 0; i < gpu::kBindRange; ++i) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
+    if (i != gpu::kBindRange && i != gpu::kBindMask) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  }
   gpu::Bindings bindings(device, list, 8);
   const gpu::Pipeline solve = gpu::computePipeline(device, bindings.layout(), k_solve_comp, "solve");
-  std::vector<gpu::Buffer> buffers;
-  for (uint32_t i = 0; i < gpu::kBindRange; ++i) {
-    buffers.emplace_back(device, "hazard", gpu::Residence::upload,
-                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    std::fill_n(buffers.back().mapped(), 1024, std::byte{0});
-    bindings.setBuffer(i, buffers.back().get());
+  std::map<uint32_t, gpu::Buffer> buffers;
+  for (const gpu::Binding& binding : list) {
+    gpu::Buffer& buffer = buffers
+                              .try_emplace(binding.number, device, "hazard", gpu::Residence::upload,
+                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT)
+                              .first->second;
+    std::fill_n(buffer.mapped(), 1024, std::byte{0});
+    bindings.setBuffer(binding.number, buffer);
   }
   const gpu::View nothing{};
   gpu::Upload upload(device);
   upload.begin(sizeof(nothing));
-  upload.add(&nothing, sizeof(nothing), buffers[gpu::kBindViews]);
+  upload.add(&nothing, sizeof(nothing), buffers.at(gpu::kBindViews));
   gpu::Submission submission(device, false);
   const VkCommandBuffer commands = submission.begin();
   const VkDescriptorSet set = bindings.set();

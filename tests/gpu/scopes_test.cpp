@@ -181,7 +181,7 @@ Compared checkWorkload(const tools::Workload& workload, uint32_t resolution) {
     player.show(batch.scene);
     for (uint32_t i : batch.queries) {
       INFO("query " << workload.queries[i].id << " at " << resolution);
-      const Query query = tools::toQuery(workload.queries[i], resolution);
+      const Query query = tools::toQuery(workload.queries[i], Mode::sampled, resolution);
       checkScopes(player.scene(), query, sweeper.scopes(query), count);
     }
   }
@@ -226,7 +226,7 @@ TEST_CASE("R, M and L of two squares are the paper's: R + M - d is the free dist
   scene.addObject({small, at(0.45, 0.5, 5), ~0u});
   // The sensor leans: its side at +x lies one unit further along the motion than its side at -x.
   const Pose leaning{{1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1, 0}};
-  const Query query{.mesh = square, .worldFromMesh = leaning, .direction = {0, 0, 3}, .distance = 10, .resolution = 64};
+  const Query query{.mesh = square, .worldFromMesh = leaning, .direction = {0, 0, 3}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
   Sweeper sweeper(test::device(), scene);
   const Scopes scopes = sweeper.scopes(query);
   CHECK(scopes.d == Approx(11));
@@ -258,7 +258,7 @@ TEST_CASE("nothing at any pixel centre ends a sensor's work: not detected, undec
   const MeshId square = addSquare(scene, 2), speck = addSquare(scene, 1e-4f);
   scene.addObject({speck, at(0.3, 0.3, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 10, .resolution = 16};
+  const Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 16};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.detected == Detected::no);
   CHECK(result.status == Status::undecided);
@@ -274,7 +274,7 @@ TEST_CASE("what lies beside the sensor in its window is detected, and has no L")
   const MeshId half = scene.addMesh(positions, std::vector<uint32_t>{0, 1, 2}), small = addSquare(scene, 0.2f);
   scene.addObject({small, at(0.7, 0.7, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = half, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Query query{.mesh = half, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.detected == Detected::yes);
   CHECK(result.status == Status::undecided);
@@ -295,7 +295,7 @@ TEST_CASE("a negative L is the paper's minimum but never a witness") {
   scene.addObject({small, at(0.1, 0.1, 2), ~0u});
   scene.addObject({plate, at(0.05, 0.05, 9), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = frame, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Query query{.mesh = frame, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.paperMinL == Approx(-2).margin(1e-4));
   CHECK(result.status == Status::hit);
@@ -308,7 +308,7 @@ TEST_CASE("contact at the start and at exactly D is not cut off by the planes") 
   const MeshId square = addSquare(scene, 2), small = addSquare(scene, 1);
   scene.addObject({small, at(0.1, 0.05, 3), ~0u});
   Sweeper sweeper(test::device(), scene);
-  Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 3.5, .resolution = 64};
+  Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 3.5, .mode = Mode::sampled, .resolution = 64};
   CHECK(sweeper.run({&query, 1})[0].t == Approx(3));
   query.distance = 3;
   CHECK(sweeper.run({&query, 1})[0].detected == Detected::yes);

@@ -14,7 +14,7 @@ using namespace radar;
 struct Loaded {
   explicit Loaded(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, resolution));
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled, resolution));
   }
   tools::Workload workload;
   tools::ScenePlayer player;
@@ -55,7 +55,7 @@ TEST_CASE("more sensors than the device has layers are split, not refused, and k
   const std::vector<Result> once = sweeper.run(loaded.queries);
   std::vector<Query> many;
   std::vector<Result> expected;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 12; ++i) {
     many.insert(many.end(), loaded.queries.begin(), loaded.queries.end());
     expected.insert(expected.end(), once.begin(), once.end());
   }
@@ -101,7 +101,7 @@ TEST_CASE("edits of the scene are followed: objects move, come and go, and ids o
   const auto at = [](double z) { return Pose{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
   const ObjectId far = scene.addObject({mesh, at(7), ~0u});
   const ObjectId near = scene.addObject({mesh, at(4), ~0u});
-  const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10};
+  const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10, .mode = Mode::sampled};
   Sweeper sweeper(test::device(), scene);
   const auto answer = [&] { return sweeper.run({&query, 1})[0]; };
 
@@ -132,7 +132,7 @@ TEST_CASE("the empty scene, the empty batch and nothing in reach are answered") 
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   Sweeper sweeper(test::device(), scene);
   CHECK(sweeper.run({}).empty());
-  const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
+  const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.status == Status::clear);
   CHECK(std::isnan(result.t));
@@ -146,7 +146,7 @@ TEST_CASE("a query that breaks its contract is refused by number before anything
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   Sweeper sweeper(test::device(), scene);
-  const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
+  const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
   std::vector<Query> queries(3, good);
   queries[2].direction = {0, 0, 0};
   CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 2") && Catch::Contains("direction"));
@@ -167,7 +167,7 @@ TEST_CASE("a mesh of more triangles than a shader invocation has loop iterations
   scene.addObject({sphere, {}, ~0u});
   Sweeper sweeper(test::device(), scene);
   const Pose start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
-  const Query query{.mesh = cube, .worldFromMesh = start, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Query query{.mesh = cube, .worldFromMesh = start, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.status == Status::hit);
   // The box's upper face lies at -4.75; the ball's lowest point over it at about -1.

@@ -37,7 +37,7 @@ QuerySpec ask(const std::string& id) {
 }  // namespace
 
 TEST_CASE("an answer line holds every key in order, with shortest numbers that read back the same") {
-  CHECK(answerLine(ask("ring/0"), hit(), Mode::sampled, "") ==
+  CHECK(answerLine(ask("ring/0"), hit(), AnswerMode::sampled, "") ==
         R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
         R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
         R"("point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
@@ -47,7 +47,7 @@ TEST_CASE("what an answer does not have is null") {
   Result clear;
   clear.status = Status::clear;
   clear.detected = Detected::no;
-  CHECK(answerLine(ask("a"), clear, Mode::reference, "") ==
+  CHECK(answerLine(ask("a"), clear, AnswerMode::reference, "") ==
         R"({"id": "a", "status": "clear", "t": null, "lo": null, "hi": null, "fraction": null, "detected": false, )"
         R"("object": null, "tri_a": null, "tri_b": null, "point": null, "normal": null, "tier": "select"})");
 }
@@ -55,11 +55,11 @@ TEST_CASE("what an answer does not have is null") {
 TEST_CASE("time is there with a speed only, the paper's min(L) in mode sampled only, a reason if invalid only") {
   QuerySpec query = ask("a");
   query.speed = 2;
-  const auto timed = nlohmann::json::parse(answerLine(query, hit(), Mode::reference, ""));
+  const auto timed = nlohmann::json::parse(answerLine(query, hit(), AnswerMode::reference, ""));
   CHECK(timed["time"] == (0.1 + 0.2) / 2);
   CHECK_FALSE(timed.contains("paper_min_l"));
   CHECK_FALSE(timed.contains("reason"));
-  const auto invalid = nlohmann::json::parse(answerLine(query, Result(), Mode::sampled, "out of memory"));
+  const auto invalid = nlohmann::json::parse(answerLine(query, Result(), AnswerMode::sampled, "out of memory"));
   CHECK(invalid["status"] == "invalid");
   CHECK(invalid["reason"] == "out of memory");
   CHECK(invalid["time"].is_null());
@@ -69,7 +69,7 @@ TEST_CASE("time is there with a speed only, the paper's min(L) in mode sampled o
 
 TEST_CASE("any id survives") {
   const std::string id = "\"quoted\"\n\\ \x01 \xc3\xa4";
-  CHECK(nlohmann::json::parse(answerLine(ask(id), hit(), Mode::sampled, ""))["id"] == id);
+  CHECK(nlohmann::json::parse(answerLine(ask(id), hit(), AnswerMode::sampled, ""))["id"] == id);
 }
 
 TEST_CASE("a file is written whole or not at all") {

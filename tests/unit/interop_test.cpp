@@ -8,8 +8,11 @@
 #include <string>
 
 #include "shaders/interop.h"
+#include "spirv/bounds_comp.h"
+#include "spirv/contact_comp.h"
 #include "spirv/depth_vert.h"
 #include "spirv/identify_comp.h"
+#include "spirv/pairs_comp.h"
 #include "spirv/reduce_comp.h"
 #include "spirv/solve_comp.h"
 
@@ -50,7 +53,9 @@ Layouts all() {
   Layouts layouts;
   for (std::span<const uint32_t> spirv :
        {std::span<const uint32_t>(k_depth_vert), std::span<const uint32_t>(k_reduce_comp),
-        std::span<const uint32_t>(k_identify_comp), std::span<const uint32_t>(k_solve_comp)}) {
+        std::span<const uint32_t>(k_identify_comp), std::span<const uint32_t>(k_solve_comp),
+        std::span<const uint32_t>(k_bounds_comp), std::span<const uint32_t>(k_pairs_comp),
+        std::span<const uint32_t>(k_contact_comp)}) {
     Layouts one = layoutsOf(spirv);
     layouts.offsets.merge(one.offsets);
     layouts.strides.merge(one.strides);
@@ -71,7 +76,9 @@ struct Expected {
 
 TEST_CASE("every shared struct has the offsets and the stride that the shaders use") {
   const Expected expected[] = {
-      {"MeshRecord", sizeof(MeshRecord), {MEMBER(MeshRecord, firstVertex), MEMBER(MeshRecord, firstIndex)}},
+      {"MeshRecord",
+       sizeof(MeshRecord),
+       {MEMBER(MeshRecord, firstVertex), MEMBER(MeshRecord, firstIndex), MEMBER(MeshRecord, firstNode)}},
       {"ObjectRecord",
        sizeof(ObjectRecord),
        {MEMBER(ObjectRecord, pose), MEMBER(ObjectRecord, mesh), MEMBER(ObjectRecord, pad)}},
@@ -80,11 +87,11 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        {MEMBER(View, pose), MEMBER(View, direction), MEMBER(View, directionLength), MEMBER(View, distance),
         MEMBER(View, size), MEMBER(View, mesh), MEMBER(View, layer), MEMBER(View, resolution), MEMBER(View, width),
         MEMBER(View, height), MEMBER(View, cell), MEMBER(View, rangeScale), MEMBER(View, maskBase),
-        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, snap), MEMBER(View, rangeSlack),
-        MEMBER(View, maskSlack), MEMBER(View, pad)}},
+        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, rangeLimit), MEMBER(View, pad)}},
       {"Draw",
        sizeof(Draw),
-       {MEMBER(Draw, clipFromMesh), MEMBER(Draw, view), MEMBER(Draw, layer), MEMBER(Draw, mesh), MEMBER(Draw, object)}},
+       {MEMBER(Draw, clipFromMesh), MEMBER(Draw, snap), MEMBER(Draw, slack), MEMBER(Draw, view), MEMBER(Draw, layer),
+        MEMBER(Draw, mesh), MEMBER(Draw, object)}},
       {"Item", sizeof(Item), {MEMBER(Item, draw), MEMBER(Item, firstTriangle), MEMBER(Item, endTriangle)}},
       {"Candidate",
        sizeof(Candidate),
@@ -93,7 +100,41 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       {"Answer",
        sizeof(Answer),
        {MEMBER(Answer, hi), MEMBER(Answer, object), MEMBER(Answer, triB), MEMBER(Answer, triA), MEMBER(Answer, feature),
-        MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs)}},
+        MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs),
+        MEMBER(Answer, openPairs), MEMBER(Answer, pad)}},
+      {"OpenPair",
+       sizeof(OpenPair),
+       {MEMBER(OpenPair, low), MEMBER(OpenPair, object), MEMBER(OpenPair, triB), MEMBER(OpenPair, triA),
+        MEMBER(OpenPair, pad)}},
+      {"ClusterRecord",
+       sizeof(ClusterRecord),
+       {MEMBER(ClusterRecord, centre), MEMBER(ClusterRecord, halfExtent), MEMBER(ClusterRecord, first),
+        MEMBER(ClusterRecord, count)}},
+      {"Target",
+       sizeof(Target),
+       {MEMBER(Target, pose), MEMBER(Target, direction), MEMBER(Target, directionLength), MEMBER(Target, distance),
+        MEMBER(Target, mesh), MEMBER(Target, firstPair), MEMBER(Target, pairCapacity), MEMBER(Target, firstContender),
+        MEMBER(Target, contenderCapacity), MEMBER(Target, pad)}},
+      {"Placement",
+       sizeof(Placement),
+       {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),
+        MEMBER(Placement, pad)}},
+      {"ClusterRef", sizeof(ClusterRef), {MEMBER(ClusterRef, placement), MEMBER(ClusterRef, node)}},
+      {"RefBox", sizeof(RefBox), {MEMBER(RefBox, lo), MEMBER(RefBox, hi)}},
+      {"PairItem",
+       sizeof(PairItem),
+       {MEMBER(PairItem, target), MEMBER(PairItem, firstA), MEMBER(PairItem, endA), MEMBER(PairItem, firstB),
+        MEMBER(PairItem, endB)}},
+      {"ClusterPair", sizeof(ClusterPair), {MEMBER(ClusterPair, gap), MEMBER(ClusterPair, a), MEMBER(ClusterPair, b)}},
+      {"Contender",
+       sizeof(Contender),
+       {MEMBER(Contender, low), MEMBER(Contender, at), MEMBER(Contender, error), MEMBER(Contender, object),
+        MEMBER(Contender, slotB), MEMBER(Contender, slotA), MEMBER(Contender, flags)}},
+      {"State",
+       sizeof(State),
+       {MEMBER(State, hi), MEMBER(State, pairCount), MEMBER(State, contenderCount), MEMBER(State, progress),
+        MEMBER(State, boxPairs), MEMBER(State, solved), MEMBER(State, round), MEMBER(State, cursor),
+        MEMBER(State, pad)}},
   };
   const Layouts layouts = all();
   for (const Expected& one : expected) {

@@ -79,7 +79,7 @@ TEST_CASE("a query file is read as it says") {
   CHECK(full.direction == std::array<double, 3>{0, -0.5, 1});
   CHECK(full.distance == 0);
   CHECK(full.mask == 5);
-  CHECK(full.mode == Mode::sampled);
+  CHECK(full.mode == AnswerMode::sampled);
   CHECK(full.speed == 2.5);
   CHECK(full.sensor.worldFromMesh.m[11] == -2);
 }
@@ -102,7 +102,7 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/scenes/1/instances/0/4", "\"x\"", "scenes[1].instances[0][4]: ", "a finite number"},
       {"/scenes/1/instances/0/4", "null", "scenes[1].instances[0][4]: ", "got null"},
       {"/scenes/1/instances/0", "[0, 1]", "scenes[1].instances[0]: ", "12 numbers"},
-      {"/scenes/1/instances/0", "[0, 1,0,0,0, 0,0,0,0, 0,0,1,0]", "scenes[1].instances[0]: ", "zero row"},
+      {"/scenes/1/instances/0", "[0, 1,0,0,0, 0,0,0,0, 0,0,1,0]", "scenes[1].instances[0]: ", "zero column"},
       {"/scenes/1/instances/0", "[0, 1,2,3,0, 2,4,6,0, 0,0,1,0]", "scenes[1].instances[0]: ", "singular"},
       {"/scenes/1/masks/0/0", "3", "scenes[1].masks[0][0]: ", "one of the 3 objects"},
       {"/scenes/1/masks/0/1", "4294967296", "scenes[1].masks[0][1]: ", "4294967295"},
@@ -122,13 +122,22 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/1/D", "\"8\"", "queries[1].D: ", "got \"8\""},
       {"/queries/1/mask", "1.5", "queries[1].mask: ", "a whole number"},
       {"/queries/1/mode", "\"fast\"", "queries[1].mode: ", "got \"fast\""},
-      {"/queries/1/mode", "\"contact\"", "queries[1].mode: ", "not available in this version"},
       {"/queries/1/mode", "\"bounded\"", "queries[1].mode: ", "not available in this version"},
       {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.pointer, c.value);
     CHECK_THAT(files.refusalWith(c.pointer, c.value), StartsWith(c.path) && Contains(c.problem));
+  }
+}
+
+TEST_CASE("a query's mode is one of three") {
+  Files files;
+  for (const auto& [name, mode] : {std::pair{"sampled", AnswerMode::sampled}, std::pair{"contact", AnswerMode::contact},
+                                   std::pair{"reference", AnswerMode::reference}}) {
+    nlohmann::json file = goodFile();
+    file["queries"][1]["mode"] = name;
+    CHECK(files.read(file.dump()).queries[1].mode == mode);
   }
 }
 
@@ -212,7 +221,7 @@ TEST_CASE("a workload survives writing and reading to the bit") {
   workload.meshes.push_back(makeWorkload(Soups{}).meshes[4]);
   workload.scenes[1].masks = {{0, 3}, {101, 0}};
   workload.queries[0].mask = 17;
-  workload.queries[1].mode = Mode::reference;
+  workload.queries[1].mode = AnswerMode::reference;
   workload.queries[2].id = "odd \"id\"\n\\ \xc3\xa4";
   std::vector<std::string> warnings;
   const Workload again = readQueryFile(writeQueryFile(workload, folder.path() / "new" / "folder"), warnings);

@@ -9,6 +9,8 @@ radar::gpu::DeviceFacts goodDevice() {
   return {.apiVersion = VK_API_VERSION_1_3,
           .maxLayers = 2048,
           .subPixelBits = 8,
+          .groupInvocations = 1024,
+          .stageBuffers = 1024,
           .graphicsAndComputeQueue = true,
           .missingFeatures = {}};
 }
@@ -28,12 +30,16 @@ TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
   facts.graphicsAndComputeQueue = false;
   facts.maxLayers = 128;
   facts.subPixelBits = 2;
+  facts.groupInvocations = 128;
+  facts.stageBuffers = 4;
   const std::vector<std::string> reasons = radar::gpu::reasonsAgainst(facts);
-  REQUIRE(reasons.size() == 4);
+  REQUIRE(reasons.size() == 6);
   CHECK(reasons[0].find("shaderFloat64") != std::string::npos);
   CHECK(reasons[1].find("queue family") != std::string::npos);
-  CHECK(reasons[2].find("128") != std::string::npos);
-  CHECK(reasons[3].find("subpixel") != std::string::npos);
+  CHECK(reasons[2].find("layers") != std::string::npos);
+  CHECK(reasons[3].find("invocations") != std::string::npos);
+  CHECK(reasons[4].find("storage buffers") != std::string::npos);
+  CHECK(reasons[5].find("subpixel") != std::string::npos);
 }
 
 TEST_CASE("every required feature is switched on for a device that is opened") {

@@ -63,11 +63,11 @@ const char* nameOf(Status status) {
 }
 
 const char* nameOf(Tier tier) {
-  constexpr std::array<const char*, 3> kNames{"select", "sampled", "reference"};
+  constexpr std::array<const char*, 4> kNames{"select", "sampled", "contact", "reference"};
   return kNames[static_cast<size_t>(tier)];
 }
 
-std::string answerLine(const QuerySpec& query, const Result& result, Mode mode, const std::string& reason) {
+std::string answerLine(const QuerySpec& query, const Result& result, AnswerMode mode, const std::string& reason) {
   std::string line;
   append(line, "id", query.id);
   append(line, "status", std::string(nameOf(result.status)));
@@ -85,7 +85,7 @@ std::string answerLine(const QuerySpec& query, const Result& result, Mode mode, 
   append(line, "point", result.point);
   append(line, "normal", result.normal);
   append(line, "tier", std::string(nameOf(result.tier)));
-  if (mode == Mode::sampled) append(line, "paper_min_l", result.paperMinL);
+  if (mode == AnswerMode::sampled) append(line, "paper_min_l", result.paperMinL);
   line += "}";
   return line;
 }

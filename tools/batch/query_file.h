@@ -23,7 +23,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
 
 /// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them, or says that the
 /// mode is not available in this version.
-const char* nameOf(Mode mode);
-Mode modeFrom(std::string_view name);
+const char* nameOf(AnswerMode mode);
+AnswerMode modeFrom(std::string_view name);
 
 }  // namespace radar::tools

@@ -256,16 +256,17 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
   return Reader(file, warnings).read();
 }
 
-const char* nameOf(Mode mode) {
-  return mode == Mode::sampled ? "sampled" : "reference";
+const char* nameOf(AnswerMode mode) {
+  constexpr const char* kNames[] = {"sampled", "contact", "reference"};
+  return kNames[static_cast<size_t>(mode)];
 }
 
-Mode modeFrom(std::string_view name) {
-  for (Mode mode : {Mode::sampled, Mode::reference}) {
+AnswerMode modeFrom(std::string_view name) {
+  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
     if (name == nameOf(mode)) return mode;
   }
-  const std::string expected = "expected mode sampled or reference, got \"" + std::string(name) + "\"";
-  const bool later = name == "bounded" || name == "contact";
+  const std::string expected = "expected mode sampled, contact or reference, got \"" + std::string(name) + "\"";
+  const bool later = name == "bounded";
   throw std::invalid_argument(expected + (later ? ", which is not available in this version" : ""));
 }
 

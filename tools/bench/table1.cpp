@@ -54,7 +54,7 @@ int main(int argc, char**) {
       tools::ScenePlayer player(workload);
       player.show(0);
       std::vector<Query> queries;
-      for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 256));
+      for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled, 256));
       const Timed timed = timeBatch(device, player.scene(), queries, true, 7);
       culled[large] = timed.ms;
       print((std::to_string(boxes) + " boxes, select").c_str(), timed, queries.size());

@@ -32,11 +32,13 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     group.scene = batch.scene;
     for (uint32_t number : batch.queries) {
       const QuerySpec& spec = workload.queries[number];
-      const bool sampled = spec.mode.value_or(options.mode) == Mode::sampled;
-      (sampled ? needsDevice : needsReference) = true;
-      Part& part = sampled ? group.sampled : group.reference;
+      const AnswerMode mode = spec.mode.value_or(options.mode);
+      const bool swept = mode != AnswerMode::reference;
+      (swept ? needsDevice : needsReference) = true;
+      Part& part = swept ? group.swept : group.referred;
       part.numbers.push_back(number);
-      part.queries.push_back(toQuery(spec, options.resolution));
+      part.queries.push_back(
+          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options.resolution));
     }
   }
   if (needsDevice) {
@@ -62,8 +64,8 @@ Answering::Pass Answering::run(const std::string& label) {
   const auto start = Clock::now();
   for (const Group& group : groups_) {
     player_.show(group.scene);
-    sample(group.sampled, pass, progress);
-    refer(group.reference, pass, progress);
+    sweep(group.swept, pass, progress);
+    refer(group.referred, pass, progress);
   }
   pass.ms = millisecondsSince(start);
   if (reference_) {
@@ -73,11 +75,12 @@ Answering::Pass Answering::run(const std::string& label) {
   return pass;
 }
 
-void Answering::sample(const Part& part, Pass& pass, Progress& progress) {
+void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
   const std::vector<Result> results = sweeper_->run(part.queries);
   for (size_t i = 0; i < results.size(); ++i) {
-    pass.answers[part.numbers[i]] = {results[i], Mode::sampled, sweeper_->reason(i)};
+    const AnswerMode mode = part.queries[i].mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
+    pass.answers[part.numbers[i]] = {results[i], mode, sweeper_->reason(i)};
   }
   const SweepStats& stats = sweeper_->stats();
   pass.pairs += stats.pairs;
@@ -90,7 +93,7 @@ void Answering::refer(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
   const auto start = Clock::now();
   for (size_t i = 0; i < part.queries.size(); ++i) {
-    pass.answers[part.numbers[i]] = {reference_->answer(part.queries[i]), Mode::reference, {}};
+    pass.answers[part.numbers[i]] = {reference_->answer(part.queries[i]), AnswerMode::reference, {}};
     progress.add(1);
   }
   addStage(pass.stages, {"reference", millisecondsSince(start)});

@@ -13,15 +13,15 @@
 namespace radar::tools {
 
 struct AnsweringOptions {
-  Mode mode = Mode::reference;  ///< of queries that do not choose one
-  uint32_t resolution = 0;      ///< 0: chosen per sensor
-  uint32_t device = kNone;      ///< kNone: the best
-  bool timestamps = false;      ///< measure each stage
+  AnswerMode mode = AnswerMode::reference;  ///< of queries that do not choose one
+  uint32_t resolution = 0;                  ///< 0: chosen per sensor
+  uint32_t device = kNone;                  ///< kNone: the best
+  bool timestamps = false;                  ///< measure each stage
 };
 
 struct Answer {
   Result result;
-  Mode mode = Mode::reference;
+  AnswerMode mode = AnswerMode::reference;
   std::string reason;  ///< why the status is invalid
 };
 
@@ -53,9 +53,9 @@ class Answering {
   };
   struct Group {
     uint32_t scene = 0;
-    Part sampled, reference;
+    Part swept, referred;
   };
-  void sample(const Part& part, Pass& pass, Progress& progress);
+  void sweep(const Part& part, Pass& pass, Progress& progress);
   void refer(const Part& part, Pass& pass, Progress& progress);
 
   const Workload& workload_;

@@ -54,7 +54,7 @@ std::string tableOf(const std::vector<Row>& rows) {
   return text;
 }
 
-std::vector<Answer> answersIn(const Workload& workload, Mode mode, const AnsweringOptions& engine,
+std::vector<Answer> answersIn(const Workload& workload, AnswerMode mode, const AnsweringOptions& engine,
                               std::string& device) {
   AnsweringOptions options = engine;
   options.mode = mode;
@@ -78,7 +78,7 @@ std::vector<std::string> drawHits(const std::filesystem::path& folder, const std
   std::vector<std::string> files;
   for (size_t i = 0; i < rows.size() && files.size() < kPictures; ++i) {
     if (rows[i].sampled.result.status != Status::hit) continue;
-    const Scopes scopes = sweeper.scopes(toQuery(rows[i].query));
+    const Scopes scopes = sweeper.scopes(toQuery(rows[i].query, radar::Mode::sampled));
     const std::string name = "teapot-" + std::to_string(i) + ".png";
     writeScopePicture(folder / name,
                       rows[i].query.id + ":  d = " + inDigits(scopes.d) + ",  t = " + inDigits(scopes.result.t) +
@@ -101,8 +101,8 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
             << " units, and after how far?\n\n";
 
   std::string deviceName;
-  const std::vector<Answer> sampled = answersIn(workload, Mode::sampled, engine, deviceName);
-  const std::vector<Answer> exact = answersIn(workload, Mode::reference, engine, deviceName);
+  const std::vector<Answer> sampled = answersIn(workload, AnswerMode::sampled, engine, deviceName);
+  const std::vector<Answer> exact = answersIn(workload, AnswerMode::reference, engine, deviceName);
   std::vector<Row> rows;
   for (size_t i = 0; i < sampled.size(); ++i) rows.push_back({workload.queries[i], sampled[i], exact[i]});
   const std::string table = tableOf(rows);

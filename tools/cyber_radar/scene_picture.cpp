@@ -103,7 +103,7 @@ void writeScenePicture(const std::filesystem::path& file, Workload workload, uin
   workload.scenes.push_back({"what moves", {}, workload.scenes[scene].instances, {}});
   ScenePlayer player(workload);
   Sweeper sweeper(device, player.scene());
-  const Query query = toQuery(viewOf(scene, disc), kResolution);
+  const Query query = toQuery(viewOf(scene, disc), radar::Mode::sampled, kResolution);
   player.show(scene);
   const Scopes all = sweeper.scopes(query);
   player.show(moving);

@@ -88,7 +88,7 @@ void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const
   sidecar["right"] = scopes.right;
   sidecar["up"] = scopes.up;
   sidecar["forward"] = scopes.forward;
-  sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(query, scopes.result, Mode::sampled, ""));
+  sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(query, scopes.result, AnswerMode::sampled, ""));
   writeWhole(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
@@ -100,7 +100,7 @@ void drawScopes(Options& options) {
   player.show(query.scene);
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
-  const Scopes scopes = sweeper.scopes(toQuery(query, engine.resolution));
+  const Scopes scopes = sweeper.scopes(toQuery(query, radar::Mode::sampled, engine.resolution));
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");
   }
@@ -117,7 +117,7 @@ void drawScopes(Options& options) {
   writeScopePicture(folder / "scopes.png", title, scopes, panels);
   if (options.raw) writeRaw(folder, query, scopes);
   std::cout << title << "\n"
-            << inWords(workload, query, {scopes.result, Mode::sampled, {}})
+            << inWords(workload, query, {scopes.result, AnswerMode::sampled, {}})
             << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png"
             << (options.raw ? "; values: R.f32, M.f32, L.f32, scopes.json" : "") << "\n";
 }

@@ -29,7 +29,7 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
 }
 
 std::string certaintyInWords(const Answer& answer) {
-  if (answer.mode == Mode::reference) return "exact, to rounding";
+  if (answer.mode != AnswerMode::sampled) return "exact, to rounding";
   return "certainly no later; mode sampled does not say how much earlier";
 }
 

@@ -11,12 +11,13 @@ uint32_t Workload::objectCount(uint32_t scene) const {
   return static_cast<uint32_t>(still + spec.instances.size());
 }
 
-Query toQuery(const QuerySpec& spec, uint32_t resolution) {
+Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   Query query;
   query.mesh = spec.sensor.mesh;
   query.worldFromMesh = spec.sensor.worldFromMesh;
   query.direction = spec.direction;
   query.distance = spec.distance;
+  query.mode = mode;
   query.exclude = spec.exclude;
   query.mask = spec.mask;
   query.resolution = resolution;

@@ -40,7 +40,7 @@ struct SceneSpec {
 };
 
 /// How an answer is found.
-enum class Mode { sampled, reference };
+enum class AnswerMode { sampled, contact, reference };
 
 struct QuerySpec {
   std::string id;
@@ -51,7 +51,7 @@ struct QuerySpec {
   std::array<double, 3> direction{};
   double distance = 0;
   uint32_t mask = ~0u;
-  std::optional<Mode> mode;     ///< overrides the command's
+  std::optional<AnswerMode> mode;     ///< overrides the command's
   std::optional<double> speed;  ///< units per second
 };
 
@@ -65,7 +65,7 @@ struct Workload {
 };
 
 /// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
-Query toQuery(const QuerySpec& spec, uint32_t resolution = 0);
+Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
 
 /// The queries of one scene and one batch number, as positions in Workload::queries, in the order of first appearance.
 struct Batch {

@@ -115,15 +115,22 @@ class Scene {
   std::unique_ptr<Impl> impl_;
 };
 
+/// How far the tiers go: the cheapest that settles a query answers it, none beyond this one is asked.
+enum class Mode : uint32_t {
+  sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
+  contact   ///< select, then the exact search on the device: never undecided
+};
+
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
 struct Query {
   MeshId mesh = kNone;                ///< of the scene
   Pose worldFromMesh;                 ///< invertible
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, world units
+  Mode mode = Mode::contact;
   std::vector<ObjectId> exclude;      ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;                ///< an object takes part when it shares a bit
-  uint32_t resolution = 0;  ///< pixels of the longer side of the sensor's window, up to kMaxResolution; 0: chosen
+  uint32_t resolution = 0;  ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;
@@ -137,7 +144,7 @@ enum class Status : uint32_t {
 };
 
 /// The stage that settled an answer.
-enum class Tier : uint32_t { select, sampled, reference };
+enum class Tier : uint32_t { select, sampled, contact, reference };
 
 /// The paper's first step: is there anything in the target volume?
 enum class Detected : uint32_t {
@@ -230,7 +237,8 @@ class Device {
 struct SweeperOptions {
   bool select = true;       ///< false: draw every object for every sensor, the naive baseline; the answers are the same
   bool timestamps = false;  ///< measure each stage; costs a little
-  /// Upper bound on device memory for the pictures of one submission, bytes; a batch that needs more is split.
+  /// Upper bound on device memory for the pictures of one submission, bytes; a batch that needs more is split. What is
+  /// kept from one submission to the next takes at most twice as much.
   uint64_t pictureBytes = 256ull << 20;
 };
 
@@ -245,7 +253,7 @@ struct SweepStats {
   uint32_t submissions = 0;
   uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
-  uint64_t pairs = 0;             ///< distinct triangle pairs nominated and solved on the device
+  uint64_t pairs = 0;             ///< triangle pairs: nominated (sampled), or that reached a box test (contact)
   uint64_t cpuPairs = 0;          ///< pairs decided on the CPU
   std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps (then CPU stages too)
 };
@@ -279,7 +287,7 @@ class Sweeper {
   /// the cost.
   void sync();
 
-  /// Answers each query by the paper's method (tiers select and sampled), in the order given: any number of queries. A
+  /// Answers each query as its mode says, in the order given: any number of queries. A
   /// batch that fits the device's layers and memory is one upload, one command buffer, one readback; a larger one is
   /// split. The answer to a query does not depend on its batch. Throws if a query breaks its contract, naming it,
   /// before anything is submitted. Blocks until the answers are here.

@@ -1,10 +1,10 @@
-#include "reference/common_point.h"
+#include "exact/common_point.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
-namespace radar::reference {
+namespace radar::exact {
 
 namespace {
 
@@ -15,7 +15,7 @@ struct Candidate {
   Point at;
 };
 
-Point point(const exact::Vec& v) {
+Point point(const Vec& v) {
   return {v[0], v[1], v[2]};
 }
 
@@ -41,7 +41,7 @@ void pierce(const std::array<Point, 3>& face, const std::array<Point, 3>& other,
 
 }  // namespace
 
-exact::Vec commonPoint(const exact::Triangle& a, const exact::Triangle& b) {
+Vec commonPoint(const Triangle& a, const Triangle& b) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Point origin = point(b[0]);
   std::array<Point, 3> pa, pb;
@@ -63,4 +63,4 @@ exact::Vec commonPoint(const exact::Triangle& a, const exact::Triangle& b) {
   return {best.at[0], best.at[1], best.at[2]};
 }
 
-}  // namespace radar::reference
+}  // namespace radar::exact

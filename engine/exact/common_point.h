@@ -3,10 +3,10 @@
 
 #include "exact/contact.h"
 
-namespace radar::reference {
+namespace radar::exact {
 
 /// Where an edge of the one best pierces the other, in plain doubles: for pictures and messages, nothing is decided by
 /// it. NaN where no edge does (triangles in one plane, or degenerate).
-exact::Vec commonPoint(const exact::Triangle& a, const exact::Triangle& b);
+Vec commonPoint(const Triangle& a, const Triangle& b);
 
-}  // namespace radar::reference
+}  // namespace radar::exact

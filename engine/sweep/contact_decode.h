@@ -1,0 +1,11 @@
+// What a search found becomes a Result: pairs too close for the device's arithmetic are decided by `exact`.
+#pragma once
+
+#include "sweep/contact_recorder.h"
+
+namespace radar {
+
+/// Of a search that is done. Adds the pairs it had to decide on the CPU to `cpuPairs`.
+Result decodeContact(const Search& search, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs);
+
+}  // namespace radar

@@ -1,0 +1,20 @@
+// A query of the contact tier becomes a plan: the clusters of both sides that can meet, placed in the sensor's frame.
+#pragma once
+
+#include <vector>
+
+#include "shaders/interop.h"
+#include "sweep/reach.h"
+
+namespace radar {
+
+struct ContactPlan {
+  gpu::Target target{};                    ///< all but where its pairs and contenders go
+  std::vector<gpu::Placement> placements;  ///< the sensor's first
+  std::vector<gpu::ClusterRef> sensor;     ///< placement: into `placements`
+  std::vector<gpu::ClusterRef> scene;      ///< empty: certainly clear
+};
+
+ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy);
+
+}  // namespace radar

@@ -1,0 +1,58 @@
+#include "sweep/contact_point.h"
+
+#include <cmath>
+#include <limits>
+
+#include "shaders/interop.h"
+
+namespace radar {
+
+namespace {
+
+constexpr double kNull = std::numeric_limits<double>::quiet_NaN();
+
+Vector minus(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Vector plus(const Vector& a, const Vector& b, double scale) {
+  return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
+}
+
+// Unit, against the motion; null where x and y are parallel.
+Vector normalOf(const Vector& x, const Vector& y, const Vector& direction) {
+  Vector n{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  const double length = lengthOf(n) * (dot(n, direction) > 0 ? -1 : 1);
+  if (length == 0) return {kNull, kNull, kNull};
+  for (double& c : n) c /= length;
+  return n;
+}
+
+// Where edge p + x of the sensor, moved to the contact, crosses edge q + y: the point on y, by areas seen along the
+// motion.
+Vector crossing(const Vector& p, const Vector& x, const Vector& q, const Vector& y, const Vector& direction) {
+  const Vector side{x[1] * direction[2] - x[2] * direction[1], x[2] * direction[0] - x[0] * direction[2],
+                    x[0] * direction[1] - x[1] * direction[0]};
+  return plus(q, y, dot(side, minus(p, q)) / dot(side, y));
+}
+
+}  // namespace
+
+void describe(Result& result, uint32_t feature, const Corners& a, const Corners& b, const Vector& direction) {
+  const double length = lengthOf(direction);
+  const Vector unit{direction[0] / length, direction[1] / length, direction[2] / length};
+  if (feature < 3) {
+    result.point = plus(a[feature], unit, result.t);
+    result.normal = normalOf(minus(b[1], b[0]), minus(b[2], b[0]), unit);
+  } else if (feature < gpu::kFeatureEdges) {
+    result.point = b[feature - 3];
+    result.normal = normalOf(minus(a[1], a[0]), minus(a[2], a[0]), unit);
+  } else {
+    const uint32_t i = (feature - gpu::kFeatureEdges) / 3, j = (feature - gpu::kFeatureEdges) % 3;
+    const Vector x = minus(a[kEdgeTo[i]], a[kEdgeFrom[i]]), y = minus(b[kEdgeTo[j]], b[kEdgeFrom[j]]);
+    result.point = crossing(a[kEdgeFrom[i]], x, b[kEdgeFrom[j]], y, unit);
+    result.normal = normalOf(x, y, unit);
+  }
+}
+
+}  // namespace radar

@@ -1,0 +1,259 @@
+#include "sweep/contact_recorder.h"
+
+#include <algorithm>
+
+#include "gpu/barrier.h"
+#include "spirv/bounds_comp.h"
+#include "spirv/contact_comp.h"
+#include "spirv/pairs_comp.h"
+
+// pass       reads                                   writes                      barrier behind it
+// ---------- --------------------------------------- --------------------------- ------------------------------
+// upload     staging                                 scene, targets, placements, uploadToRead
+//                                                    refs, items, states
+// bounds     nodes, placements, refs                 boxes                       computeWriteToComputeReadWrite
+// pairs      targets, boxes, items                   cluster pairs, states       computeWriteToComputeReadWrite
+// contact    scene, targets, placements, refs, boxes cluster pairs, states,      computeWriteToComputeReadWrite,
+//   (some)                                           contenders                  computeWriteToCopy after the last
+// readback   states, contenders                      readback                    copyToHost
+
+namespace radar {
+
+using gpu::Residence;
+using gpu::Upload;
+
+namespace {
+
+constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kComputed = kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+// Nearly every search ends in the first dispatch; one that has ended costs a dispatch next to nothing.
+constexpr uint32_t kSearchDispatches = 3;
+
+struct CountPush {
+  uint32_t count, groupsX;
+};
+
+std::vector<gpu::Binding> bindingList() {
+  std::vector<gpu::Binding> list;
+  for (uint32_t i = 0; i < gpu::kContactBindings; ++i) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  return list;
+}
+
+template <class T>
+VkDeviceSize bytesOf(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+// Pairs that the two lists can make at most.
+uint64_t allPairs(const ContactPlan& plan) {
+  return uint64_t{plan.sensor.size()} * plan.scene.size();
+}
+
+void addItems(std::vector<gpu::PairItem>& items, uint32_t target, uint32_t firstA, uint32_t endA, uint32_t endB) {
+  for (uint32_t a = firstA; a < endA; a += gpu::kPairItemA) {
+    for (uint32_t b = endA; b < endB; b += gpu::kPairItemB) {
+      items.push_back({target, a, std::min(a + gpu::kPairItemA, endA), b, std::min(b + gpu::kPairItemB, endB)});
+    }
+  }
+}
+
+}  // namespace
+
+ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps)
+    : device_(&device),
+      resident_(resident),
+      upload_(device),
+      submission_(device, timestamps),
+      bindings_(device, bindingList(), sizeof(CountPush)),
+      bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
+      pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
+      contact_(gpu::computePipeline(device, bindings_.layout(), k_contact_comp, "contact",
+                                    std::clamp(device.subgroupSize, 8u, 128u))),
+      targets_(device, "targets", Residence::device, kUploaded),
+      placements_(device, "placements", Residence::device, kUploaded),
+      refs_(device, "cluster refs", Residence::device, kUploaded),
+      boxes_(device, "cluster boxes", Residence::device, kComputed),
+      items_(device, "pair items", Residence::device, kUploaded),
+      clusterPairs_(device, "cluster pairs", Residence::device, kComputed),
+      states_(device, "search states", Residence::device, kComputed),
+      contenders_(device, "contenders", Residence::device, kComputed),
+      readback_(device, "contact readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+void ContactRecorder::stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms,
+                            const Scene::Impl& scene) {
+  targetList_.clear();
+  placementList_.clear();
+  refList_.clear();
+  itemList_.clear();
+  stateList_.clear();
+  uint64_t pairs = 0;
+  contenderTotal_ = 0;
+  for (const Room& room : rooms) {
+    const ContactPlan& plan = *plans[room.plan];
+    gpu::Target target = plan.target;
+    target.firstPair = static_cast<uint32_t>(pairs);
+    target.pairCapacity = static_cast<uint32_t>(room.pairs);
+    target.firstContender = static_cast<uint32_t>(contenderTotal_);
+    target.contenderCapacity = room.contenders;
+    const auto firstPlacement = static_cast<uint32_t>(placementList_.size());
+    const auto firstRef = static_cast<uint32_t>(refList_.size());
+    for (const auto* list : {&plan.sensor, &plan.scene}) {
+      for (const gpu::ClusterRef& ref : *list) refList_.push_back({ref.placement + firstPlacement, ref.node});
+    }
+    placementList_.insert(placementList_.end(), plan.placements.begin(), plan.placements.end());
+    addItems(itemList_, static_cast<uint32_t>(targetList_.size()), firstRef,
+             firstRef + static_cast<uint32_t>(plan.sensor.size()), static_cast<uint32_t>(refList_.size()));
+    targetList_.push_back(target);
+    stateList_.push_back({.hi = target.distance, .progress = gpu::kSearchUnfinished});
+    pairs += room.pairs;
+    contenderTotal_ += room.contenders;
+  }
+  targets_.reserve(bytesOf(targetList_));
+  placements_.reserve(bytesOf(placementList_));
+  refs_.reserve(bytesOf(refList_));
+  boxes_.reserve(refList_.size() * sizeof(gpu::RefBox));
+  items_.reserve(bytesOf(itemList_));
+  clusterPairs_.reserve(pairs * sizeof(gpu::ClusterPair));
+  states_.reserve(bytesOf(stateList_));
+  contenders_.reserve(contenderTotal_ * sizeof(gpu::Contender));
+  readback_.reserve(bytesOf(stateList_) + contenderTotal_ * sizeof(gpu::Contender));
+  upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(targetList_)) +
+                Upload::aligned(bytesOf(placementList_)) + Upload::aligned(bytesOf(refList_)) +
+                Upload::aligned(bytesOf(itemList_)) + Upload::aligned(bytesOf(stateList_)));
+  resident_.upload(scene, upload_);
+  upload_.add(targetList_.data(), bytesOf(targetList_), targets_);
+  upload_.add(placementList_.data(), bytesOf(placementList_), placements_);
+  upload_.add(refList_.data(), bytesOf(refList_), refs_);
+  upload_.add(itemList_.data(), bytesOf(itemList_), items_);
+  upload_.add(stateList_.data(), bytesOf(stateList_), states_);
+}
+
+void ContactRecorder::bind() {
+  const ResidentScene::Buffers& scene = resident_.buffers();
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {{gpu::kBindPositions, &scene.positions},
+                                                             {gpu::kBindOriginals, &scene.originals},
+                                                             {gpu::kBindIndices, &scene.indices},
+                                                             {gpu::kBindMeshes, &scene.meshes},
+                                                             {gpu::kBindObjects, &scene.objects},
+                                                             {gpu::kBindNodes, &scene.nodes},
+                                                             {gpu::kBindTargets, &targets_},
+                                                             {gpu::kBindPlacements, &placements_},
+                                                             {gpu::kBindRefs, &refs_},
+                                                             {gpu::kBindBoxes, &boxes_},
+                                                             {gpu::kBindPairItems, &items_},
+                                                             {gpu::kBindClusterPairs, &clusterPairs_},
+                                                             {gpu::kBindStates, &states_},
+                                                             {gpu::kBindContenders, &contenders_}};
+  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
+}
+
+// `groups` workgroups in as few rows as a device allows; the shader leaves what lies beyond `count`.
+void ContactRecorder::dispatch(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t groups,
+                               uint32_t count) const {
+  const CountPush push{count, std::min(groups, 65535u)};
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  vkCmdDispatch(commands, push.groupsX, (groups + push.groupsX - 1) / push.groupsX, 1);
+}
+
+void ContactRecorder::recordSearch(VkCommandBuffer commands, uint32_t targets) {
+  submission_.stage("contact");
+  for (uint32_t i = 0; i < kSearchDispatches; ++i) {
+    dispatch(commands, contact_, targets, targets);
+    if (i + 1 < kSearchDispatches) gpu::computeWriteToComputeReadWrite(commands);
+  }
+  gpu::computeWriteToCopy(commands);
+  submission_.stage("readback");
+  const VkDeviceSize stateBytes = bytesOf(stateList_);
+  const VkBufferCopy stateCopy{0, 0, stateBytes};
+  const VkBufferCopy contenderCopy{0, stateBytes, contenderTotal_ * sizeof(gpu::Contender)};
+  vkCmdCopyBuffer(commands, states_.get(), readback_.get(), 1, &stateCopy);
+  vkCmdCopyBuffer(commands, contenders_.get(), readback_.get(), 1, &contenderCopy);
+  gpu::copyToHost(commands);
+}
+
+void ContactRecorder::finish(uint32_t targets, std::vector<StageTime>& stages) {
+  const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());
+  const auto unfinished = [](const gpu::State& s) { return s.progress == gpu::kSearchUnfinished; };
+  uint64_t before = 0;
+  while (std::any_of(states, states + targets, unfinished)) {
+    uint64_t done = 1;
+    for (uint32_t i = 0; i < targets; ++i) done += uint64_t{states[i].cursor} + states[i].boxPairs + states[i].round;
+    if (done == before) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
+    before = done;
+    const VkCommandBuffer commands = submission_.begin();
+    const VkDescriptorSet set = bindings_.set();
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+    recordSearch(commands, targets);
+    submission_.submitAndWait();
+    submission_.addTimes(stages);
+  }
+}
+
+std::vector<size_t> ContactRecorder::search(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
+                                            std::vector<StageTime>& stages,
+                                            const std::function<void(size_t, const Search&)>& found) {
+  std::vector<Room> rooms;
+  for (size_t i = 0; i < plans.size(); ++i) {
+    rooms.push_back({i, std::min<uint64_t>(allPairs(*plans[i]), pairRoom), contenderRoom});
+  }
+  const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
+  const uint64_t maxPairs = limit / sizeof(gpu::ClusterPair), maxContenders = limit / sizeof(gpu::Contender);
+  std::vector<size_t> refused;
+  while (!rooms.empty()) {
+    // As many as the buffers hold; the others wait.
+    std::vector<Room> group, again;
+    uint64_t pairs = 0, contenders = 0;
+    for (const Room& room : rooms) {
+      if (room.pairs > maxPairs || room.contenders > maxContenders) {
+        refused.push_back(room.plan);
+      } else if (pairs + room.pairs <= maxPairs && contenders + room.contenders <= maxContenders) {
+        pairs += room.pairs;
+        contenders += room.contenders;
+        group.push_back(room);
+      } else {
+        again.push_back(room);
+      }
+    }
+    rooms = std::move(again);
+    if (group.empty()) continue;
+    stage(plans, group, scene);
+    bind();
+    const auto targets = static_cast<uint32_t>(group.size());
+    const VkCommandBuffer commands = submission_.begin();
+    const VkDescriptorSet set = bindings_.set();
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+    submission_.stage("upload");
+    upload_.record(commands);
+    gpu::uploadToRead(commands);
+    submission_.stage("bounds");
+    const auto refs = static_cast<uint32_t>(refList_.size()), items = static_cast<uint32_t>(itemList_.size());
+    dispatch(commands, bounds_, (refs + 63) / 64, refs);
+    gpu::computeWriteToComputeReadWrite(commands);
+    submission_.stage("pairs");
+    dispatch(commands, pairs_, items, items);
+    gpu::computeWriteToComputeReadWrite(commands);
+    recordSearch(commands, targets);
+    submission_.submitAndWait();
+    resident_.confirm(scene);
+    submission_.addTimes(stages);
+    finish(targets, stages);
+
+    // What outgrew its room goes again, with the room it is known to need.
+    const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());
+    const auto* lists = reinterpret_cast<const gpu::Contender*>(readback_.mapped() + bytesOf(stateList_));
+    for (uint32_t i = 0; i < targets; ++i) {
+      const Room& room = group[i];
+      if (states[i].pairCount > room.pairs || states[i].progress == gpu::kSearchOverflow) {
+        const bool pairsFit = states[i].pairCount <= room.pairs;
+        rooms.push_back({room.plan, std::max<uint64_t>(room.pairs, states[i].pairCount),
+                         pairsFit ? 8 * room.contenders : room.contenders});
+      } else {
+        found(room.plan, {states[i], {lists + targetList_[i].firstContender, states[i].contenderCount}});
+      }
+    }
+  }
+  return refused;
+}
+
+}  // namespace radar

@@ -1,0 +1,63 @@
+// The recipe of the contact tier: bounds, pairs of clusters, search. Owns its pipelines and buffers.
+#pragma once
+
+#include <span>
+
+#include "gpu/pipeline.h"
+#include "gpu/submission.h"
+#include "sweep/contact_plan.h"
+#include "sweep/resident_scene.h"
+
+namespace radar {
+
+/// What the device says of one plan: valid until the next call.
+struct Search {
+  gpu::State state;
+  std::span<const gpu::Contender> contenders;
+};
+
+class ContactRecorder {
+ public:
+  ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps);
+
+  /// Searches the first contact of every plan: one upload, one command buffer, one readback; more only where a list was
+  /// longer than its room or a search longer than a dispatch may be, and that is found out and done. `found` is called
+  /// once for every plan, in no order.
+  /// Returns the plans whose lists are longer than a buffer of the device may be: for those `found` is not called.
+  std::vector<size_t> search(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
+                             std::vector<StageTime>& stages, const std::function<void(size_t, const Search&)>& found);
+
+  /// Lists start with this room, for tests to shrink.
+  uint32_t pairRoom = 4096, contenderRoom = 128;
+
+ private:
+  /// Room for the lists of one plan.
+  struct Room {
+    size_t plan;
+    uint64_t pairs;
+    uint32_t contenders;
+  };
+
+  void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);
+  void bind();
+  void dispatch(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
+  void recordSearch(VkCommandBuffer commands, uint32_t targets);
+  /// Submits until no search is unfinished.
+  void finish(uint32_t targets, std::vector<StageTime>& stages);
+
+  const Device::Impl* device_;
+  ResidentScene& resident_;
+  gpu::Upload upload_;
+  gpu::Submission submission_;
+  gpu::Bindings bindings_;
+  gpu::Pipeline bounds_, pairs_, contact_;
+  gpu::Buffer targets_, placements_, refs_, boxes_, items_, clusterPairs_, states_, contenders_, readback_;
+  std::vector<gpu::Target> targetList_;
+  std::vector<gpu::Placement> placementList_;
+  std::vector<gpu::ClusterRef> refList_;
+  std::vector<gpu::PairItem> itemList_;
+  std::vector<gpu::State> stateList_;
+  uint64_t contenderTotal_ = 0;
+};
+
+}  // namespace radar

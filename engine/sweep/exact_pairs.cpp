@@ -1,0 +1,76 @@
+#include "sweep/exact_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exact/common_point.h"
+
+namespace radar {
+
+namespace {
+
+exact::Triangle corners(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
+  exact::Triangle p;
+  for (int i = 0; i < 3; ++i) p[i] = place(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
+  std::sort(p.begin(), p.end());
+  return p;
+}
+
+}  // namespace
+
+PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Impl& scene) {
+  const Object& object = scene.objects[name.object].object;
+  return {corners(scene.meshes[query.mesh], query.worldFromMesh, name.triA),
+          corners(scene.meshes[object.mesh], object.worldFromMesh, name.triB)};
+}
+
+void setBracket(Result& result, double t, double slack, double distance) {
+  result.t = std::min(t, distance);
+  result.lo = std::min(std::max(t - slack, 0.0), result.t);
+  result.hi = std::min(t + slack, distance);
+  result.fraction = distance > 0 ? result.t / distance : 0;
+}
+
+bool ExactPairs::earlier(const Decided& p, const Decided& q) {
+  if (p.overlap != q.overlap) return p.overlap;
+  const int order = p.overlap ? 0 : exact::compare(p.first, q.first);
+  return order != 0 ? order < 0 : p.name < q.name;
+}
+
+void ExactPairs::consider(const PairName& name) {
+  const PlacedPair pair = placedPair(name, query_, scene_);
+  const auto interval = exact::contact(pair.a, pair.b, query_.direction);
+  if (!interval || exact::sign(interval->last) < 0) return;
+  const Decided decided{name, interval->first, exact::sign(interval->first) <= 0};
+  if (!decided.overlap && exact::compareToDistance(decided.first, query_.distance) > 0) return;
+  if (!found_ || earlier(decided, best_)) best_ = decided;
+  found_ = true;
+}
+
+void ExactPairs::tell(Result& result) const {
+  result.object = best_.name.object;
+  result.triB = best_.name.triB;
+  result.triA = best_.name.triA;
+  result.detected = Detected::yes;
+  result.status = best_.overlap ? Status::overlap : Status::hit;
+  const double s = best_.overlap ? 0 : exact::parameter(best_.first);
+  if (!best_.overlap || exact::sign(best_.first) == 0) {
+    result.point = exact::point(best_.first, s);
+    result.normal = exact::normal(best_.first);
+  } else {
+    const PlacedPair pair = placedPair(best_.name, query_, scene_);
+    result.point = exact::commonPoint(pair.a, pair.b);
+  }
+  if (best_.overlap) {
+    result.t = result.lo = result.hi = result.fraction = 0;
+  } else if (exact::compareToDistance(best_.first, query_.distance) == 0) {
+    setBracket(result, query_.distance, 0, query_.distance);
+  } else {
+    const double length = exact::length(query_.direction), t = s * length;
+    setBracket(result, t, 8 * kDoubleUnit * t + (length + 2) * std::numeric_limits<double>::denorm_min(),
+               query_.distance);
+  }
+}
+
+}  // namespace radar

@@ -1,0 +1,54 @@
+// Pairs of triangles that double precision cannot decide, or order, decided exactly.
+#pragma once
+
+#include <compare>
+
+#include "exact/contact.h"
+#include "scene/scene.h"
+
+namespace radar {
+
+/// 2^-53.
+inline constexpr double kDoubleUnit = 0x1p-53;
+
+/// A pair, in the order in which ties go.
+struct PairName {
+  ObjectId object;
+  uint32_t triB, triA;
+  friend auto operator<=>(const PairName&, const PairName&) = default;
+};
+
+/// The sensor's triangle and the scene's, placed; corners sorted, as the device numbers them.
+struct PlacedPair {
+  exact::Triangle a, b;
+};
+PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Impl& scene);
+
+/// Sets t and its bracket t -+ slack, cut to [0, D], and the fraction.
+void setBracket(Result& result, double t, double slack, double distance);
+
+/// Finds the first contact among the pairs it is shown; `query` and `scene` must outlive it.
+class ExactPairs {
+ public:
+  ExactPairs(const Query& query, const Scene::Impl& scene) : query_(query), scene_(scene) {}
+
+  void consider(const PairName& name);
+  bool found() const { return found_; }
+  /// Sets everything but the tier, from the first contact found.
+  void tell(Result& result) const;
+
+ private:
+  struct Decided {
+    PairName name;
+    exact::Event first;
+    bool overlap;  // at or before the start
+  };
+  static bool earlier(const Decided& p, const Decided& q);
+
+  const Query& query_;
+  const Scene::Impl& scene_;
+  bool found_ = false;
+  Decided best_{};
+};
+
+}  // namespace radar

@@ -1,0 +1,122 @@
+#include "sweep/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar {
+
+namespace {
+
+double largest(const Vector& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
+// What double precision may lose between `place` and the frame, world units.
+double doubleError(const Mesh& mesh, const Pose& pose, const Vector& origin) {
+  double worst = 0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &pose.m[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * (std::abs(mesh.centre[k]) + mesh.halfExtent[k]);
+    worst = std::max(worst, sum);
+  }
+  return 0x1p-47 * (worst + largest(origin));
+}
+
+// The turned vertices' own box: tighter than the turned box, and M fills the window. Padded by its rounding.
+Box tightBox(const Mesh& mesh, const Affine& m) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const auto x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
+               z = static_cast<float>(m[4 * row + 2]);
+    const float *px = mesh.recentred[0].data(), *py = mesh.recentred[1].data(), *pz = mesh.recentred[2].data();
+    float low = 3e38f, high = -3e38f;
+    for (uint32_t i = 0; i < mesh.vertexCount(); ++i) {
+      const float at = x * px[i] + y * py[i] + z * pz[i];
+      low = at < low ? at : low;
+      high = at > high ? at : high;
+    }
+    box.lo[row] = low + m[4 * row + 3];
+    box.hi[row] = high + m[4 * row + 3];
+  }
+  return box;
+}
+
+// Objects in the swept prism, by id.
+std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy,
+                                    const Prism& prism, double& farthest) {
+  thread_local std::vector<ObjectId> ids;
+  ids.clear();
+  hierarchy.collect(prism, ids);
+  std::sort(ids.begin(), ids.end());
+  std::vector<Reached> reached;
+  for (ObjectId id : ids) {
+    const Object& object = scene.objects[id].object;
+    if (isExcluded(query, object, id)) continue;
+    const Mesh& mesh = scene.meshes[object.mesh];
+    const Affine m = frameFromRecentred(prism.axes, prism.origin, object.worldFromMesh, mesh.centre);
+    const Box box = boxOfRecentred(mesh, m);
+    const double error = doubleError(mesh, object.worldFromMesh, prism.origin);
+    if (!overlap(box, prism.box, error)) continue;
+    farthest = std::max(farthest, box.hi[2]);
+    reached.push_back({id, m, error + placementError(mesh, m)});
+  }
+  return reached;
+}
+
+}  // namespace
+
+double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
+  double worst = 0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &frameFromMesh[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.halfExtent[k];
+    worst = std::max(worst, sum);
+  }
+  return 8 * kFloatUnit * worst + 0x1p-120;  // the floor: what float loses below its normal range
+}
+
+bool isExcluded(const Query& query, const Object& object, ObjectId id) {
+  return (object.mask & query.mask) == 0 ||
+         std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end();
+}
+
+SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
+  SensorWindow w;
+  w.axes = axesAlong(query.direction);
+  w.origin = transform(query.worldFromMesh, sensor.centre);
+  w.frameFromMesh = frameFromRecentred(w.axes, w.origin, query.worldFromMesh, sensor.centre);
+  w.error = placementError(sensor, w.frameFromMesh) + doubleError(sensor, query.worldFromMesh, w.origin);
+  w.box = tightBox(sensor, w.frameFromMesh);
+  w.length = w.box.hi[2] - w.box.lo[2];
+  w.size = 0;
+  for (int k = 0; k < 3; ++k) w.size = std::max(w.size, w.box.hi[k] - w.box.lo[k]);
+  w.margin = std::max(64 * w.error, 1e-5 * w.size);
+  // A sensor without extent (a point) still gets a window.
+  if (w.margin == 0) w.margin = std::max(1e-5 * query.distance, 1e-30);
+  for (int k = 0; k < 2; ++k) {
+    w.box.lo[k] -= w.margin;
+    w.box.hi[k] += w.margin;
+  }
+  return w;
+}
+
+Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, const SensorWindow& window) {
+  Reach reach;
+  const double d = window.length + query.distance;
+  reach.prism = {window.origin, window.axes, window.box};
+  Prism& prism = reach.prism;
+  prism.box.hi[2] = window.box.lo[2] + d;
+  for (int k = 0; k < 3; ++k) {
+    prism.box.lo[k] -= window.error;
+    prism.box.hi[k] += window.error;
+  }
+  double farthest = window.box.lo[2];
+  reach.objects = collectReached(query, scene, hierarchy, prism, farthest);
+  for (const Reached& r : reach.objects) reach.error = std::max(reach.error, r.error);
+  reach.depth = std::min(d, std::max(farthest - window.box.lo[2], 0.0));
+  return reach;
+}
+
+}  // namespace radar

@@ -1,0 +1,311 @@
+// The search for a sensor's first contact: one subgroup per sensor goes through its cluster pairs, nearest first, in rounds
+// of 16, 64, 256, ... until the next is farther than what is known to be touched. Within a pair of clusters both sides are
+// trimmed against the other's box, triangle pairs pass a box test and separating axes, and what is left is solved.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "interop.h"
+#include "contact.glsl"
+
+// The subgroup's size: with one subgroup a workgroup, no lane waits for another's work.
+layout(local_size_x_id = 0) in;
+layout(constant_id = 0) const uint kLanes = 32;
+
+layout(scalar, binding = kBindPositions) readonly restrict buffer Positions { vec3 positions[]; };
+layout(scalar, binding = kBindOriginals) readonly restrict buffer Originals { vec3 originals[]; };
+layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uint indices[]; };
+layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kBindObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kBindNodes) readonly restrict buffer Nodes { ClusterRecord nodes[]; };
+layout(scalar, binding = kBindTargets) readonly restrict buffer Targets { Target targets[]; };
+layout(scalar, binding = kBindPlacements) readonly restrict buffer Placements { Placement placements[]; };
+layout(scalar, binding = kBindRefs) readonly restrict buffer Refs { ClusterRef refs[]; };
+layout(scalar, binding = kBindBoxes) readonly restrict buffer Boxes { RefBox boxes[]; };
+layout(scalar, binding = kBindClusterPairs) restrict buffer ClusterPairs { ClusterPair pairs[]; };
+layout(scalar, binding = kBindStates) restrict buffer States { State states[]; };
+layout(scalar, binding = kBindContenders) restrict buffer Contenders { Contender contenders[]; };
+
+layout(push_constant) uniform Push { uint count; uint groupsX; } push;
+
+const uint kBuckets = 32;
+const uint kFirstRound = 16;
+// Lavapipe ends loops silently after 65,535 iterations in one invocation; the search stops well before, and the next
+// dispatch goes on.
+const uint kWorkPerDispatch = 24000;
+// Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
+// work; what a run has found cuts the next one short.
+const uint kRun = 8192;
+const uint kQueue = 1024;
+
+shared uint nearestGap, remaining;      // over the cluster pairs left; floats >= 0 order as their bits
+shared uint bucket[kBuckets];
+shared uint countA, countB;             // triangles left after trimming, and where they are in the frame
+shared uint slotsA[kCluster], slotsB[kCluster];
+shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
+shared uint queued;
+shared uvec3 queue[kQueue];             // slot of a, slot of b, placement of b
+shared double laneHi[128];
+shared uint contended;
+
+double hi;       // no contact is sought beyond, world units: D, or a certain contact
+float hiFloat;   // rounded up
+uint v, work, boxPairs, solved;
+
+float upward(double x) { return float(x) * 1.000001 + 1e-37; }
+
+vec3 framed(Placement p, uint vertex) {
+  const vec3 q = positions[vertex];
+  vec3 at;
+  for (int row = 0; row < 3; ++row) {
+    at[row] = p.frameFromMesh[4 * row] * q.x + p.frameFromMesh[4 * row + 1] * q.y + p.frameFromMesh[4 * row + 2] * q.z +
+              p.frameFromMesh[4 * row + 3];
+  }
+  return at;
+}
+
+void sharedTriangle(uint placement, uint slot, out vec3 c[3]) {
+  const MeshRecord mesh = meshes[placements[placement].mesh];
+  for (uint i = 0; i < 3; ++i) {
+    c[i] = framed(placements[placement], mesh.firstVertex + indices[mesh.firstIndex + 3 * slot + i]);
+  }
+}
+
+// Triangles of cluster `ref` that can meet something in the box: they overlap it across the motion, and lie at the right
+// depth. `behind`: the box moves towards the cluster, else away from it, the cluster being the sensor's.
+bool reaches(vec3 c[3], float error, vec3 lo, vec3 hi_, bool isSensor) {
+  const vec3 low = min(min(c[0], c[1]), c[2]) - error, high = max(max(c[0], c[1]), c[2]) + error;
+  const bool across = all(lessThanEqual(low.xy, hi_.xy)) && all(lessThanEqual(lo.xy, high.xy));
+  return across && (isSensor ? hi_.z >= low.z && lo.z - high.z <= hiFloat : high.z >= lo.z && low.z - hi_.z <= hiFloat);
+}
+
+void trim(uint ref, uint other, bool isSensor) {
+  const uint placement = refs[ref].placement;
+  const ClusterRecord node = nodes[meshes[placements[placement].mesh].firstNode + refs[ref].node];
+  const vec3 lo = vec3(boxes[other].lo[0], boxes[other].lo[1], boxes[other].lo[2]);
+  const vec3 high = vec3(boxes[other].hi[0], boxes[other].hi[1], boxes[other].hi[2]);
+  const float error = placements[placement].error;
+  for (uint i = gl_LocalInvocationID.x; i < node.count; i += kLanes) {
+    vec3 c[3];
+    sharedTriangle(placement, node.first + i, c);
+    if (!reaches(c, error, lo, high, isSensor)) continue;
+    if (isSensor) {
+      const uint at = atomicAdd(countA, 1);
+      slotsA[at] = node.first + i;
+      for (uint k = 0; k < 3; ++k) cornersA[3 * at + k] = c[k];
+    } else {
+      const uint at = atomicAdd(countB, 1);
+      slotsB[at] = node.first + i;
+      for (uint k = 0; k < 3; ++k) cornersB[3 * at + k] = c[k];
+    }
+  }
+  work += node.count / kLanes + 1;
+}
+
+// Whether an edge of p separates the projections of p and q by more than `error`.
+bool separates(vec2 p0, vec2 p1, vec2 p2, vec2 q0, vec2 q1, vec2 q2, float error) {
+  const vec2 normal = vec2(p1.y - p0.y, p0.x - p1.x);
+  const float inner = dot(normal, p2 - p0);
+  const float s = inner < 0.0 ? 1.0 : -1.0;  // q lies outside where s * dot(normal, q - p0) > 0
+  const float outside = min(min(s * dot(normal, q0 - p0), s * dot(normal, q1 - p0)), s * dot(normal, q2 - p0));
+  const vec2 far = max(max(abs(q0 - p0), abs(q1 - p0)), max(abs(q2 - p0), abs(p2 - p0)));
+  // Corners off by `error` each turn the edge and move the points; products round.
+  const float slack = 4.0 * error * (abs(normal.x) + abs(normal.y) + far.x + far.y) +
+                      1e-6 * (abs(normal.x) * far.x + abs(normal.y) * far.y);
+  // The third corner must be on the inner side for certain, or p is nothing but its edge.
+  return outside > slack && abs(inner) > slack;
+}
+
+bool mayMeet(uint i, uint j, float error) {
+  const vec3 a0 = cornersA[3 * i], a1 = cornersA[3 * i + 1], a2 = cornersA[3 * i + 2];
+  const vec3 b0 = cornersB[3 * j], b1 = cornersB[3 * j + 1], b2 = cornersB[3 * j + 2];
+  const vec3 loA = min(min(a0, a1), a2), hiA = max(max(a0, a1), a2), loB = min(min(b0, b1), b2), hiB = max(max(b0, b1), b2);
+  const bool box = all(lessThanEqual(loA.xy, hiB.xy + error)) && all(lessThanEqual(loB.xy, hiA.xy + error)) &&
+                   hiB.z + error >= loA.z && loB.z - hiA.z - error <= hiFloat;
+  return box && !separates(a0.xy, a1.xy, a2.xy, b0.xy, b1.xy, b2.xy, error) &&
+         !separates(a1.xy, a2.xy, a0.xy, b0.xy, b1.xy, b2.xy, error) &&
+         !separates(a2.xy, a0.xy, a1.xy, b0.xy, b1.xy, b2.xy, error) &&
+         !separates(b0.xy, b1.xy, b2.xy, a0.xy, a1.xy, a2.xy, error) &&
+         !separates(b1.xy, b2.xy, b0.xy, a0.xy, a1.xy, a2.xy, error) &&
+         !separates(b2.xy, b0.xy, b1.xy, a0.xy, a1.xy, a2.xy, error);
+}
+
+bool before(dvec3 p, dvec3 q) {
+  return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
+}
+
+// The corners of a triangle as they are placed, sorted, so that what two triangles share has the same bits in both.
+void placedCorners(double pose[12], uint mesh, uint slot, out dvec3 p[3]) {
+  const MeshRecord record = meshes[mesh];
+  for (uint i = 0; i < 3; ++i) {
+    const dvec3 q = dvec3(originals[record.firstVertex + indices[record.firstIndex + 3 * slot + i]]);
+    for (int k = 0; k < 3; ++k) {
+      precise double sum = ((pose[4 * k] * q.x + pose[4 * k + 1] * q.y) + pose[4 * k + 2] * q.z) + pose[4 * k + 3];
+      p[i][k] = sum;
+    }
+  }
+  for (int pass = 0; pass < 3; ++pass) {
+    const int i = pass & 1;
+    const bool swap = before(p[i + 1], p[i]);
+    const dvec3 lower = swap ? p[i + 1] : p[i], upper = swap ? p[i] : p[i + 1];
+    p[i] = lower;
+    p[i + 1] = upper;
+  }
+}
+
+// Forgets contenders that start beyond `hi`.
+void compact() {
+  const uint first = targets[v].firstContender;
+  const double limit = hi / targets[v].directionLength * (1.0LF + 8.881784197001252e-16LF);
+  barrier();
+  if (gl_LocalInvocationID.x == 0) {
+    uint kept = 0;
+    for (uint i = 0; i < contended; ++i) {
+      if (contenders[first + i].low <= limit) contenders[first + kept++] = contenders[first + i];
+    }
+    contended = kept;
+  }
+  memoryBarrierBuffer();
+  barrier();
+  work += targets[v].contenderCapacity;
+}
+
+// No room for what the next step may find.
+bool overflows() { return contended + kLanes > targets[v].contenderCapacity; }
+
+// Solves all that is queued.
+void flush() {
+  barrier();
+  const uint count = overflows() ? 0 : queued;
+  const double length = targets[v].directionLength;
+  const dvec3 direction = dvec3(targets[v].direction[0], targets[v].direction[1], targets[v].direction[2]);
+  for (uint first = 0; first < count; first += kLanes) {
+    const uint q = first + gl_LocalInvocationID.x;
+    const bool live = q < count;
+    const uvec3 entry = queue[min(q, count - 1)];
+    const uint object = placements[entry.z].object;
+    dvec3 a[3], b[3];
+    placedCorners(targets[v].pose, targets[v].mesh, entry.x, a);
+    placedCorners(objects[object].pose, objects[object].mesh, entry.y, b);
+    const Meeting m = meetingOf(a, b, direction);
+    const double low = max(min(m.earliest, m.unknown), 0.0LF);
+    laneHi[gl_LocalInvocationID.x] = live && m.ahead ? max(m.by, 0.0LF) * length * (1.0LF + 8.881784197001252e-16LF) : kNever;
+    barrier();
+    for (uint i = 0; i < kLanes; ++i) hi = min(hi, laneHi[i]);
+    if (live && m.latest >= 0.0LF && low * length * (1.0LF - 8.881784197001252e-16LF) <= hi) {
+      const uint at = atomicAdd(contended, 1);
+      const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
+      contenders[targets[v].firstContender + at] =
+          Contender(low, m.at, m.error, object, entry.y, entry.x, (sharp ? kContenderSharp : 0) | (m.feature & 0xffu));
+    }
+    barrier();
+    work += 8 + kFeatures + kLanes;
+    if (overflows()) compact();
+    if (overflows()) break;
+  }
+  hiFloat = upward(hi);
+  solved += count;
+  barrier();
+  if (gl_LocalInvocationID.x == 0) queued = 0;
+  barrier();
+}
+
+// All triangle pairs of one pair of clusters.
+void meetClusters(ClusterPair pair) {
+  barrier();
+  if (gl_LocalInvocationID.x == 0) countA = countB = 0;
+  barrier();
+  trim(pair.a, pair.b, true);
+  trim(pair.b, pair.a, false);
+  barrier();
+  const uint placement = refs[pair.b].placement;
+  const float error = 2.0 * (placements[refs[pair.a].placement].error + placements[placement].error);
+  const uint all_ = countA * countB;
+  // Half a queue of tests at a time: what they queue fits.
+  for (uint first = 0; first < all_; first += kQueue / 2) {
+    const uint end = min(first + kQueue / 2, all_);
+    for (uint p = first + gl_LocalInvocationID.x; p < end; p += kLanes) {
+      const uint i = p / countB, j = p % countB;
+      if (mayMeet(i, j, error)) queue[atomicAdd(queued, 1)] = uvec3(slotsA[i], slotsB[j], placement);
+    }
+    barrier();
+    work += (end - first) / kLanes + 1;
+    if (queued > kQueue / 2) flush();
+  }
+  boxPairs += all_;
+}
+
+// The gap up to which this round goes: that of the round's quota of nearest pairs, in steps of a bucket.
+float roundLimit(uint first, uint count, float nearest, uint quota) {
+  const float width = max(hiFloat - nearest, 1e-30) / float(kBuckets);
+  for (uint i = gl_LocalInvocationID.x; i < kBuckets; i += kLanes) bucket[i] = 0;
+  barrier();
+  for (uint i = gl_LocalInvocationID.x; i < count; i += kLanes) {
+    const float gap = pairs[first + i].gap;
+    if (gap >= 0.0 && gap <= hiFloat) atomicAdd(bucket[min(uint((gap - nearest) / width), kBuckets - 1)], 1);
+  }
+  barrier();
+  uint sum = 0, last = 0;
+  while (last + 1 < kBuckets && sum + bucket[last] < quota) sum += bucket[last++];
+  work += count / kLanes + 2 * kBuckets;
+  return last + 1 == kBuckets ? hiFloat : nearest + width * float(last + 1);
+}
+
+void main() {
+  v = gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX;
+  if (v >= push.count) return;
+  if (states[v].progress != kSearchUnfinished) return;
+  const uint total = states[v].pairCount;
+  uint cursor = states[v].cursor;
+  if (total > targets[v].pairCapacity) {
+    if (gl_LocalInvocationID.x == 0) states[v].progress = kSearchOverflow;
+    return;
+  }
+  hi = states[v].hi;
+  hiFloat = upward(hi);
+  work = boxPairs = solved = 0;
+  if (gl_LocalInvocationID.x == 0) {
+    queued = 0;
+    contended = states[v].contenderCount;
+  }
+  barrier();
+  uint round = states[v].round;
+  while (cursor < total && work < kWorkPerDispatch && !overflows()) {
+    const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
+    barrier();
+    if (gl_LocalInvocationID.x == 0) nearestGap = kNobody;
+    barrier();
+    for (uint i = gl_LocalInvocationID.x; i < count; i += kLanes) {
+      const float gap = pairs[first + i].gap;
+      if (gap >= 0.0) atomicMin(nearestGap, floatBitsToUint(gap));
+    }
+    work += count / kLanes + 1;
+    barrier();
+    if (nearestGap == kNobody || uintBitsToFloat(nearestGap) > hiFloat) {
+      cursor += count;
+      round = 0;
+      continue;
+    }
+    const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
+    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows(); ++i) {
+      const ClusterPair pair = pairs[first + i];
+      ++work;
+      if (pair.gap < 0.0 || pair.gap > limit || pair.gap > hiFloat) continue;
+      meetClusters(pair);
+      if (gl_LocalInvocationID.x == 0) pairs[first + i].gap = -1.0;
+    }
+    flush();
+    memoryBarrierBuffer();
+    barrier();
+    ++round;
+  }
+  compact();
+  if (gl_LocalInvocationID.x == 0) {
+    states[v].hi = hi;
+    states[v].contenderCount = contended;
+    states[v].progress = overflows() ? kSearchOverflow : (cursor >= total ? kSearchDone : kSearchUnfinished);
+    states[v].boxPairs += boxPairs;
+    states[v].solved += solved;
+    states[v].round = round;
+    states[v].cursor = cursor;
+  }
+}

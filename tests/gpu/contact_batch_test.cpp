@@ -1,0 +1,139 @@
+// What a batch must not change in mode contact, and sizes that strain it.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "support/test_device.h"
+#include "workloads/generate.h"
+
+namespace {
+
+using namespace radar;
+
+struct Loaded {
+  explicit Loaded(tools::Workload w) : workload(std::move(w)), player(workload) {
+    player.show(0);
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
+  }
+  tools::Workload workload;
+  tools::ScenePlayer player;
+  std::vector<Query> queries;
+};
+
+void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
+  REQUIRE(a.size() == b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (std::memcmp(&a[i], &b[i], sizeof(Result)) == 0) continue;
+    CAPTURE(i, a[i].t, b[i].t, a[i].lo, b[i].lo, a[i].hi, b[i].hi, a[i].object, b[i].object, a[i].triB, b[i].triB,
+            a[i].triA, b[i].triA, uint32_t(a[i].tier), uint32_t(b[i].tier));
+    CHECK(std::memcmp(&a[i], &b[i], sizeof(Result)) == 0);
+  }
+}
+
+Pose at(double x, double y, double z) {
+  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
+}
+
+MeshId add(Scene& scene, const tools::MeshData& mesh) {
+  return scene.addMesh(mesh.positions, mesh.indices);
+}
+
+}  // namespace
+
+TEST_CASE("in mode contact a batch of any size gives the same bits as one query at a time") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  std::vector<Result> single;
+  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
+  CHECK(std::count_if(single.begin(), single.end(), [](const Result& r) { return r.status == Status::hit; }) > 100);
+  for (size_t size : {63, 64, 65, 1234}) {
+    CAPTURE(size);
+    checkSame(sweeper.run(std::span(loaded.queries).first(size)), {single.begin(), single.begin() + size});
+  }
+}
+
+TEST_CASE("in mode contact soups give the same bits alone, in a batch, reversed and from another sweeper") {
+  Loaded loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  std::vector<Result> single;
+  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
+  checkSame(sweeper.run(loaded.queries), single);
+  Sweeper other(test::device(), loaded.player.scene());
+  std::reverse(loaded.queries.begin(), loaded.queries.end());
+  std::vector<Result> backward = other.run(loaded.queries);
+  std::reverse(backward.begin(), backward.end());
+  checkSame(backward, single);
+}
+
+TEST_CASE("queries of both modes in one batch get the bits they get apart") {
+  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}));
+  Sweeper sweeper(test::device(), loaded.player.scene());
+  std::vector<Query> contact = loaded.queries, sampled = loaded.queries, mixed = loaded.queries;
+  for (size_t i = 0; i < mixed.size(); ++i) {
+    sampled[i].mode = Mode::sampled;
+    sampled[i].resolution = 32;
+    if (i % 3 == 0) mixed[i] = sampled[i];
+  }
+  const std::vector<Result> precise = sweeper.run(contact), coarse = sweeper.run(sampled);
+  std::vector<Result> expected = precise;
+  for (size_t i = 0; i < expected.size(); i += 3) expected[i] = coarse[i];
+  checkSame(sweeper.run(mixed), expected);
+}
+
+TEST_CASE("in mode contact a mesh of 160,000 triangles is answered as a scene and as a sensor") {
+  Scene scene;
+  const MeshId sphere = add(scene, tools::makeUvSphere(200, 400)), cube = add(scene, tools::makeBox({0.5, 0.5, 0.5}));
+  REQUIRE(scene.mesh(sphere).triangleCount() > 159'000);
+  scene.addObject({sphere, {}, ~0u});
+  scene.addObject({cube, at(0.1, 0.2, 20), ~0u});
+  Sweeper sweeper(test::device(), scene);
+  // The ball's points nearest to a corner of the box, where it is highest over the box: at most its radius from z = 0.
+  const double reach = std::sqrt(1 - 0.1 * 0.1 - 0.05 * 0.05);
+  const auto check = [&](const Query& query, ObjectId object, double least, double most) {
+    const Result result = sweeper.run({&query, 1})[0];
+    CHECK(result.status == Status::hit);
+    CHECK(result.tier == Tier::contact);
+    CHECK(result.object == object);
+    CHECK(result.t >= least);
+    CHECK(result.t <= most);
+    CHECK(result.hi - result.lo <= 1e-9 * 10);
+  };
+  // The box reaches over the pole, which is exactly 1 from the middle.
+  check({.mesh = cube, .worldFromMesh = at(0.1, 0.2, -5), .direction = {0, 0, 1}, .distance = 10}, 0, 3.75, 3.7500001);
+  check({.mesh = cube, .worldFromMesh = at(5, 0.3, 0.25), .direction = {-3, 0, 0}, .distance = 10}, 0, 3.75, 3.76);
+  check({.mesh = sphere, .worldFromMesh = at(0, 0, 10), .direction = {0, 0, 1}, .distance = 50}, 1, 8.75, 8.7500001);
+  check({.mesh = sphere, .worldFromMesh = at(0.45, 0.5, 10), .direction = {0, 0, 1}, .distance = 50}, 1, 8.75,
+        9.75 - reach + 0.001);
+  check({.mesh = sphere, .worldFromMesh = at(-0.5, 0.25, -7), .direction = {0, 0, 0.1}, .distance = 50}, 0, 5,
+        7 - 2 * 0.9);
+  const Query within{.mesh = sphere,
+                     .worldFromMesh = {{0.5, 0, 0, 0.1, 0, 0.5, 0, 0, 0, 0, 0.5, 0}},
+                     .direction = {1, 0, 0},
+                     .distance = 0.2};
+  CHECK(sweeper.run({&within, 1})[0].status == Status::clear);
+}
+
+TEST_CASE("of many objects met at exactly the same moment the least id is told") {
+  Scene scene;
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1})), plate = add(scene, tools::makePlate(128, 128, 1));
+  // The ids run against the order in space.
+  for (int y = 31; y >= 0; --y) {
+    for (int x = 31; x >= 0; --x) scene.addObject({box, at(2 * x, 2 * y, 0), ~0u});
+  }
+  Sweeper sweeper(test::device(), scene);
+  Query query{.mesh = plate, .worldFromMesh = at(32, 32, -6), .direction = {0, 0, 0.5}, .distance = 10};
+  for (uint32_t least = 0; least < 4; ++least) {
+    CAPTURE(least);
+    const Result result = sweeper.run({&query, 1})[0];
+    CHECK(result.status == Status::hit);
+    CHECK(result.t == 5);
+    CHECK(result.object == least);
+    query.exclude.push_back(least);
+  }
+  query.exclude.clear();
+  query.distance = 5;
+  CHECK(sweeper.run({&query, 1})[0].object == 0);
+  query.distance = std::nextafter(5, 0);
+  CHECK(sweeper.run({&query, 1})[0].status == Status::clear);
+}

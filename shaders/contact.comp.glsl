@@ -29,12 +29,15 @@ layout(push_constant) uniform Push { uint count; uint groupsX; } push;
 
 const uint kBuckets = 32;
 const uint kFirstRound = 16;
-// Lavapipe ends loops silently after 65,535 iterations in one invocation; the search stops well before, and the next
-// dispatch goes on.
-const uint kWorkPerDispatch = 24000;
+// Lavapipe ends loops silently after 65,535 iterations in one invocation, nested ones included. So the search counts them,
+// as if the compiler unrolled none, stops well before, and the next dispatch goes on: after kWorkPerDispatch at most one
+// round's scan and one pair of clusters follow, 4,096 solves, which with 8 lanes are 34,000.
+const uint kWorkPerDispatch = 20000;
+const uint kTrimWork = 17;   // a triangle: 3 corners, 3 rows each, 3 copies
+const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps of sorting
 // Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
 // work; what a run has found cuts the next one short.
-const uint kRun = 8192;
+const uint kRun = 4096;
 const uint kQueue = 1024;
 
 shared uint nearestGap, remaining;      // over the cluster pairs left; floats >= 0 order as their bits
@@ -98,7 +101,7 @@ void trim(uint ref, uint other, bool isSensor) {
       for (uint k = 0; k < 3; ++k) cornersB[3 * at + k] = c[k];
     }
   }
-  work += node.count / kLanes + 1;
+  work += (node.count / kLanes + 1) * kTrimWork;
 }
 
 // Whether an edge of p separates the projections of p and q by more than `error`.
@@ -152,23 +155,6 @@ void placedCorners(double pose[12], uint mesh, uint slot, out dvec3 p[3]) {
   }
 }
 
-// Forgets contenders that start beyond `hi`.
-void compact() {
-  const uint first = targets[v].firstContender;
-  const double limit = hi / targets[v].directionLength * (1.0LF + 8.881784197001252e-16LF);
-  barrier();
-  if (gl_LocalInvocationID.x == 0) {
-    uint kept = 0;
-    for (uint i = 0; i < contended; ++i) {
-      if (contenders[first + i].low <= limit) contenders[first + kept++] = contenders[first + i];
-    }
-    contended = kept;
-  }
-  memoryBarrierBuffer();
-  barrier();
-  work += targets[v].contenderCapacity;
-}
-
 // No room for what the next step may find.
 bool overflows() { return contended + kLanes > targets[v].contenderCapacity; }
 
@@ -198,8 +184,7 @@ void flush() {
           Contender(low, m.at, m.error, object, entry.y, entry.x, (sharp ? kContenderSharp : 0) | (m.feature & 0xffu));
     }
     barrier();
-    work += 8 + kFeatures + kLanes;
-    if (overflows()) compact();
+    work += kSolveWork + kLanes;
     if (overflows()) break;
   }
   hiFloat = upward(hi);
@@ -298,7 +283,7 @@ void main() {
     barrier();
     ++round;
   }
-  compact();
+  barrier();
   if (gl_LocalInvocationID.x == 0) {
     states[v].hi = hi;
     states[v].contenderCount = contended;

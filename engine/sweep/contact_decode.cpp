@@ -41,11 +41,21 @@ bool settled(const Search& search, const Query& query, const Scene::Impl& scene)
 
 }  // namespace
 
-Result decodeContact(const Search& search, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs) {
+Result decodeContact(const Search& found, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs) {
+  // What was kept before `hi` fell to where it is may begin beyond it.
+  const double limit = found.state.hi / lengthOf(scaledDirection(query.direction)) * (1 + 8 * kDoubleUnit);
+  std::vector<gpu::Contender> kept;
+  for (const gpu::Contender& c : found.contenders) {
+    if (c.low <= limit) kept.push_back(c);
+  }
+  const Search search{found.state, kept};
   Result result;
   result.tier = Tier::contact;
   result.status = Status::clear;
-  if (search.contenders.empty()) return result;
+  if (search.contenders.empty()) {
+    if (found.state.hi < query.distance) throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+    return result;
+  }
 
   if (settled(search, query, scene)) {
     const gpu::Contender* best = &search.contenders[0];
@@ -72,7 +82,11 @@ Result decodeContact(const Search& search, const Query& query, const Scene::Impl
   ExactPairs exact(query, scene);
   for (const gpu::Contender& c : search.contenders) exact.consider(nameOf(c, query, scene));
   cpuPairs += search.contenders.size();
-  if (exact.found()) exact.tell(result);
+  if (exact.found()) {
+    exact.tell(result);
+  } else if (found.state.hi < query.distance) {
+    throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+  }
   return result;
 }
 

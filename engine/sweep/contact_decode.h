@@ -5,7 +5,8 @@
 
 namespace radar {
 
-/// Of a search that is done. Adds the pairs it had to decide on the CPU to `cpuPairs`.
+/// Of a search that is done. Adds the pairs it had to decide on the CPU to `cpuPairs`. Throws Error with
+/// VK_ERROR_UNKNOWN if the search met something that is not among its contenders.
 Result decodeContact(const Search& search, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs);
 
 }  // namespace radar

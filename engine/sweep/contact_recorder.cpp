@@ -28,6 +28,9 @@ constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK
 constexpr VkBufferUsageFlags kComputed = kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 // Nearly every search ends in the first dispatch; one that has ended costs a dispatch next to nothing.
 constexpr uint32_t kSearchDispatches = 3;
+// What the lists of a plan hold at first.
+constexpr uint64_t kPairRoom = 4096;
+constexpr uint32_t kContenderRoom = 256;
 
 struct CountPush {
   uint32_t count, groupsX;
@@ -104,7 +107,7 @@ void ContactRecorder::stage(std::span<const ContactPlan* const> plans, std::span
     addItems(itemList_, static_cast<uint32_t>(targetList_.size()), firstRef,
              firstRef + static_cast<uint32_t>(plan.sensor.size()), static_cast<uint32_t>(refList_.size()));
     targetList_.push_back(target);
-    stateList_.push_back({.hi = target.distance, .progress = gpu::kSearchUnfinished});
+    stateList_.push_back({.hi = room.hi, .progress = gpu::kSearchUnfinished});
     pairs += room.pairs;
     contenderTotal_ += room.contenders;
   }
@@ -195,7 +198,7 @@ std::vector<size_t> ContactRecorder::search(std::span<const ContactPlan* const> 
                                             const std::function<void(size_t, const Search&)>& found) {
   std::vector<Room> rooms;
   for (size_t i = 0; i < plans.size(); ++i) {
-    rooms.push_back({i, std::min<uint64_t>(allPairs(*plans[i]), pairRoom), contenderRoom});
+    rooms.push_back({i, std::min<uint64_t>(allPairs(*plans[i]), kPairRoom), kContenderRoom, plans[i]->target.distance});
   }
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   const uint64_t maxPairs = limit / sizeof(gpu::ClusterPair), maxContenders = limit / sizeof(gpu::Contender);
@@ -245,9 +248,11 @@ std::vector<size_t> ContactRecorder::search(std::span<const ContactPlan* const> 
     for (uint32_t i = 0; i < targets; ++i) {
       const Room& room = group[i];
       if (states[i].pairCount > room.pairs || states[i].progress == gpu::kSearchOverflow) {
-        const bool pairsFit = states[i].pairCount <= room.pairs;
+        // What a search has certainly met bounds the next one, which then keeps few contenders.
+        const bool bounded = states[i].hi < room.hi;
+        const bool overflow = states[i].pairCount <= room.pairs && !bounded;
         rooms.push_back({room.plan, std::max<uint64_t>(room.pairs, states[i].pairCount),
-                         pairsFit ? 8 * room.contenders : room.contenders});
+                         overflow ? 8 * room.contenders : room.contenders, std::min(states[i].hi, room.hi)});
       } else {
         found(room.plan, {states[i], {lists + targetList_[i].firstContender, states[i].contenderCount}});
       }

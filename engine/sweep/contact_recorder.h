@@ -27,15 +27,13 @@ class ContactRecorder {
   std::vector<size_t> search(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
                              std::vector<StageTime>& stages, const std::function<void(size_t, const Search&)>& found);
 
-  /// Lists start with this room, for tests to shrink.
-  uint32_t pairRoom = 4096, contenderRoom = 128;
-
  private:
   /// Room for the lists of one plan.
   struct Room {
     size_t plan;
     uint64_t pairs;
     uint32_t contenders;
+    double hi;  ///< first contact is no later, world units
   };
 
   void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);

@@ -215,7 +215,11 @@ void Sweeper::Impl::search(std::span<const size_t> which, std::span<const Contac
   try {
     const auto decodeOne = [&](size_t i, const Search& found) {
       const Clock::time_point start = Clock::now();
-      results[which[i]] = decodeContact(found, queries[which[i]], scene.impl(), stats.cpuPairs);
+      try {
+        results[which[i]] = decodeContact(found, queries[which[i]], scene.impl(), stats.cpuPairs);
+      } catch (const Error& error) {
+        giveUp(which[i], error, results);
+      }
       stats.pairs += found.state.boxPairs;
       decodeMs += msSince(start);
     };

@@ -213,3 +213,29 @@ TEST_CASE("a distance of zero asks for overlap at the start") {
   CHECK(tally.overlaps >= 3);
   CHECK(tally.clear >= 3);
 }
+
+TEST_CASE("two balls of many clusters meet as the reference says, however often they are asked") {
+  const uint32_t rings = GENERATE(100, 140, 180);
+  CAPTURE(rings);
+  Scene scene;
+  const MeshId ball = add(scene, tools::makeUvSphere(rings, 2 * rings));
+  scene.addObject({ball, {}, ~0u});
+  // Many cluster pairs: a search that takes several dispatches.
+  std::vector<Query> queries(
+      4, {.mesh = ball, .worldFromMesh = at({-0.5, 0.25, -7}), .direction = {0, 0, 1}, .distance = 50});
+  queries.push_back({.mesh = ball, .worldFromMesh = at({-1.25, 0.5, -7}), .direction = {0, 0, 1}, .distance = 50});
+  for (int repeat = 0; repeat < 3; ++repeat) CHECK(compareContact(scene, queries).hits == queries.size());
+}
+
+TEST_CASE("two poles of many triangles each meet in every pair at once, and the least is told") {
+  Scene scene;
+  const MeshId ball = add(scene, tools::makeUvSphere(6, 40));
+  scene.addObject({ball, {}, ~0u});
+  scene.addObject({ball, {}, ~0u});
+  const ContactTally tally =
+      compareContact(scene, {{.mesh = ball, .worldFromMesh = at({0, 0, -7}), .direction = {0, 0, 2}, .distance = 50},
+                             {.mesh = ball, .worldFromMesh = at({0, 0, -7}), .direction = {0, 0, 2}, .distance = 5},
+                             {.mesh = ball, .worldFromMesh = at({0, 0, -2}), .direction = {0, 0, 2}, .distance = 5}});
+  CHECK(tally.hits == 2);
+  CHECK(tally.overlaps == 1);
+}

@@ -1,5 +1,5 @@
-#include <cstdio>
 #include <radar/radar.h>
+#include <cstdio>
 
 int main() {
   radar::Scene scene;

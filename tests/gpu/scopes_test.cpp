@@ -226,7 +226,12 @@ TEST_CASE("R, M and L of two squares are the paper's: R + M - d is the free dist
   scene.addObject({small, at(0.45, 0.5, 5), ~0u});
   // The sensor leans: its side at +x lies one unit further along the motion than its side at -x.
   const Pose leaning{{1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1, 0}};
-  const Query query{.mesh = square, .worldFromMesh = leaning, .direction = {0, 0, 3}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
+  const Query query{.mesh = square,
+                    .worldFromMesh = leaning,
+                    .direction = {0, 0, 3},
+                    .distance = 10,
+                    .mode = Mode::sampled,
+                    .resolution = 64};
   Sweeper sweeper(test::device(), scene);
   const Scopes scopes = sweeper.scopes(query);
   CHECK(scopes.d == Approx(11));

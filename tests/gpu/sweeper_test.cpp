@@ -14,7 +14,8 @@ using namespace radar;
 struct Loaded {
   explicit Loaded(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled, resolution));
+    for (const tools::QuerySpec& spec : workload.queries)
+      queries.push_back(tools::toQuery(spec, Mode::sampled, resolution));
   }
   tools::Workload workload;
   tools::ScenePlayer player;
@@ -167,7 +168,12 @@ TEST_CASE("a mesh of more triangles than a shader invocation has loop iterations
   scene.addObject({sphere, {}, ~0u});
   Sweeper sweeper(test::device(), scene);
   const Pose start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
-  const Query query{.mesh = cube, .worldFromMesh = start, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
+  const Query query{.mesh = cube,
+                    .worldFromMesh = start,
+                    .direction = {0, 0, 1},
+                    .distance = 10,
+                    .mode = Mode::sampled,
+                    .resolution = 64};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.status == Status::hit);
   // The box's upper face lies at -4.75; the ball's lowest point over it at about -1.

@@ -51,8 +51,8 @@ struct QuerySpec {
   std::array<double, 3> direction{};
   double distance = 0;
   uint32_t mask = ~0u;
-  std::optional<AnswerMode> mode;     ///< overrides the command's
-  std::optional<double> speed;  ///< units per second
+  std::optional<AnswerMode> mode;  ///< overrides the command's
+  std::optional<double> speed;     ///< units per second
 };
 
 struct Workload {

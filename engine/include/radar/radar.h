@@ -128,9 +128,9 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, world units
   Mode mode = Mode::contact;
-  std::vector<ObjectId> exclude;      ///< objects that take no part, such as the sensor's own; at most a handful
-  uint32_t mask = ~0u;                ///< an object takes part when it shares a bit
-  uint32_t resolution = 0;  ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
+  std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
+  uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
+  uint32_t resolution = 0;        ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;

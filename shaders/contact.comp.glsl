@@ -40,7 +40,7 @@ const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps o
 const uint kRun = 4096;
 const uint kQueue = 1024;
 
-shared uint nearestGap, remaining;      // over the cluster pairs left; floats >= 0 order as their bits
+shared uint nearestGap;                 // over the cluster pairs left; floats >= 0 order as their bits
 shared uint bucket[kBuckets];
 shared uint countA, countB;             // triangles left after trimming, and where they are in the frame
 shared uint slotsA[kCluster], slotsB[kCluster];

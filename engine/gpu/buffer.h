@@ -8,6 +8,12 @@
 
 namespace radar::gpu {
 
+/// Of the elements.
+template <class T>
+VkDeviceSize bytesOf(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
 enum class Residence { device, upload, readback };
 
 class Buffer {

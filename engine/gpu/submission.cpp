@@ -78,6 +78,15 @@ void Submission::submitAndWait() {
   check(vkResetFences(device_->device(), 1, &fence), "vkResetFences");
 }
 
+void addStageTime(std::vector<StageTime>& stages, const std::string& name, double ms) {
+  const auto found = std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == name; });
+  if (found == stages.end()) {
+    stages.push_back({name, ms});
+  } else {
+    found->ms += ms;
+  }
+}
+
 void Submission::addTimes(std::vector<StageTime>& stages) const {
   if (!timestamps_ || stages_.empty()) return;
   std::vector<uint64_t> ticks(stages_.size() + 1);
@@ -88,13 +97,7 @@ void Submission::addTimes(std::vector<StageTime>& stages) const {
   const double msPerTick = 1e-6 * device_->properties.limits.timestampPeriod;
   for (size_t i = 0; i < stages_.size(); ++i) {
     const double ms = msPerTick * static_cast<double>(ticks[i + 1] - ticks[i]);
-    const auto found =
-        std::find_if(stages.begin(), stages.end(), [&](const StageTime& s) { return s.name == stages_[i]; });
-    if (found == stages.end()) {
-      stages.push_back({stages_[i], ms});
-    } else {
-      found->ms += ms;
-    }
+    addStageTime(stages, stages_[i], ms);
   }
 }
 

@@ -9,6 +9,9 @@
 
 namespace radar::gpu {
 
+/// Adds to the stage of that name, which is made if it is not there.
+void addStageTime(std::vector<StageTime>& stages, const std::string& name, double ms);
+
 class Submission {
  public:
   Submission(const Device::Impl& device, bool timestamps);

@@ -19,6 +19,7 @@
 
 namespace radar {
 
+using gpu::bytesOf;
 using gpu::Residence;
 using gpu::Upload;
 
@@ -40,11 +41,6 @@ std::vector<gpu::Binding> bindingList() {
   std::vector<gpu::Binding> list;
   for (uint32_t i = 0; i < gpu::kContactBindings; ++i) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
   return list;
-}
-
-template <class T>
-VkDeviceSize bytesOf(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
 }
 
 // Pairs that the two lists can make at most.

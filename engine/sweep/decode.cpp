@@ -1,16 +1,11 @@
 #include "sweep/decode.h"
 
-#include <cmath>
-#include <limits>
-
 #include "sweep/contact_point.h"
 #include "sweep/exact_pairs.h"
 
 namespace radar {
 
 namespace {
-
-constexpr double kNull = std::numeric_limits<double>::quiet_NaN();
 
 Corners corners(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
   Corners p;

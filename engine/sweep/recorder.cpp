@@ -21,6 +21,7 @@
 
 namespace radar {
 
+using gpu::bytesOf;
 using gpu::Residence;
 using gpu::Upload;
 
@@ -40,11 +41,6 @@ std::vector<gpu::Binding> bindingList() {
     list.push_back({i, image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
   }
   return list;
-}
-
-template <class T>
-VkDeviceSize bytesOf(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
 }
 
 }  // namespace

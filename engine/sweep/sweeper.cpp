@@ -107,14 +107,7 @@ std::string Sweeper::Impl::tooLarge(const ViewPlan& plan) const {
 }
 
 void Sweeper::Impl::addCpuTime(const char* name, double ms) {
-  if (!options.timestamps) return;
-  for (StageTime& stage : stats.stages) {
-    if (stage.name == name) {
-      stage.ms += ms;
-      return;
-    }
-  }
-  stats.stages.push_back({name, ms});
+  if (options.timestamps) gpu::addStageTime(stats.stages, name, ms);
 }
 
 void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {

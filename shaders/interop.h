@@ -56,6 +56,10 @@ INTEROP_CONST kBindStates = 12;       // State, one per Target
 INTEROP_CONST kBindContenders = 13;   // Contender
 INTEROP_CONST kContactBindings = 14;
 
+// The bounded tier has the sampled tier's set, but for the depth images.
+INTEROP_CONST kBindScopes = 11;       // uint: keys of depth (outer.glsl), the four planes kScope*
+INTEROP_CONST kBindBands = 12;        // Band
+
 // Triangles of a cluster, at most.
 INTEROP_CONST kCluster = 64;
 // Sensor clusters of one PairItem, and how many scene clusters each is held against.
@@ -92,10 +96,10 @@ struct View {
   float maskScale;
   float slack;           // L this far below 0 may be a contact at the start: the rounding of R and M
   float rangeLimit;      // stored R of d: what lies beyond is not in the target volume
-  uint pad;
+  uint firstPixel;       // of its outer scopes, in each plane
 };
 
-// One mesh placed in one view: an instance of a depth-only draw.
+// One mesh placed in one view: an instance of a depth-only draw. In the bounded tier only what it is counts, for `solve`.
 struct Draw {
   float clipFromMesh[12];  // recentred mesh -> normalised device coordinates, w = 1
   float snap;              // how far from a triangle a covered centre may lie, pixels
@@ -133,7 +137,7 @@ struct Answer {
   uint candidates;
   uint pairs;      // distinct pairs solved
   uint openPairs;
-  uint pad;
+  float lo;        // bounded tier: nothing meets before, pixels; less than 0: no pixel where anything could
 };
 
 struct OpenPair {
@@ -145,6 +149,40 @@ struct OpenPair {
 };
 INTEROP_CONST kAnswerDetected = 1;  // some R < d
 INTEROP_CONST kAnswerHasL = 2;      // minL exists
+
+// ---- the bounded tier ---------------------------------------------------------------------------------------------------
+
+// Outer scopes, keys of depth along the motion in pixels (outer.glsl): the sensor's nearest, the scene's nearest, the scene's farthest,
+// the sensor's farthest. Where there is none the first two hold kNobody and the others 0.
+INTEROP_CONST kScopeS = 0;
+INTEROP_CONST kScopeR = 1;
+INTEROP_CONST kScopeF = 2;
+INTEROP_CONST kScopeM = 3;
+// What a dispatch draws: F of the scene; then S and M of the sensor, where not behind F; then R of the scene, where not
+// before S.
+INTEROP_CONST kDrawFarthest = 1;
+INTEROP_CONST kDrawSensor = 2;
+INTEROP_CONST kDrawNearest = 3;
+
+// A cluster in the rows of the window that a workgroup draws, with all that its triangles share.
+struct Band {
+  float pixelsFromMesh[12];  // recentred mesh -> pixels on all axes, from the window's corner and the frame's origin
+  float snap;        // how far a vertex may be off, pixels
+  float slack;       // how far a depth may be off
+  uint view;
+  uint firstPixel;   // of the view, in each plane
+  uint width;        // of the view
+  uint firstVertex;  // of the mesh
+  uint firstIndex;   // of the first triangle
+  uint triangles;    // kCluster at most
+  uint firstRow;
+  uint endRow;
+  uint item;
+  uint isSensor;
+};
+// Pixels of a cluster's box in a band, at most. Lavapipe ends loops silently after 65,535 iterations of an invocation:
+// each pixel takes two, of kCluster / 8 triangles. Less also keeps a device's invocations evenly busy.
+INTEROP_CONST kBandPixels = 2048;
 
 // ---- the contact tier --------------------------------------------------------------------------------------------------
 

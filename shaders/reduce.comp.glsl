@@ -108,6 +108,6 @@ void main() {
   if (cell == 0) {
     const float least = unordered(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
-    answers[v] = Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
+    answers[v] = Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0.0);
   }
 }

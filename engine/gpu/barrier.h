@@ -7,6 +7,8 @@ namespace radar::gpu {
 
 /// A batch's upload is read by depth passes (vertices, indices, draws) and by compute shaders.
 void uploadToRead(VkCommandBuffer commands);
+/// What vkCmdFillBuffer wrote is read and written by compute shaders.
+void fillToComputeReadWrite(VkCommandBuffer commands);
 /// A compute shader's buffers are read, or written again, by the next one.
 void computeWriteToComputeReadWrite(VkCommandBuffer commands);
 /// A compute shader's buffers are copied to the host.

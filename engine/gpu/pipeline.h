@@ -1,6 +1,7 @@
 // One descriptor set, one pipeline layout: every shader of the engine binds the same numbers (shaders/interop.h).
 #pragma once
 
+#include <initializer_list>
 #include <span>
 
 #include "gpu/buffer.h"
@@ -33,9 +34,9 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// `lanes`: value of specialization constant 0, the workgroup's size, where the shader leaves that open; else 0.
+/// `constants`: values of the specialization constants 0, 1, ... that the shader has.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, uint32_t lanes = 0);
+                         const char* name, std::initializer_list<uint32_t> constants = {});
 
 /// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
 /// dynamic; a fragment survives if its depth is less.

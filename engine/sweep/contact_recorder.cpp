@@ -67,7 +67,7 @@ ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resi
       bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
       pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
       contact_(gpu::computePipeline(device, bindings_.layout(), k_contact_comp, "contact",
-                                    std::clamp(device.subgroupSize, 8u, 128u))),
+                                    {std::clamp(device.subgroupSize, 8u, 128u)})),
       targets_(device, "targets", Residence::device, kUploaded),
       placements_(device, "placements", Residence::device, kUploaded),
       refs_(device, "cluster refs", Residence::device, kUploaded),

@@ -12,6 +12,9 @@
 #include "spirv/contact_comp.h"
 #include "spirv/depth_vert.h"
 #include "spirv/identify_comp.h"
+#include "spirv/outer_draw_comp.h"
+#include "spirv/outer_identify_comp.h"
+#include "spirv/outer_reduce_comp.h"
 #include "spirv/pairs_comp.h"
 #include "spirv/reduce_comp.h"
 #include "spirv/solve_comp.h"
@@ -55,7 +58,8 @@ Layouts all() {
        {std::span<const uint32_t>(k_depth_vert), std::span<const uint32_t>(k_reduce_comp),
         std::span<const uint32_t>(k_identify_comp), std::span<const uint32_t>(k_solve_comp),
         std::span<const uint32_t>(k_bounds_comp), std::span<const uint32_t>(k_pairs_comp),
-        std::span<const uint32_t>(k_contact_comp)}) {
+        std::span<const uint32_t>(k_contact_comp), std::span<const uint32_t>(k_outer_draw_comp),
+        std::span<const uint32_t>(k_outer_reduce_comp), std::span<const uint32_t>(k_outer_identify_comp)}) {
     Layouts one = layoutsOf(spirv);
     layouts.offsets.merge(one.offsets);
     layouts.strides.merge(one.strides);
@@ -87,11 +91,17 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        {MEMBER(View, pose), MEMBER(View, direction), MEMBER(View, directionLength), MEMBER(View, distance),
         MEMBER(View, size), MEMBER(View, mesh), MEMBER(View, layer), MEMBER(View, resolution), MEMBER(View, width),
         MEMBER(View, height), MEMBER(View, cell), MEMBER(View, rangeScale), MEMBER(View, maskBase),
-        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, rangeLimit), MEMBER(View, pad)}},
+        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, rangeLimit), MEMBER(View, firstPixel)}},
       {"Draw",
        sizeof(Draw),
        {MEMBER(Draw, clipFromMesh), MEMBER(Draw, snap), MEMBER(Draw, slack), MEMBER(Draw, view), MEMBER(Draw, layer),
         MEMBER(Draw, mesh), MEMBER(Draw, object)}},
+      {"Band",
+       sizeof(Band),
+       {MEMBER(Band, pixelsFromMesh), MEMBER(Band, snap), MEMBER(Band, slack), MEMBER(Band, view),
+        MEMBER(Band, firstPixel), MEMBER(Band, width), MEMBER(Band, firstVertex), MEMBER(Band, firstIndex),
+        MEMBER(Band, triangles), MEMBER(Band, firstRow), MEMBER(Band, endRow), MEMBER(Band, item),
+        MEMBER(Band, isSensor)}},
       {"Item", sizeof(Item), {MEMBER(Item, draw), MEMBER(Item, firstTriangle), MEMBER(Item, endTriangle)}},
       {"Candidate",
        sizeof(Candidate),
@@ -101,7 +111,7 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        sizeof(Answer),
        {MEMBER(Answer, hi), MEMBER(Answer, object), MEMBER(Answer, triB), MEMBER(Answer, triA), MEMBER(Answer, feature),
         MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs),
-        MEMBER(Answer, openPairs), MEMBER(Answer, pad)}},
+        MEMBER(Answer, openPairs), MEMBER(Answer, lo)}},
       {"OpenPair",
        sizeof(OpenPair),
        {MEMBER(OpenPair, low), MEMBER(OpenPair, object), MEMBER(OpenPair, triB), MEMBER(OpenPair, triA),

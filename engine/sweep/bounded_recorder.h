@@ -1,0 +1,52 @@
+// The recipe of the bounded tier: outer scopes, the lower bound, nominated pairs. Owns its pipelines and buffers.
+#pragma once
+
+#include "gpu/pipeline.h"
+#include "gpu/submission.h"
+#include "sweep/bounded_plan.h"
+#include "sweep/recorder.h"
+#include "sweep/resident_scene.h"
+
+namespace radar {
+
+/// Outer scopes of one view, row by row, depth along the motion from the frame's origin in pixels; NaN where there is
+/// none.
+struct OuterScopes {
+  std::vector<float> sensorNearest, sceneNearest, sceneFarthest, sensorFarthest;  ///< S, R, F, M
+};
+
+class BoundedRecorder {
+ public:
+  BoundedRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps);
+
+  /// Bytes of device memory that the scopes of so many pixels take, in one buffer.
+  static uint64_t scopeBytes(uint64_t pixels) { return 4 * pixels * sizeof(uint32_t); }
+
+  /// Every plan is measurable and has bands on both sides. One upload, one command buffer, one readback. With `scopes`,
+  /// those of every view come too. Adds each stage's time to `stages`.
+  Answers submit(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                 std::vector<OuterScopes>* scopes = nullptr);
+
+ private:
+  gpu::Pipeline drawPipeline(const char* name, uint32_t draws) const;
+  void stage(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene);
+  void bind();
+  void dispatchBands(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
+  std::vector<OuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
+
+  const Device::Impl* device_;
+  ResidentScene& resident_;
+  gpu::Upload upload_;
+  gpu::Submission submission_;
+  gpu::Bindings bindings_;
+  gpu::Pipeline drawFarthest_, drawSensor_, drawNearest_, reduce_, identify_, solve_;
+  gpu::Buffer views_, draws_, items_, bands_, scopes_, candidates_, ranks_, answers_, openPairs_, readback_;
+  std::vector<gpu::View> viewList_;
+  std::vector<gpu::Draw> drawList_;
+  std::vector<gpu::Item> itemList_;
+  std::vector<gpu::Band> bandList_;  ///< the scenes', then the sensors'
+  uint32_t sceneBands_ = 0;
+  uint32_t plane_ = 0;  ///< pixels of all views
+};
+
+}  // namespace radar

@@ -7,11 +7,6 @@ namespace radar {
 
 namespace {
 
-// Float, rounded up: an error bound must not shrink.
-float upward(double x) {
-  return std::nextafter(static_cast<float>(x), INFINITY);
-}
-
 Box turned(const ClusterNode& node, const Affine& m, double error) {
   Box box;
   for (int row = 0; row < 3; ++row) {

@@ -83,10 +83,6 @@ uint keyOf(float x) {
 float depthOf(uint key) { return uintBitsToFloat((key & 0x80000000u) != 0 ? key ^ 0x80000000u : ~key); }
 
 vec3 inPixels(Band band, vec3 q) {
-  vec3 p;
-  for (int row = 0; row < 3; ++row) {
-    p[row] = band.pixelsFromMesh[4 * row] * q.x + band.pixelsFromMesh[4 * row + 1] * q.y +
-             band.pixelsFromMesh[4 * row + 2] * q.z + band.pixelsFromMesh[4 * row + 3];
-  }
-  return p;
+  const vec4 corner = vec4(q, 1.0);
+  return vec3(dot(band.pixelsFromMesh[0], corner), dot(band.pixelsFromMesh[1], corner), dot(band.pixelsFromMesh[2], corner));
 }

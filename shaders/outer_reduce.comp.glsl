@@ -3,6 +3,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
 #include "interop.h"
 #include "outer.glsl"
 
@@ -74,6 +75,6 @@ void main() {
   if (cell == 0) {
     const float lo = uintBitsToFloat(least);
     answers[v] =
-        Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, 0.0, 0, count, 0, 0, lo < kFar ? lo : -1.0);
+        Answer(double(0), kNobody, kNobody, kNobody, kNobody, 0.0, 0, count, 0, 0, lo < kFar ? lo : -1.0);
   }
 }

@@ -19,10 +19,6 @@ constexpr double kUnderflow = 0x1p-30;
 // Clusters are held against so many boxes one by one; against more it would cost what it saves.
 constexpr size_t kMostBoxes = 64;
 
-float upward(double x) {
-  return std::nextafter(static_cast<float>(x), INFINITY);
-}
-
 // A window's pixels: frame coordinates (less the corner, across) times `scale`.
 struct PixelGrid {
   explicit PixelGrid(const SensorWindow& window, uint32_t resolution) {

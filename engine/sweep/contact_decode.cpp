@@ -42,8 +42,13 @@ bool settled(const Search& search, const Query& query, const Scene::Impl& scene)
 }  // namespace
 
 Result decodeContact(const Search& found, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs) {
-  // What was kept before `hi` fell to where it is may begin beyond it.
-  const double limit = found.state.hi / lengthOf(scaledDirection(query.direction)) * (1 + 8 * kDoubleUnit);
+  // What was kept before the first certain contact was met may begin beyond it.
+  const double length = lengthOf(scaledDirection(query.direction));
+  double limit = found.state.hi;
+  for (const gpu::Contender& c : found.contenders) {
+    if ((c.flags & gpu::kContenderMeets) == 0) continue;
+    limit = std::min(limit, std::max(c.at + c.error, 0.0) * length * (1 + 8 * kDoubleUnit));
+  }
   std::vector<gpu::Contender> kept;
   for (const gpu::Contender& c : found.contenders) {
     if (c.low <= limit) kept.push_back(c);
@@ -67,7 +72,7 @@ Result decodeContact(const Search& found, const Query& query, const Scene::Impl&
         best = &c;
       }
     }
-    const double length = lengthOf(scaledDirection(query.direction)), t = best->at * length;
+    const double t = best->at * length;
     result.status = Status::hit;
     result.detected = Detected::yes;
     result.object = least.object;

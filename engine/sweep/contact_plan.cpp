@@ -9,11 +9,6 @@ namespace radar {
 
 namespace {
 
-// Float, rounded up: an error bound must not shrink.
-float upward(double x) {
-  return std::nextafter(static_cast<float>(x), INFINITY);
-}
-
 // Appends the clusters of a placed mesh whose boxes meet `within`; returns the box around them.
 Box collect(const Clusters& clusters, const Affine& frameFromMesh, double error, const Box& within, uint32_t placement,
             std::vector<gpu::ClusterRef>& out) {

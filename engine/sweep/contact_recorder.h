@@ -33,7 +33,7 @@ class ContactRecorder {
     size_t plan;
     uint64_t pairs;
     uint32_t contenders;
-    double hi;  ///< first contact is no later, world units
+    float hi;  ///< first contact is no later, world units
   };
 
   void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);

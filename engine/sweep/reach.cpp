@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace radar {
 
@@ -65,6 +66,11 @@ std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene
 }
 
 }  // namespace
+
+float upward(double x) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return x < kMost ? std::nextafter(static_cast<float>(x), INFINITY) : INFINITY;
+}
 
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
   double worst = 0;

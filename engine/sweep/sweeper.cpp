@@ -6,6 +6,7 @@
 #include <map>
 
 #include "gpu/device.h"
+#include "sweep/bounded_tier.h"
 #include "sweep/contact_decode.h"
 #include "sweep/decode.h"
 #include "sweep/recorder.h"
@@ -45,6 +46,7 @@ struct Sweeper::Impl {
         options(given),
         resident(device),
         recorder(device, resident, given.pictureBytes, given.timestamps),
+        boundedTier(device, resident, given.pictureBytes, given.timestamps),
         contactRecorder(device, resident, given.timestamps) {
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
     // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
@@ -70,6 +72,7 @@ struct Sweeper::Impl {
   SweeperOptions options;
   ResidentScene resident;
   Recorder recorder;
+  BoundedTier boundedTier;
   ContactRecorder contactRecorder;
   Hierarchy hierarchy;
   Batch batch;
@@ -273,9 +276,17 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
   const Clock::time_point start = Clock::now();
   self.hierarchy.update(self.scene.impl());
   self.addCpuTime("select", msSince(start));
-  std::vector<size_t> sampled, contact;
-  for (size_t i = 0; i < queries.size(); ++i) (queries[i].mode == Mode::sampled ? sampled : contact).push_back(i);
+  std::vector<size_t> sampled, bounded, contact;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Query& query = queries[i];
+    const bool bracket = query.mode == Mode::bounded || (query.mode == Mode::contact && query.tolerance > 0);
+    (query.mode == Mode::sampled ? sampled : bracket ? bounded : contact).push_back(i);
+  }
   self.runSampled(queries, sampled, results);
+  const std::vector<size_t> open =
+      self.boundedTier.run(queries, bounded, self.scene.impl(), self.hierarchy, {results, self.reasons, self.stats});
+  std::copy_if(open.begin(), open.end(), std::back_inserter(contact),
+               [&](size_t i) { return queries[i].mode == Mode::contact; });
   self.runContact(queries, contact, results);
   return results;
 }

@@ -9,6 +9,19 @@
 
 namespace radar::test {
 
+double sensorSize(const Scene& scene, const Query& query) {
+  const MeshView mesh = scene.mesh(query.mesh);
+  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+  for (uint32_t vertex : mesh.indices) {
+    const std::array<double, 3> p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], p[k]);
+      hi[k] = std::max(hi[k], p[k]);
+    }
+  }
+  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
+}
+
 namespace {
 
 // First contact of one triangle pair alone: NaN where there is none.
@@ -32,19 +45,6 @@ double pairContact(const Scene& scene, const Query& query, const Result& result)
   alone.mask = ~0u;
   pair.addObject({b, object.worldFromMesh, ~0u});
   return reference::Reference(pair).answer(alone).t;
-}
-
-double sensorSize(const Scene& scene, const Query& query) {
-  const MeshView mesh = scene.mesh(query.mesh);
-  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
-  for (uint32_t vertex : mesh.indices) {
-    const std::array<double, 3> p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], p[k]);
-      hi[k] = std::max(hi[k], p[k]);
-    }
-  }
-  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
 }
 
 // Every promise that a single sampled answer makes.

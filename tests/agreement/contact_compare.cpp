@@ -158,7 +158,8 @@ ContactTally compareContact(const Scene& scene, std::vector<Query> queries) {
   reference::Reference reference(scene);
   std::vector<std::string> names;
   for (size_t i = 0; i < queries.size(); ++i) names.push_back(std::to_string(i));
-  compare(scene, sweeper, reference, std::move(queries), names, tally);
+  compare(scene, sweeper, reference, queries, names, tally);
+  compareBounded(scene, std::move(queries), 32);
   return tally;
 }
 

@@ -80,13 +80,13 @@ TEST_CASE("a missing query file is named") {
   CHECK_THAT(run.err, Contains("no.json: expected a query file"));
 }
 
-TEST_CASE("options that do not work yet, or do not exist, are refused by name") {
+TEST_CASE("options that do not exist, or have values out of range, are refused by name") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));
   for (const auto& [options, words] :
-       {std::pair{"--mode bounded", "--mode: expected mode"}, std::pair{"--mode bounded", "not available"},
-        std::pair{"--mode exact", "got \"exact\""}, std::pair{"--tolerance 0.1", "--tolerance"},
+       {std::pair{"--mode exact", "--mode: expected mode"}, std::pair{"--tolerance -1", "a finite number of 0 or more"},
+        std::pair{"--mode exact", "got \"exact\""}, std::pair{"--tolerance wide", "--tolerance"},
         std::pair{"--resolution 0", "--resolution"}, std::pair{"--resolution 4096", "--resolution"},
         std::pair{"--resolution 64x", "\"64x\""}, std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
         std::pair{"--out no/folder.jsonl", "no/folder.jsonl"}, std::pair{"--stats no/s.json", "no/s.json"}}) {

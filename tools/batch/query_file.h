@@ -21,8 +21,7 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 /// file's then). Returns the query file. Throws std::runtime_error if something cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
 
-/// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them, or says that the
-/// mode is not available in this version.
+/// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them.
 const char* nameOf(AnswerMode mode);
 AnswerMode modeFrom(std::string_view name);
 

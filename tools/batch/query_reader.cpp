@@ -17,8 +17,7 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"motion", "motions",   "deforms", "decide",
-                                       "margin", "tolerance", "top",     "rotation"};
+constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "decide", "margin", "top", "rotation"};
 constexpr uint64_t kMostBits = std::numeric_limits<uint32_t>::max();
 
 std::string readWhole(const std::filesystem::path& file, const char* kind) {
@@ -213,7 +212,8 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 QuerySpec Reader::readQuery(const JsonValue& query) const {
-  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "mode", "speed"});
+  requireKnownKeys(query,
+                   {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "mode", "speed", "tolerance"});
   QuerySpec spec;
   spec.id = query.member("id").string();
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
@@ -247,6 +247,11 @@ QuerySpec Reader::readQuery(const JsonValue& query) const {
     spec.speed = speed.number();
     if (*spec.speed <= 0) speed.expected("a number above 0");
   }
+  if (query.has("tolerance")) {
+    const JsonValue tolerance = query.member("tolerance");
+    spec.tolerance = tolerance.number();
+    if (*spec.tolerance < 0) tolerance.expected("a number of 0 or more");
+  }
   return spec;
 }
 
@@ -257,17 +262,16 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 }
 
 const char* nameOf(AnswerMode mode) {
-  constexpr const char* kNames[] = {"sampled", "contact", "reference"};
+  constexpr const char* kNames[] = {"sampled", "bounded", "contact", "reference"};
   return kNames[static_cast<size_t>(mode)];
 }
 
 AnswerMode modeFrom(std::string_view name) {
-  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
+  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::bounded, AnswerMode::contact, AnswerMode::reference}) {
     if (name == nameOf(mode)) return mode;
   }
-  const std::string expected = "expected mode sampled, contact or reference, got \"" + std::string(name) + "\"";
-  const bool later = name == "bounded";
-  throw std::invalid_argument(expected + (later ? ", which is not available in this version" : ""));
+  throw std::invalid_argument("expected mode sampled, bounded, contact or reference, got \"" + std::string(name) +
+                              "\"");
 }
 
 }  // namespace radar::tools

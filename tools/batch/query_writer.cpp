@@ -96,6 +96,10 @@ void appendQuery(std::string& text, const QuerySpec& query) {
     text += ", \"speed\": ";
     appendNumber(text, *query.speed);
   }
+  if (query.tolerance) {
+    text += ", \"tolerance\": ";
+    appendNumber(text, *query.tolerance);
+  }
   text += "}";
 }
 

@@ -22,6 +22,18 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
   }
 }
 
+// Modes of the engine, and of answers found by it.
+constexpr std::pair<AnswerMode, Mode> kSwept[] = {
+    {AnswerMode::sampled, Mode::sampled}, {AnswerMode::bounded, Mode::bounded}, {AnswerMode::contact, Mode::contact}};
+
+Mode engineModeOf(AnswerMode mode) {
+  return std::find_if(std::begin(kSwept), std::end(kSwept), [&](const auto& m) { return m.first == mode; })->second;
+}
+
+AnswerMode answerModeOf(Mode mode) {
+  return std::find_if(std::begin(kSwept), std::end(kSwept), [&](const auto& m) { return m.second == mode; })->first;
+}
+
 }  // namespace
 
 Answering::Answering(const Workload& workload, const AnsweringOptions& options)
@@ -37,8 +49,8 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
       (swept ? needsDevice : needsReference) = true;
       Part& part = swept ? group.swept : group.referred;
       part.numbers.push_back(number);
-      part.queries.push_back(
-          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options.resolution));
+      part.queries.push_back(toQuery(spec, swept ? engineModeOf(mode) : Mode::contact, options.resolution));
+      part.queries.back().tolerance = spec.tolerance.value_or(options.tolerance);
     }
   }
   if (needsDevice) {
@@ -79,8 +91,7 @@ void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
   const std::vector<Result> results = sweeper_->run(part.queries);
   for (size_t i = 0; i < results.size(); ++i) {
-    const AnswerMode mode = part.queries[i].mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
-    pass.answers[part.numbers[i]] = {results[i], mode, sweeper_->reason(i)};
+    pass.answers[part.numbers[i]] = {results[i], answerModeOf(part.queries[i].mode), sweeper_->reason(i)};
   }
   const SweepStats& stats = sweeper_->stats();
   pass.pairs += stats.pairs;

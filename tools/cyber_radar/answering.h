@@ -15,6 +15,7 @@ namespace radar::tools {
 struct AnsweringOptions {
   AnswerMode mode = AnswerMode::reference;  ///< of queries that do not choose one
   uint32_t resolution = 0;                  ///< 0: chosen per sensor
+  double tolerance = 0;                     ///< of queries that have none, world units
   uint32_t device = kNone;                  ///< kNone: the best
   bool timestamps = false;                  ///< measure each stage
 };

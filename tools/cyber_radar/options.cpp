@@ -49,20 +49,26 @@ uint32_t resolutionFrom(const std::string& text) {
 
 void EngineOptions::addTo(CLI::App& command) {
   command
-      .add_option("--mode", mode,
-                  "How to answer: reference, exact on the CPU; or sampled, the paper's method on a Vulkan device: "
-                  "an upper bound of the distance")
-      ->type_name("sampled|reference")
+      .add_option(
+          "--mode", mode,
+          "How to answer: reference, exact on the CPU; on a Vulkan device: sampled, the paper's method, an upper "
+          "bound of the distance; bounded, a bracket of it; contact, exact")
+      ->type_name("sampled|bounded|contact|reference")
       ->capture_default_str();
   addResolutionTo(command);
-  command.add_option("--tolerance", tolerance, "Not available in this version")->type_name("T");
+  command
+      .add_option("--tolerance", tolerance,
+                  "A bracket this wide is answer enough, in the meshes' units; for queries that give none themselves")
+      ->type_name("T")
+      ->capture_default_str();
 }
 
 void EngineOptions::addResolutionTo(CLI::App& command) {
   command
-      .add_option("--resolution", resolution,
-                  "Pixels of the longer side of a sensor's window in mode sampled; pixels are square; auto chooses "
-                  "from the size of the sensor and of its triangles")
+      .add_option(
+          "--resolution", resolution,
+          "Pixels of the longer side of a sensor's window in modes sampled and bounded; pixels are square; auto "
+          "chooses from the size of the sensor and of its triangles, or refines from 64 to 256 in mode bounded")
       ->type_name("N|auto")
       ->capture_default_str();
   command.add_option("--device", device, "Number of the device, as cyber-radar devices lists them; else the best one")
@@ -70,7 +76,9 @@ void EngineOptions::addResolutionTo(CLI::App& command) {
 }
 
 AnsweringOptions EngineOptions::checked() const {
-  if (tolerance) throw InputError("--tolerance", "", "expected no such option: it is not available in this version");
+  if (!(tolerance >= 0 && std::isfinite(tolerance))) {
+    throw InputError("--tolerance", "", "expected a finite number of 0 or more, got " + std::to_string(tolerance));
+  }
   AnsweringOptions options;
   try {
     options.mode = modeFrom(mode);
@@ -78,6 +86,7 @@ AnsweringOptions EngineOptions::checked() const {
     throw InputError("--mode", "", error.what());
   }
   options.resolution = resolutionFrom(resolution);
+  options.tolerance = tolerance;
   options.device = device;
   return options;
 }

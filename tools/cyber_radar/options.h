@@ -15,7 +15,7 @@ namespace radar::tools {
 struct EngineOptions {
   std::string mode = "reference", resolution = "auto";
   uint32_t device = kNone;
-  std::optional<double> tolerance;
+  double tolerance = 0;
 
   void addTo(CLI::App& command);
   void addResolutionTo(CLI::App& command);

@@ -29,8 +29,14 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
 }
 
 std::string certaintyInWords(const Answer& answer) {
-  if (answer.mode != AnswerMode::sampled) return "exact, to rounding";
-  return "certainly no later; mode sampled does not say how much earlier";
+  switch (answer.result.tier) {
+    case Tier::sampled:
+      return "certainly no later; mode sampled does not say how much earlier";
+    case Tier::bounded:
+      return "certainly no later, and no earlier than " + inDigits(answer.result.lo);
+    default:
+      return "exact, to rounding";
+  }
 }
 
 }  // namespace
@@ -58,6 +64,10 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
     case Status::clear:
       return "clear: certainly no contact within " + distance + "\n";
     case Status::undecided:
+      if (answer.mode == AnswerMode::bounded) {
+        return "undecided: certainly no contact before " + inDigits(result.lo) + " of " + distance +
+               "; a higher --resolution may find one, --mode contact knows\n";
+      }
       return std::string("undecided: ") +
              (result.detected == Detected::no ? "no pixel saw anything in the way" : "no pixel found a contact") +
              " within " + distance +

@@ -21,6 +21,7 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.exclude = spec.exclude;
   query.mask = spec.mask;
   query.resolution = resolution;
+  query.tolerance = spec.tolerance.value_or(0);
   return query;
 }
 

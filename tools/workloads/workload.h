@@ -40,7 +40,7 @@ struct SceneSpec {
 };
 
 /// How an answer is found.
-enum class AnswerMode { sampled, contact, reference };
+enum class AnswerMode { sampled, bounded, contact, reference };
 
 struct QuerySpec {
   std::string id;
@@ -51,8 +51,9 @@ struct QuerySpec {
   std::array<double, 3> direction{};
   double distance = 0;
   uint32_t mask = ~0u;
-  std::optional<AnswerMode> mode;  ///< overrides the command's
-  std::optional<double> speed;     ///< units per second
+  std::optional<AnswerMode> mode;   ///< overrides the command's
+  std::optional<double> speed;      ///< units per second
+  std::optional<double> tolerance;  ///< world units; overrides the command's
 };
 
 struct Workload {
@@ -64,7 +65,8 @@ struct Workload {
   uint32_t objectCount(uint32_t scene) const;
 };
 
-/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
+/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers; without a
+/// tolerance of its own it has none.
 Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
 
 /// The queries of one scene and one batch number, as positions in Workload::queries, in the order of first appearance.

@@ -118,6 +118,7 @@ class Scene {
 /// How far the tiers go: the cheapest that settles a query answers it, none beyond this one is asked.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
+  bounded,  ///< select, then outer scopes: a bracket that holds, without looking at pairs of triangles for `lo`
   contact   ///< select, then the exact search on the device: never undecided
 };
 
@@ -130,7 +131,12 @@ struct Query {
   Mode mode = Mode::contact;
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
-  uint32_t resolution = 0;        ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
+  /// Pixels of the window's longer side, up to kMaxResolution. 0, in mode sampled: chosen from the meshes; in mode
+  /// bounded: 64, then doubled up to 256 while neither clear, overlap nor `tolerance` settles the query.
+  uint32_t resolution = 0;
+  /// World units, at least 0: a bracket with hi - lo <= tolerance is answer enough. Looked at between tiers only: mode
+  /// contact with a tolerance takes one look at outer scopes first; once begun, contact ends at t*.
+  double tolerance = 0;
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;
@@ -144,7 +150,7 @@ enum class Status : uint32_t {
 };
 
 /// The stage that settled an answer.
-enum class Tier : uint32_t { select, sampled, contact, reference };
+enum class Tier : uint32_t { select, sampled, bounded, contact, reference };
 
 /// The paper's first step: is there anything in the target volume?
 enum class Detected : uint32_t {
@@ -159,7 +165,7 @@ struct Result {
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
   uint32_t resolution = 0;  ///< pixels of the window's longer side; 0 where no picture was drawn
-  double t;                 ///< best estimate of t*, world units; after sampling: hi
+  double t;                 ///< best estimate of t*, world units; tiers sampled and bounded: hi
   double lo, hi;            ///< the certified bracket, world units
   double fraction;          ///< t / D (0 where D is 0)
   ObjectId object = kNone;  ///< what is touched

@@ -1,0 +1,102 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "agreement/compare.h"
+#include "reference/reference.h"
+#include "support/test_device.h"
+
+namespace radar::test {
+
+namespace {
+
+// Every promise that a bracket makes.
+void checkBracket(const Scene& scene, const Query& query, const Result& result, const Result& exact,
+                  BoundedTally& tally) {
+  ++tally.queries;
+  const bool contact = exact.status == Status::hit || exact.status == Status::overlap;
+  tally.contacts += contact;
+  CHECK((result.tier == Tier::select || result.tier == Tier::bounded));
+  if (result.status == Status::clear) {
+    ++tally.clear;
+    CHECK_FALSE(contact);
+    CHECK((std::isnan(result.lo) && std::isnan(result.hi) && std::isnan(result.t)));
+    return;
+  }
+  REQUIRE(result.status != Status::invalid);
+  CHECK(result.lo >= 0);
+  CHECK(result.lo <= query.distance);
+  // The reference's own bracket is a few roundings wide.
+  if (contact) CHECK(result.lo <= exact.hi);
+  if (result.status == Status::undecided) {
+    ++tally.undecided;
+    CHECK((std::isnan(result.hi) && std::isnan(result.t)));
+    CHECK(result.object == kNone);
+    return;
+  }
+  ++tally.found;
+  CHECK(contact);
+  CHECK(result.hi >= exact.lo);
+  CHECK(result.hi <= query.distance);
+  CHECK(result.lo <= result.hi);
+  CHECK(result.t == result.hi);
+  CHECK(result.object != kNone);
+  CHECK(result.detected == Detected::yes);
+  if (result.status == Status::overlap) CHECK((exact.status == Status::overlap && result.hi == 0));
+  tally.widthInPixels.push_back((result.hi - result.lo) * result.resolution / sensorSize(scene, query));
+}
+
+void compare(const Scene& scene, Sweeper& sweeper, reference::Reference& reference, std::vector<Query> queries,
+             uint32_t resolution, const std::vector<std::string>& names, BoundedTally& tally) {
+  for (Query& query : queries) {
+    query.mode = Mode::bounded;
+    query.resolution = resolution;
+  }
+  const std::vector<Result> results = sweeper.run(queries);
+  const std::vector<Result> exact = reference.run(queries);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    INFO("query " << names[i] << " at " << resolution << ": lo " << results[i].lo << " hi " << results[i].hi
+                  << ", reference t " << exact[i].t << " of " << queries[i].distance);
+    checkBracket(scene, queries[i], results[i], exact[i], tally);
+  }
+}
+
+}  // namespace
+
+void BoundedTally::add(const BoundedTally& more) {
+  queries += more.queries;
+  contacts += more.contacts;
+  found += more.found;
+  clear += more.clear;
+  undecided += more.undecided;
+  widthInPixels.insert(widthInPixels.end(), more.widthInPixels.begin(), more.widthInPixels.end());
+}
+
+BoundedTally compareBounded(const Scene& scene, std::vector<Query> queries, uint32_t resolution) {
+  BoundedTally tally;
+  Sweeper sweeper(device(), scene);
+  reference::Reference reference(scene);
+  std::vector<std::string> names;
+  for (size_t i = 0; i < queries.size(); ++i) names.push_back(std::to_string(i));
+  compare(scene, sweeper, reference, std::move(queries), resolution, names, tally);
+  return tally;
+}
+
+BoundedTally compareBounded(const tools::Workload& workload, uint32_t resolution) {
+  BoundedTally tally;
+  tools::ScenePlayer player(workload);
+  Sweeper sweeper(device(), player.scene());
+  reference::Reference reference(player.scene());
+  for (const tools::Batch& batch : tools::batchesOf(workload)) {
+    player.show(batch.scene);
+    std::vector<Query> queries;
+    std::vector<std::string> names;
+    for (uint32_t i : batch.queries) {
+      queries.push_back(tools::toQuery(workload.queries[i], Mode::bounded));
+      names.push_back(workload.queries[i].id);
+    }
+    compare(player.scene(), sweeper, reference, std::move(queries), resolution, names, tally);
+  }
+  return tally;
+}
+
+}  // namespace radar::test

@@ -1,0 +1,218 @@
+// Mode bounded against the reference: the bracket holds whatever the scene, and it is worth having.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "agreement/compare.h"
+#include "agreement/real_meshes.h"
+#include "reference/reference.h"
+#include "support/test_device.h"
+#include "workloads/generate.h"
+#include "workloads/random.h"
+
+namespace {
+
+using namespace radar;
+using test::BoundedTally;
+using test::compareBounded;
+using tools::MeshData;
+using tools::Random;
+using tools::Vec3;
+
+constexpr double kApart = 40;
+
+double median(std::vector<double> values) {
+  REQUIRE_FALSE(values.empty());
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+// Pairs of convex meshes, each sensor before an object of its own that it may hit.
+struct ConvexPairs {
+  explicit ConvexPairs(uint32_t count) {
+    Random random(41);
+    std::vector<MeshId> meshes;
+    for (const MeshData& mesh : {tools::makeBox({1, 2, 3}), tools::makeBox({2, 2, 2}), tools::makeUvSphere(20, 30)}) {
+      meshes.push_back(scene.addMesh(mesh.positions, mesh.indices));
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      const Vec3 home{kApart * i, 0, 0}, direction = random.direction(), aside = random.inBox({-1, -1, -1}, {1, 1, 1});
+      const auto scale = [&] {
+        return Vec3{random.uniform(0.5, 1.5), random.uniform(0.5, 1.5), random.uniform(0.5, 1.5)};
+      };
+      scene.addObject({meshes[random.below(3)], tools::makePose(random.rotation(), scale(), home), ~0u});
+      Vec3 start;
+      for (int k = 0; k < 3; ++k) start[k] = home[k] - 8 * direction[k] + aside[k];
+      queries.push_back({.mesh = meshes[random.below(3)],
+                         .worldFromMesh = tools::makePose(random.rotation(), scale(), start),
+                         .direction = direction,
+                         .distance = 16});
+    }
+  }
+  Scene scene;
+  std::vector<Query> queries;
+};
+
+// Every kind of workload there is, of one seed; a fraction of a second each.
+BoundedTally everyKind(uint64_t seed, uint32_t resolution) {
+  BoundedTally tally;
+  for (const double origin : {0.0, 1e4, 1e7}) {
+    for (const uint32_t triangles : {8u, 70u}) {
+      tally.add(compareBounded(
+          tools::makeWorkload(tools::Soups{.sensors = 96, .triangles = triangles, .origin = origin, .seed = seed}),
+          resolution));
+    }
+  }
+  tally.add(compareBounded(
+      tools::makeWorkload(tools::Table1{.sensors = 48, .shape = tools::SensorShape::box, .seed = seed}), resolution));
+  tally.add(compareBounded(tools::makeWorkload(tools::Table1{.sensors = 8, .seed = seed}), resolution));
+  tally.add(compareBounded(tools::makeWorkload(tools::Figure7{.teapots = 8, .steps = 2, .seed = seed}), resolution));
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("on workloads of every kind the bracket holds") {
+  const uint32_t resolution = GENERATE(16, 37, 64, 0);
+  CAPTURE(resolution);
+  const BoundedTally tally = everyKind(5, resolution);
+  CHECK(tally.found >= 100);
+  CHECK(tally.clear >= 100);
+  CHECK(tally.decided() >= 0.9);
+}
+
+TEST_CASE("a bracket holds at one pixel and at a thousand") {
+  const uint32_t resolution = GENERATE(1, 2, 1024);
+  const BoundedTally tally =
+      compareBounded(tools::makeWorkload(tools::Soups{.objects = 60, .sensors = 32, .seed = 3}), resolution);
+  CHECK(tally.contacts >= 5);
+}
+
+TEST_CASE("on real meshes the bracket holds") {
+  BoundedTally tally = compareBounded(
+      tools::makeWorkload(tools::RandomPoses{.meshes = test::assimpModels(), .objects = 300, .sensors = 40}), 32);
+  tally.add(compareBounded(
+      tools::makeWorkload(tools::RandomPoses{.meshes = test::cgalMeshes(), .objects = 300, .sensors = 40}), 32));
+  CHECK(tally.found >= 20);
+}
+
+TEST_CASE("the bracket holds in any unit, and whatever straddles the sensor") {
+  const double unit = GENERATE(1e-12, 1e-5, 1e5, 1e12);
+  CAPTURE(unit);
+  tools::Workload workload =
+      tools::makeWorkload(tools::Soups{.objects = 60, .sensors = 64, .triangles = 40, .seed = 9});
+  for (tools::QuerySpec& query : workload.queries) query.distance *= unit;
+  const auto enlarge = [&](tools::Instance& instance) {
+    for (double& value : instance.worldFromMesh.m) value *= unit;
+  };
+  for (tools::SceneSpec& scene : workload.scenes)
+    std::for_each(scene.instances.begin(), scene.instances.end(), enlarge);
+  for (tools::QuerySpec& query : workload.queries) enlarge(query.sensor);
+  const BoundedTally tally = compareBounded(workload, 64);
+  CHECK(tally.found >= 10);
+  CHECK(tally.decided() >= 0.8);
+}
+
+TEST_CASE("a small sensor over a vast floor, near and far, has a bracket") {
+  Scene scene;
+  const std::vector<float> corners{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  const MeshId floor = scene.addMesh(corners, std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
+  const MeshData box = tools::makeBox({1, 1, 1});
+  const MeshId sensor = scene.addMesh(box.positions, box.indices);
+  const double size = GENERATE(10.0, 1e5, 1e12);
+  CAPTURE(size);
+  scene.addObject({floor, {{size, 0, 0, 0, 0, size, 0.1 * size, 0, 0, 0.01 * size, size, 0}}, ~0u});
+  std::vector<Query> queries;
+  for (const double height : {0.75, 1.0, 20.0, 1e6}) {
+    for (const double distance : {0.0, 0.5, 30.0, 1e7}) {
+      Query query{.mesh = sensor, .direction = {0.1, 0, -1}, .distance = distance};
+      query.worldFromMesh.m[11] = height;
+      queries.push_back(query);
+    }
+  }
+  CHECK(compareBounded(scene, queries, 64).contacts >= 4);
+}
+
+TEST_CASE("of convex pairs the bracket is a few pixels wide, and halves with them") {
+  const ConvexPairs pairs(160);
+  double before = 0;
+  for (const uint32_t resolution : {64u, 128u, 256u}) {
+    const BoundedTally tally = compareBounded(pairs.scene, pairs.queries, resolution);
+    REQUIRE(tally.found >= 80);
+    const double pixels = median(tally.widthInPixels), width = pixels / resolution;
+    WARN("at " << resolution << " the median of hi - lo is " << pixels << " pixels");
+    CHECK(pixels < 8);
+    if (before > 0) CHECK(width <= 0.6 * before);
+    before = width;
+  }
+}
+
+TEST_CASE("on Table 1 the bracket decides nine of ten queries against the distance") {
+  for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
+    const BoundedTally tally =
+        compareBounded(tools::makeWorkload(tools::Table1{.boxes = 30'000, .sensors = 32, .shape = shape}), 256);
+    WARN((shape == tools::SensorShape::box ? "boxes" : "teapots") << ": decided " << 100 * tally.decided() << "%");
+    CHECK(tally.decided() >= 0.9);
+  }
+}
+
+TEST_CASE("a tolerance ends refining, and ends mode contact before the exact search where it is met") {
+  ConvexPairs pairs(64);
+  Sweeper sweeper(test::device(), pairs.scene);
+  for (Query& query : pairs.queries) query.tolerance = 0.5;
+  const std::vector<Result> contact = sweeper.run(pairs.queries);
+  for (Query& query : pairs.queries) query.mode = Mode::bounded;
+  const std::vector<Result> refined = sweeper.run(pairs.queries);
+  for (Query& query : pairs.queries) query.tolerance = 1e-3;
+  const std::vector<Result> finest = sweeper.run(pairs.queries);
+  uint32_t bounded = 0, exact = 0, coarse = 0;
+  for (size_t i = 0; i < contact.size(); ++i) {
+    CAPTURE(i, contact[i].lo, contact[i].hi, refined[i].lo, refined[i].hi);
+    CHECK(contact[i].status != Status::undecided);
+    if (contact[i].status != Status::hit) continue;
+    CHECK(contact[i].hi - contact[i].lo <= 0.5);
+    bounded += contact[i].tier == Tier::bounded;
+    exact += contact[i].tier == Tier::contact;
+    if (refined[i].status != Status::hit) continue;
+    CHECK((refined[i].hi - refined[i].lo <= 0.5 || refined[i].resolution == 256));
+    coarse += refined[i].resolution == 64;
+    CHECK(finest[i].resolution == 256);
+    CHECK(finest[i].lo >= refined[i].lo);
+    CHECK(finest[i].hi <= refined[i].hi);
+  }
+  CHECK(bounded >= 20);
+  CHECK(exact >= 1);
+  CHECK(coarse >= 20);
+}
+
+TEST_CASE("a bracket does not depend on the batch it is asked in") {
+  const tools::Workload workload = tools::makeWorkload(tools::Soups{.sensors = 40, .triangles = 30, .seed = 6});
+  tools::ScenePlayer player(workload);
+  player.show(0);
+  std::vector<Query> queries;
+  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::bounded, 64));
+  Sweeper sweeper(test::device(), player.scene()), cramped(test::device(), player.scene(), {.pictureBytes = 1 << 18});
+  const std::vector<Result> together = sweeper.run(queries), parts = cramped.run(queries);
+  CHECK(cramped.stats().submissions > 1);
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Result alone = sweeper.run({&queries[i], 1})[0];
+    for (const Result& other : {together[i], parts[i]}) {
+      CHECK(alone.status == other.status);
+      CHECK((same(alone.lo, other.lo) && same(alone.hi, other.hi)));
+      CHECK((alone.object == other.object && alone.triA == other.triA && alone.triB == other.triB));
+    }
+  }
+}
+
+TEST_CASE("a million brackets hold", "[.][million]") {
+  BoundedTally tally;
+  for (uint64_t seed = 1000; tally.queries < 1'000'000; ++seed) {
+    const uint32_t resolutions[] = {16, 24, 32, 64};
+    tally.add(everyKind(seed, seed % 100 == 0 ? 256 : seed % 1000 == 1 ? 1024 : resolutions[seed % 4]));
+  }
+  WARN(tally.queries << " queries, " << tally.contacts << " contacts, " << tally.found << " found, " << tally.clear
+                     << " clear, " << tally.undecided << " undecided");
+  CHECK(tally.found > 0);
+}

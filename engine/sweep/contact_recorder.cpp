@@ -5,6 +5,7 @@
 #include "gpu/barrier.h"
 #include "spirv/bounds_comp.h"
 #include "spirv/contact_comp.h"
+#include "spirv/contact_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/pairs_comp.h"
 
 // pass       reads                                   writes                      barrier behind it
@@ -37,6 +38,11 @@ struct CountPush {
   uint32_t count, groupsX;
 };
 
+std::span<const uint32_t> searchShader(const Device::Impl& device) {
+  if (device.doubles) return k_contact_comp;
+  return k_contact_comp_RADAR_NO_DOUBLES;
+}
+
 std::vector<gpu::Binding> bindingList() {
   std::vector<gpu::Binding> list;
   for (uint32_t i = 0; i < gpu::kContactBindings; ++i) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
@@ -66,7 +72,7 @@ ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resi
       bindings_(device, bindingList(), sizeof(CountPush)),
       bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
       pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
-      contact_(gpu::computePipeline(device, bindings_.layout(), k_contact_comp, "contact",
+      contact_(gpu::computePipeline(device, bindings_.layout(), searchShader(device), "contact",
                                     std::clamp(device.subgroupSize, 8u, 128u))),
       targets_(device, "targets", Residence::device, kUploaded),
       placements_(device, "placements", Residence::device, kUploaded),

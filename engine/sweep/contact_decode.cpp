@@ -25,14 +25,30 @@ std::array<Vector, 6> partsOf(const PlacedPair& pair, uint32_t feature) {
   return {a[kEdgeFrom[i]], a[kEdgeTo[i]], a[kEdgeFrom[i]], b[kEdgeFrom[j]], b[kEdgeTo[j]], b[kEdgeFrom[j]]};
 }
 
+// How far off the device may be, relative to the triangle or to what lies before it: an edge that all but runs along
+// the motion makes it worse, and the pair is decided exactly.
+constexpr double kSharpEnough = 1e-12;
+
+// Longest edge of a triangle's box, in parameters of the direction.
+double extentIn(const exact::Triangle& a, const Vector& direction) {
+  double extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto [least, most] = std::minmax({a[0][k], a[1][k], a[2][k]});
+    extent = std::max(extent, most - least);
+  }
+  return extent / lengthOf(scaledDirection(direction));
+}
+
 // Whether the device's word stands: every contender surely meets, first where the same two features touch, before D.
 bool settled(const Search& search, const Query& query, const Scene::Impl& scene) {
   const gpu::Contender& first = search.contenders[0];
   if ((first.flags & gpu::kContenderSharp) == 0) return false;
   if ((first.at + first.error) * lengthOf(scaledDirection(query.direction)) * (1 + 8 * kDoubleUnit) >= query.distance)
     return false;
+  const PlacedPair pair = placedPair(nameOf(first, query, scene), query, scene);
+  if (first.error > kSharpEnough * std::max(first.at, extentIn(pair.a, query.direction))) return false;
   if (search.contenders.size() == 1) return true;
-  const auto parts = partsOf(placedPair(nameOf(first, query, scene), query, scene), first.flags & 0xff);
+  const auto parts = partsOf(pair, first.flags & 0xff);
   return std::all_of(search.contenders.begin() + 1, search.contenders.end(), [&](const gpu::Contender& c) {
     return (c.flags & gpu::kContenderSharp) != 0 && c.at == first.at &&
            partsOf(placedPair(nameOf(c, query, scene), query, scene), c.flags & 0xff) == parts;

@@ -37,7 +37,7 @@ const uint kTrimWork = 17;   // a triangle: 3 corners, 3 rows each, 3 copies
 const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps of sorting
 // Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
 // work; what a run has found cuts the next one short.
-const uint kRun = 4096;
+layout(constant_id = 1) const uint kRun = 4096;
 const uint kQueue = 1024;
 
 shared uint nearestGap;                 // over the cluster pairs left; floats >= 0 order as their bits
@@ -158,10 +158,13 @@ void placedCorners(double pose[12], uint mesh, uint slot, out dvec3 p[3]) {
 // No room for what the next step may find.
 bool overflows() { return contended + kLanes > targets[v].contenderCapacity; }
 
+// Only "within D or not" is asked, and a contact within D is certain.
+bool decided() { return targets[v].decide != 0 && hi < targets[v].distance; }
+
 // Solves all that is queued.
 void flush() {
   barrier();
-  const uint count = overflows() ? 0 : queued;
+  const uint count = overflows() || decided() ? 0 : queued;
   const double length = targets[v].directionLength;
   const dvec3 direction = dvec3(targets[v].direction[0], targets[v].direction[1], targets[v].direction[2]);
   for (uint first = 0; first < count; first += kLanes) {
@@ -185,7 +188,7 @@ void flush() {
     }
     barrier();
     work += kSolveWork + kLanes;
-    if (overflows()) break;
+    if (overflows() || decided()) break;
   }
   hiFloat = upward(hi);
   solved += count;
@@ -254,7 +257,7 @@ void main() {
   }
   barrier();
   uint round = states[v].round;
-  while (cursor < total && work < kWorkPerDispatch && !overflows()) {
+  while (cursor < total && work < kWorkPerDispatch && !overflows() && !decided()) {
     const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
     barrier();
     if (gl_LocalInvocationID.x == 0) nearestGap = kNobody;
@@ -271,7 +274,7 @@ void main() {
       continue;
     }
     const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
-    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows(); ++i) {
+    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows() && !decided(); ++i) {
       const ClusterPair pair = pairs[first + i];
       ++work;
       if (pair.gap < 0.0 || pair.gap > limit || pair.gap > hiFloat) continue;
@@ -287,7 +290,8 @@ void main() {
   if (gl_LocalInvocationID.x == 0) {
     states[v].hi = hi;
     states[v].contenderCount = contended;
-    states[v].progress = overflows() ? kSearchOverflow : (cursor >= total ? kSearchDone : kSearchUnfinished);
+    states[v].progress =
+        decided() || (cursor >= total && !overflows()) ? kSearchDone : (overflows() ? kSearchOverflow : kSearchUnfinished);
     states[v].boxPairs += boxPairs;
     states[v].solved += solved;
     states[v].round = round;

@@ -166,7 +166,7 @@ struct Target {
   uint pairCapacity;
   uint firstContender;
   uint contenderCapacity;
-  uint pad;
+  uint decide;              // 1: enough that there is a contact within D, whichever
 };
 
 // A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.

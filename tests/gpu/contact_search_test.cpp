@@ -128,10 +128,9 @@ TEST_CASE(
 TEST_CASE("with the least room for pairs and contenders, and in the shortest runs, the answers have the same bits") {
   const ContactRoom room = GENERATE(ContactRoom{.pairs = 1}, ContactRoom{.contenders = 1}, ContactRoom{.run = 1},
                                     ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .contenders = 1, .run = 1});
-  const tools::Family family =
-      GENERATE(tools::Family::nonConvex, tools::Family::interlocking, tools::Family::lattice, tools::Family::crossing);
+  const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice);
   CAPTURE(tools::nameOf(family), room.pairs, room.contenders, room.run);
-  const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 48, .seed = 4});
+  const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 32, .seed = 4});
   tools::ScenePlayer player(workload);
   const std::vector<Query> queries = show(workload, player);
   Sweeper sweeper(test::device(), player.scene());

@@ -180,7 +180,8 @@ struct Target {
   uint pairCapacity;
   uint firstContender;
   uint contenderCapacity;
-  uint pad;
+  float enough;             // a contact certainly before this ends the search: D, rounded down, where only "within D or
+                            // not" is asked; else 0
 };
 
 // A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.

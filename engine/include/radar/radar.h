@@ -128,6 +128,7 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, world units
   Mode mode = Mode::contact;
+  bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
   uint32_t resolution = 0;        ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
@@ -154,6 +155,9 @@ enum class Detected : uint32_t {
 };
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
+///
+/// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
+/// normal do not exist; lo and hi still hold t*, more loosely; only the status is independent of order and culling.
 struct Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;

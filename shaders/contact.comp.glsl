@@ -39,7 +39,7 @@ const uint kTrimWork = 5;    // a triangle: 3 copies
 const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps of sorting
 // Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
 // work; what a run has found cuts the next one short.
-const uint kRun = 4096;
+layout(constant_id = 1) const uint kRun = 4096;
 // Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
 const uint kTested = 256;
 const uint kQueue = 512;
@@ -225,6 +225,9 @@ void solve(uvec4 entry, bool live) {
 }
 #endif
 
+// Only "within D or not" is asked, and a contact within D is certain.
+bool decided() { return hiFloat < targets[v].enough; }
+
 // Solves all that is queued.
 void flush() {
   barrier();
@@ -232,7 +235,7 @@ void flush() {
 #ifndef RADAR_NO_DOUBLES
   hi = min(hi, double(hiFloat));
 #endif
-  for (uint first = 0; first < count && !overflows(); first += kLanes) {
+  for (uint first = 0; first < count && !overflows() && !decided(); first += kLanes) {
     const uint q = first + gl_LocalInvocationID.x;
     solve(queue[min(q, count - 1)], q < count);
     work += kSolveWork + kLanes;
@@ -314,7 +317,7 @@ void main() {
   }
   barrier();
   uint round = states[v].round;
-  while (cursor < total && work < kWorkPerDispatch && !overflows()) {
+  while (cursor < total && work < kWorkPerDispatch && !overflows() && !decided()) {
     const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
     barrier();
     if (gl_LocalInvocationID.x == 0) nearestGap = kNobody;
@@ -331,7 +334,7 @@ void main() {
       continue;
     }
     const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
-    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows(); ++i) {
+    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows() && !decided(); ++i) {
       const ClusterPair pair = pairs[first + i];
       ++work;
       if (pair.gap < 0.0 || pair.gap > limit || pair.gap > hiFloat) continue;
@@ -347,7 +350,8 @@ void main() {
   if (gl_LocalInvocationID.x == 0) {
     states[v].hi = hiFloat;
     states[v].contenderCount = contended;
-    states[v].progress = overflows() ? kSearchOverflow : (cursor >= total ? kSearchDone : kSearchUnfinished);
+    states[v].progress =
+        decided() || (cursor >= total && !overflows()) ? kSearchDone : (overflows() ? kSearchOverflow : kSearchUnfinished);
     states[v].boxPairs += boxPairs;
     states[v].solved += solved;
     states[v].round = round;

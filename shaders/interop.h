@@ -218,7 +218,8 @@ struct Target {
   uint pairCapacity;
   uint firstContender;
   uint contenderCapacity;
-  uint pad;
+  float enough;             // a contact certainly before this ends the search: D, rounded down, where only "within D or
+                            // not" is asked; else 0
 };
 
 // A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.
@@ -284,6 +285,25 @@ struct State {
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the
 // sensor's face; 6 + 3*i + j: edge i of the sensor's triangle and edge j of the scene's, edges being (0,1), (1,2), (0,2).
 INTEROP_CONST kFeatureEdges = 6;
+
+// ---- the self-test of doubles ------------------------------------------------------------------------------------------
+
+INTEROP_CONST kBindSums = 0;     // Sum
+INTEROP_CONST kBindResults = 1;  // SumResult
+INTEROP_CONST kSumBindings = 2;
+INTEROP_CONST kSums = 256;
+
+// Numbers to calculate with: x and y, and p placed by a row of a pose.
+struct Sum {
+  double x, y;
+  double row[4];
+  Point p;
+  uint pad;
+};
+
+struct SumResult {
+  double sum, product, quotient, placed, rounded;
+};
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

@@ -28,6 +28,7 @@ struct Device::Impl {
   std::string name, driver;
   uint32_t maxLayers = 0;
   uint32_t subgroupSize = 0;
+  bool doubles = false;  ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
   /// Names an object for debuggers and validation messages.

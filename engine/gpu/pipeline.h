@@ -34,9 +34,9 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// `constants`: values of the specialization constants 0, 1, ... that the shader has.
+/// `constants`: values of specialization constants 0, 1, ..., where the shader leaves some open.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, std::initializer_list<uint32_t> constants = {});
+                         const char* name, std::span<const uint32_t> constants = {});
 
 /// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
 /// dynamic; a fragment survives if its depth is less.

@@ -1,6 +1,7 @@
 #include "sweep/bounded_recorder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,7 +10,6 @@
 #include "spirv/outer_draw_comp.h"
 #include "spirv/outer_identify_comp.h"
 #include "spirv/outer_reduce_comp.h"
-#include "spirv/solve_comp.h"
 
 // pass          reads                                     writes                       barrier behind it
 // ------------- ----------------------------------------- ---------------------------- ------------------------------
@@ -69,9 +69,9 @@ BoundedRecorder::BoundedRecorder(const Device::Impl& device, ResidentScene& resi
       drawSensor_(drawPipeline("outer sensor", gpu::kDrawSensor)),
       drawNearest_(drawPipeline("outer near", gpu::kDrawNearest)),
       reduce_(gpu::computePipeline(device, bindings_.layout(), k_outer_reduce_comp, "bound")),
-      identify_(
-          gpu::computePipeline(device, bindings_.layout(), k_outer_identify_comp, "outer identify", {lanesOf(device)})),
-      solve_(gpu::computePipeline(device, bindings_.layout(), k_solve_comp, "solve")),
+      identify_(gpu::computePipeline(device, bindings_.layout(), k_outer_identify_comp, "outer identify",
+                                     std::array{lanesOf(device)})),
+      solve_(gpu::computePipeline(device, bindings_.layout(), solveShader(device), "solve")),
       views_(device, "outer views", Residence::device, kUploaded),
       draws_(device, "outer draws", Residence::device, kUploaded),
       items_(device, "outer items", Residence::device, kUploaded),
@@ -84,7 +84,8 @@ BoundedRecorder::BoundedRecorder(const Device::Impl& device, ResidentScene& resi
       readback_(device, "outer readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 gpu::Pipeline BoundedRecorder::drawPipeline(const char* name, uint32_t draws) const {
-  return gpu::computePipeline(*device_, bindings_.layout(), k_outer_draw_comp, name, {lanesOf(*device_), draws});
+  return gpu::computePipeline(*device_, bindings_.layout(), k_outer_draw_comp, name,
+                              std::array{lanesOf(*device_), draws});
 }
 
 void BoundedRecorder::stage(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene) {

@@ -19,9 +19,10 @@ double msSince(Clock::time_point start) {
 // One submission holds at most so many sensors.
 constexpr uint64_t kMaxViews = 2048;
 
-// Whether the bracket is all that was asked for.
+// Whether the bracket is all that was asked for; to decide, that it lies on one side of D.
 bool settled(const Result& result, const Query& query) {
   if (result.status == Status::clear || result.status == Status::overlap) return true;
+  if (query.decide) return result.status == Status::hit;
   return result.hi - result.lo <= query.tolerance;  // never where hi is not known
 }
 
@@ -147,7 +148,9 @@ std::vector<size_t> BoundedTier::run(std::span<const Query> queries, std::span<c
       Load alone;
       alone.add(plan);
       if (!fits(alone, true)) {
-        out.reasons[i] = "capacity: what is in reach needs a larger buffer than the device allows";
+        if (out.results[i].status == Status::invalid) {
+          out.reasons[i] = "capacity: what is in reach needs a larger buffer than the device allows";
+        }
         continue;
       }
       Load next = load;

@@ -45,6 +45,7 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
   plan.target.directionLength = lengthOf(direction);
   plan.target.distance = query.distance;
   plan.target.mesh = query.mesh;
+  plan.target.enough = query.decide ? downward(query.distance) : 0;
   if (reach.objects.empty()) return plan;
 
   plan.placements.push_back(placementOf(window.frameFromMesh, window.error, query.mesh, kNone));

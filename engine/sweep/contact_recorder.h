@@ -16,9 +16,17 @@ struct Search {
   std::span<const gpu::Contender> contenders;
 };
 
+/// Room for the lists of one plan at first, and how many cluster pairs a search orders at a time: tests make them
+/// small.
+struct ContactRoom {
+  uint64_t pairs = 4096;
+  uint32_t contenders = 256;
+  uint32_t run = 4096;
+};
+
 class ContactRecorder {
  public:
-  ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps);
+  ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps, const ContactRoom& room = {});
 
   /// Searches the first contact of every plan: one upload, one command buffer, one readback; more only where a list was
   /// longer than its room or a search longer than a dispatch may be, and that is found out and done. `found` is called
@@ -45,6 +53,7 @@ class ContactRecorder {
 
   const Device::Impl* device_;
   ResidentScene& resident_;
+  ContactRoom room_;
   gpu::Upload upload_;
   gpu::Submission submission_;
   gpu::Bindings bindings_;

@@ -72,6 +72,11 @@ float upward(double x) {
   return x < kMost ? std::nextafter(static_cast<float>(x), INFINITY) : INFINITY;
 }
 
+float downward(double x) {
+  const double most = std::numeric_limits<float>::max();
+  return std::nextafter(static_cast<float>(std::min(x, most)), 0.0f);
+}
+
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
   double worst = 0;
   for (int row = 0; row < 3; ++row) {

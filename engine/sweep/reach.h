@@ -13,6 +13,8 @@ inline constexpr double kFloatUnit = 0x1p-24;
 
 /// A float above `x` >= 0: an error bound must not shrink. Infinity where there is none.
 float upward(double x);
+/// A float below `x` >= 0, or 0.
+float downward(double x);
 
 /// Where the sensor is, in the frame of its view.
 struct SensorWindow {

@@ -23,6 +23,9 @@ struct StoredScopes {
   std::vector<float> range, mask;
 };
 
+/// Solves nominated pairs, with doubles where the device has them.
+std::span<const uint32_t> solveShader(const Device::Impl& device);
+
 class Recorder {
  public:
   /// `resident`: the scene's copy, shared with other recorders of the device.

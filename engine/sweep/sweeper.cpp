@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "gpu/device.h"
 #include "sweep/bounded_tier.h"
@@ -46,7 +47,6 @@ struct Sweeper::Impl {
         options(given),
         resident(device),
         recorder(device, resident, given.pictureBytes, given.timestamps),
-        boundedTier(device, resident, given.pictureBytes, given.timestamps),
         contactRecorder(device, resident, given.timestamps) {
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
     // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
@@ -60,6 +60,8 @@ struct Sweeper::Impl {
   void flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results);
   void submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results);
   void runSampled(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
+  std::vector<size_t> runBounded(std::span<const Query> queries, std::span<const size_t> which,
+                                 std::vector<Result>& results);
   void runContact(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
   void search(std::span<const size_t> which, std::span<const ContactPlan> plans, std::span<const Query> queries,
               std::vector<Result>& results);
@@ -72,7 +74,7 @@ struct Sweeper::Impl {
   SweeperOptions options;
   ResidentScene resident;
   Recorder recorder;
-  BoundedTier boundedTier;
+  std::optional<BoundedTier> boundedTier;  ///< made when first needed: pipelines take a while
   ContactRecorder contactRecorder;
   Hierarchy hierarchy;
   Batch batch;
@@ -202,6 +204,14 @@ void Sweeper::Impl::runSampled(std::span<const Query> queries, std::span<const s
   flush(slice, queries, results);
 }
 
+// Returns what the bracket does not settle.
+std::vector<size_t> Sweeper::Impl::runBounded(std::span<const Query> queries, std::span<const size_t> which,
+                                              std::vector<Result>& results) {
+  if (which.empty()) return {};
+  if (!boundedTier) boundedTier.emplace(device, resident, options.pictureBytes, options.timestamps);
+  return boundedTier->run(queries, which, scene.impl(), hierarchy, {results, reasons, stats});
+}
+
 void Sweeper::Impl::search(std::span<const size_t> which, std::span<const ContactPlan> plans,
                            std::span<const Query> queries, std::vector<Result>& results) {
   if (plans.empty()) return;
@@ -283,10 +293,9 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
     (query.mode == Mode::sampled ? sampled : bracket ? bounded : contact).push_back(i);
   }
   self.runSampled(queries, sampled, results);
-  const std::vector<size_t> open =
-      self.boundedTier.run(queries, bounded, self.scene.impl(), self.hierarchy, {results, self.reasons, self.stats});
-  std::copy_if(open.begin(), open.end(), std::back_inserter(contact),
-               [&](size_t i) { return queries[i].mode == Mode::contact; });
+  for (const size_t i : self.runBounded(queries, bounded, results)) {
+    if (queries[i].mode == Mode::contact) contact.push_back(i);
+  }
   self.runContact(queries, contact, results);
   return results;
 }

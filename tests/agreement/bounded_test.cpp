@@ -54,10 +54,11 @@ struct ConvexPairs {
   std::vector<Query> queries;
 };
 
-// Every kind of workload there is, of one seed; a fraction of a second each.
-BoundedTally everyKind(uint64_t seed, uint32_t resolution) {
+// Scenes of every kind; radar_random_queries has the families that are known to be hard.
+BoundedTally everyKind(uint32_t resolution) {
+  const uint64_t seed = 5;
   BoundedTally tally;
-  for (const double origin : {0.0, 1e4, 1e7}) {
+  for (const double origin : {0.0, 1e7}) {
     for (const uint32_t triangles : {8u, 70u}) {
       tally.add(compareBounded(
           tools::makeWorkload(tools::Soups{.sensors = 96, .triangles = triangles, .origin = origin, .seed = seed}),
@@ -65,18 +66,18 @@ BoundedTally everyKind(uint64_t seed, uint32_t resolution) {
     }
   }
   tally.add(compareBounded(
-      tools::makeWorkload(tools::Table1{.sensors = 48, .shape = tools::SensorShape::box, .seed = seed}), resolution));
+      tools::makeWorkload(tools::Table1{.sensors = 24, .shape = tools::SensorShape::box, .seed = seed}), resolution));
   tally.add(compareBounded(tools::makeWorkload(tools::Table1{.sensors = 8, .seed = seed}), resolution));
-  tally.add(compareBounded(tools::makeWorkload(tools::Figure7{.teapots = 8, .steps = 2, .seed = seed}), resolution));
+  tally.add(compareBounded(tools::makeWorkload(tools::Figure7{.teapots = 8, .steps = 1, .seed = seed}), resolution));
   return tally;
 }
 
 }  // namespace
 
 TEST_CASE("on workloads of every kind the bracket holds") {
-  const uint32_t resolution = GENERATE(16, 37, 64, 0);
+  const uint32_t resolution = GENERATE(37, 0);
   CAPTURE(resolution);
-  const BoundedTally tally = everyKind(5, resolution);
+  const BoundedTally tally = everyKind(resolution);
   CHECK(tally.found >= 100);
   CHECK(tally.clear >= 100);
   CHECK(tally.decided() >= 0.9);
@@ -148,6 +149,36 @@ TEST_CASE("of convex pairs the bracket is a few pixels wide, and halves with the
   }
 }
 
+TEST_CASE("of plates that face each other the bracket is as narrow as the margins for float") {
+  // Their depth is the same in all pixels, so nothing else widens it.
+  Random random(8);
+  const std::vector<float> corners{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  Scene scene;
+  const MeshId plate = scene.addMesh(corners, std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
+  std::vector<Query> queries;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const Vec3 home{kApart * i, 0, 0};
+    const std::array<double, 9> turn = random.rotation();
+    const Vec3 direction{turn[2], turn[5], turn[8]};
+    const double away = random.uniform(0.01, 10);
+    const Vec3 start{home[0] - away * direction[0], -away * direction[1], -away * direction[2]};
+    scene.addObject({plate, tools::makePose(turn, {1, 1, 1}, home), ~0u});
+    queries.push_back({.mesh = plate,
+                       .worldFromMesh = tools::makePose(turn, {2, 1, 1}, start),
+                       .direction = direction,
+                       .distance = 12,
+                       .mode = Mode::bounded,
+                       .resolution = 64});
+  }
+  std::vector<double> widths;
+  for (const Result& result : Sweeper(test::device(), scene).run(queries)) {
+    REQUIRE(result.status == Status::hit);
+    widths.push_back((result.hi - result.lo) / (4 + 12));
+  }
+  WARN("the median of hi - lo is " << median(widths) << " of size + D");
+  CHECK(median(widths) < 1e-5);
+}
+
 TEST_CASE("on Table 1 the bracket decides nine of ten queries against the distance") {
   for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
     const BoundedTally tally =
@@ -186,6 +217,30 @@ TEST_CASE("a tolerance ends refining, and ends mode contact before the exact sea
   CHECK(coarse >= 20);
 }
 
+TEST_CASE("to decide, a bracket on one side of the distance is enough") {
+  const tools::Workload workload = tools::makeWorkload(tools::Soups{.objects = 60, .sensors = 96, .seed = 12});
+  tools::ScenePlayer player(workload);
+  player.show(0);
+  std::vector<Query> queries;
+  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::bounded));
+  Sweeper sweeper(test::device(), player.scene());
+  const std::vector<Result> exact = reference::Reference(player.scene()).run(queries);
+  for (Query& query : queries) query.decide = true;
+  const std::vector<Result> results = sweeper.run(queries);
+  uint32_t coarse = 0, decided = 0;
+  for (size_t i = 0; i < results.size(); ++i) {
+    const Result& result = results[i];
+    if (result.status == Status::undecided) continue;
+    ++decided;
+    coarse += result.status == Status::hit && result.resolution == 64;
+    CHECK((result.status == Status::clear) == (exact[i].status == Status::clear));
+    CHECK((result.status == Status::hit || result.status == Status::clear));
+    CHECK((std::isnan(result.t) && result.object == kNone));
+  }
+  CHECK(decided >= 85);
+  CHECK(coarse >= 20);
+}
+
 TEST_CASE("a bracket does not depend on the batch it is asked in") {
   const tools::Workload workload = tools::makeWorkload(tools::Soups{.sensors = 40, .triangles = 30, .seed = 6});
   tools::ScenePlayer player(workload);
@@ -204,15 +259,4 @@ TEST_CASE("a bracket does not depend on the batch it is asked in") {
       CHECK((alone.object == other.object && alone.triA == other.triA && alone.triB == other.triB));
     }
   }
-}
-
-TEST_CASE("a million brackets hold", "[.][million]") {
-  BoundedTally tally;
-  for (uint64_t seed = 1000; tally.queries < 1'000'000; ++seed) {
-    const uint32_t resolutions[] = {16, 24, 32, 64};
-    tally.add(everyKind(seed, seed % 100 == 0 ? 256 : seed % 1000 == 1 ? 1024 : resolutions[seed % 4]));
-  }
-  WARN(tally.queries << " queries, " << tally.contacts << " contacts, " << tally.found << " found, " << tally.clear
-                     << " clear, " << tally.undecided << " undecided");
-  CHECK(tally.found > 0);
 }

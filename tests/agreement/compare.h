@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "reference/reference.h"
 #include "workloads/workload.h"
 
 namespace radar::test {
@@ -26,6 +27,8 @@ struct BoundedTally {
 /// Answers the queries in mode bounded, in one batch, and CHECKs every promise that the brackets make. `resolution`: 0
 /// for refining.
 BoundedTally compareBounded(const Scene& scene, std::vector<Query> queries, uint32_t resolution);
+BoundedTally compareBounded(const Scene& scene, Sweeper& sweeper, reference::Reference& reference,
+                            std::vector<Query> queries, uint32_t resolution);
 /// Likewise every batch of the workload.
 BoundedTally compareBounded(const tools::Workload& workload, uint32_t resolution);
 

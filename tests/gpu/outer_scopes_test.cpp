@@ -289,5 +289,5 @@ TEST_CASE("a cluster of triangles that each fill the window is drawn to its last
 }
 
 TEST_CASE("an outer scope misses no pixel of a million triangles", "[.][million]") {
-  checkTriangles(1100, 2);
+  checkTriangles(1150, 2);
 }

@@ -128,7 +128,7 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        sizeof(Target),
        {MEMBER(Target, pose), MEMBER(Target, direction), MEMBER(Target, directionLength), MEMBER(Target, distance),
         MEMBER(Target, mesh), MEMBER(Target, firstPair), MEMBER(Target, pairCapacity), MEMBER(Target, firstContender),
-        MEMBER(Target, contenderCapacity), MEMBER(Target, pad)}},
+        MEMBER(Target, contenderCapacity), MEMBER(Target, enough)}},
       {"Placement",
        sizeof(Placement),
        {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),

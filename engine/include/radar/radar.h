@@ -129,10 +129,11 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, world units
   Mode mode = Mode::contact;
+  bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
   /// Pixels of the window's longer side, up to kMaxResolution. 0, in mode sampled: chosen from the meshes; in mode
-  /// bounded: 64, then doubled up to 256 while neither clear, overlap nor `tolerance` settles the query.
+  /// bounded: 64, then doubled up to 256 while neither clear, overlap, `decide` nor `tolerance` settles the query.
   uint32_t resolution = 0;
   /// World units, at least 0: a bracket with hi - lo <= tolerance is answer enough. Looked at between tiers only: mode
   /// contact with a tolerance takes one look at outer scopes first; once begun, contact ends at t*.
@@ -160,6 +161,9 @@ enum class Detected : uint32_t {
 };
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
+///
+/// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
+/// normal do not exist; lo and hi still hold t*, more loosely; only the status is independent of order and culling.
 struct Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
@@ -207,6 +211,7 @@ struct HostDevice {
   VkDevice device = VK_NULL_HANDLE;
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
+  bool doubles = true;      ///< the feature shaderFloat64 is enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
 };
 
@@ -214,6 +219,7 @@ struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
   /// Receives each warning or error of the validation layers that are active; called on any thread.
   std::function<void(const std::string&)> onValidation;
+  bool doubles = true;  ///< false: do without them, as where shaderFloat64 is missing
 };
 
 /// A logical device with one queue: opened here (and then owned), or a host's (and then only borrowed).
@@ -221,8 +227,8 @@ class Device {
  public:
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks something. While a Sweeper of this device runs, the host keeps
-  /// other threads from using `queue`.
+  /// Throws with reasons if the physical device lacks something. While this and a Sweeper of this device run, the host
+  /// keeps other threads from using `queue`.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -230,6 +236,10 @@ class Device {
 
   const std::string& name() const;
   const std::string& driver() const;
+  /// Whether pairs are solved in double precision on the device: it has doubles, and a test at opening found them to
+  /// be those of the CPU, bit for bit. Else they are solved in float, with error bounds, and what that leaves open is
+  /// decided on the CPU: the answers are the same.
+  bool doubles() const;
   const HostDevice& handles() const;
 
   struct Impl;

@@ -178,7 +178,7 @@ INTEROP_CONST kDrawFarthest = 1;
 INTEROP_CONST kDrawSensor = 2;
 INTEROP_CONST kDrawNearest = 3;
 
-// A cluster in the rows of the window that a workgroup draws, with all that its triangles share.
+// A cluster in the pixels of the window where a workgroup draws it, with all that its triangles share.
 struct Band {
   Rows pixelsFromMesh;  // recentred mesh -> pixels on all axes, from the window's corner and the frame's origin
   float snap;        // how far a vertex may be off, pixels
@@ -189,12 +189,14 @@ struct Band {
   uint firstVertex;  // of the mesh
   uint firstIndex;   // of the first triangle
   uint triangles;    // kCluster at most
+  uint firstColumn;  // of the window
+  uint endColumn;
   uint firstRow;
   uint endRow;
   uint item;
   uint isSensor;
 };
-// Pixels of a cluster's box in a band, at most. Lavapipe ends loops silently after 65,535 iterations of an invocation:
+// Pixels of a band, at most. Lavapipe ends loops silently after 65,535 iterations of an invocation:
 // each pixel takes two, of kCluster / 8 triangles. Less also keeps a device's invocations evenly busy.
 INTEROP_CONST kBandPixels = 2048;
 

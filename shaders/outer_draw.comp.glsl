@@ -52,12 +52,13 @@ void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX;
   if (group >= push.count) return;
   const Band band = bands[push.first + group];
+  const uvec2 firstPixel = uvec2(band.firstColumn, band.firstRow), endPixel = uvec2(band.endColumn, band.endRow);
   for (uint triangle = gl_LocalInvocationID.x; triangle < band.triangles; triangle += kLanes) {
     const uint corner = band.firstIndex + 3 * triangle;
     const vec3 p0 = inPixels(band, positions[band.firstVertex + indices[corner]]);
     const vec3 p1 = inPixels(band, positions[band.firstVertex + indices[corner + 1]]);
     const vec3 p2 = inPixels(band, positions[band.firstVertex + indices[corner + 2]]);
-    const Facet f = facetOf(p0, p1, p2, band.snap, uvec2(0, band.firstRow), uvec2(band.width, band.endRow));
+    const Facet f = facetOf(p0, p1, p2, band.snap, firstPixel, endPixel);
     uvec2 next = f.first;
     while (next.y < f.end.y) {
       // Pixels are skipped until one counts: lavapipe runs both sides of an `if`, but leaves a loop.

@@ -56,13 +56,14 @@ void main() {
   const Band band = bands[push.first + group];
   if (answers[band.view].candidates == 0) return;
   const float cellsPerPixel = 1.0 / float(views[band.view].cell);
+  const uvec2 firstPixel = uvec2(band.firstColumn, band.firstRow), endPixel = uvec2(band.endColumn, band.endRow);
   for (uint triangle = gl_LocalInvocationID.x; triangle < band.triangles; triangle += kLanes) {
     const uint corner = band.firstIndex + 3 * triangle;
     const vec3 p0 = inPixels(band, positions[band.firstVertex + indices[corner]]);
     const vec3 p1 = inPixels(band, positions[band.firstVertex + indices[corner + 1]]);
     const vec3 p2 = inPixels(band, positions[band.firstVertex + indices[corner + 2]]);
     // The same pixels as when it was drawn, and so the same bits.
-    const Facet f = facetOf(p0, p1, p2, band.snap, uvec2(0, band.firstRow), uvec2(band.width, band.endRow));
+    const Facet f = facetOf(p0, p1, p2, band.snap, firstPixel, endPixel);
     if (f.first.y < f.end.y) nameAt(band, f, cellsPerPixel, kItemTriangles * band.item + triangle);
   }
 }

@@ -61,9 +61,9 @@ void main() {
   }
   barrier();
 
-  const uint count = listCount;
+  const uint others = nominates ? listCount : 0;  // lavapipe leaves a loop that no lane is in
   uint rank = 0;
-  for (uint i = 0; i < count; ++i) {
+  for (uint i = 0; i < others; ++i) {
     rank += uint(listBound[i] < best || (listBound[i] == best && listPixel[i] < bestPixel));
   }
   ranks[kCells * v + cell] = nominates ? rank : kNobody;
@@ -75,6 +75,6 @@ void main() {
   if (cell == 0) {
     const float lo = uintBitsToFloat(least);
     answers[v] =
-        Answer(double(0), kNobody, kNobody, kNobody, kNobody, 0.0, 0, count, 0, 0, lo < kFar ? lo : -1.0);
+        Answer(double(0), kNobody, kNobody, kNobody, kNobody, 0.0, 0, listCount, 0, 0, lo < kFar ? lo : -1.0);
   }
 }

@@ -16,7 +16,7 @@ constexpr double kMaxPixels = 0x1p40, kMaxEntry = 0x1p80;
 // What a part below float's normal range may lose, pixels.
 constexpr double kUnderflow = 0x1p-30;
 
-// Clusters are held against so many boxes one by one; against more it would cost what it saves.
+// Clusters are held against so many boxes one by one; with more it would cost what it saves.
 constexpr size_t kMostBoxes = 64;
 
 // A window's pixels: frame coordinates (less the corner, across) times `scale`.
@@ -61,19 +61,21 @@ bool place(const PixelGrid& grid, const Mesh& mesh, const Affine& frameFromMesh,
   return band.slack < kMaxPixels;
 }
 
-// The rows of the window that a box meets, cut into bands of a bounded number of pixels. The first and the last reach
-// to the window's edge: a vertex that rounds out of its cluster's box is in them.
+// The pixels of the window that a box meets, cut into bands of a bounded number. One pixel more on each side makes room
+// for rounding.
 void addBands(const PixelGrid& grid, const Box& box, gpu::Band band, std::vector<gpu::Band>& bands) {
-  const auto pixelAt = [&](double x, int axis, uint32_t limit) {
-    const double at = std::floor((x - grid.corner[static_cast<size_t>(axis)]) * grid.scale);
-    return static_cast<uint32_t>(std::clamp(at, 0.0, limit - 1.0));
+  const auto pixelAt = [&](double x, int axis, double more, uint32_t limit) {
+    const double at = std::floor((x - grid.corner[static_cast<size_t>(axis)]) * grid.scale) + more;
+    return static_cast<uint32_t>(std::clamp(at, 0.0, double{limit}));
   };
-  const uint32_t columns = pixelAt(box.hi[0], 0, grid.columns) - pixelAt(box.lo[0], 0, grid.columns) + 1;
-  const uint32_t first = pixelAt(box.lo[1], 1, grid.rows), last = pixelAt(box.hi[1], 1, grid.rows);
-  const uint32_t height = std::max(1u, gpu::kBandPixels / (columns + 2));
-  for (uint32_t row = first; row <= last; row += height) {
-    band.firstRow = row == first ? 0 : row;
-    band.endRow = row + height > last ? grid.rows : row + height;
+  band.firstColumn = pixelAt(box.lo[0], 0, -1, grid.columns);
+  band.endColumn = pixelAt(box.hi[0], 0, 2, grid.columns);
+  if (band.firstColumn >= band.endColumn) return;
+  const uint32_t end = pixelAt(box.hi[1], 1, 2, grid.rows);
+  const uint32_t height = std::max(1u, gpu::kBandPixels / (band.endColumn - band.firstColumn));
+  for (uint32_t row = pixelAt(box.lo[1], 1, -1, grid.rows); row < end; row += height) {
+    band.firstRow = row;
+    band.endRow = std::min(row + height, end);
     bands.push_back(band);
   }
 }
@@ -85,7 +87,7 @@ struct Side {
   double error;
 };
 
-// Adds the clusters of one mesh whose boxes meet one of `within`; returns the box around them.
+// Adds the clusters of one mesh whose boxes meet one of `within`; returns the box around what they share with those.
 Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, const Side& side,
             std::span<const Box> within, std::vector<gpu::Band>& bands) {
   const Mesh& mesh = scene.meshes[side.mesh];
@@ -94,10 +96,20 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
   thread_local std::vector<ReachedCluster> reached;
   reached.clear();
   collectClusters(mesh.clusters, side.frameFromMesh, side.error, all, reached);
-  const auto apart = [&](const ReachedCluster& cluster) {
-    return std::none_of(within.begin(), within.end(), [&](const Box& box) { return overlap(cluster.box, box, 0); });
+  // Of a cluster only the part across the motion counts that it shares with what it meets.
+  const auto clipped = [&](const Box& box) {
+    Box met, part = box;
+    for (const Box& other : within.size() <= kMostBoxes ? within : std::span<const Box>(&all, 1)) {
+      if (overlap(box, other, 0)) met.merge(other);
+    }
+    for (int k = 0; k < 2; ++k) {
+      part.lo[k] = std::max(part.lo[k], met.lo[k]);
+      part.hi[k] = std::min(part.hi[k], met.hi[k]);
+    }
+    return part;
   };
-  if (within.size() > 1 && within.size() <= kMostBoxes) std::erase_if(reached, apart);
+  for (ReachedCluster& cluster : reached) cluster.box = clipped(cluster.box);
+  std::erase_if(reached, [](const ReachedCluster& cluster) { return cluster.box.lo[0] > cluster.box.hi[0]; });
   if (reached.empty()) return around;
   gpu::Band shape{};
   shape.isSensor = side.object == kNone;

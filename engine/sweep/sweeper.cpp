@@ -214,6 +214,8 @@ void Sweeper::Impl::search(std::span<const size_t> which, std::span<const Contac
         giveUp(which[i], error, results);
       }
       stats.pairs += found.state.boxPairs;
+      stats.clusterPairs += found.state.pairCount;
+      stats.solves += found.state.solved;
       decodeMs += msSince(start);
     };
     for (const size_t i : contactRecorder.search(pointers, scene.impl(), stats.stages, decodeOne)) {
@@ -246,6 +248,7 @@ void Sweeper::Impl::runContact(std::span<const Query> queries, std::span<const s
       continue;
     }
     refs += plan.sensor.size() + plan.scene.size();
+    stats.clusters += plan.sensor.size() + plan.scene.size();
     slice.push_back(i);
     plans.push_back(std::move(plan));
     if (slice.size() == kMaxTargets || refs >= kMaxRefs) flushSlice();

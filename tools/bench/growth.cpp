@@ -19,8 +19,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr uint32_t kSensors = 1024;
 // Of the sensors, by the reference and with pictures.
-constexpr uint32_t kSome = 128;
-constexpr int kRounds = 5;
+constexpr uint32_t kSome = 32;
+constexpr int kRounds = 3;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "sweep/reached_clusters.h"
+#include "sweep/cluster_walk.h"
 
 namespace radar {
 
@@ -66,7 +66,7 @@ bool place(const PixelGrid& grid, const Mesh& mesh, const Affine& frameFromMesh,
 void addBands(const PixelGrid& grid, const Box& box, gpu::Band band, std::vector<gpu::Band>& bands) {
   const auto pixelAt = [&](double x, int axis, double more, uint32_t limit) {
     const double at = std::floor((x - grid.corner[static_cast<size_t>(axis)]) * grid.scale) + more;
-    return static_cast<uint32_t>(std::clamp(at, 0.0, double{limit}));
+    return static_cast<uint32_t>(std::clamp(at, 0.0, static_cast<double>(limit)));
   };
   band.firstColumn = pixelAt(box.lo[0], 0, -1, grid.columns);
   band.endColumn = pixelAt(box.hi[0], 0, 2, grid.columns);
@@ -93,9 +93,6 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
   const Mesh& mesh = scene.meshes[side.mesh];
   Box all, around;
   for (const Box& box : within) all.merge(box);
-  thread_local std::vector<ReachedCluster> reached;
-  reached.clear();
-  collectClusters(mesh.clusters, side.frameFromMesh, side.error, all, reached);
   // Of a cluster only the part across the motion counts that it shares with what it meets.
   const auto clipped = [&](const Box& box) {
     Box met, part = box;
@@ -108,9 +105,19 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
     }
     return part;
   };
-  for (ReachedCluster& cluster : reached) cluster.box = clipped(cluster.box);
-  std::erase_if(reached, [](const ReachedCluster& cluster) { return cluster.box.lo[0] > cluster.box.hi[0]; });
-  if (reached.empty()) return around;
+  struct Part {
+    uint32_t node;
+    Box box;
+  };
+  thread_local std::vector<Part> parts;
+  parts.clear();
+  walkClusters(
+      mesh.clusters, side.frameFromMesh, side.error, [&](const Box& box) { return overlap(box, all, 0); },
+      [&](uint32_t node, const Box& box) {
+        const Box part = clipped(box);
+        if (part.lo[0] <= part.hi[0]) parts.push_back({node, part});
+      });
+  if (parts.empty()) return around;
   gpu::Band shape{};
   shape.isSensor = side.object == kNone;
   plan.measurable = plan.measurable && place(grid, mesh, side.frameFromMesh, side.error, shape);
@@ -118,13 +125,13 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
   plan.draws.push_back({});
   plan.draws.back().mesh = side.mesh;
   plan.draws.back().object = side.object;
-  for (const ReachedCluster& cluster : reached) {
-    const ClusterNode& node = mesh.clusters.nodes[cluster.node];
+  for (const Part& part : parts) {
+    const ClusterNode& node = mesh.clusters.nodes[part.node];
     shape.item = static_cast<uint32_t>(plan.items.size());
     shape.triangles = node.count;
-    addBands(grid, cluster.box, shape, bands);
+    addBands(grid, part.box, shape, bands);
     plan.items.push_back({draw, node.first, node.first + node.count});
-    around.merge(cluster.box);
+    around.merge(part.box);
   }
   return around;
 }

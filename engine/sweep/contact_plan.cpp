@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sweep/reached_clusters.h"
+#include "sweep/cluster_walk.h"
 
 namespace radar {
 
@@ -12,14 +12,13 @@ namespace {
 // Appends the clusters of a placed mesh whose boxes meet `within`; returns the box around them.
 Box collect(const Clusters& clusters, const Affine& frameFromMesh, double error, const Box& within, uint32_t placement,
             std::vector<gpu::ClusterRef>& out) {
-  thread_local std::vector<ReachedCluster> reached;
-  reached.clear();
-  collectClusters(clusters, frameFromMesh, error, within, reached);
   Box around;
-  for (const ReachedCluster& cluster : reached) {
-    out.push_back({placement, cluster.node});
-    around.merge(cluster.box);
-  }
+  walkClusters(
+      clusters, frameFromMesh, error, [&](const Box& box) { return overlap(box, within, 0); },
+      [&](uint32_t node, const Box& box) {
+        out.push_back({placement, node});
+        around.merge(box);
+      });
   return around;
 }
 

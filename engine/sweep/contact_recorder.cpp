@@ -200,8 +200,9 @@ std::vector<size_t> ContactRecorder::search(std::span<const ContactPlan* const> 
                                             const std::function<void(size_t, const Search&)>& found) {
   std::vector<Room> rooms;
   for (size_t i = 0; i < plans.size(); ++i) {
-    rooms.push_back(
-        {i, std::min<uint64_t>(allPairs(*plans[i]), room_.pairs), room_.contenders, upward(plans[i]->target.distance)});
+    const uint64_t clusters = plans[i]->sensor.size() + plans[i]->scene.size();
+    const uint64_t pairs = std::min(allPairs(*plans[i]), std::max(room_.pairs, room_.pairsPerCluster * clusters));
+    rooms.push_back({i, pairs, room_.contenders, upward(plans[i]->target.distance)});
   }
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   const uint64_t maxPairs = limit / sizeof(gpu::ClusterPair), maxContenders = limit / sizeof(gpu::Contender);

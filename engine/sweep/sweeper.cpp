@@ -55,7 +55,7 @@ struct Sweeper::Impl {
   }
 
   bool fits(const Load& load) const;
-  void add(Load& load, const ViewPlan& plan) const;
+  static void add(Load& load, const ViewPlan& plan);
   std::string tooLarge(const ViewPlan& plan) const;
   void flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results);
   void submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results);
@@ -84,15 +84,11 @@ struct Sweeper::Impl {
   uint64_t maxItems;  // items name triangles in 32 bits
 };
 
-void Sweeper::Impl::add(Load& load, const ViewPlan& plan) const {
+void Sweeper::Impl::add(Load& load, const ViewPlan& plan) {
   ++load.views;
   load.resolution = plan.view.resolution;
   load.draws += 1 + plan.inReach.size() + plan.others.size();
-  const auto items = [&](const Placed& placed) {
-    return (scene.impl().meshes[placed.mesh].triangleCount() + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
-  };
-  load.items += items(plan.mask);
-  for (const Placed& placed : plan.inReach) load.items += items(placed);
+  load.items += plan.items;
 }
 
 bool Sweeper::Impl::fits(const Load& load) const {
@@ -128,7 +124,7 @@ void Sweeper::Impl::submit(std::span<Pending> part, std::span<const Query> queri
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
   for (const Pending& pending : part) plans.push_back(&pending.plan);
-  fill(batch, plans, scene.impl());
+  fill(batch, plans);
   addCpuTime("encode", msSince(start));
   try {
     const Answers found = recorder.submit(batch, scene.impl(), stats.stages);
@@ -183,8 +179,8 @@ void Sweeper::Impl::runSampled(std::span<const Query> queries, std::span<const s
   Load load;
   for (const size_t i : which) {
     const Clock::time_point start = Clock::now();
-    ViewPlan plan =
-        encode(queries[i], scene.impl(), hierarchy, device.properties.limits.subPixelPrecisionBits, options.select);
+    ViewPlan plan = encode(queries[i], scene.impl(), hierarchy, device.properties.limits.subPixelPrecisionBits,
+                           options.select ? Drawn::inReach : Drawn::everything);
     addCpuTime("select", msSince(start));
     if (plan.inReach.empty()) {
       results[i] = decodeClear();
@@ -227,6 +223,8 @@ void Sweeper::Impl::search(std::span<const size_t> which, std::span<const Contac
         giveUp(which[i], error, results);
       }
       stats.pairs += found.state.boxPairs;
+      stats.clusterPairs += found.state.pairCount;
+      stats.solves += found.state.solved;
       decodeMs += msSince(start);
     };
     for (const size_t i : contactRecorder.search(pointers, scene.impl(), stats.stages, decodeOne)) {
@@ -259,6 +257,7 @@ void Sweeper::Impl::runContact(std::span<const Query> queries, std::span<const s
       continue;
     }
     refs += plan.sensor.size() + plan.scene.size();
+    stats.clusters += plan.sensor.size() + plan.scene.size();
     slice.push_back(i);
     plans.push_back(std::move(plan));
     if (slice.size() == kMaxTargets || refs >= kMaxRefs) flushSlice();
@@ -304,11 +303,12 @@ Scopes Sweeper::scopes(const Query& query) {
   Impl& self = *impl_;
   self.refuseWrong({&query, 1});
   self.hierarchy.update(self.scene.impl());
-  const ViewPlan plan = encode(query, self.scene.impl(), self.hierarchy,
-                               self.device.properties.limits.subPixelPrecisionBits, self.options.select);
+  const ViewPlan plan =
+      encode(query, self.scene.impl(), self.hierarchy, self.device.properties.limits.subPixelPrecisionBits,
+             self.options.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = self.tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
-  fill(self.batch, plans, self.scene.impl());
+  fill(self.batch, plans);
   StoredScopes stored;
   self.stats = {};
   const Answers found = self.recorder.submit(self.batch, self.scene.impl(), self.stats.stages, &stored);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include "radar/radar.h"
 #include "workloads/generate.h"
@@ -21,48 +22,51 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-struct Row {
-  double ms = 0;  ///< median of a step's batch, per query
-  double width = 0, decided = 0;
-  std::vector<StageTime> stages;
+// A way to ask, and what it gave.
+struct Way {
+  const char* label;
+  Mode mode;
+  uint32_t resolution;
+  std::vector<double> times = {}, widths = {};  ///< milliseconds per query of a batch; hi - lo of hits
+  size_t undecided = 0;
+  std::vector<StageTime> stages = {};  ///< of the last batch, per query
 };
 
-// All steps of a workload, asked one way.
-Row measure(const Device& device, const tools::Workload& workload, Mode mode, uint32_t resolution) {
+// Answers every batch of the workload in each way, in turns, so that what else the machine does strikes all alike.
+// Returns the number of queries.
+size_t measure(const Device& device, const tools::Workload& workload, std::span<Way> ways) {
   tools::ScenePlayer player(workload);
   Sweeper sweeper(device, player.scene()), profiled(device, player.scene(), {.timestamps = true});
-  std::vector<double> times, widths;
-  size_t asked = 0, undecided = 0;
-  Row row;
+  size_t asked = 0;
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
     player.show(batch.scene);
     std::vector<Query> queries;
-    for (uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], mode, resolution));
-    for (const Result& result : sweeper.run(queries)) {
-      undecided += result.status == Status::undecided;
-      if (result.status == Status::hit) widths.push_back(result.hi - result.lo);
-    }
+    for (uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::bounded));
     asked += queries.size();
-    for (int i = 0; i < kRepeats; ++i) {
-      const Clock::time_point start = Clock::now();
-      sweeper.run(queries);
-      times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count() / queries.size());
+    for (int repeat = 0; repeat <= kRepeats; ++repeat) {
+      for (Way& way : ways) {
+        for (Query& query : queries) {
+          query.mode = way.mode;
+          query.resolution = way.resolution;
+        }
+        const Clock::time_point start = Clock::now();
+        const std::vector<Result> results = sweeper.run(queries);
+        const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        if (repeat > 0) {
+          way.times.push_back(ms / queries.size());
+          continue;
+        }
+        for (const Result& result : results) {
+          way.undecided += result.status == Status::undecided;
+          if (result.status == Status::hit) way.widths.push_back(result.hi - result.lo);
+        }
+        profiled.run(queries);
+        way.stages = profiled.stats().stages;
+        for (StageTime& stage : way.stages) stage.ms /= queries.size();
+      }
     }
-    profiled.run(queries);
-    profiled.run(queries);
-    row.stages = profiled.stats().stages;
-    for (StageTime& stage : row.stages) stage.ms /= queries.size();
   }
-  row.ms = median(times);
-  row.width = median(widths);
-  row.decided = 100 - 100.0 * undecided / asked;
-  return row;
-}
-
-void print(const char* label, const Row& row) {
-  std::printf("  %-13s %8.3f ms per sensor  width %.5f  decided %5.1f%%  (", label, row.ms, row.width, row.decided);
-  for (const StageTime& stage : row.stages) std::printf(" %s %.3f", stage.name.c_str(), stage.ms);
-  std::printf(")\n");
+  return asked;
 }
 
 }  // namespace
@@ -78,13 +82,18 @@ int main() {
        tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 4})}};
   for (const auto& [name, workload] : workloads) {
     std::printf("%s\n", name);
-    const Row coarse = measure(device, workload, Mode::bounded, 64);
-    print("bounded 64", coarse);
-    print("bounded 128", measure(device, workload, Mode::bounded, 128));
-    print("bounded 256", measure(device, workload, Mode::bounded, 256));
-    const Row sampled = measure(device, workload, Mode::sampled, 256);
-    print("sampled 256", sampled);
-    print("contact", measure(device, workload, Mode::contact, 0));
-    std::printf("  bounded at 64 / sampled at 256: %.2f\n", coarse.ms / sampled.ms);
+    Way ways[] = {{"bounded 64", Mode::bounded, 64},
+                  {"bounded 128", Mode::bounded, 128},
+                  {"bounded 256", Mode::bounded, 256},
+                  {"sampled 256", Mode::sampled, 256},
+                  {"contact", Mode::contact, 0}};
+    const size_t asked = measure(device, workload, ways);
+    for (const Way& way : ways) {
+      std::printf("  %-11s %7.3f ms per sensor  width %.5f  decided %5.1f%%  (", way.label, median(way.times),
+                  median(way.widths), 100 - 100.0 * way.undecided / asked);
+      for (const StageTime& stage : way.stages) std::printf(" %s %.3f", stage.name.c_str(), stage.ms);
+      std::printf(")\n");
+    }
+    std::printf("  bounded at 64 / sampled at 256: %.2f\n", median(ways[0].times) / median(ways[3].times));
   }
 }

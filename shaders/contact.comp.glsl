@@ -207,7 +207,8 @@ void solve(uvec4 entry, bool live) {
   for (uint i = 0; i < kLanes; ++i) hi = min(hi, laneHi[i]);
   if (live && m.latest >= 0.0LF && low <= hi) {
     const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
-    const uint flags = (m.ahead ? kContenderMeets : 0) | (sharp ? kContenderSharp : 0) | (m.feature & 0xffu);
+    const uint flags = (m.ahead ? kContenderMeets : 0) | (m.ahead && m.by < 0.0LF ? kContenderPierces : 0) |
+                       (sharp ? kContenderSharp : 0) | (m.feature & 0xffu);
     contenders[targets[v].firstContender + atomicAdd(contended, 1)] =
         Contender(low, m.at, m.error, object, entry.y, entry.x, flags);
   }

@@ -266,6 +266,7 @@ struct Contender {
   uint slotA;
   uint flags;     // kContender*, and the feature that attains `at` in the low bits
 };
+INTEROP_CONST kContenderPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kContenderMeets = 0x200;  // certainly, no later than at + error
 INTEROP_CONST kContenderSharp = 0x100;  // certainly first at `at`, and nothing of it may come earlier
 

@@ -6,7 +6,7 @@
 #define RADAR_NO_DOUBLES
 #include "interop.h"
 
-const uint kLanes = 64;
+const uint kLanes = 32;
 layout(local_size_x = kLanes) in;
 
 layout(scalar, binding = kBindTargets) readonly restrict buffer Targets { Target targets[]; };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sweep/contact_point.h"
 #include "sweep/exact_pairs.h"
@@ -37,6 +38,17 @@ bool settled(const Search& search, const Query& query, const Scene::Impl& scene)
     return (c.flags & gpu::kContenderSharp) != 0 && c.at == first.at &&
            partsOf(placedPair(nameOf(c, query, scene), query, scene), c.flags & 0xff) == parts;
   });
+}
+
+std::optional<PairName> leastPiercing(std::span<const gpu::Contender> contenders, const Query& query,
+                                      const Scene::Impl& scene) {
+  std::optional<PairName> least;
+  for (const gpu::Contender& c : contenders) {
+    if ((c.flags & gpu::kContenderPierces) == 0) continue;
+    const PairName name = nameOf(c, query, scene);
+    if (!least || name < *least) least = name;
+  }
+  return least;
 }
 
 // Within D or not: what the device is certain of needs no pair.
@@ -84,7 +96,16 @@ Result decodeContact(const Search& found, const Query& query, const Scene::Impl&
   }
 
   ExactPairs exact(query, scene);
-  if (settled(search, query, scene)) {
+  if (const auto pierced = leastPiercing(kept, query, scene)) {
+    // Nothing comes before but a pair of a lesser name that meets at the start, too.
+    exact.consider(*pierced);
+    for (const gpu::Contender& c : kept) {
+      const PairName name = nameOf(c, query, scene);
+      if ((c.flags & gpu::kContenderPierces) != 0 || !(name < *pierced)) continue;
+      exact.consider(name);
+      ++cpuPairs;
+    }
+  } else if (settled(search, query, scene)) {
     // The numbers come from the same arithmetic as where pairs are open, so that they do not depend on what was culled.
     PairName least = nameOf(search.contenders[0], query, scene);
     for (const gpu::Contender& c : search.contenders) least = std::min(least, nameOf(c, query, scene));

@@ -102,7 +102,6 @@ TEST_CASE("a decision on a deep overlap costs a fraction of the whole answer") {
   Sweeper sweeper(test::device(), scene);
   CHECK(sweeper.run({&whole, 1})[0].status == Status::overlap);
   const SweepStats all = sweeper.stats();
-  CHECK(all.cpuPairs > 0);
   const Query decide = deciding({whole})[0];
   const Result result = sweeper.run({&decide, 1})[0];
   CHECK(result.status == Status::hit);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cyber_radar/progress.h"
+#include "radar/pool.h"
 #include "reference/reference.h"
 #include "workloads/workload.h"
 
@@ -16,7 +17,9 @@ struct AnsweringOptions {
   AnswerMode mode = AnswerMode::reference;  ///< of queries that do not choose one
   uint32_t resolution = 0;                  ///< 0: chosen per sensor
   uint32_t device = kNone;                  ///< kNone: the best
-  bool timestamps = false;                  ///< measure each stage
+  /// These devices share the work, instead of `device`; empty: all that are usable.
+  std::optional<std::vector<uint32_t>> pool;
+  bool timestamps = false;  ///< measure each stage
 };
 
 struct Answer {
@@ -44,7 +47,10 @@ class Answering {
   Pass run(const std::string& label);
 
   size_t batchCount() const { return groups_.size(); }
-  const Device* device() const { return device_ ? &*device_ : nullptr; }
+  /// Those opened: none where the reference answers everything.
+  std::span<const Device> devices() const { return devices_; }
+  /// Empty without a pool.
+  std::vector<PoolDevice> poolDevices() const { return pool_ ? pool_->devices() : std::vector<PoolDevice>(); }
 
  private:
   struct Part {
@@ -55,14 +61,17 @@ class Answering {
     uint32_t scene = 0;
     Part swept, referred;
   };
+  void show(uint32_t scene);
   void sweep(const Part& part, Pass& pass, Progress& progress);
+  void share(const Part& part, Pass& pass, Progress& progress);
   void refer(const Part& part, Pass& pass, Progress& progress);
 
   const Workload& workload_;
   std::vector<Group> groups_;
   ScenePlayer player_;
-  std::optional<Device> device_;
+  std::vector<Device> devices_;
   std::optional<Sweeper> sweeper_;
+  std::optional<Pool> pool_;
   std::unique_ptr<reference::Reference> reference_;
 };
 

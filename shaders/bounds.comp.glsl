@@ -2,6 +2,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
 #include "interop.h"
 
 layout(local_size_x = 64) in;
@@ -20,10 +21,10 @@ void main() {
   const Placement p = placements[refs[i].placement];
   const ClusterRecord node = nodes[meshes[p.mesh].firstNode + refs[i].node];
   for (int row = 0; row < 3; ++row) {
-    float middle = p.frameFromMesh[4 * row + 3], reach = p.error;
+    float middle = p.frameFromMesh[row].w, reach = p.error;
     for (int k = 0; k < 3; ++k) {
-      middle += p.frameFromMesh[4 * row + k] * node.centre[k];
-      reach += abs(p.frameFromMesh[4 * row + k]) * node.halfExtent[k];
+      middle += p.frameFromMesh[row][k] * node.centre[k];
+      reach += abs(p.frameFromMesh[row][k]) * node.halfExtent[k];
     }
     // `error` holds the rounding of a vertex; a box's corner rounds no more than twice that.
     reach += p.error;

@@ -1,6 +1,8 @@
 // The search for a sensor's first contact: one subgroup per sensor goes through its cluster pairs, nearest first, in rounds
 // of 16, 64, 256, ... until the next is farther than what is known to be touched. Within a pair of clusters both sides are
-// trimmed against the other's box, triangle pairs pass a box test and separating axes, and what is left is solved.
+// trimmed against the other's box, triangle pairs pass a box test and separating axes, and what is left is solved in float;
+// what may then still be first is solved in double precision. With RADAR_NO_DOUBLES, on a device without, that is left to
+// the host.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +15,7 @@ layout(constant_id = 0) const uint kLanes = 32;
 
 layout(scalar, binding = kBindPositions) readonly restrict buffer Positions { vec3 positions[]; };
 layout(scalar, binding = kBindOriginals) readonly restrict buffer Originals { vec3 originals[]; };
-layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uint indices[]; };
+layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uvec3 triangles[]; };
 layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 layout(scalar, binding = kBindObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kBindNodes) readonly restrict buffer Nodes { ClusterRecord nodes[]; };
@@ -33,44 +35,38 @@ const uint kFirstRound = 16;
 // as if the compiler unrolled none, stops well before, and the next dispatch goes on: after kWorkPerDispatch at most one
 // round's scan and one pair of clusters follow, 4,096 solves, which with 8 lanes are 34,000.
 const uint kWorkPerDispatch = 20000;
-const uint kTrimWork = 17;   // a triangle: 3 corners, 3 rows each, 3 copies
+const uint kTrimWork = 5;    // a triangle: 3 copies
 const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps of sorting
 // Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
 // work; what a run has found cuts the next one short.
-const uint kRun = 4096;
-const uint kQueue = 1024;
+layout(constant_id = 1) const uint kRun = 4096;
+// Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
+const uint kTested = 256;
+const uint kQueue = 512;
 
 shared uint nearestGap;                 // over the cluster pairs left; floats >= 0 order as their bits
 shared uint bucket[kBuckets];
 shared uint countA, countB;             // triangles left after trimming, and where they are in the frame
 shared uint slotsA[kCluster], slotsB[kCluster];
 shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
+shared uint passed;                     // pairs of those that passed the tests: one of A, one of B << 8
+shared uint passing[kTested];
+shared uint touched;                    // bits of the least distance of a certain contact
 shared uint queued;
-shared uvec3 queue[kQueue];             // slot of a, slot of b, placement of b
-shared double laneHi[128];
+shared uvec4 queue[kQueue];             // slot of a, slot of b, placement of b, bits of a lower bound
 shared uint contended;
+#ifndef RADAR_NO_DOUBLES
+shared double laneHi[128];
+double hi;       // as hiFloat, not rounded
+#endif
 
-double hi;       // no contact is sought beyond, world units: D, or a certain contact
-float hiFloat;   // rounded up
+float hiFloat;   // no contact is sought beyond, world units: D, or a certain contact
 uint v, work, boxPairs, solved;
 
-float upward(double x) { return float(x) * 1.000001 + 1e-37; }
 
-vec3 framed(Placement p, uint vertex) {
-  const vec3 q = positions[vertex];
-  vec3 at;
-  for (int row = 0; row < 3; ++row) {
-    at[row] = p.frameFromMesh[4 * row] * q.x + p.frameFromMesh[4 * row + 1] * q.y + p.frameFromMesh[4 * row + 2] * q.z +
-              p.frameFromMesh[4 * row + 3];
-  }
-  return at;
-}
-
-void sharedTriangle(uint placement, uint slot, out vec3 c[3]) {
-  const MeshRecord mesh = meshes[placements[placement].mesh];
-  for (uint i = 0; i < 3; ++i) {
-    c[i] = framed(placements[placement], mesh.firstVertex + indices[mesh.firstIndex + 3 * slot + i]);
-  }
+vec3 framed(Rows frameFromMesh, vec3 q) {
+  const vec4 p = vec4(q, 1.0);
+  return vec3(dot(frameFromMesh[0], p), dot(frameFromMesh[1], p), dot(frameFromMesh[2], p));
 }
 
 // Triangles of cluster `ref` that can meet something in the box: they overlap it across the motion, and lie at the right
@@ -84,12 +80,14 @@ bool reaches(vec3 c[3], float error, vec3 lo, vec3 hi_, bool isSensor) {
 void trim(uint ref, uint other, bool isSensor) {
   const uint placement = refs[ref].placement;
   const ClusterRecord node = nodes[meshes[placements[placement].mesh].firstNode + refs[ref].node];
-  const vec3 lo = vec3(boxes[other].lo[0], boxes[other].lo[1], boxes[other].lo[2]);
-  const vec3 high = vec3(boxes[other].hi[0], boxes[other].hi[1], boxes[other].hi[2]);
+  const vec3 lo = boxes[other].lo, high = boxes[other].hi;
   const float error = placements[placement].error;
+  const Rows frameFromMesh = placements[placement].frameFromMesh;
+  const MeshRecord mesh = meshes[placements[placement].mesh];
   for (uint i = gl_LocalInvocationID.x; i < node.count; i += kLanes) {
-    vec3 c[3];
-    sharedTriangle(placement, node.first + i, c);
+    const uvec3 corner = triangles[mesh.firstIndex / 3 + node.first + i] + mesh.firstVertex;
+    const vec3 c[3] = vec3[3](framed(frameFromMesh, positions[corner.x]), framed(frameFromMesh, positions[corner.y]),
+                              framed(frameFromMesh, positions[corner.z]));
     if (!reaches(c, error, lo, high, isSensor)) continue;
     if (isSensor) {
       const uint at = atomicAdd(countA, 1);
@@ -132,17 +130,52 @@ bool mayMeet(uint i, uint j, float error) {
          !separates(b2.xy, b0.xy, b1.xy, a0.xy, a1.xy, a2.xy, error);
 }
 
+// Solves a pair that passed the tests in float: queues it if it may be first.
+void estimate(uint pair, float error, uint placement) {
+  const uint i = pair & 0xffu, j = pair >> 8;
+  const vec3 a[3] = vec3[3](cornersA[3 * i], cornersA[3 * i + 1], cornersA[3 * i + 2]);
+  const vec3 b[3] = vec3[3](cornersB[3 * j], cornersB[3 * j + 1], cornersB[3 * j + 2]);
+  const MeetingFloat m = meetingOf(a, b, error);
+  const float low = max(min(m.earliest, m.unknown), 0.0);
+  if (m.latest >= 0.0 && low <= hiFloat) {
+    queue[atomicAdd(queued, 1)] = uvec4(slotsA[i], slotsB[j], placement, floatBitsToUint(low));
+  }
+  // Distances of at least 0 order as their bits.
+  if (m.ahead) atomicMin(touched, floatBitsToUint(max(m.by, 0.0)));
+}
+
+// No room for what the next step may find.
+bool overflows() { return contended + kLanes > targets[v].contenderCapacity; }
+
+// Forgets what of the queue has turned out not to be first; returns what is left.
+uint tightenQueue() {
+  const uint count = queued;
+  barrier();
+  if (gl_LocalInvocationID.x == 0) queued = 0;
+  for (uint first = 0; first < count; first += kLanes) {
+    const uint q = first + gl_LocalInvocationID.x;
+    const uvec4 entry = queue[min(q, count - 1)];
+    barrier();
+    if (q < count && uintBitsToFloat(entry.w) <= hiFloat) queue[atomicAdd(queued, 1)] = entry;
+    barrier();
+  }
+  work += count / kLanes + 1;
+  return queued;
+}
+
+#ifndef RADAR_NO_DOUBLES
 bool before(dvec3 p, dvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
 }
 
 // The corners of a triangle as they are placed, sorted, so that what two triangles share has the same bits in both.
-void placedCorners(double pose[12], uint mesh, uint slot, out dvec3 p[3]) {
+void placedCorners(PreciseRows pose, uint mesh, uint slot, out dvec3 p[3]) {
   const MeshRecord record = meshes[mesh];
+  const uvec3 corner = triangles[record.firstIndex / 3 + slot] + record.firstVertex;
   for (uint i = 0; i < 3; ++i) {
-    const dvec3 q = dvec3(originals[record.firstVertex + indices[record.firstIndex + 3 * slot + i]]);
+    const dvec3 q = dvec3(originals[corner[i]]);
     for (int k = 0; k < 3; ++k) {
-      precise double sum = ((pose[4 * k] * q.x + pose[4 * k + 1] * q.y) + pose[4 * k + 2] * q.z) + pose[4 * k + 3];
+      precise double sum = ((pose[k].x * q.x + pose[k].y * q.y) + pose[k].z * q.z) + pose[k].w;
       p[i][k] = sum;
     }
   }
@@ -155,40 +188,62 @@ void placedCorners(double pose[12], uint mesh, uint slot, out dvec3 p[3]) {
   }
 }
 
-// No room for what the next step may find.
-bool overflows() { return contended + kLanes > targets[v].contenderCapacity; }
+// Solves a pair in double precision: lists it if it may be first.
+void solve(uvec4 entry, bool live) {
+  const double length = targets[v].directionLength;
+  const dvec3 direction = dvec3(targets[v].direction[0], targets[v].direction[1], targets[v].direction[2]);
+  const uint object = placements[entry.z].object;
+  dvec3 a[3], b[3];
+  placedCorners(targets[v].pose, targets[v].mesh, entry.x, a);
+  placedCorners(objects[object].pose, objects[object].mesh, entry.y, b);
+  const Meeting m = meetingOf(a, b, direction);
+  const double low = max(min(m.earliest, m.unknown), 0.0LF) * length * (1.0LF - 8.881784197001252e-16LF);
+  laneHi[gl_LocalInvocationID.x] = live && m.ahead ? max(m.by, 0.0LF) * length * (1.0LF + 8.881784197001252e-16LF) : kNever;
+  barrier();
+  for (uint i = 0; i < kLanes; ++i) hi = min(hi, laneHi[i]);
+  if (live && m.latest >= 0.0LF && low <= hi) {
+    const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
+    const uint flags = (m.ahead ? kContenderMeets : 0) | (sharp ? kContenderSharp : 0) | (m.feature & 0xffu);
+    contenders[targets[v].firstContender + atomicAdd(contended, 1)] =
+        Contender(low, m.at, m.error, object, entry.y, entry.x, flags);
+  }
+  barrier();
+}
+#else
+// The bits of x >= 0 as a double.
+uvec2 doubleBits(float x) {
+  const uint bits = floatBitsToUint(x);
+  return x > 0.0 ? uvec2(bits << 29, (bits >> 3) + (896u << 20)) : uvec2(0);
+}
+
+void solve(uvec4 entry, bool live) {
+  if (live) {
+    contenders[targets[v].firstContender + atomicAdd(contended, 1)] =
+        Contender(doubleBits(uintBitsToFloat(entry.w)), uvec2(0), uvec2(0), placements[entry.z].object, entry.y, entry.x, 0);
+  }
+  barrier();
+}
+#endif
+
+// Only "within D or not" is asked, and a contact within D is certain.
+bool decided() { return hiFloat < targets[v].enough; }
 
 // Solves all that is queued.
 void flush() {
   barrier();
-  const uint count = overflows() ? 0 : queued;
-  const double length = targets[v].directionLength;
-  const dvec3 direction = dvec3(targets[v].direction[0], targets[v].direction[1], targets[v].direction[2]);
-  for (uint first = 0; first < count; first += kLanes) {
+  const uint count = tightenQueue();
+#ifndef RADAR_NO_DOUBLES
+  hi = min(hi, double(hiFloat));
+#endif
+  for (uint first = 0; first < count && !overflows() && !decided(); first += kLanes) {
     const uint q = first + gl_LocalInvocationID.x;
-    const bool live = q < count;
-    const uvec3 entry = queue[min(q, count - 1)];
-    const uint object = placements[entry.z].object;
-    dvec3 a[3], b[3];
-    placedCorners(targets[v].pose, targets[v].mesh, entry.x, a);
-    placedCorners(objects[object].pose, objects[object].mesh, entry.y, b);
-    const Meeting m = meetingOf(a, b, direction);
-    const double low = max(min(m.earliest, m.unknown), 0.0LF);
-    laneHi[gl_LocalInvocationID.x] = live && m.ahead ? max(m.by, 0.0LF) * length * (1.0LF + 8.881784197001252e-16LF) : kNever;
-    barrier();
-    for (uint i = 0; i < kLanes; ++i) hi = min(hi, laneHi[i]);
-    if (live && m.latest >= 0.0LF && low * length * (1.0LF - 8.881784197001252e-16LF) <= hi) {
-      const uint at = atomicAdd(contended, 1);
-      const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
-      contenders[targets[v].firstContender + at] =
-          Contender(low, m.at, m.error, object, entry.y, entry.x, (sharp ? kContenderSharp : 0) | (m.feature & 0xffu));
-    }
-    barrier();
+    solve(queue[min(q, count - 1)], q < count);
     work += kSolveWork + kLanes;
-    if (overflows()) break;
+    solved += kLanes;
   }
-  hiFloat = upward(hi);
-  solved += count;
+#ifndef RADAR_NO_DOUBLES
+  hiFloat = min(hiFloat, float(hi) * 1.000001 + 1e-37);
+#endif
   barrier();
   if (gl_LocalInvocationID.x == 0) queued = 0;
   barrier();
@@ -205,16 +260,21 @@ void meetClusters(ClusterPair pair) {
   const uint placement = refs[pair.b].placement;
   const float error = 2.0 * (placements[refs[pair.a].placement].error + placements[placement].error);
   const uint all_ = countA * countB;
-  // Half a queue of tests at a time: what they queue fits.
-  for (uint first = 0; first < all_; first += kQueue / 2) {
-    const uint end = min(first + kQueue / 2, all_);
+  for (uint first = 0; first < all_; first += kTested) {
+    const uint end = min(first + kTested, all_);
     for (uint p = first + gl_LocalInvocationID.x; p < end; p += kLanes) {
       const uint i = p / countB, j = p % countB;
-      if (mayMeet(i, j, error)) queue[atomicAdd(queued, 1)] = uvec3(slotsA[i], slotsB[j], placement);
+      if (mayMeet(i, j, error)) passing[atomicAdd(passed, 1)] = i | j << 8;
     }
     barrier();
-    work += (end - first) / kLanes + 1;
-    if (queued > kQueue / 2) flush();
+    const uint count = passed;
+    for (uint p = gl_LocalInvocationID.x; p < count; p += kLanes) estimate(passing[p], error, placement);
+    barrier();
+    hiFloat = min(hiFloat, uintBitsToFloat(touched));
+    if (gl_LocalInvocationID.x == 0) passed = 0;
+    work += (end - first + count) / kLanes + 2;
+    barrier();
+    if (queued > kQueue - kTested) flush();
   }
   boxPairs += all_;
 }
@@ -245,16 +305,19 @@ void main() {
     if (gl_LocalInvocationID.x == 0) states[v].progress = kSearchOverflow;
     return;
   }
-  hi = states[v].hi;
-  hiFloat = upward(hi);
+  hiFloat = states[v].hi;
+#ifndef RADAR_NO_DOUBLES
+  hi = double(hiFloat);
+#endif
   work = boxPairs = solved = 0;
   if (gl_LocalInvocationID.x == 0) {
-    queued = 0;
+    queued = passed = 0;
+    touched = floatBitsToUint(hiFloat);
     contended = states[v].contenderCount;
   }
   barrier();
   uint round = states[v].round;
-  while (cursor < total && work < kWorkPerDispatch && !overflows()) {
+  while (cursor < total && work < kWorkPerDispatch && !overflows() && !decided()) {
     const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
     barrier();
     if (gl_LocalInvocationID.x == 0) nearestGap = kNobody;
@@ -271,7 +334,7 @@ void main() {
       continue;
     }
     const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
-    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows(); ++i) {
+    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows() && !decided(); ++i) {
       const ClusterPair pair = pairs[first + i];
       ++work;
       if (pair.gap < 0.0 || pair.gap > limit || pair.gap > hiFloat) continue;
@@ -285,9 +348,10 @@ void main() {
   }
   barrier();
   if (gl_LocalInvocationID.x == 0) {
-    states[v].hi = hi;
+    states[v].hi = hiFloat;
     states[v].contenderCount = contended;
-    states[v].progress = overflows() ? kSearchOverflow : (cursor >= total ? kSearchDone : kSearchUnfinished);
+    states[v].progress =
+        decided() || (cursor >= total && !overflows()) ? kSearchDone : (overflows() ? kSearchOverflow : kSearchUnfinished);
     states[v].boxPairs += boxPairs;
     states[v].solved += solved;
     states[v].round = round;

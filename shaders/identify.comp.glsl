@@ -5,6 +5,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
 #include "interop.h"
 
 layout(local_size_x = kItemInvocations) in;

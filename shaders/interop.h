@@ -7,8 +7,21 @@
 #include <cstdint>
 namespace radar::gpu {
 using uint = uint32_t;
+// A 3x4 matrix, row-major.
+using Rows = float[12];
+using PreciseRows = double[12];
+using Point = float[3];
 #define INTEROP_CONST inline constexpr uint
 #else
+// As vectors: lavapipe loads a vector in the time of a number.
+#define Rows vec4[3]
+#define Point vec3
+#ifdef RADAR_NO_DOUBLES  // the bits of doubles, for shaders that do no arithmetic with them
+#define double uvec2
+#define PreciseRows uvec4[6]
+#else
+#define PreciseRows dvec4[3]
+#endif
 #define INTEROP_CONST const uint
 #endif
 
@@ -20,8 +33,9 @@ INTEROP_CONST kCellsPerSide = 16;
 INTEROP_CONST kCells = 256;
 // Candidates are identified and solved in the order of (L, pixel), kRound at a time, until one meets.
 INTEROP_CONST kRound = 64;
-// Pairs of one sensor that double precision cannot decide, kept for the CPU, in the order of their candidates.
-INTEROP_CONST kOpenPairs = 16;
+// Pairs of one sensor that the device cannot decide, kept for the CPU, in the order of their candidates: a round of them,
+// which is what a device without doubles leaves to it.
+INTEROP_CONST kOpenPairs = 64;
 // An identify workgroup takes this many triangles of one draw, each invocation several: loading the draw's matrix costs
 // as much as a triangle.
 INTEROP_CONST kItemTriangles = 512;
@@ -69,14 +83,14 @@ struct MeshRecord {
 };
 
 struct ObjectRecord {
-  double pose[12];
+  PreciseRows pose;
   uint mesh;
   uint pad;
 };
 
 // One sensor. Lengths are world units along the motion from the sensor's back plane, unless said otherwise.
 struct View {
-  double pose[12];
+  PreciseRows pose;
   double direction[3];
   double directionLength;
   double distance;       // D
@@ -149,15 +163,15 @@ INTEROP_CONST kAnswerHasL = 2;      // minL exists
 // ---- the contact tier --------------------------------------------------------------------------------------------------
 
 struct ClusterRecord {
-  float centre[3];  // of recentred vertices
-  float halfExtent[3];
-  uint first;       // triangle slot
-  uint count;       // triangles; 0: not a cluster
+  Point centre;  // of recentred vertices
+  Point halfExtent;
+  uint first;    // triangle slot
+  uint count;    // triangles; 0: not a cluster
 };
 
 // One sensor, one search for its first contact.
 struct Target {
-  double pose[12];
+  PreciseRows pose;
   double direction[3];
   double directionLength;
   double distance;          // D
@@ -166,12 +180,13 @@ struct Target {
   uint pairCapacity;
   uint firstContender;
   uint contenderCapacity;
-  uint pad;
+  float enough;             // a contact certainly before this ends the search: D, rounded down, where only "within D or
+                            // not" is asked; else 0
 };
 
 // A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.
 struct Placement {
-  float frameFromMesh[12];  // from recentred vertices
+  Rows frameFromMesh;       // from recentred vertices
   float error;              // how far a vertex placed by it may be off, world units
   uint mesh;
   uint object;              // kNobody: the sensor
@@ -184,8 +199,8 @@ struct ClusterRef {
 };
 
 struct RefBox {
-  float lo[3];
-  float hi[3];
+  Point lo;
+  Point hi;
 };
 
 struct PairItem {
@@ -201,24 +216,25 @@ struct ClusterPair {
   uint b;
 };
 
-// A pair of triangles that may hold the first contact. Parameters are multiples of the direction.
+// A pair of triangles that may hold the first contact.
 struct Contender {
-  double low;     // it does not meet before
-  double at;      // where it meets, and how far that may be off; only if kContenderSharp
-  double error;
+  double low;     // it does not meet before, world units
+  double at;      // of the feature that certainly meets, in multiples of the direction, and how far that may be off;
+  double error;   // only if kContenderMeets
   uint object;
   uint slotB;     // triangle slots, in cluster order
   uint slotA;
-  uint flags;     // kContenderSharp, and the feature that attains `at` in the low bits
+  uint flags;     // kContender*, and the feature that attains `at` in the low bits
 };
-INTEROP_CONST kContenderSharp = 0x100;  // certain: it meets, first at `at`, and nothing of it may come earlier
+INTEROP_CONST kContenderMeets = 0x200;  // certainly, no later than at + error
+INTEROP_CONST kContenderSharp = 0x100;  // certainly first at `at`, and nothing of it may come earlier
 
 INTEROP_CONST kSearchDone = 0;
 INTEROP_CONST kSearchUnfinished = 1;  // cluster pairs are left: dispatch again
 INTEROP_CONST kSearchOverflow = 2;    // more contenders than room: begin again with more
 
 struct State {
-  double hi;            // first contact is certainly no later, world units; kFarAway: none known
+  float hi;             // first contact is certainly no later, world units; at first D, rounded up
   uint pairCount;       // cluster pairs found, kept up to the capacity
   uint contenderCount;  // likewise
   uint progress;        // kSearch*
@@ -226,12 +242,30 @@ struct State {
   uint solved;          // triangle pairs solved
   uint round;
   uint cursor;          // cluster pairs before this one are dealt with
-  uint pad;
 };
 
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the
 // sensor's face; 6 + 3*i + j: edge i of the sensor's triangle and edge j of the scene's, edges being (0,1), (1,2), (0,2).
 INTEROP_CONST kFeatureEdges = 6;
+
+// ---- the self-test of doubles ------------------------------------------------------------------------------------------
+
+INTEROP_CONST kBindSums = 0;     // Sum
+INTEROP_CONST kBindResults = 1;  // SumResult
+INTEROP_CONST kSumBindings = 2;
+INTEROP_CONST kSums = 256;
+
+// Numbers to calculate with: x and y, and p placed by a row of a pose.
+struct Sum {
+  double x, y;
+  double row[4];
+  Point p;
+  uint pad;
+};
+
+struct SumResult {
+  double sum, product, quotient, placed, rounded;
+};
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

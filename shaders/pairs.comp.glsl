@@ -3,6 +3,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
 #include "interop.h"
 
 layout(local_size_x = kPairItemA) in;
@@ -15,23 +16,20 @@ layout(scalar, binding = kBindStates) restrict buffer States { State states[]; }
 
 layout(push_constant) uniform Push { uint count; uint groupsX; } push;
 
-vec3 lower(uint i) { return vec3(boxes[i].lo[0], boxes[i].lo[1], boxes[i].lo[2]); }
-vec3 upper(uint i) { return vec3(boxes[i].hi[0], boxes[i].hi[1], boxes[i].hi[2]); }
-
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX;
   if (group >= push.count) return;
   const PairItem item = items[group];
   const uint a = item.firstA + gl_LocalInvocationID.x;
   if (a >= item.endA) return;
-  const vec3 loA = lower(a), hiA = upper(a);
-  const float distance = float(targets[item.target].distance) * 1.000001;
+  const vec3 loA = boxes[a].lo, hiA = boxes[a].hi;
+  const float farthest = states[item.target].hi;
   const uint first = targets[item.target].firstPair, capacity = targets[item.target].pairCapacity;
   for (uint b = item.firstB; b < item.endB; ++b) {
-    const vec3 loB = lower(b), hiB = upper(b);
+    const vec3 loB = boxes[b].lo, hiB = boxes[b].hi;
     const float gap = max(loB.z - hiA.z, 0.0);
     const bool across = all(lessThanEqual(loA.xy, hiB.xy)) && all(lessThanEqual(loB.xy, hiA.xy));
-    if (!across || hiB.z < loA.z || gap > distance) continue;
+    if (!across || hiB.z < loA.z || gap > farthest) continue;
     const uint at = atomicAdd(states[item.target].pairCount, 1);
     if (at < capacity) pairs[first + at] = ClusterPair(gap, a, b);
   }

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
 #include "interop.h"
 
 layout(local_size_x = kCells) in;
@@ -108,6 +109,6 @@ void main() {
   if (cell == 0) {
     const float least = unordered(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
-    answers[v] = Answer(0.0LF, kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
+    answers[v] = Answer(double(0), kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
   }
 }

@@ -1,5 +1,6 @@
 // Solves the nominated pairs: a workgroup per sensor, an invocation per distinct pair. Candidates are taken kRound at a
-// time, best first, until a round has a pair that certainly meets within D.
+// time, best first, until a round has a pair that certainly meets within D. With RADAR_NO_DOUBLES, on a device without, every pair
+// is left to the host.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -20,43 +21,43 @@ layout(scalar, binding = kBindCandidates) readonly restrict buffer Candidates { 
 layout(scalar, binding = kBindAnswers) restrict buffer Answers { Answer answers[]; };
 layout(scalar, binding = kBindOpenPairs) writeonly restrict buffer OpenPairs { OpenPair openPairs[]; };
 
+shared uvec2 named[kRound];     // (itemB, itemA) of the round's candidates
+shared uvec2 pairs[kRound];     // the distinct ones
+shared uint pairCount;
+shared uvec4 pairIds[kRound];   // object, triB, triA, feature or kNobody
+shared bool pairOpen[kRound];
+
+#ifndef RADAR_NO_DOUBLES
 // A pair's t may be given this much late, relative to max(sensor's size, t), 2^-21; beyond, it counts as not decided.
 const double kTolerance = 4.76837158203125e-7LF;
 
-shared uvec2 named[kRound];    // (itemB, itemA) of the round's candidates
-shared uvec2 pairs[kRound];    // the distinct ones
-shared uint pairCount;
 shared double pairHi[kRound];
-shared double pairLow[kRound];  // kNever: decided
-shared uvec4 pairIds[kRound];  // object, triB, triA, feature
+shared double pairLow[kRound];
 
-dvec3 placed(double pose[12], uint vertex) {
+dvec3 placed(PreciseRows pose, uint vertex) {
   const dvec3 p = dvec3(originals[vertex]);
   dvec3 world;
   for (int k = 0; k < 3; ++k) {
-    precise double sum = ((pose[4 * k] * p.x + pose[4 * k + 1] * p.y) + pose[4 * k + 2] * p.z) + pose[4 * k + 3];
+    precise double sum = ((pose[k].x * p.x + pose[k].y * p.y) + pose[k].z * p.z) + pose[k].w;
     world[k] = sum;
   }
   return world;
 }
 
-void corners(double pose[12], uint mesh, uint triangle, out dvec3 p[3]) {
+void corners(PreciseRows pose, uint mesh, uint triangle, out dvec3 p[3]) {
   const MeshRecord record = meshes[mesh];
   for (uint i = 0; i < 3; ++i) p[i] = placed(pose, record.firstVertex + indices[record.firstIndex + 3 * triangle + i]);
 }
 
-bool before(uint x, uint y) {
+bool better(uint x, uint y) {
   if (pairHi[x] != pairHi[y]) return pairHi[x] < pairHi[y];
   if (pairIds[x].x != pairIds[y].x) return pairIds[x].x < pairIds[y].x;
   if (pairIds[x].y != pairIds[y].y) return pairIds[x].y < pairIds[y].y;
   return pairIds[x].z < pairIds[y].z;
 }
 
-void solvePair(uint v, uint lane) {
-  const Item itemB = items[pairs[lane].x / kItemTriangles], itemA = items[pairs[lane].y / kItemTriangles];
-  const uint slotB = itemB.firstTriangle + pairs[lane].x % kItemTriangles;
-  const uint slotA = itemA.firstTriangle + pairs[lane].y % kItemTriangles;
-  const uint object = draws[itemB.draw].object;
+// Returns the feature that attains `pairHi`, if the pair certainly meets within D, else kNobody.
+uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   dvec3 a[3], b[3];
   corners(views[v].pose, views[v].mesh, slotA, a);
   corners(objects[object].pose, objects[object].mesh, slotB, b);
@@ -73,11 +74,41 @@ void solvePair(uint v, uint lane) {
   const double hi = s * length * (1.0LF + 8.881784197001252e-16LF);
   pairHi[lane] = hi;
   const double low = earliest * length * (1.0LF - 8.881784197001252e-16LF);
-  const bool open = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
-  pairLow[lane] = open ? low : kNever;
+  pairLow[lane] = low;
+  pairOpen[lane] = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
+  return meets && hi <= views[v].distance ? meeting.feature : kNobody;
+}
+
+void tell(uint v, uint winner) {
+  answers[v].hi = pairHi[winner];
+  answers[v].object = pairIds[winner].x;
+  answers[v].triB = pairIds[winner].y;
+  answers[v].triA = pairIds[winner].z;
+  answers[v].feature = pairIds[winner].w;
+}
+
+OpenPair openPair(uint i) { return OpenPair(pairLow[i], pairIds[i].x, pairIds[i].y, pairIds[i].z, 0); }
+#else
+bool better(uint x, uint y) { return false; }
+
+uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
+  pairOpen[lane] = true;
+  return kNobody;
+}
+
+void tell(uint v, uint winner) {}
+
+OpenPair openPair(uint i) { return OpenPair(double(0), pairIds[i].x, pairIds[i].y, pairIds[i].z, 0); }
+#endif
+
+void solvePair(uint v, uint lane) {
+  const Item itemB = items[pairs[lane].x / kItemTriangles], itemA = items[pairs[lane].y / kItemTriangles];
+  const uint slotB = itemB.firstTriangle + pairs[lane].x % kItemTriangles;
+  const uint slotA = itemA.firstTriangle + pairs[lane].y % kItemTriangles;
+  const uint object = draws[itemB.draw].object;
   const uint triA = triangleIds[meshes[views[v].mesh].firstIndex / 3 + slotA];
   const uint triB = triangleIds[meshes[objects[object].mesh].firstIndex / 3 + slotB];
-  pairIds[lane] = uvec4(object, triB, triA, meets && hi <= views[v].distance ? meeting.feature : kNobody);
+  pairIds[lane] = uvec4(object, triB, triA, solve(v, lane, object, slotA, slotB));
 }
 
 void main() {
@@ -104,23 +135,15 @@ void main() {
     if (lane < pairCount) solvePair(v, lane);
     barrier();
     for (uint i = 0; i < pairCount; ++i) {
-      if (pairIds[i].w != kNobody && (winner == kNobody || before(i, winner))) winner = i;
+      if (pairIds[i].w != kNobody && (winner == kNobody || better(i, winner))) winner = i;
     }
     solved += pairCount;
     for (uint i = 0; i < pairCount && open < kOpenPairs; ++i) {
-      if (pairLow[i] >= kNever) continue;
-      if (lane == 0) {
-        openPairs[kOpenPairs * v + open] = OpenPair(pairLow[i], pairIds[i].x, pairIds[i].y, pairIds[i].z, 0);
-      }
+      if (!pairOpen[i]) continue;
+      if (lane == 0) openPairs[kOpenPairs * v + open] = openPair(i);
       ++open;
     }
-    if (lane == 0 && winner != kNobody) {
-      answers[v].hi = pairHi[winner];
-      answers[v].object = pairIds[winner].x;
-      answers[v].triB = pairIds[winner].y;
-      answers[v].triA = pairIds[winner].z;
-      answers[v].feature = pairIds[winner].w;
-    }
+    if (lane == 0 && winner != kNobody) tell(v, winner);
     barrier();
   }
   if (lane == 0) {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "gpu/check.h"
+#include "gpu/doubles.h"
 #include "gpu/requirements.h"
 
 namespace radar {
@@ -225,8 +226,9 @@ Device Device::open(const DeviceOptions& options) {
                                       .queueFamilyIndex = host.queueFamily,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
+  host.doubles = options.doubles && gpu::factsOf(host.physicalDevice).doubles;
   gpu::Features features;
-  gpu::enableRequired(features);
+  gpu::enableRequired(features, host.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features.core,
                                 .queueCreateInfoCount = 1,
@@ -242,7 +244,9 @@ Device Device::open(const DeviceOptions& options) {
 Device Device::adopt(const HostDevice& host) {
   const std::vector<std::string> reasons = gpu::reasonsAgainst(gpu::factsOf(host.physicalDevice));
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
-  return Device(std::make_unique<Impl>(host));
+  auto impl = std::make_unique<Impl>(host);
+  impl->doubles = host.doubles && gpu::doublesAreRight(*impl);
+  return Device(std::move(impl));
 }
 
 Device::Device(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -254,6 +258,9 @@ const std::string& Device::name() const {
 }
 const std::string& Device::driver() const {
   return impl_->driver;
+}
+bool Device::doubles() const {
+  return impl_->doubles;
 }
 const HostDevice& Device::handles() const {
   return impl_->host;

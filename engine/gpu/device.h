@@ -29,6 +29,7 @@ struct Device::Impl {
   std::string name, driver;
   uint32_t maxLayers = 0;
   uint32_t subgroupSize = 0;
+  bool doubles = false;  ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
   /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after

@@ -97,12 +97,14 @@ void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
 }
 
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, uint32_t lanes) {
+                         const char* name, std::span<const uint32_t> constants) {
   const ShaderModule module = shaderModule(device, spirv, name);
-  const VkSpecializationMapEntry entry{0, 0, sizeof(lanes)};
-  const VkSpecializationInfo constants{1, &entry, sizeof(lanes), &lanes};
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, sizeof(uint32_t)});
+  const VkSpecializationInfo values{static_cast<uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
+                                    constants.data()};
   VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
-  if (lanes != 0) stage.pSpecializationInfo = &constants;
+  if (!constants.empty()) stage.pSpecializationInfo = &values;
   const VkComputePipelineCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
   VkPipeline pipeline;

@@ -33,9 +33,9 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// `lanes`: value of specialization constant 0, the workgroup's size, where the shader leaves that open; else 0.
+/// `constants`: values of specialization constants 0, 1, ..., where the shader leaves some open.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, uint32_t lanes = 0);
+                         const char* name, std::span<const uint32_t> constants = {});
 
 /// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
 /// dynamic; a fragment survives if its depth is less.

@@ -14,11 +14,8 @@ struct Requirement {
   VkBool32& (*in)(Features&);
 };
 
-// A sensor is a layer of an array image, chosen in the vertex stage; structs are shared in scalar layout; pairs are
-// solved in double precision.
+// A sensor is a layer of an array image, chosen in the vertex stage; structs are shared in scalar layout.
 const Requirement kRequired[] = {
-    {"shaderFloat64", "pairs are solved in double precision",
-     [](Features& f) -> VkBool32& { return f.core.features.shaderFloat64; }},
     {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage",
      [](Features& f) -> VkBool32& { return f.v12.shaderOutputLayer; }},
     {"scalarBlockLayout", "buffers share the structs of C++",
@@ -52,10 +49,12 @@ DeviceFacts factsOf(VkPhysicalDevice device) {
       .groupInvocations = properties.limits.maxComputeWorkGroupInvocations,
       .stageBuffers = properties.limits.maxPerStageDescriptorStorageBuffers,
       .graphicsAndComputeQueue = queueFamilyOf(device) != kNone,
+      .doubles = false,
       .missingFeatures = {}};
   if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the feature structs below do not exist there
   Features features;
   vkGetPhysicalDeviceFeatures2(device, &features.core);
+  facts.doubles = features.core.features.shaderFloat64 == VK_TRUE;
   for (const Requirement& required : kRequired) {
     if (!required.in(features)) facts.missingFeatures.push_back(std::string(required.name) + " (" + required.why + ")");
   }
@@ -84,7 +83,8 @@ std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
   return reasons;
 }
 
-void enableRequired(Features& features) {
+void enableRequired(Features& features, bool doubles) {
+  features.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
   for (const Requirement& required : kRequired) required.in(features) = VK_TRUE;
 }
 

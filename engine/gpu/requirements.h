@@ -26,6 +26,7 @@ struct DeviceFacts {
   uint32_t groupInvocations = 0;
   uint32_t stageBuffers = 0;
   bool graphicsAndComputeQueue = false;
+  bool doubles = false;  ///< shaderFloat64: not required
   std::vector<std::string> missingFeatures;
 };
 
@@ -34,7 +35,7 @@ DeviceFacts factsOf(VkPhysicalDevice device);
 /// One line per thing that is missing; empty if the device will do.
 std::vector<std::string> reasonsAgainst(const DeviceFacts& facts);
 
-/// Switches on every required feature.
-void enableRequired(Features& features);
+/// Switches on every required feature, and shaderFloat64 where `doubles`.
+void enableRequired(Features& features, bool doubles);
 
 }  // namespace radar::gpu

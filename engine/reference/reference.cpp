@@ -134,6 +134,13 @@ Result Reference::Impl::answer(const Query& query) {
   result.tier = Tier::reference;
   result.status = Status::clear;
   if (!best.found) return result;
+  if (query.decide) {
+    result.status = Status::hit;
+    result.detected = Detected::yes;
+    result.lo = 0;
+    result.hi = best.latest;
+    return result;
+  }
 
   result.status = best.overlap ? Status::overlap : Status::hit;
   result.detected = Detected::yes;

@@ -50,7 +50,7 @@ const Best& Search::find(const Query& query, const TreeMesh& sensor) {
   } else {
     visitNode(0, turnedWorld);
   }
-  while (!queue_.empty() && queue_.front().near <= best_.latest) {
+  while (!queue_.empty() && queue_.front().near <= best_.latest && !decided()) {
     const Waiting next = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
@@ -103,7 +103,7 @@ void Search::searchMeshes(const World::Placed& placed, const Turned& turned) {
   const LaneBox boxB = turned.box(placed.mesh->tree.nodes()[0]);
   stack_.clear();
   stack_.push_back({0, 0, reach(boxA_, boxB), boxA_, boxB});
-  while (!stack_.empty()) {
+  while (!stack_.empty() && !decided()) {
     const Pair pair = stack_.back();
     stack_.pop_back();
     if (pair.near > best_.latest || cannotWin(placed.mesh->least[pair.b], sensor_->least[pair.a])) continue;

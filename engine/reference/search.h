@@ -67,6 +67,8 @@ class Search {
   void descend(const Pair& pair, bool intoA, const Turned& turned);
   void meetLeaves(const PlacedLeaf& a, const PlacedLeaf& b);
   void meet(const PlacedTriangle& a, const PlacedTriangle& b);
+  /// Only "within D or not" is asked, and something is.
+  bool decided() const { return query_->decide && best_.found; }
   bool cannotWin(uint32_t triB, uint32_t triA) const;
   void push(const Waiting& waiting);
 

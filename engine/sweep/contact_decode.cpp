@@ -39,15 +39,41 @@ bool settled(const Search& search, const Query& query, const Scene::Impl& scene)
   });
 }
 
+// Within D or not: what the device is certain of needs no pair.
+Result decision(std::span<const gpu::Contender> contenders, const gpu::State& state, const Query& query,
+                const Scene::Impl& scene, uint64_t& cpuPairs) {
+  bool hit = state.hi < query.distance;
+  ExactPairs exact(query, scene);
+  for (size_t i = 0; i < contenders.size() && !hit; ++i) {
+    exact.consider(nameOf(contenders[i], query, scene));
+    ++cpuPairs;
+    hit = exact.found();
+  }
+  Result result;
+  result.tier = Tier::contact;
+  result.status = hit ? Status::hit : Status::clear;
+  if (!hit) return result;
+  result.detected = Detected::yes;
+  result.lo = 0;
+  result.hi = std::min<double>(state.hi, query.distance);
+  return result;
+}
+
 }  // namespace
 
 Result decodeContact(const Search& found, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs) {
-  // What was kept before `hi` fell to where it is may begin beyond it.
-  const double limit = found.state.hi / lengthOf(scaledDirection(query.direction)) * (1 + 8 * kDoubleUnit);
+  // What was kept before the first certain contact was met may begin beyond it.
+  const double length = lengthOf(scaledDirection(query.direction));
+  double limit = found.state.hi;
+  for (const gpu::Contender& c : found.contenders) {
+    if ((c.flags & gpu::kContenderMeets) == 0) continue;
+    limit = std::min(limit, std::max(c.at + c.error, 0.0) * length * (1 + 8 * kDoubleUnit));
+  }
   std::vector<gpu::Contender> kept;
   for (const gpu::Contender& c : found.contenders) {
     if (c.low <= limit) kept.push_back(c);
   }
+  if (query.decide) return decision(kept, found.state, query, scene, cpuPairs);
   const Search search{found.state, kept};
   Result result;
   result.tier = Tier::contact;
@@ -57,31 +83,16 @@ Result decodeContact(const Search& found, const Query& query, const Scene::Impl&
     return result;
   }
 
-  if (settled(search, query, scene)) {
-    const gpu::Contender* best = &search.contenders[0];
-    PairName least = nameOf(*best, query, scene);
-    for (const gpu::Contender& c : search.contenders.subspan(1)) {
-      const PairName name = nameOf(c, query, scene);
-      if (name < least) {
-        least = name;
-        best = &c;
-      }
-    }
-    const double length = lengthOf(scaledDirection(query.direction)), t = best->at * length;
-    result.status = Status::hit;
-    result.detected = Detected::yes;
-    result.object = least.object;
-    result.triB = least.triB;
-    result.triA = least.triA;
-    setBracket(result, t, best->error * length + 8 * kDoubleUnit * t, query.distance);
-    const PlacedPair pair = placedPair(least, query, scene);
-    describe(result, best->flags & 0xff, pair.a, pair.b, query.direction);
-    return result;
-  }
-
   ExactPairs exact(query, scene);
-  for (const gpu::Contender& c : search.contenders) exact.consider(nameOf(c, query, scene));
-  cpuPairs += search.contenders.size();
+  if (settled(search, query, scene)) {
+    // The numbers come from the same arithmetic as where pairs are open, so that they do not depend on what was culled.
+    PairName least = nameOf(search.contenders[0], query, scene);
+    for (const gpu::Contender& c : search.contenders) least = std::min(least, nameOf(c, query, scene));
+    exact.consider(least);
+  } else {
+    for (const gpu::Contender& c : search.contenders) exact.consider(nameOf(c, query, scene));
+    cpuPairs += search.contenders.size();
+  }
   if (exact.found()) {
     exact.tell(result);
   } else if (found.state.hi < query.distance) {

@@ -7,11 +7,6 @@ namespace radar {
 
 namespace {
 
-// Float, rounded up: an error bound must not shrink.
-float upward(double x) {
-  return std::nextafter(static_cast<float>(x), INFINITY);
-}
-
 Box turned(const ClusterNode& node, const Affine& m, double error) {
   Box box;
   for (int row = 0; row < 3; ++row) {
@@ -72,6 +67,7 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
   plan.target.directionLength = lengthOf(direction);
   plan.target.distance = query.distance;
   plan.target.mesh = query.mesh;
+  plan.target.enough = query.decide ? downward(query.distance) : 0;
   if (reach.objects.empty()) return plan;
 
   plan.placements.push_back(placementOf(window.frameFromMesh, window.error, query.mesh, kNone));

@@ -1,10 +1,12 @@
 #include "sweep/contact_recorder.h"
 
 #include <algorithm>
+#include <array>
 
 #include "gpu/barrier.h"
 #include "spirv/bounds_comp.h"
 #include "spirv/contact_comp.h"
+#include "spirv/contact_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/pairs_comp.h"
 
 // pass       reads                                   writes                      barrier behind it
@@ -29,13 +31,15 @@ constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK
 constexpr VkBufferUsageFlags kComputed = kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 // Nearly every search ends in the first dispatch; one that has ended costs a dispatch next to nothing.
 constexpr uint32_t kSearchDispatches = 3;
-// What the lists of a plan hold at first.
-constexpr uint64_t kPairRoom = 4096;
-constexpr uint32_t kContenderRoom = 256;
 
 struct CountPush {
   uint32_t count, groupsX;
 };
+
+std::span<const uint32_t> searchShader(const Device::Impl& device) {
+  if (device.doubles) return k_contact_comp;
+  return k_contact_comp_RADAR_NO_DOUBLES;
+}
 
 std::vector<gpu::Binding> bindingList() {
   std::vector<gpu::Binding> list;
@@ -58,16 +62,18 @@ void addItems(std::vector<gpu::PairItem>& items, uint32_t target, uint32_t first
 
 }  // namespace
 
-ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps)
+ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps,
+                                 const ContactRoom& room)
     : device_(&device),
       resident_(resident),
+      room_(room),
       upload_(device),
       submission_(device, timestamps),
       bindings_(device, bindingList(), sizeof(CountPush)),
       bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
       pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
-      contact_(gpu::computePipeline(device, bindings_.layout(), k_contact_comp, "contact",
-                                    std::clamp(device.subgroupSize, 8u, 128u))),
+      contact_(gpu::computePipeline(device, bindings_.layout(), searchShader(device), "contact",
+                                    std::array{std::clamp(device.subgroupSize, 8u, 128u), room.run})),
       targets_(device, "targets", Residence::device, kUploaded),
       placements_(device, "placements", Residence::device, kUploaded),
       refs_(device, "cluster refs", Residence::device, kUploaded),
@@ -237,7 +243,7 @@ void ContactRecorder::submit(std::span<const ContactPlan* const> plans, const Sc
   waiting_.clear();
   for (size_t i = 0; i < plans.size(); ++i) {
     waiting_.push_back(
-        {i, std::min<uint64_t>(allPairs(*plans[i]), kPairRoom), kContenderRoom, plans[i]->target.distance});
+        {i, std::min<uint64_t>(allPairs(*plans[i]), room_.pairs), room_.contenders, upward(plans[i]->target.distance)});
   }
   submitGroup(plans, scene);
 }

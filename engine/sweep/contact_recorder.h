@@ -17,9 +17,17 @@ struct Search {
   std::span<const gpu::Contender> contenders;
 };
 
+/// Room for the lists of one plan at first, and how many cluster pairs a search orders at a time: tests make them
+/// small.
+struct ContactRoom {
+  uint64_t pairs = 4096;
+  uint32_t contenders = 256;
+  uint32_t run = 4096;
+};
+
 class ContactRecorder {
  public:
-  ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps);
+  ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps, const ContactRoom& room = {});
 
   /// Begins the search for the first contact of every plan: one upload, one command buffer, one readback; returns while
   /// the device works on it, and collect() comes next, with the same arguments.
@@ -36,7 +44,7 @@ class ContactRecorder {
     size_t plan;
     uint64_t pairs;
     uint32_t contenders;
-    double hi;  ///< first contact is no later, world units
+    float hi;  ///< first contact is no later, world units
   };
 
   std::vector<Room> nextGroup();
@@ -50,6 +58,7 @@ class ContactRecorder {
 
   const Device::Impl* device_;
   ResidentScene& resident_;
+  ContactRoom room_;
   gpu::Upload upload_;
   gpu::Submission submission_;
   gpu::Bindings bindings_;

@@ -13,6 +13,19 @@ Corners corners(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
   return p;
 }
 
+// Within D or not, and nothing else.
+Result decisionOf(const Result& found) {
+  Result result;
+  result.status = found.status == Status::overlap ? Status::hit : found.status;
+  result.tier = found.tier;
+  result.detected = found.detected;
+  result.resolution = found.resolution;
+  result.lo = found.lo;
+  result.hi = found.hi;
+  result.paperMinL = found.paperMinL;
+  return result;
+}
+
 // What is known to be in the way, by the device alone.
 void setFound(Result& result, const gpu::Answer& answer, const Query& query, const Scene::Impl& scene) {
   result.status = answer.hi == 0 ? Status::overlap : Status::hit;
@@ -49,6 +62,7 @@ Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, co
   ExactPairs exact(query, scene);
   for (const gpu::OpenPair& pair : open.first(answer.openPairs)) {
     if (answer.object != kNone && pair.low >= answer.hi) continue;
+    if (query.decide && (answer.object != kNone || exact.found())) break;
     exact.consider({pair.object, pair.triB, pair.triA});
     ++cpuPairs;
   }
@@ -63,7 +77,7 @@ Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, co
   }
   result.detected = (answer.flags & gpu::kAnswerDetected) != 0 ? Detected::yes : Detected::no;
   if ((answer.flags & gpu::kAnswerHasL) != 0) result.paperMinL = answer.minL;
-  return result;
+  return query.decide ? decisionOf(result) : result;
 }
 
 }  // namespace radar

@@ -12,7 +12,7 @@ namespace radar {
 Result decodeClear();
 
 /// Of a sensor whose scopes were drawn; `resolution` is its window's. Open pairs that may come before what the device
-/// found are decided exactly, and counted in `cpuPairs`.
+/// found are decided exactly, and counted in `cpuPairs`; where only a decision is asked, no more than it takes.
 Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
               const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace radar {
 
@@ -65,6 +66,16 @@ std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene
 }
 
 }  // namespace
+
+float upward(double x) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return x < kMost ? std::nextafter(static_cast<float>(x), INFINITY) : INFINITY;
+}
+
+float downward(double x) {
+  const double most = std::numeric_limits<float>::max();
+  return std::nextafter(static_cast<float>(std::min(x, most)), 0.0f);
+}
 
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
   double worst = 0;

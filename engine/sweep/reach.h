@@ -11,6 +11,11 @@ namespace radar {
 /// Half an ulp of 1 in float.
 inline constexpr double kFloatUnit = 0x1p-24;
 
+/// A float above `x` >= 0: an error bound must not shrink. Infinity where there is none.
+float upward(double x);
+/// A float below `x` >= 0, or 0.
+float downward(double x);
+
 /// Where the sensor is, in the frame of its view.
 struct SensorWindow {
   std::array<Vector, 3> axes;  ///< of the frame, world; the last along the motion

@@ -8,6 +8,7 @@
 #include "spirv/identify_comp.h"
 #include "spirv/reduce_comp.h"
 #include "spirv/solve_comp.h"
+#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
 
 // pass       reads                                     writes                     barrier behind it
 // ---------- ----------------------------------------- -------------------------- ------------------------------
@@ -34,6 +35,11 @@ struct IdentifyPush {
   uint32_t items, groupsX;
 };
 
+std::span<const uint32_t> solveShader(const Device::Impl& device) {
+  if (device.doubles) return k_solve_comp;
+  return k_solve_comp_RADAR_NO_DOUBLES;
+}
+
 std::vector<gpu::Binding> bindingList() {
   std::vector<gpu::Binding> list;
   for (uint32_t i = 0; i < gpu::kBindings; ++i) {
@@ -57,7 +63,7 @@ Recorder::Recorder(const Device::Impl& device, ResidentScene& resident, uint64_t
       depth_(gpu::depthPipeline(device, bindings_.layout(), renderPass_.get(), k_depth_vert, "depth")),
       reduce_(gpu::computePipeline(device, bindings_.layout(), k_reduce_comp, "reduce")),
       identify_(gpu::computePipeline(device, bindings_.layout(), k_identify_comp, "identify")),
-      solve_(gpu::computePipeline(device, bindings_.layout(), k_solve_comp, "solve")),
+      solve_(gpu::computePipeline(device, bindings_.layout(), solveShader(device), "solve")),
       views_(device, "views", Residence::device, kUploaded),
       draws_(device, "draws", Residence::device, kUploaded),
       items_(device, "items", Residence::device, kUploaded),

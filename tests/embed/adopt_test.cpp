@@ -25,7 +25,8 @@ struct Host {
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
     gpu::Features features;
-    gpu::enableRequired(features);
+    handles.doubles = gpu::factsOf(handles.physicalDevice).doubles;
+    gpu::enableRequired(features, handles.doubles);
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &features.core,
                                   .queueCreateInfoCount = 1,

@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Holds the order of the floors: cmake -DROOT=... -P floors.cmake. Each folder may include itself and what is listed.
 set(scene_may radar)
-set(gpu_may radar)
+set(gpu_may radar shaders spirv)
 set(exact_may Eigen)
 set(sweep_may radar gpu scene exact shaders spirv)
 set(pool_may radar gpu scene sweep)

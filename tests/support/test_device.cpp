@@ -1,5 +1,6 @@
 #include "support/test_device.h"
 
+#include <cstdlib>
 #include <mutex>
 #include <utility>
 
@@ -22,8 +23,13 @@ std::vector<std::string> takeValidationMessages() {
   return std::exchange(messages, {});
 }
 
+bool wantsDoubles() {
+  const char* setting = std::getenv("RADAR_TEST_DOUBLES");
+  return setting == nullptr || std::string(setting) != "off";
+}
+
 const Device& device() {
-  static const Device opened = Device::open({.onValidation = onValidation});
+  static const Device opened = Device::open({.onValidation = onValidation, .doubles = wantsDoubles()});
   return opened;
 }
 

@@ -8,6 +8,8 @@
 
 namespace radar::test {
 
+/// The environment variable RADAR_TEST_DOUBLES, "off" or not set: whether the device shall use doubles.
+bool wantsDoubles();
 /// Opened on first use, with the validation layers listening.
 const Device& device();
 

@@ -22,7 +22,7 @@ nlohmann::json goodFile() {
                {"id": "b", "base": 0, "instances": [[0, 2,0,0,0, 0,-2,0,0, 0,0,2,1e-3]], "masks": [[1, 6]]}],
     "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
                 {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2],
-                 "dir": [0, -0.5, 1], "D": 0, "mask": 5, "mode": "sampled", "speed": 2.5}]})");
+                 "dir": [0, -0.5, 1], "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5}]})");
 }
 
 struct Files {
@@ -74,6 +74,7 @@ TEST_CASE("a query file is read as it says") {
   CHECK(plain.mask == ~0u);
   CHECK_FALSE(plain.mode);
   CHECK_FALSE(plain.speed);
+  CHECK_FALSE(plain.decide);
   CHECK(full.batch == 3);
   CHECK(full.exclude == std::vector<uint32_t>{2});
   CHECK(full.direction == std::array<double, 3>{0, -0.5, 1});
@@ -81,6 +82,7 @@ TEST_CASE("a query file is read as it says") {
   CHECK(full.mask == 5);
   CHECK(full.mode == AnswerMode::sampled);
   CHECK(full.speed == 2.5);
+  CHECK(full.decide);
   CHECK(full.sensor.worldFromMesh.m[11] == -2);
 }
 
@@ -123,6 +125,7 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/1/mask", "1.5", "queries[1].mask: ", "a whole number"},
       {"/queries/1/mode", "\"fast\"", "queries[1].mode: ", "got \"fast\""},
       {"/queries/1/mode", "\"bounded\"", "queries[1].mode: ", "not available in this version"},
+      {"/queries/1/decide", "1", "queries[1].decide: ", "true or false"},
       {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
   };
   for (const auto& c : cases) {
@@ -146,7 +149,7 @@ TEST_CASE("unknown keys are refused everywhere, keys kept for later by name") {
   CHECK_THAT(files.refusalWith("/extra", "1"), StartsWith("extra: ") && Contains("got \"extra\""));
   CHECK_THAT(files.refusalWith("/scenes/0/Instances", "[]"), StartsWith("scenes[0].Instances: "));
   CHECK_THAT(files.refusalWith("/queries/1/direction", "[]"), StartsWith("queries[1].direction: "));
-  for (const char* key : {"margin", "top", "rotation", "motion", "decide", "tolerance"}) {
+  for (const char* key : {"margin", "top", "rotation", "motion", "tolerance"}) {
     CAPTURE(key);
     CHECK_THAT(files.refusalWith((std::string("/queries/1/") + key).c_str(), "0"),
                StartsWith(std::string("queries[1].") + key) && Contains("not available in this version"));
@@ -222,6 +225,7 @@ TEST_CASE("a workload survives writing and reading to the bit") {
   workload.scenes[1].masks = {{0, 3}, {101, 0}};
   workload.queries[0].mask = 17;
   workload.queries[1].mode = AnswerMode::reference;
+  workload.queries[1].decide = true;
   workload.queries[2].id = "odd \"id\"\n\\ \xc3\xa4";
   std::vector<std::string> warnings;
   const Workload again = readQueryFile(writeQueryFile(workload, folder.path() / "new" / "folder"), warnings);
@@ -242,6 +246,6 @@ TEST_CASE("a workload survives writing and reading to the bit") {
     const QuerySpec &a = again.queries[i], &b = workload.queries[i];
     CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor));
     CHECK((a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance));
-    CHECK((a.mask == b.mask && a.mode == b.mode && a.speed == b.speed));
+    CHECK((a.mask == b.mask && a.decide == b.decide && a.mode == b.mode && a.speed == b.speed));
   }
 }

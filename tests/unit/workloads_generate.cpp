@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 
+#include "workloads/families.h"
 #include "workloads/generate.h"
 
 using namespace radar;
@@ -87,7 +88,7 @@ TEST_CASE("the teapot has 6,320 triangles, none of them degenerate") {
 TEST_CASE("turned shapes and boxes are closed and have no degenerate triangle") {
   for (const MeshData& mesh :
        {makeBox({1, 2, 3}), makeUvSphere(9, 16), makeTorus(3, 1, 20, 11), makeRod(1, 5, 13), makeCup(2, 3, 0.2, 17),
-        makePlate(4, 5, 0.1), makeComb(5, 1, 2, 0.3), makeHook(4, 2, 1, 0.3)}) {
+        makePlate(4, 5, 0.1), makeComb(5, 1, 2, 0.3), makeHook(4, 2, 1, 0.3), makeKey(), makeKeyhole()}) {
     CAPTURE(mesh.name);
     CHECK(isClosed(mesh));
     CHECK_FALSE(hasDegenerateTriangle(mesh));
@@ -116,6 +117,25 @@ TEST_CASE("a workload is the same to the bit, always and everywhere") {
   CHECK(fingerprintOf(makeWorkload(Scale{1000, 32, SensorShape::box, 11})) == 0xa0fa6130d5cc640ull);
   CHECK(fingerprintOf(makeWorkload(Soups{})) == 0x180343bab99329cfull);
   CHECK(fingerprintOf(makeWorkload(poses)) == 0x64d72d9557e3e7c6ull);
+}
+
+TEST_CASE("every family keeps the contracts of Scene and Query, and is the same to the bit, always and everywhere") {
+  Fingerprint all;
+  for (const Family family : kFamilies) {
+    CAPTURE(nameOf(family));
+    for (const uint64_t seed : {1, 2, 3}) {
+      const Workload workload = makeWorkload(FamilyScene{family, 65, seed});
+      all.add(fingerprintOf(workload));
+      CHECK(workload.queries.size() == 65);
+      CHECK(fingerprintOf(workload) != fingerprintOf(makeWorkload(FamilyScene{family, 65, seed + 1})));
+      ScenePlayer player(workload);
+      player.show(0);
+      for (const QuerySpec& query : workload.queries) {
+        CHECK(whatIsWrong(toQuery(query, radar::Mode::contact), player.scene()).empty());
+      }
+    }
+  }
+  CHECK(all.value() == 0x82c7908bfb10e2c9ull);
 }
 
 TEST_CASE("other seeds give other workloads") {

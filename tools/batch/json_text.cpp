@@ -141,6 +141,11 @@ double JsonValue::number() const {
   return json_.get<double>();
 }
 
+bool JsonValue::boolean() const {
+  if (!json_.is_boolean()) expected("true or false");
+  return json_.get<bool>();
+}
+
 uint64_t JsonValue::wholeNumber(uint64_t most) const {
   if (!json_.is_number_unsigned() || json_.get<uint64_t>() > most) {
     expected("a whole number from 0 to " + std::to_string(most));

@@ -27,6 +27,7 @@ class JsonValue {
   size_t arraySize() const;  ///< refuses what is no array
   std::string string() const;
   double number() const;  ///< finite
+  bool boolean() const;
   uint64_t wholeNumber(uint64_t most) const;
   /// A whole number below `count`; `what` says what there are `count` of.
   uint32_t index(size_t count, const char* what) const;

@@ -17,8 +17,7 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"motion", "motions",   "deforms", "decide",
-                                       "margin", "tolerance", "top",     "rotation"};
+constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "tolerance", "top", "rotation"};
 constexpr uint64_t kMostBits = std::numeric_limits<uint32_t>::max();
 
 std::string readWhole(const std::filesystem::path& file, const char* kind) {
@@ -213,7 +212,7 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 QuerySpec Reader::readQuery(const JsonValue& query) const {
-  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "mode", "speed"});
+  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "decide", "mode", "speed"});
   QuerySpec spec;
   spec.id = query.member("id").string();
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
@@ -234,6 +233,7 @@ QuerySpec Reader::readQuery(const JsonValue& query) const {
   spec.distance = distance.number();
   if (spec.distance < 0) distance.expected("a number of 0 or more");
   if (query.has("mask")) spec.mask = static_cast<uint32_t>(query.member("mask").wholeNumber(kMostBits));
+  if (query.has("decide")) spec.decide = query.member("decide").boolean();
   if (query.has("mode")) {
     const JsonValue mode = query.member("mode");
     try {

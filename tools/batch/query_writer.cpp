@@ -91,6 +91,7 @@ void appendQuery(std::string& text, const QuerySpec& query) {
   text += ", \"D\": ";
   appendNumber(text, query.distance);
   if (query.mask != ~0u) text.append(", \"mask\": ").append(std::to_string(query.mask));
+  if (query.decide) text += ", \"decide\": true";
   if (query.mode) text += std::string(", \"mode\": \"") + nameOf(*query.mode) + "\"";
   if (query.speed) {
     text += ", \"speed\": ";

@@ -100,7 +100,9 @@ void drawScopes(Options& options) {
   player.show(query.scene);
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
-  const Scopes scopes = sweeper.scopes(toQuery(query, radar::Mode::sampled, engine.resolution));
+  Query asked = toQuery(query, radar::Mode::sampled, engine.resolution);
+  asked.decide = false;  // the words below tell the whole answer
+  const Scopes scopes = sweeper.scopes(asked);
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");
   }

@@ -8,7 +8,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr double kWidth = 640, kHeight = 380, kLeft = 58, kRight = 116, kTop = 14, kBottom = 48;
+constexpr double kWidth = 440, kHeight = 340, kLeft = 58, kRight = 84, kTop = 14, kBottom = 48;
 constexpr int kColours = 6;
 
 template <class... Values>

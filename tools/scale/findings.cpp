@@ -38,12 +38,15 @@ double shareOf(const ScaleRun& run, std::initializer_list<const char*> names) {
 
 std::string onSlower(const ScaleReport& report, const ScaleRun& run, double share) {
   std::string text = words("%.0f%% goes because each device takes longer for a query than alone: ", percent(share));
-  const double used = run.cores / report.processors;
-  if (used > 0.9) {
-    return text + words(
-                      "the machine's %u processor cores were %.0f%% in use, so devices and the threads that feed "
-                      "them share cores.",
-                      report.processors, percent(used));
+  const double own = run.cores / report.processors, others = run.machine - own;
+  if (others > 0.1) {
+    text += words(
+        "other programs took %.0f%% of the machine's %u processor cores, so this run says little of the devices; ",
+        percent(others), report.processors);
+  }
+  if (std::max(own, run.machine) > 0.9) {
+    return text + words("the %u cores were %.0f%% in use, so devices and the threads that feed them share them.",
+                        report.processors, percent(std::max(own, run.machine)));
   }
   return text + words(
                     "%.1f of %u processor cores were in use, so not cores but what else the devices share (memory, "

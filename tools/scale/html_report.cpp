@@ -20,7 +20,7 @@ body{margin:0;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sa
 main{max-width:1200px;margin:0 auto;padding:24px 16px 48px}
 h1{font-size:1.6rem;margin:0 0 4px}h2{font-size:1.15rem;margin:36px 0 8px}h3{font-size:1rem;margin:16px 0 4px}
 p{margin:4px 0}.soft{color:var(--soft)}
-.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));gap:16px}
+.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,350px),1fr));gap:16px}
 figure{margin:0;padding:12px;background:var(--panel);border-radius:8px}
 figcaption{font-weight:600;margin-bottom:8px}
 svg{display:block;width:100%;height:auto;font:13px system-ui,sans-serif}
@@ -30,7 +30,7 @@ svg text{fill:var(--ink)}.middle{text-anchor:middle}.end{text-anchor:end}
 .mark.c0,.bar.c0{fill:var(--c0)}.mark.c1,.bar.c1{fill:var(--c1)}.mark.c2,.bar.c2{fill:var(--c2)}
 .mark.c3,.bar.c3{fill:var(--c3)}.mark.c4,.bar.c4{fill:var(--c4)}.mark.c5,.bar.c5{fill:var(--c5)}
 .bar{stroke:var(--panel);stroke-width:.6}
-.scroll{overflow-x:auto}.scroll svg{min-width:640px}
+.scroll{overflow-x:auto}.scroll svg{min-width:720px}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}
 th,td{padding:3px 14px 3px 0;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}
 th:first-child,td:first-child{text-align:left}

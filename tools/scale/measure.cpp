@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -20,6 +21,24 @@ double processorMs() {
   getrusage(RUSAGE_SELF, &usage);
   const auto ms = [](const timeval& t) { return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * t.tv_usec; };
   return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+// Of all processor cores, in one unit: in use, and altogether. Zero where the system does not say.
+struct MachineTime {
+  double used = 0, all = 0;
+};
+
+MachineTime machineTime() {
+  MachineTime time;
+  std::ifstream stat("/proc/stat");
+  std::string name;
+  stat >> name;
+  double value = 0;
+  for (int i = 0; i < 8 && stat >> value; ++i) {
+    time.all += value;
+    if (i != 3 && i != 4) time.used += value;  // idle, waiting for a disk
+  }
+  return time;
 }
 
 // The devices' places, and whether a set is a device measured for itself.
@@ -53,6 +72,7 @@ std::vector<PlayedBatch> played(const Workload& workload, const ScaleSettings& s
 
 struct Pass {
   double ms = 0, processor = 0;
+  MachineTime machine;
   std::vector<PoolAnswers> batches;
 };
 
@@ -75,6 +95,7 @@ class Bench {
     Pool& pool = *(profile ? profiled_ : pools_)[set];
     Pass pass;
     const double processor = processorMs();
+    const MachineTime machine = machineTime();
     const Clock::time_point start = Clock::now();
     for (const PlayedBatch& batch : batches_) {
       pool.edit([&] { player_->show(batch.scene); });
@@ -82,6 +103,8 @@ class Bench {
     }
     pass.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     pass.processor = processorMs() - processor;
+    const MachineTime after = machineTime();
+    pass.machine = {after.used - machine.used, after.all - machine.all};
     for (const PoolAnswers& answers : pass.batches) {
       if (!answers.reasons.empty()) throw Error("a query was not answered: " + answers.reasons.begin()->second);
       if (!answers.retired.empty()) throw Error("a device was given up: " + answers.retired.front());
@@ -129,11 +152,15 @@ void addShare(DeviceShare& share, const PoolAnswers& batch, uint32_t device) {
 
 void summarize(ScaleRun& run, std::vector<Pass> passes) {
   double processor = 0, all = 0;
+  MachineTime machine;
   for (const Pass& pass : passes) {
     processor += pass.processor;
     all += pass.ms;
+    machine.used += pass.machine.used;
+    machine.all += pass.machine.all;
   }
   run.cores = processor / all;
+  run.machine = machine.all > 0 ? machine.used / machine.all : 0;
   std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.ms < b.ms; });
   run.least = passes.front().ms;
   run.most = passes.back().ms;

@@ -41,6 +41,7 @@ struct ScaleRun {
   size_t point = 0;
   double ms = 0, least = 0, most = 0;  ///< of a pass over all batches: the median, and the range
   double cores = 0;                    ///< processor time of this process over the time passed
+  double machine = 0;                  ///< share of all processor cores in use, by anyone; 0 where it is not known
   double scene = 0;                    ///< between batches: the scene is edited
   // Of the pass whose time is the median:
   std::vector<DeviceShare> shares;

@@ -99,18 +99,6 @@ Workload boxesAndSensors(uint32_t boxes, uint32_t sensors, SensorShape shape, do
   return workload;
 }
 
-/// Turned, scaled by `scale` per axis, sometimes sheared and sometimes mirrored.
-Pose randomAffine(Random& random, const Vec3& at) {
-  const auto rotation = random.rotation();
-  const Vec3 scale = random.inBox({0.3, 0.3, 0.3}, {2, 2, 2});
-  Pose pose = makePose(rotation, {random.below(2) == 0 ? scale[0] : -scale[0], scale[1], scale[2]}, at);
-  if (random.below(2) == 0) {
-    const double shear = random.uniform(-0.5, 0.5);
-    for (int row = 0; row < 3; ++row) pose.m[4 * row + 1] += shear * pose.m[4 * row];
-  }
-  return pose;
-}
-
 /// A soup's own size and place do not matter to the scene: back to a cube of edge 2 around the origin.
 Pose normalised(Soup soup, const Pose& pose) {
   Pose result = pose;

@@ -64,6 +64,17 @@ Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Ve
   return pose;
 }
 
+Pose randomAffine(Random& random, const Vec3& at) {
+  const auto rotation = random.rotation();
+  const Vec3 scale = random.inBox({0.3, 0.3, 0.3}, {2, 2, 2});
+  Pose pose = makePose(rotation, {random.below(2) == 0 ? scale[0] : -scale[0], scale[1], scale[2]}, at);
+  if (random.below(2) == 0) {
+    const double shear = random.uniform(-0.5, 0.5);
+    for (int row = 0; row < 3; ++row) pose.m[4 * row + 1] += shear * pose.m[4 * row];
+  }
+  return pose;
+}
+
 std::array<double, 2> circlePoint(uint32_t k, uint32_t n) {
   constexpr double kPi = 3.14159265358979323846;
   // Folded into the first eighth of a turn by exact integers, so that symmetric points are symmetric to the bit.

@@ -29,6 +29,9 @@ class Random {
 /// World = rotation * diag(scale) * p + at.
 Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at);
 
+/// Turned, scaled by 0.3 to 2 per axis, sometimes sheared and sometimes mirrored.
+Pose randomAffine(Random& random, const Vec3& at);
+
 /// {cos, sin} of 2 pi k / n, the same bits everywhere, exact at quarter turns.
 std::array<double, 2> circlePoint(uint32_t k, uint32_t n);
 

@@ -107,6 +107,44 @@ MeshData makeHook(double length, double reach, double tip, double thickness) {
   return mesh;
 }
 
+MeshData makeSheet(uint32_t cells, double roughness, Random& random) {
+  MeshData mesh{"sheet", {}, {}};
+  for (uint32_t y = 0; y <= cells; ++y) {
+    for (uint32_t x = 0; x <= cells; ++x) {
+      addVertex(mesh, {2.0 * x / cells - 1, 2.0 * y / cells - 1, random.uniform(-roughness, roughness)});
+    }
+  }
+  for (uint32_t y = 0; y < cells; ++y) {
+    for (uint32_t x = 0; x < cells; ++x) {
+      const uint32_t corner = y * (cells + 1) + x, above = corner + cells + 1;
+      addTriangle(mesh, corner, corner + 1, above);
+      addTriangle(mesh, corner + 1, above + 1, above);
+    }
+  }
+  return mesh;
+}
+
+MeshData makeKey() {
+  MeshData mesh = named("key", makeBox({0.5, 0.5, 4}));
+  append(mesh, makeBox({0.2, 0.9, 0.3}), {0, -0.7, 1.5});
+  return mesh;
+}
+
+MeshData makeKeyhole() {
+  // What is left of a plate of 4 x 4 around a square hole of 0.6 and the slot of 0.3 below it: {x, y} from, to.
+  constexpr std::array<std::array<double, 4>, 6> kParts{{{-2, -2, -0.3, 2},
+                                                         {0.3, -2, 2, 2},
+                                                         {-0.3, 0.3, 0.3, 2},
+                                                         {-0.3, -2, 0.3, -1.2},
+                                                         {-0.3, -1.2, -0.15, -0.3},
+                                                         {0.15, -1.2, 0.3, -0.3}}};
+  MeshData mesh{"keyhole", {}, {}};
+  for (const auto& [x0, y0, x1, y1] : kParts) {
+    append(mesh, makeBox({x1 - x0, y1 - y0, 0.2}), {0.5 * (x0 + x1), 0.5 * (y0 + y1), 0});
+  }
+  return mesh;
+}
+
 const char* nameOf(Soup soup) {
   constexpr std::array<const char*, kSoups.size()> kNames{"plain", "needles", "degenerate", "lattice", "tiny", "far"};
   return kNames[static_cast<size_t>(soup)];

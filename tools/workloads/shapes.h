@@ -31,6 +31,12 @@ MeshData makePlate(double width, double depth, double thickness);
 MeshData makeComb(uint32_t teeth, double pitch, double toothLength, double thickness);
 /// A shank along z, bent towards +x and up again at the tip, of square section `thickness`.
 MeshData makeHook(double length, double reach, double tip, double thickness);
+/// A sheet of cells x cells squares over -1..1 across z, two triangles a square, its vertices up to `roughness` off z =
+/// 0. Open: it has a rim.
+MeshData makeSheet(uint32_t cells, double roughness, Random& random);
+/// A key along z whose bit points towards -y, and a plate across z with the hole that it passes with 0.05 to spare.
+MeshData makeKey();
+MeshData makeKeyhole();
 
 /// Newell's teapot, z up, 6.4 wide from handle to spout: 32 Bezier patches of 10 x 10 cells, two triangles a cell, less
 /// the ten of each of the eight patches at the lid's knob and the bottom's centre whose edge is one point:

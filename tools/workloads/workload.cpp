@@ -20,6 +20,7 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.mode = mode;
   query.exclude = spec.exclude;
   query.mask = spec.mask;
+  query.decide = spec.decide;
   query.resolution = resolution;
   return query;
 }

@@ -51,6 +51,7 @@ struct QuerySpec {
   std::array<double, 3> direction{};
   double distance = 0;
   uint32_t mask = ~0u;
+  bool decide = false;
   std::optional<AnswerMode> mode;  ///< overrides the command's
   std::optional<double> speed;     ///< units per second
 };

@@ -128,6 +128,7 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, world units
   Mode mode = Mode::contact;
+  bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
   uint32_t resolution = 0;        ///< mode sampled: pixels of the window's longer side, up to kMaxResolution; 0: chosen
@@ -154,6 +155,9 @@ enum class Detected : uint32_t {
 };
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
+///
+/// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
+/// normal do not exist; lo and hi still hold t*, more loosely; only the status is independent of order and culling.
 struct Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
@@ -201,6 +205,7 @@ struct HostDevice {
   VkDevice device = VK_NULL_HANDLE;
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
+  bool doubles = true;      ///< the feature shaderFloat64 is enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
 };
 
@@ -208,6 +213,7 @@ struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
   /// Receives each warning or error of the validation layers that are active; called on any thread.
   std::function<void(const std::string&)> onValidation;
+  bool doubles = true;  ///< false: do without them, as where shaderFloat64 is missing
 };
 
 /// A logical device with one queue: opened here (and then owned), or a host's (and then only borrowed).
@@ -215,8 +221,8 @@ class Device {
  public:
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks something. While a Sweeper of this device runs, the host keeps
-  /// other threads from using `queue`.
+  /// Throws with reasons if the physical device lacks something. While this and a Sweeper of this device run, the host
+  /// keeps other threads from using `queue`.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -224,6 +230,10 @@ class Device {
 
   const std::string& name() const;
   const std::string& driver() const;
+  /// Whether pairs are solved in double precision on the device: it has doubles, and a test at opening found them to
+  /// be those of the CPU, bit for bit. Else they are solved in float, with error bounds, and what that leaves open is
+  /// decided on the CPU: the answers are the same.
+  bool doubles() const;
   const HostDevice& handles() const;
 
   struct Impl;

@@ -1,0 +1,88 @@
+#include "gpu/doubles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "gpu/barrier.h"
+#include "gpu/pipeline.h"
+#include "gpu/submission.h"
+#include "shaders/interop.h"
+#include "spirv/doubles_comp.h"
+
+namespace radar::gpu {
+
+namespace {
+
+// Of all signs and of magnitudes 2^-60 to 2^60, with every bit of the significand in use.
+std::vector<Sum> sumsToTry() {
+  std::mt19937_64 random(1);
+  const auto number = [&] {
+    const double significand = 1 + std::ldexp(static_cast<double>(random() >> 12), -52);
+    return std::ldexp(random() % 2 == 0 ? significand : -significand, static_cast<int>(random() % 121) - 60);
+  };
+  std::vector<Sum> sums(kSums);
+  for (size_t i = 0; i < sums.size(); ++i) {
+    Sum& s = sums[i];
+    s.x = number();
+    // Where a sum cancels, what was rounded before shows, and what a fused multiply-add did not round.
+    s.y = i % 2 == 0 ? number() : -s.x * 1.0000001;
+    for (double& factor : s.row) factor = number();
+    for (float& coordinate : s.p) coordinate = static_cast<float>(number());
+    if (i % 2 == 1) s.row[3] = -(s.row[0] * s.p[0]);
+    if (i % 4 == 1) s.row[1] = s.row[2] = 0;
+  }
+  return sums;
+}
+
+SumResult expected(const Sum& s) {
+  Pose pose;
+  std::copy(std::begin(s.row), std::end(s.row), pose.m.begin());
+  return {s.x + s.y, s.x * s.y, s.x / s.y, place(pose, s.p)[0], static_cast<float>(s.x)};
+}
+
+}  // namespace
+
+bool doublesAreRight(const Device::Impl& device) {
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const Binding list[] = {{kBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                          {kBindResults, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+  static_assert(std::size(list) == kSumBindings);
+  Bindings bindings(device, list, sizeof(uint32_t));
+  const Pipeline pipeline = computePipeline(device, bindings.layout(), k_doubles_comp, "doubles");
+  const std::vector<Sum> sums = sumsToTry();
+  Upload upload(device);
+  Buffer given(device, "sums", Residence::device, kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  Buffer computed(device, "sum results", Residence::device, kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  Buffer readback(device, "sum readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  const VkBufferCopy copy{0, 0, kSums * sizeof(SumResult)};
+  given.reserve(bytesOf(sums));
+  computed.reserve(copy.size);
+  readback.reserve(copy.size);
+  bindings.setBuffer(kBindSums, given);
+  bindings.setBuffer(kBindResults, computed);
+  upload.begin(Upload::aligned(bytesOf(sums)));
+  upload.add(sums.data(), bytesOf(sums), given);
+
+  Submission submission(device, false);
+  const VkCommandBuffer commands = submission.begin();
+  submission.stage("doubles");
+  upload.record(commands);
+  uploadToRead(commands);
+  const VkDescriptorSet set = bindings.set();
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  vkCmdDispatch(commands, 1, 1, 1);
+  computeWriteToCopy(commands);
+  vkCmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);
+  copyToHost(commands);
+  submission.submitAndWait();
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const SumResult right = expected(sums[i]);
+    if (std::memcmp(readback.mapped() + i * sizeof(SumResult), &right, sizeof(SumResult)) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace radar::gpu

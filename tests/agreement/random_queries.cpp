@@ -1,0 +1,155 @@
+#include "agreement/random_queries.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "agreement/promises.h"
+#include "agreement/real_meshes.h"
+#include "reference/reference.h"
+#include "workloads/families.h"
+#include "workloads/generate.h"
+
+namespace radar::test {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t kQueriesPerScene = 64;
+constexpr const char *kAssimp = "assimp", *kCgal = "cgal", *kAtDistance = "at-distance";
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+tools::Workload randomPoses(std::vector<tools::MeshData> meshes, uint64_t seed) {
+  return tools::makeWorkload(
+      tools::RandomPoses{.meshes = std::move(meshes), .objects = 100, .sensors = kQueriesPerScene, .seed = seed});
+}
+
+tools::Workload sceneOf(const std::string& family, uint64_t seed, uint64_t number) {
+  const uint64_t sceneSeed = seed * 1'000'003 + number;
+  if (family == kAssimp) return randomPoses(assimpModels(), sceneSeed);
+  if (family == kCgal) return randomPoses(cgalMeshes(), sceneSeed);
+  if (family == kAtDistance) {
+    return tools::makeWorkload(tools::FamilyScene{
+        .family = tools::kFamilies[number % tools::kFamilies.size()], .queries = kQueriesPerScene, .seed = sceneSeed});
+  }
+  const auto found = std::find_if(tools::kFamilies.begin(), tools::kFamilies.end(),
+                                  [&](tools::Family f) { return family == tools::nameOf(f); });
+  if (found == tools::kFamilies.end()) throw Error("no family is called " + family);
+  return tools::makeWorkload(tools::FamilyScene{.family = *found, .queries = kQueriesPerScene, .seed = sceneSeed});
+}
+
+void count(RandomTally& tally, const Verdict& verdict, const Result& exact) {
+  ++tally.queries;
+  tally.hits += exact.status == Status::hit;
+  tally.clear += exact.status == Status::clear;
+  tally.overlaps += exact.status == Status::overlap;
+  tally.missed += verdict.missed;
+  tally.falseHits += verdict.falseHit;
+  tally.unanswered += verdict.unanswered;
+  tally.wrongStatus += verdict.wrongStatus;
+  tally.wrongPair += verdict.wrongPair;
+  tally.brackets += verdict.bracket;
+  tally.late += verdict.late;
+  tally.points += verdict.point;
+  tally.normals += verdict.normal;
+  tally.wrong += !verdict.right();
+  tally.worstError = std::max(tally.worstError, verdict.error);
+}
+
+}  // namespace
+
+std::vector<std::string> familyNames() {
+  std::vector<std::string> names;
+  for (tools::Family family : tools::kFamilies) names.push_back(tools::nameOf(family));
+  for (const char* name : {kAssimp, kCgal, kAtDistance}) names.push_back(name);
+  return names;
+}
+
+void RandomTally::add(const RandomTally& other) {
+  for (uint64_t RandomTally::*number :
+       {&RandomTally::queries, &RandomTally::hits, &RandomTally::clear, &RandomTally::overlaps, &RandomTally::missed,
+        &RandomTally::falseHits, &RandomTally::unanswered, &RandomTally::wrongStatus, &RandomTally::wrongPair,
+        &RandomTally::brackets, &RandomTally::late, &RandomTally::points, &RandomTally::normals, &RandomTally::wrong,
+        &RandomTally::pairs, &RandomTally::cpuPairs}) {
+    this->*number += other.*number;
+  }
+  worstError = std::max(worstError, other.worstError);
+  deviceSeconds += other.deviceSeconds;
+  referenceSeconds += other.referenceSeconds;
+}
+
+/// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.
+struct RandomQueries::Stage {
+  explicit Stage(const Device& device) : sweeper(device, scene), reference(scene) {}
+
+  void show(const tools::Workload& workload) {
+    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+      if (scene.hasObject(id)) scene.removeObject(id);
+    }
+    for (MeshId id = 0; id < scene.meshLimit(); ++id) {
+      if (scene.hasMesh(id)) scene.removeMesh(id);
+    }
+    for (const tools::MeshData& mesh : workload.meshes) scene.addMesh(mesh.positions, mesh.indices);
+    for (const tools::Instance& instance : workload.scenes.at(0).instances) {
+      scene.addObject({instance.mesh, instance.worldFromMesh, ~0u});
+    }
+    sweeper.sync();
+    reference.sync();
+  }
+
+  /// D becomes where the reference finds the contact, or a rounding beside it.
+  void moveDistances(std::vector<Query>& queries, uint64_t number) {
+    for (Query& query : queries) {
+      const Result exact = reference.answer(query);
+      const uint64_t which = number++ % 3;
+      if (exact.status != Status::hit) continue;
+      query.distance = which == 0 ? exact.t : std::nextafter(exact.t, which == 1 ? 0 : INFINITY);
+    }
+  }
+
+  Scene scene;
+  Sweeper sweeper;
+  reference::Reference reference;
+};
+
+RandomQueries::RandomQueries(const Device& device) : stage_(std::make_unique<Stage>(device)) {}
+RandomQueries::~RandomQueries() = default;
+
+RandomTally RandomQueries::run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,
+                               const std::function<void(uint64_t)>& onProgress) {
+  RandomTally tally;
+  uint64_t next = range.first;
+  const uint64_t end = range.first + range.queries;
+  while (next < end) {
+    const uint64_t number = next / kQueriesPerScene;
+    const tools::Workload workload = sceneOf(range.family, range.seed, number);
+    std::vector<Query> queries;
+    const uint64_t first = next;
+    for (; next < std::min(end, (number + 1) * kQueriesPerScene); ++next) {
+      queries.push_back(tools::toQuery(workload.queries[next % kQueriesPerScene], Mode::contact));
+    }
+    stage_->show(workload);
+    if (range.family == kAtDistance) stage_->moveDistances(queries, first);
+    const Clock::time_point start = Clock::now();
+    const std::vector<Result> results = stage_->sweeper.run(queries);
+    tally.deviceSeconds += secondsSince(start);
+    tally.pairs += stage_->sweeper.stats().pairs;
+    tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
+    const Clock::time_point referenceStart = Clock::now();
+    const std::vector<Result> exact = stage_->reference.run(queries);
+    tally.referenceSeconds += secondsSince(referenceStart);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      const Verdict verdict = judgeContact(stage_->scene, queries[i], results[i], exact[i]);
+      count(tally, verdict, exact[i]);
+      if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reason(i));
+    }
+    onProgress(next - range.first);
+  }
+  return tally;
+}
+
+}  // namespace radar::test

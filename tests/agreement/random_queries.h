@@ -1,0 +1,48 @@
+// Seeded random queries of every family, mode contact held against the reference. Query i of a family and a seed is the
+// same whatever else is asked.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "radar/radar.h"
+
+namespace radar::test {
+
+/// Those of workloads/families.h; `assimp` and `cgal`: meshes that people made, in random poses; `at-distance`: all
+/// families in turn, asked again with D at the t that the reference found, one ulp less and one ulp more.
+std::vector<std::string> familyNames();
+
+struct RandomTally {
+  uint64_t queries = 0, hits = 0, clear = 0, overlaps = 0;
+  uint64_t missed = 0, falseHits = 0, unanswered = 0, wrongStatus = 0, wrongPair = 0, brackets = 0, late = 0,
+           points = 0, normals = 0;
+  uint64_t wrong = 0;     ///< queries with anything wrong
+  double worstError = 0;  ///< |t - t*| / max(size of the sensor, t*)
+  uint64_t pairs = 0, cpuPairs = 0;
+  double deviceSeconds = 0, referenceSeconds = 0;
+  void add(const RandomTally& other);
+};
+
+class RandomQueries {
+ public:
+  explicit RandomQueries(const Device& device);
+  ~RandomQueries();
+
+  struct Range {
+    std::string family;
+    uint64_t seed = 1, first = 0, queries = 0;
+  };
+  /// `onWrong` is told the query's number and what is wrong; `onProgress` the queries done so far.
+  RandomTally run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,
+                  const std::function<void(uint64_t)>& onProgress);
+
+ private:
+  struct Stage;
+  std::unique_ptr<Stage> stage_;
+};
+
+}  // namespace radar::test

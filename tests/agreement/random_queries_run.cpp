@@ -1,0 +1,69 @@
+// The run of seeded random queries by command: mode contact against the reference, a table per family. Exit status 1 if
+// anything is wrong.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "agreement/random_queries.h"
+
+namespace {
+
+using radar::test::RandomQueries;
+using radar::test::RandomTally;
+
+void printHeader() {
+  std::printf("%-13s %7s %6s %6s %6s | %6s %5s %5s %6s %5s %7s %4s %5s %6s | %8s | %11s %9s %8s | %7s %7s\n", "family",
+              "queries", "hit", "clear", "overl.", "missed", "false", "none", "status", "pair", "bracket", "late",
+              "point", "normal", "error", "pairs", "cpu_pairs", "share", "s", "ref. s");
+}
+
+void print(const std::string& family, const RandomTally& t) {
+  const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("%-13s %7llu %6llu %6llu %6llu | %6llu %5llu %5llu %6llu %5llu %7llu %4llu %5llu %6llu | %8.1e | ",
+              family.c_str(), number(t.queries), number(t.hits), number(t.clear), number(t.overlaps), number(t.missed),
+              number(t.falseHits), number(t.unanswered), number(t.wrongStatus), number(t.wrongPair), number(t.brackets),
+              number(t.late), number(t.points), number(t.normals), t.worstError);
+  std::printf("%11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.pairs), number(t.cpuPairs),
+              t.pairs == 0 ? 0.0 : 100.0 * static_cast<double>(t.cpuPairs) / static_cast<double>(t.pairs),
+              t.deviceSeconds, t.referenceSeconds);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Holds mode contact against the reference on seeded random queries");
+  uint64_t queries = 100'000, seed = 1, first = 0;
+  uint32_t index = radar::kNone;
+  std::vector<std::string> families;
+  app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
+  app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
+  app.add_option("--first", first, "Number of each family's first query: to ask one again");
+  app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
+  app.add_option("--device", index, "As `cyber-radar devices` numbers them");
+  CLI11_PARSE(app, argc, argv);
+  if (families.empty()) families = radar::test::familyNames();
+
+  const radar::Device device = radar::Device::open({.index = index});
+  std::printf("device %s, driver %s, commit %s, seed %llu\n", device.name().c_str(), device.driver().c_str(),
+              RADAR_COMMIT, static_cast<unsigned long long>(seed));
+  printHeader();
+  RandomQueries asking(device);
+  RandomTally all;
+  const uint64_t each = (queries + families.size() - 1) / families.size();
+  for (const std::string& family : families) {
+    const auto onWrong = [&](uint64_t query, const std::string& words) {
+      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1\n", words.c_str(), family.c_str(),
+                  static_cast<unsigned long long>(seed), static_cast<unsigned long long>(query));
+    };
+    const auto onProgress = [&](uint64_t done) {
+      std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),
+                   static_cast<unsigned long long>(each));
+    };
+    const RandomTally tally = asking.run({family, seed, first, each}, onWrong, onProgress);
+    std::fprintf(stderr, "\r%40s\r", "");
+    print(family, tally);
+    all.add(tally);
+  }
+  print("all", all);
+  return all.wrong == 0 ? 0 : 1;
+}

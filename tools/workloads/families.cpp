@@ -1,0 +1,458 @@
+#include "workloads/families.h"
+
+#include <cmath>
+#include <limits>
+
+#include "workloads/generate.h"
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+namespace {
+
+// Enough in a cube of edge 14 or so that sensors hit, miss and overlap in like numbers.
+constexpr int kObjects = 60;
+constexpr Vec3 kFull{1, 1, 1};
+constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+double powerOfTen(int exponent) {
+  double power = 1;
+  for (int i = 0; i < std::abs(exponent); ++i) power *= 10;
+  return exponent < 0 ? 1 / power : power;
+}
+
+/// 10^least to 10^most, whole powers alike.
+double magnitude(Random& random, int least, int most) {
+  return powerOfTen(least + static_cast<int>(random.below(static_cast<uint32_t>(most - least + 1))));
+}
+
+bool oneIn(Random& random, uint32_t n) {
+  return random.below(n) == 0;
+}
+
+Vec3 scaled(const Vec3& v, double factor) {
+  return {factor * v[0], factor * v[1], factor * v[2]};
+}
+
+/// Whole numbers of -limit to limit.
+Vec3 wholeVector(Random& random, uint32_t limit) {
+  Vec3 v{};
+  for (double& value : v) value = double(random.below(2 * limit + 1)) - limit;
+  return v;
+}
+
+Vec3 axis(Random& random) {
+  Vec3 v{};
+  v[random.below(3)] = oneIn(random, 2) ? 1 : -1;
+  return v;
+}
+
+/// A whole direction, along an axis half of the time.
+Vec3 wholeDirection(Random& random) {
+  if (oneIn(random, 2)) return axis(random);
+  Vec3 v{};
+  while (v == Vec3{}) v = wholeVector(random, 2);
+  return v;
+}
+
+Vec3 turned(const std::array<double, 9>& rotation, const Vec3& v) {
+  Vec3 out{};
+  for (size_t row = 0; row < 3; ++row) {
+    for (size_t k = 0; k < 3; ++k) out[row] += rotation[3 * row + k] * v[k];
+  }
+  return out;
+}
+
+std::array<double, 9> product(const std::array<double, 9>& p, const std::array<double, 9>& q) {
+  std::array<double, 9> out{};
+  for (size_t i = 0; i < 9; ++i) {
+    for (size_t k = 0; k < 3; ++k) out[i] += p[i / 3 * 3 + k] * q[3 * k + i % 3];
+  }
+  return out;
+}
+
+/// About a random axis, by up to about half of `angle`.
+std::array<double, 9> slightRotation(Random& random, double angle) {
+  const double half = 0.5 * angle;
+  const Vec3 v = random.inBox({-half, -half, -half}, {half, half, half});
+  const double w = 1 / std::sqrt(1 + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), x = v[0] * w, y = v[1] * w, z = v[2] * w;
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+}
+
+// ---- shapes of a kind, about 2 wide, around the origin
+// ---------------------------------------------------------------- What is drawn at random is named first: the order in
+// which arguments are evaluated is the compiler's.
+
+MeshData convexShape(Random& random) {
+  const uint32_t segments = 3 + random.below(16);
+  const double size = random.uniform(0.01, 0.5);
+  switch (random.below(4)) {
+    case 0:
+      return makeBox(random.inBox({0.5, 0.5, 0.5}, {2, 2, 2}));
+    case 1:
+      return makeUvSphere(3 + random.below(8), segments);
+    case 2:
+      return makeRod(size, random.uniform(1, 3), segments);
+    default:
+      return makePlate(2, 1, powerOfTen(-static_cast<int>(random.below(6))));
+  }
+}
+
+MeshData nonConvexShape(Random& random) {
+  const uint32_t segments = 4 + random.below(24), tubeSegments = 3 + random.below(8);
+  switch (random.below(5)) {
+    case 0:
+      return makeTorus(1, random.uniform(0.05, 0.4), segments, tubeSegments);
+    case 1:
+      return makeHook(2, 0.9, 0.7, 0.25);
+    case 2:
+      return makeComb(2 + random.below(5), 0.5, 1, 0.3);
+    case 3:
+      return makeCup(1, 1.5, 0.15, segments);
+    default: {
+      MeshData teapot = makeTeapot();
+      for (float& value : teapot.positions) value *= 0.375f;
+      return teapot;
+    }
+  }
+}
+
+MeshData openShape(Random& random) {
+  switch (random.below(4)) {
+    case 0:
+      return makeSheet(1 + random.below(12), 0.3, random);
+    case 1: {
+      const std::array<std::array<double, 2>, 2> profile{{{random.uniform(0.2, 1), -1}, {random.uniform(0.2, 1), 1}}};
+      return makeLathe(profile, false, 3 + random.below(16));
+    }
+    case 2: {  // a triangle
+      MeshData mesh{"triangle", {}, {0, 1, 2}};
+      for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
+      return mesh;
+    }
+    default:
+      return makeSheet(1, 0, random);
+  }
+}
+
+MeshData crossingShape(Random& random) {
+  if (oneIn(random, 3)) {  // a profile that crosses the axis and itself
+    const std::array<std::array<double, 2>, 5> profile{{{0, -1}, {1, -0.5}, {-0.5, 0.3}, {0.8, 0.6}, {0, 1}}};
+    return makeLathe(profile, false, 3 + random.below(10));
+  }
+  MeshData mesh = oneIn(random, 2) ? convexShape(random) : openShape(random);
+  const MeshData again = mesh;
+  const double reach = oneIn(random, 2) ? 0 : 0.5;  // 0: every triangle twice
+  append(mesh, again, random.inBox(scaled(kFull, -reach), scaled(kFull, reach)));
+  return mesh;
+}
+
+MeshData soupShape(Random& random) {
+  const Soup soup = std::array{Soup::plain, Soup::needles, Soup::degenerate, Soup::lattice}[random.below(4)];
+  return makeSoup(soup, 1 + random.below(40), random);
+}
+
+MeshData anyShape(Random& random) {
+  switch (random.below(8)) {
+    case 0:
+    case 1:
+      return convexShape(random);
+    case 2:
+    case 3:
+      return nonConvexShape(random);
+    case 4:
+    case 5:
+      return openShape(random);
+    case 6:
+      return crossingShape(random);
+    default:
+      return soupShape(random);
+  }
+}
+
+// ---- scenes
+// -----------------------------------------------------------------------------------------------------------
+
+struct Making {
+  Workload workload;
+  Random random;
+  uint32_t queries;
+
+  uint32_t anyMesh() { return random.below(static_cast<uint32_t>(workload.meshes.size())); }
+  void addObject(uint32_t mesh, const Pose& pose) { workload.scenes[0].instances.push_back({mesh, pose}); }
+  void ask(uint32_t mesh, const Pose& pose, const Vec3& direction, double distance) {
+    QuerySpec query;
+    query.id = std::to_string(workload.queries.size());
+    query.sensor = {mesh, pose};
+    query.direction = direction;
+    query.distance = distance;
+    workload.queries.push_back(std::move(query));
+  }
+};
+
+/// Where and how large a scene is.
+struct Setting {
+  double scale = 1;
+  Vec3 origin{};
+  Pose placed(const Pose& pose) const {
+    Pose out = pose;
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 4; ++k) out.m[4 * row + k] *= scale;
+      out.m[4 * row + 3] += origin[row];
+    }
+    return out;
+  }
+};
+
+Vec3 farOrigin(Random& random) {
+  const double distance = magnitude(random, 1, 7);
+  return scaled(random.direction(), distance);
+}
+
+/// Objects at random, sensors at random in and around them, so that they hit, miss and overlap.
+template <class Shape>
+void scatter(Making& making, Shape shape, const Setting& setting = {}) {
+  Random& random = making.random;
+  for (int i = 0; i < 6; ++i) making.workload.meshes.push_back(shape(random));
+  const auto place = [&](double reach) {
+    const Vec3 at = random.inBox(scaled(kFull, -reach), scaled(kFull, reach));
+    if (oneIn(random, 3)) return setting.placed(randomAffine(random, at));
+    const double size = random.uniform(0.5, 1.5);
+    return setting.placed(makePose(random.rotation(), scaled(kFull, size), at));
+  };
+  for (int i = 0; i < kObjects; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    making.addObject(mesh, place(7));
+  }
+  for (uint32_t i = 0; i < making.queries; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    const Pose pose = place(9);
+    const Vec3 direction = random.direction();
+    making.ask(mesh, pose, direction, oneIn(random, 10) ? 0 : setting.scale * random.uniform(0, 12));
+  }
+}
+
+/// Two meshes, and where the second is when they interlock and the first is at the origin.
+struct Interlocked {
+  MeshData first, second;
+  std::array<double, 9> rotation;
+  Vec3 offset;
+};
+
+/// A comb of narrower teeth that hang down between those of makeComb.
+MeshData looseComb() {
+  MeshData mesh = makeBox({3, 0.3, 0.3});
+  for (double x : {-1.0, 0.0, 1.0}) append(mesh, makeBox({0.3, 0.3, 1.5}), {x, 0, -0.9});
+  return mesh;
+}
+
+MeshData smallBall() {
+  MeshData ball = makeUvSphere(8, 12);
+  for (float& value : ball.positions) value *= 0.5f;
+  return ball;
+}
+
+std::vector<Interlocked> interlockedShapes() {
+  constexpr std::array<double, 9> kOnEdge{1, 0, 0, 0, 0, -1, 0, 1, 0};
+  return {{makeTorus(1, 0.2, 24, 12), makeRod(0.4, 6, 20), kUpright, {0, 0, 0.1}},
+          {makeTorus(1, 0.15, 24, 10), makeTorus(1, 0.15, 24, 10), kOnEdge, {1, 0, 0}},
+          {makeHook(4, 1.5, 1, 0.3), makeBox({0.3, 3, 0.3}), kUpright, {0.6, 0, -1.3}},
+          {makeCup(1, 2, 0.2, 24), smallBall(), kUpright, {0, 0, 1}},
+          {makeComb(4, 1, 1.5, 0.3), looseComb(), kUpright, {0, 0, 1.9}},
+          {makeTeapot(), smallBall(), kUpright, {0, 0, 1.2}},
+          {makeKeyhole(), makeKey(), kUpright, {0, 0, 0.5}}};
+}
+
+void interlock(Making& making) {
+  Random& random = making.random;
+  std::vector<Interlocked> shapes = interlockedShapes();
+  for (Interlocked& pair : shapes) {
+    making.workload.meshes.push_back(std::move(pair.first));
+    making.workload.meshes.push_back(std::move(pair.second));
+  }
+  for (uint32_t i = 0; i < making.queries; ++i) {
+    const uint32_t which = random.below(static_cast<uint32_t>(shapes.size())), sensor = random.below(2);
+    const Vec3 home{40.0 * (i % 8), 40.0 * (i / 8 % 8), 40.0 * (i / 64)};
+    const auto frame = random.rotation();
+    Vec3 second = turned(frame, shapes[which].offset);
+    for (size_t k = 0; k < 3; ++k) second[k] += home[k];
+    const auto slightly = [&] { return product(frame, slightRotation(random, magnitude(random, -6, -1))); };
+    const Pose poses[] = {makePose(slightly(), kFull, home),
+                          makePose(product(slightly(), shapes[which].rotation), kFull, second)};
+    making.addObject(2 * which + 1 - sensor, poses[1 - sensor]);
+    const Vec3 direction = oneIn(random, 2) ? turned(frame, axis(random)) : random.direction();
+    making.ask(2 * which + sensor, poses[sensor], direction, random.uniform(0.1, 8));
+  }
+}
+
+/// Boxes and triangles with whole corners. `frame`, `setting`: all of it turned and placed; `roundings`: some poses off
+/// by a few.
+void onLattice(Making& making, const std::array<double, 9>& frame, const Setting& setting, bool roundings) {
+  Random& random = making.random;
+  making.workload.meshes = {makeBox({1, 1, 1}), makeBox({2, 1, 1}), makePlate(2, 2, 1), makeSheet(2, 0, random)};
+  for (int i = 0; i < 3; ++i) {
+    MeshData mesh{"triangles", {}, {}};
+    for (uint32_t corner = 0, corners = 3 * (1 + random.below(6)); corner < corners; ++corner) {
+      for (double value : wholeVector(random, 2)) mesh.positions.push_back(static_cast<float>(value));
+      mesh.indices.push_back(corner);
+    }
+    making.workload.meshes.push_back(std::move(mesh));
+  }
+  const auto place = [&](uint32_t limit) {
+    Pose pose = setting.placed(makePose(frame, kFull, turned(frame, scaled(wholeVector(random, limit), 0.5))));
+    if (!roundings) return pose;
+    for (double& value : pose.m) {
+      if (oneIn(random, 4)) value = std::nextafter(value, oneIn(random, 2) ? 1e300 : -1e300);
+    }
+    return pose;
+  };
+  for (int i = 0; i < kObjects; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    making.addObject(mesh, place(16));
+  }
+  for (uint32_t i = 0; i < making.queries; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    const Pose pose = place(18);
+    const Vec3 direction = turned(frame, wholeDirection(random));
+    making.ask(mesh, pose, direction, setting.scale * random.below(12));
+  }
+}
+
+void touch(Making& making) {
+  Random& random = making.random;
+  const auto frame = oneIn(random, 3) ? kUpright : random.rotation();
+  const Setting setting{magnitude(random, -3, 3), oneIn(random, 2) ? Vec3{} : farOrigin(random)};
+  onLattice(making, frame, setting, oneIn(random, 2));
+}
+
+/// Moves every mesh to `origin` in its own coordinates; a pose takes it back, or leaves it there.
+void farBaked(Making& making) {
+  scatter(making, anyShape);
+  const Vec3 origin = farOrigin(making.random);
+  for (MeshData& mesh : making.workload.meshes) {
+    MeshData moved{mesh.name, {}, {}};
+    append(moved, mesh, origin);
+    mesh = std::move(moved);
+  }
+  const bool back = oneIn(making.random, 2);
+  const auto move = [&](Pose& pose) {
+    for (int row = 0; row < 3; ++row) {
+      double* r = &pose.m[4 * row];
+      r[3] -= r[0] * origin[0] + r[1] * origin[1] + r[2] * origin[2] - (back ? 0 : origin[row]);
+    }
+  };
+  for (Instance& instance : making.workload.scenes[0].instances) move(instance.worldFromMesh);
+  for (QuerySpec& query : making.workload.queries) move(query.sensor.worldFromMesh);
+}
+
+void onFloor(Making& making) {
+  Random& random = making.random;
+  const auto frame = oneIn(random, 2) ? kUpright : random.rotation();
+  making.workload.meshes.push_back(makeSheet(1 + random.below(8), 0, random));
+  for (int i = 0; i < 5; ++i) making.workload.meshes.push_back(anyShape(random));
+  making.addObject(0, makePose(frame, {1e4, 1e4, 1e4}, {}));
+  for (uint32_t i = 0; i < making.queries; ++i) {
+    const Vec3 above = random.inBox({-9e3, -9e3, 0}, {9e3, 9e3, 0.5});
+    const uint32_t mesh = 1 + random.below(5);
+    const Pose pose = makePose(random.rotation(), {1e-2, 1e-2, 1e-2}, turned(frame, above));
+    Vec3 down{0, 0, -1};
+    if (oneIn(random, 3)) down = {1, 0, -powerOfTen(-static_cast<int>(random.below(7)))};
+    if (oneIn(random, 3)) down = random.direction();
+    making.ask(mesh, pose, turned(frame, down), oneIn(random, 2) ? 1e5 : random.uniform(0, 1));
+  }
+}
+
+void tiltedDirections(Making& making) {
+  Random& random = making.random;
+  making.workload.meshes = {makeBox({1, 1, 1}), makePlate(2, 2, 0.01), makeRod(0.2, 2, 8), makeSheet(3, 0, random),
+                            makeSheet(4, 0.1, random)};
+  const auto frame = oneIn(random, 2) ? kUpright : random.rotation();
+  const auto place = [&](double reach) {
+    const Vec3 at = oneIn(random, 2) ? scaled(wholeVector(random, static_cast<uint32_t>(2 * reach)), 0.5)
+                                     : random.inBox(scaled(kFull, -reach), scaled(kFull, reach));
+    return makePose(frame, kFull, turned(frame, at));
+  };
+  for (int i = 0; i < kObjects; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    making.addObject(mesh, place(6));
+  }
+  for (uint32_t i = 0; i < making.queries; ++i) {
+    const uint32_t mesh = making.anyMesh();
+    const Pose pose = place(8);
+    Vec3 direction = axis(random);
+    if (!oneIn(random, 4)) {
+      const double size = magnitude(random, -12, -2);
+      const Vec3 off = scaled(random.direction(), size);
+      for (size_t k = 0; k < 3; ++k) direction[k] += oneIn(random, 3) ? 0 : off[k];
+    }
+    const double length = magnitude(random, -12, 12);
+    making.ask(mesh, pose, scaled(turned(frame, direction), length), random.uniform(0, 12));
+  }
+}
+
+Workload soups(Making& making) {
+  const double origin = oneIn(making.random, 2) ? 0 : magnitude(making.random, 1, 7);
+  return makeWorkload(Soups{.sensors = making.queries,
+                            .triangles = 1 + making.random.below(120),
+                            .origin = origin,
+                            .seed = making.random.below(~0u)});
+}
+
+}  // namespace
+
+const char* nameOf(Family family) {
+  constexpr std::array<const char*, kFamilies.size()> kNames{
+      "convex",   "non-convex", "interlocking", "open",   "crossing", "soup",      "lattice",
+      "touching", "far-posed",  "far-baked",    "scales", "floor",    "directions"};
+  return kNames[static_cast<size_t>(family)];
+}
+
+Workload makeWorkload(const FamilyScene& options) {
+  Making making{{}, Random(options.seed), options.queries};
+  making.workload.scenes.push_back({nameOf(options.family), {}, {}, {}});
+  switch (options.family) {
+    case Family::convex:
+      scatter(making, convexShape);
+      break;
+    case Family::nonConvex:
+      scatter(making, nonConvexShape);
+      break;
+    case Family::interlocking:
+      interlock(making);
+      break;
+    case Family::open:
+      scatter(making, openShape);
+      break;
+    case Family::crossing:
+      scatter(making, crossingShape);
+      break;
+    case Family::soup:
+      return soups(making);
+    case Family::lattice:
+      onLattice(making, kUpright, {}, false);
+      break;
+    case Family::touching:
+      touch(making);
+      break;
+    case Family::farPosed:
+      scatter(making, anyShape, {1, farOrigin(making.random)});
+      break;
+    case Family::farBaked:
+      farBaked(making);
+      break;
+    case Family::scales:
+      scatter(making, anyShape, {magnitude(making.random, -4, 4), {}});
+      break;
+    case Family::floor:
+      onFloor(making);
+      break;
+    case Family::directions:
+      tiltedDirections(making);
+      break;
+  }
+  return std::move(making.workload);
+}
+
+}  // namespace radar::tools

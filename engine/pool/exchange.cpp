@@ -18,8 +18,10 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }
 
-std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop) {
+std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, size_t workers) {
   auto job = std::make_shared<Job>();
+  job->took.resize(workers);
+  job->passed.resize(workers);
   job->stop = std::move(stop);
   job->answers.results.resize(queries.size());
   job->place.resize(queries.size());
@@ -42,7 +44,7 @@ std::future<PoolAnswers> Exchange::post(std::vector<Query> queries, std::stop_to
     const std::string wrong = whatIsWrong(queries[i], scene);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
   }
-  const std::shared_ptr<Job> job = jobOf(std::move(queries), std::move(stop));
+  const std::shared_ptr<Job> job = jobOf(std::move(queries), std::move(stop), devices_.size());
   job->answers.submitted = submitted;
   std::future<PoolAnswers> future = job->promise.get_future();
   open_.push_back(job);
@@ -134,9 +136,18 @@ std::optional<Chunk> Exchange::next(uint32_t worker, size_t inFlight) {
   const auto sameMode = std::find_if(first, job->queries.end(), [&](const Query& q) { return q.mode != first->mode; });
   const auto left = static_cast<size_t>(sameMode - first);
   const Chunk chunk{job, job->taken, share_.take(worker, left, waiting(), inFlight)};
-  if (chunk.count == 0) return {};
+  if (chunk.count == 0) {
+    if (inFlight == 0) job->passed[worker] = true;
+    return {};
+  }
+  job->took[worker] = true;
   job->taken += chunk.count;
-  if (job->taken == job->queries.size()) jobs_.pop_front();
+  if (job->taken == job->queries.size()) {
+    jobs_.pop_front();
+    for (size_t i = 0; i < devices_.size(); ++i) {
+      if (job->passed[i] && !job->took[i]) share_.passed(i);
+    }
+  }
   return chunk;
 }
 

@@ -21,6 +21,7 @@ struct Job {
   std::promise<PoolAnswers> promise;
   PoolAnswers answers;
   size_t taken = 0, answered = 0;
+  std::vector<bool> took, passed;  ///< by worker: has taken some, has let others go first
 };
 
 /// Queries [first, first + count) of a job.
@@ -48,7 +49,7 @@ class Exchange {
   /// The next chunk for a worker with so many queries in flight. Sleeps until there is one, unless it has some in
   /// flight; nothing then, or when it is to go.
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
-  /// `deviceMs`: how long the device was at it.
+  /// `deviceMs`: how long the device was at it; 0 if that says nothing of its speed.
   void deliver(const Chunk& chunk, std::span<const Result> results, const std::map<size_t, std::string>& reasons,
                const SweepStats& stats, ChunkTrace trace, double deviceMs);
   /// The worker ends; its chunks go to the others.
@@ -76,8 +77,8 @@ class Exchange {
   std::condition_variable work_, settled_, edited_;
   std::vector<PoolDevice> devices_;
   Share share_;
-  std::deque<std::shared_ptr<Job>> jobs_;  // with queries that nobody has taken
-  std::deque<Chunk> returned_;             // by retired workers
+  std::deque<std::shared_ptr<Job>> jobs_;   // with queries that nobody has taken
+  std::deque<Chunk> returned_;              // by retired workers
   std::vector<std::shared_ptr<Job>> open_;  // not yet answered, in the order of submission
   bool editing_ = false, closed_ = false;
 };

@@ -14,8 +14,12 @@ constexpr double kShares = 3;
 constexpr double kFirstShares = 32;
 // What a submission costs beside its work is below a tenth of this on every device seen, mostly far below.
 constexpr double kLeastMs = 1;
+// A device that is alone waits for nobody: it only has to have a chunk to encode while it works on another.
+constexpr double kLeastMsAlone = 10;
 // Speeds change (first use of a pipeline, other work on the machine): the newest chunk counts half.
 constexpr double kNewest = 0.5;
+// A device 30 times slower is tried again once in eight batches, one that was only slow once soon takes part again.
+constexpr double kPassed = 1.5;
 
 }  // namespace
 
@@ -25,6 +29,10 @@ void Share::finished(size_t worker, size_t queries, double ms) {
   double& known = workers_[worker].rate;
   // Times are averaged, not rates: one chunk that was free must not make a device look fast for long.
   known = known == 0 ? rate : 1 / (kNewest / rate + (1 - kNewest) / known);
+}
+
+void Share::passed(size_t worker) {
+  workers_[worker].rate *= kPassed;
 }
 
 size_t Share::alive() const {
@@ -61,7 +69,8 @@ size_t Share::take(size_t worker, size_t batch, size_t all, size_t inFlight) con
     if (inFlight == 0 && mine < fastest && 1 / mine > (left + 1) / (sum - mine)) return 0;
   }
   const double share = static_cast<double>(batch) * mine / sum / (known || alone ? kShares : kFirstShares);
-  const double wanted = std::max({std::ceil(share), known ? std::floor(mine * kLeastMs) : 0.0, 1.0});
+  const double wanted =
+      std::max({std::ceil(share), known ? std::floor(mine * (alone ? kLeastMsAlone : kLeastMs)) : 0.0, 1.0});
   return static_cast<size_t>(std::min(wanted, static_cast<double>(batch)));
 }
 

@@ -13,6 +13,8 @@ class Share {
 
   /// `worker` took `ms` for `queries`, of which it is now rid.
   void finished(size_t worker, size_t queries, double ms);
+  /// A batch went by without it, since it was thought too slow. That may no longer be true, and it will be tried again.
+  void passed(size_t worker);
   /// It takes no more.
   void retire(size_t worker) { workers_[worker].alive = false; }
   size_t alive() const;

@@ -25,12 +25,9 @@ void nameThread([[maybe_unused]] uint32_t number) {
 
 Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options,
                Exchange& exchange)
-    : number_(number),
-      device_(device),
-      scene_(scene),
-      options_(options),
-      exchange_(exchange),
-      thread_([this] { run(); }) {}
+    : number_(number), device_(device), scene_(scene), options_(options), exchange_(exchange), thread_([this] {
+        run();
+      }) {}
 
 void Worker::run() {
   nameThread(number_);
@@ -101,7 +98,10 @@ void Worker::finish(Lane& lane) {
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
-  const double deviceMs = lane.trace.done - std::max(lane.trace.begun, lastDone_);
+  // The first use of a pipeline may take a hundred times as long: it says nothing of the device's speed.
+  bool& warm = lane.warm[lane.chunk.queries()[0].mode == Mode::sampled ? 0 : 1];
+  const double deviceMs = warm ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
+  warm = true;
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;

@@ -48,7 +48,7 @@ TEST_CASE("devices that are not there, or not to be read, end with status 2 and 
 
 TEST_CASE("scale measures, tells what limits, and leaves a page, a table and a trace") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 50 --steps 2 --repeat 1 --resolution 32 --out s");
+  const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
   INFO(run.err);
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("speed-up") && Contains("With 3 sensors, 2 devices take"));

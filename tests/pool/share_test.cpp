@@ -5,18 +5,19 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 
 using radar::Share;
 
 namespace {
 
-/// Plays `batches` of `queries` each, all there from the start, on devices of `speeds` (queries per ms), and returns the
-/// time of the whole over what the devices could do together.
+/// Plays `batches` of `queries` each, all there from the start, on devices of `speeds` (queries per ms), and returns
+/// the time of the whole over what the devices could do together.
 double efficiency(const std::vector<double>& speeds, size_t queries, int batches = 1) {
   struct Worker {
-    double free = 0;           // when its device has done all it took
+    double free = 0;                                // when its device has done all it took
     std::deque<std::pair<double, size_t>> flights;  // when each ends, queries
-    double lastDone = 0;
+    bool took = false;
   };
   Share share(speeds.size());
   std::vector<Worker> workers(speeds.size());
@@ -36,6 +37,7 @@ double efficiency(const std::vector<double>& speeds, size_t queries, int batches
           if (count == 0) continue;
           REQUIRE(count <= left);
           left -= count;
+          workers[i].took = true;
           workers[i].free = std::max(now, workers[i].free) + static_cast<double>(count) / speeds[i];
           workers[i].flights.emplace_back(workers[i].free, count);
           took = true;
@@ -54,6 +56,9 @@ double efficiency(const std::vector<double>& speeds, size_t queries, int batches
       now = end;
     }
     REQUIRE(left == 0);
+    for (size_t i = 0; i < workers.size(); ++i) {
+      if (!std::exchange(workers[i].took, false)) share.passed(i);
+    }
   }
   double sum = 0;
   for (const double speed : speeds) sum += speed;
@@ -71,6 +76,18 @@ TEST_CASE("devices of unequal speed end together: 85% and more of what they coul
     CHECK(efficiency({0.2 * slow, 0.2}, 30, 20) > 0.85);
     CHECK(efficiency({1, slow, 1, slow}, 1000) > 0.95);
   }
+}
+
+TEST_CASE("a device that was slow once takes part again after some batches") {
+  Share share(2);
+  share.finished(0, 1, 10);
+  share.finished(1, 1, 1000);
+  int batches = 0;
+  while (share.take(1, 10, 10, 0) == 0) {
+    share.passed(1);
+    REQUIRE(++batches < 10);
+  }
+  CHECK(batches > 1);
 }
 
 TEST_CASE("fast devices take no crumbs: a chunk lasts a millisecond where there is that much") {

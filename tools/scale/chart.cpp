@@ -88,7 +88,8 @@ std::string lineChart(const std::string& title, const std::string& xName, const 
                       const std::vector<double>& x, const std::vector<Series>& series) {
   double top = 0;
   for (const Series& line : series) top = std::max(top, *std::max_element(line.values.begin(), line.values.end()));
-  const double step = niceStep(top > 0 ? top : 1, 5), xStep = niceStep(x.back() > 0 ? x.back() : 1, 6);
+  if (!(top > 0)) top = 1;
+  const double step = niceStep(top, 5), xStep = niceStep(x.back() > 0 ? x.back() : 1, 6);
   const double yMost = step * std::ceil(top / step - 1e-9), xMost = xStep * std::ceil(x.back() / xStep - 1e-9);
   const auto atX = [&](double value) { return kLeft + (kWidth - kLeft - kRight) * value / xMost; };
   const auto atY = [&](double value) { return kHeight - kBottom - (kHeight - kTop - kBottom) * value / yMost; };

@@ -41,11 +41,15 @@ const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps o
 // work; what a run has found cuts the next one short.
 layout(constant_id = 1) const uint kRun = 4096;
 // Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
-const uint kTested = 256;
-const uint kQueue = 512;
+const uint kTested = 128;
+const uint kQueue = 384;
+// Cluster pairs looked through at a time for those of the round.
+const uint kChosen = 256;
 
 shared uint nearestGap;                 // over the cluster pairs left; floats >= 0 order as their bits
 shared uint bucket[kBuckets];
+shared uint chosenCount;
+shared uint chosen[kChosen];
 shared uint countA, countB;             // triangles left after trimming, and where they are in the frame
 shared uint slotsA[kCluster], slotsB[kCluster];
 shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
@@ -239,7 +243,7 @@ void flush() {
     const uint q = first + gl_LocalInvocationID.x;
     solve(queue[min(q, count - 1)], q < count);
     work += kSolveWork + kLanes;
-    solved += kLanes;
+    solved += min(kLanes, count - first);
   }
 #ifndef RADAR_NO_DOUBLES
   hiFloat = min(hiFloat, float(hi) * 1.000001 + 1e-37);
@@ -279,6 +283,28 @@ void meetClusters(ClusterPair pair) {
   boxPairs += all_;
 }
 
+bool goesOn() { return work < kWorkPerDispatch && !overflows() && !decided(); }
+
+// All cluster pairs of `count` that are no farther than `limit`.
+void meetNearest(uint first, uint count, float limit) {
+  for (uint i = gl_LocalInvocationID.x; i < count; i += kLanes) {
+    const float gap = pairs[first + i].gap;
+    if (gap >= 0.0 && gap <= min(limit, hiFloat)) chosen[atomicAdd(chosenCount, 1)] = first + i;
+  }
+  barrier();
+  const uint found = chosenCount;
+  work += count / kLanes + found + 1;
+  for (uint i = 0; i < found && goesOn(); ++i) {
+    const ClusterPair pair = pairs[chosen[i]];
+    if (pair.gap > hiFloat) continue;
+    meetClusters(pair);
+    if (gl_LocalInvocationID.x == 0) pairs[chosen[i]].gap = -1.0;
+  }
+  barrier();
+  if (gl_LocalInvocationID.x == 0) chosenCount = 0;
+  barrier();
+}
+
 // The gap up to which this round goes: that of the round's quota of nearest pairs, in steps of a bucket.
 float roundLimit(uint first, uint count, float nearest, uint quota) {
   const float width = max(hiFloat - nearest, 1e-30) / float(kBuckets);
@@ -311,13 +337,13 @@ void main() {
 #endif
   work = boxPairs = solved = 0;
   if (gl_LocalInvocationID.x == 0) {
-    queued = passed = 0;
+    queued = passed = chosenCount = 0;
     touched = floatBitsToUint(hiFloat);
     contended = states[v].contenderCount;
   }
   barrier();
   uint round = states[v].round;
-  while (cursor < total && work < kWorkPerDispatch && !overflows() && !decided()) {
+  while (cursor < total && goesOn()) {
     const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
     barrier();
     if (gl_LocalInvocationID.x == 0) nearestGap = kNobody;
@@ -334,13 +360,7 @@ void main() {
       continue;
     }
     const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
-    for (uint i = 0; i < count && work < kWorkPerDispatch && !overflows() && !decided(); ++i) {
-      const ClusterPair pair = pairs[first + i];
-      ++work;
-      if (pair.gap < 0.0 || pair.gap > limit || pair.gap > hiFloat) continue;
-      meetClusters(pair);
-      if (gl_LocalInvocationID.x == 0) pairs[first + i].gap = -1.0;
-    }
+    for (uint start = 0; start < count && goesOn(); start += kChosen) meetNearest(first + start, min(kChosen, count - start), limit);
     flush();
     memoryBarrierBuffer();
     barrier();

@@ -73,7 +73,7 @@ INTEROP_CONST kContactBindings = 14;
 // Triangles of a cluster, at most.
 INTEROP_CONST kCluster = 64;
 // Sensor clusters of one PairItem, and how many scene clusters each is held against.
-INTEROP_CONST kPairItemA = 64;
+INTEROP_CONST kPairItemA = 16;
 INTEROP_CONST kPairItemB = 4096;
 
 struct MeshRecord {

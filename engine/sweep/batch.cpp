@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <tuple>
 
 namespace radar {
 
@@ -34,63 +35,90 @@ gpu::Draw drawOf(const Placed& placed, uint32_t view, uint32_t layer) {
 }
 
 struct Pending {
+  const ViewPlan* plan;
   const Placed* placed;
   uint32_t view, layer;
   bool identified;
+
+  std::span<const Run> runs() const { return std::span(plan->runs).subspan(placed->firstRun, placed->runs); }
 };
 
-// Appends the draws of one pass, sorted by mesh so that each mesh is one instanced call; notes where each identified
-// one went, in the order given.
-DepthPass addPass(Batch& batch, std::vector<Pending>& pending, std::vector<uint32_t>& placedAt,
+// A draw to identify, and what of its mesh is drawn.
+struct Identified {
+  uint32_t draw;
+  std::span<const Run> runs;
+};
+
+// In the order in which equal draws stand together: same mesh, same first run.
+bool drawnBefore(const Pending& a, const Pending& b) {
+  const Run x = a.runs()[0], y = b.runs()[0];
+  return std::tuple(a.placed->mesh, x.first, x.count) < std::tuple(b.placed->mesh, y.first, y.count);
+}
+
+// Appends the draws of one pass: what several draw alike is one instanced call. Notes where each identified one went,
+// in the order given.
+DepthPass addPass(Batch& batch, std::vector<Pending>& pending, std::vector<Identified>& identified,
                   const DepthPass& shape) {
   DepthPass pass = shape;
   pass.firstCall = static_cast<uint32_t>(batch.calls.size());
+  std::erase_if(pending, [](const Pending& p) { return p.placed->runs == 0; });
   std::vector<uint32_t> order(pending.size());
   for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return pending[a].placed->mesh < pending[b].placed->mesh; });
+                   [&](uint32_t a, uint32_t b) { return drawnBefore(pending[a], pending[b]); });
   std::vector<uint32_t> at(pending.size());
+  const Pending* last = nullptr;
   for (uint32_t i : order) {
     const Pending& p = pending[i];
     const auto draw = static_cast<uint32_t>(batch.draws.size());
     at[i] = draw;
-    const bool fresh = batch.calls.size() == pass.firstCall || batch.calls.back().mesh != p.placed->mesh;
-    if (fresh) batch.calls.push_back({p.placed->mesh, draw, 0});
-    ++batch.calls.back().count;
+    const bool alike = last != nullptr && last->placed->runs == 1 && p.placed->runs == 1 && !drawnBefore(*last, p);
+    if (alike) {
+      ++batch.calls.back().count;
+    } else {
+      for (const Run& run : p.runs()) batch.calls.push_back({p.placed->mesh, run, draw, 1});
+    }
     batch.draws.push_back(drawOf(*p.placed, p.view, p.layer));
+    last = &p;
   }
   for (uint32_t i = 0; i < pending.size(); ++i) {
-    if (pending[i].identified) placedAt.push_back(at[i]);
+    if (pending[i].identified) identified.push_back({at[i], pending[i].runs()});
   }
   pass.calls = static_cast<uint32_t>(batch.calls.size()) - pass.firstCall;
   pending.clear();
   return pass;
 }
 
-void addItems(Batch& batch, uint32_t draw, uint32_t triangles) {
-  for (uint32_t first = 0; first < triangles; first += gpu::kItemTriangles) {
-    batch.items.push_back({draw, first, std::min(first + gpu::kItemTriangles, triangles)});
+void addItems(Batch& batch, const Identified& identified) {
+  for (const Run& run : identified.runs) {
+    const uint32_t end = run.first + run.count;
+    for (uint32_t first = run.first; first < end; first += gpu::kItemTriangles) {
+      batch.items.push_back({identified.draw, first, std::min(first + gpu::kItemTriangles, end)});
+    }
   }
 }
 
 // Plans of one resolution, from view `firstView`.
-void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView, const Scene::Impl& scene) {
+void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView) {
   const uint32_t perPass = layersPerPass(plans);
   const uint32_t resolution = plans[0]->view.resolution;
   const uint32_t firstLayer = batch.layers;
   std::vector<Pending> pending;
-  std::vector<uint32_t> placedAt;  // draws to identify: by view, R then M, each by object
+  std::vector<Identified> identified;  // by view, R then M, each by object
   for (uint32_t begin = 0; begin < plans.size(); begin += perPass) {
     const uint32_t end = std::min<uint32_t>(begin + perPass, static_cast<uint32_t>(plans.size()));
     const DepthPass shape{firstLayer + begin, end - begin, resolution, 0, 0};
     for (uint32_t i = begin; i < end; ++i) {
-      for (const Placed& p : plans[i]->inReach) pending.push_back({&p, firstView + i, i - begin, true});
-      for (const Placed& p : plans[i]->others) pending.push_back({&p, firstView + i, i - begin, false});
-      batch.objects += plans[i]->inReach.size() + plans[i]->others.size();
+      const ViewPlan* plan = plans[i];
+      for (const Placed& p : plan->inReach) pending.push_back({plan, &p, firstView + i, i - begin, true});
+      for (const Placed& p : plan->others) pending.push_back({plan, &p, firstView + i, i - begin, false});
+      batch.objects += plan->inReach.size() + plan->others.size();
     }
-    batch.rangePasses.push_back(addPass(batch, pending, placedAt, shape));
-    for (uint32_t i = begin; i < end; ++i) pending.push_back({&plans[i]->mask, firstView + i, i - begin, true});
-    batch.maskPasses.push_back(addPass(batch, pending, placedAt, shape));
+    batch.rangePasses.push_back(addPass(batch, pending, identified, shape));
+    for (uint32_t i = begin; i < end; ++i) {
+      pending.push_back({plans[i], &plans[i]->mask, firstView + i, i - begin, true});
+    }
+    batch.maskPasses.push_back(addPass(batch, pending, identified, shape));
     for (uint32_t i = begin; i < end; ++i) {
       gpu::View view = plans[i]->view;
       view.layer = firstLayer + i;
@@ -99,7 +127,7 @@ void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t fi
     }
     batch.layers = firstLayer + end;
   }
-  for (uint32_t draw : placedAt) addItems(batch, draw, scene.meshes[batch.draws[draw].mesh].triangleCount());
+  for (const Identified& each : identified) addItems(batch, each);
 }
 
 }  // namespace
@@ -115,12 +143,12 @@ void Batch::clear() {
   triangles = objects = 0;
 }
 
-void fill(Batch& batch, std::span<const ViewPlan* const> plans, const Scene::Impl& scene) {
+void fill(Batch& batch, std::span<const ViewPlan* const> plans) {
   batch.clear();
   for (size_t begin = 0; begin < plans.size();) {
     size_t end = begin;
     while (end < plans.size() && plans[end]->view.resolution == plans[begin]->view.resolution) ++end;
-    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin), scene);
+    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin));
     begin = end;
   }
   if (!plans.empty()) batch.resolution = plans.back()->view.resolution;

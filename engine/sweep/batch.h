@@ -8,9 +8,10 @@
 
 namespace radar {
 
-/// One instanced draw: `count` instances of a mesh from `firstDraw`.
+/// One instanced draw: `count` instances of a run of a mesh, from `firstDraw`.
 struct DrawCall {
   MeshId mesh;
+  Run run;
   uint32_t firstDraw, count;
 };
 
@@ -35,6 +36,6 @@ struct Batch {
 };
 
 /// `plans`: ascending by resolution, each with something in reach. View i is plan i, in layer i.
-void fill(Batch& batch, std::span<const ViewPlan* const> plans, const Scene::Impl& scene);
+void fill(Batch& batch, std::span<const ViewPlan* const> plans);
 
 }  // namespace radar

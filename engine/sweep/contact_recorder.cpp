@@ -242,8 +242,9 @@ void ContactRecorder::submit(std::span<const ContactPlan* const> plans, const Sc
   refused_.clear();
   waiting_.clear();
   for (size_t i = 0; i < plans.size(); ++i) {
-    waiting_.push_back(
-        {i, std::min<uint64_t>(allPairs(*plans[i]), room_.pairs), room_.contenders, upward(plans[i]->target.distance)});
+    const uint64_t clusters = plans[i]->sensor.size() + plans[i]->scene.size();
+    const uint64_t pairs = std::min(allPairs(*plans[i]), std::max(room_.pairs, room_.pairsPerCluster * clusters));
+    waiting_.push_back({i, pairs, room_.contenders, upward(plans[i]->target.distance)});
   }
   submitGroup(plans, scene);
 }

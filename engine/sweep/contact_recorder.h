@@ -21,6 +21,7 @@ struct Search {
 /// small.
 struct ContactRoom {
   uint64_t pairs = 4096;
+  uint64_t pairsPerCluster = 32;  ///< where that is more: meshes over each other share columns of clusters
   uint32_t contenders = 256;
   uint32_t run = 4096;
 };

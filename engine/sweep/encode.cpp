@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "sweep/cluster_walk.h"
+
 namespace radar {
 
 namespace {
@@ -52,6 +54,98 @@ void fillView(gpu::View& view, const Query& query, const SensorWindow& window, c
   view.rangeLimit = static_cast<float>((plan.d + reach.error + window.error) / rangeScale + 4 * kFloatUnit);
 }
 
+// What the pictures can show of a mesh, its own error aside: whole pixels, which may pass the window's edge, and as
+// much again as snapping and float rounding move a vertex.
+Box visibleBox(const SensorWindow& window, const ViewPlan& plan, uint32_t subPixelBits) {
+  const double around =
+      plan.pixel * 2 * (std::ldexp(1.0, -static_cast<int>(subPixelBits)) + 6 * kFloatUnit * plan.view.resolution);
+  const double along = 64 * kFloatUnit * plan.view.rangeScale;
+  const double width = plan.pixel * plan.view.width, height = plan.pixel * plan.view.height;
+  const auto& lo = window.box.lo;
+  return {{lo[0] - around, lo[1] - around, lo[2] - along},
+          {lo[0] + width + around, lo[1] + height + around, lo[2] + plan.view.rangeScale + along}};
+}
+
+void addWhole(ViewPlan& plan, Placed& placed, const Mesh& mesh) {
+  placed.firstRun = static_cast<uint32_t>(plan.runs.size());
+  placed.runs = 1;
+  plan.runs.push_back({0, mesh.triangleCount()});
+}
+
+// Adds the clusters that `wanted` holds for; calls found(box) for each.
+template <class Wanted, class Found>
+void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine& frameFromMesh, double error,
+                 const Wanted& wanted, const Found& found) {
+  placed.firstRun = static_cast<uint32_t>(plan.runs.size());
+  walkClusters(mesh.clusters, frameFromMesh, error, wanted, [&](uint32_t at, const Box& box) {
+    const ClusterNode& node = mesh.clusters.nodes[at];
+    const bool follows =
+        plan.runs.size() > placed.firstRun && plan.runs.back().first + plan.runs.back().count == node.first;
+    if (!follows) plan.runs.push_back({node.first, 0});
+    plan.runs.back().count += node.count;
+    found(box);
+  });
+  placed.runs = static_cast<uint32_t>(plan.runs.size()) - placed.firstRun;
+}
+
+// Fills inReach, unless no cluster meets the swept prism, and mask where it is not drawn whole.
+void addReached(ViewPlan& plan, const Scene::Impl& scene, const Reach& reach, const Box& visible, Drawn drawn,
+                const Mesh& sensor, const SensorWindow& window, const auto& placeInRange) {
+  bool inPrism = false;
+  std::vector<Box> columns;  // around what is seen of each object, endless along the motion
+  for (const Reached& r : reach.objects) {
+    Placed placed = placeInRange(r.object, r.frameFromMesh, r.error);
+    const Mesh& mesh = scene.meshes[placed.mesh];
+    Box around;
+    addClusters(
+        plan, placed, mesh, r.frameFromMesh, r.error, [&](const Box& box) { return overlap(box, visible, 0); },
+        [&](const Box& box) {
+          inPrism = inPrism || overlap(box, reach.prism.box, 0);
+          around.merge(box);
+        });
+    if (placed.runs == 0) continue;
+    if (drawn == Drawn::everything) {
+      plan.runs.resize(placed.firstRun);
+      addWhole(plan, placed, mesh);
+    }
+    around.lo[2] = -1e300;
+    around.hi[2] = 1e300;
+    columns.push_back(around);
+    plan.inReach.push_back(placed);
+  }
+  if (!inPrism) {
+    plan.inReach.clear();
+    plan.runs.resize(plan.mask.runs);
+  }
+  if (drawn != Drawn::inReach || !inPrism) return;
+  // A pixel that R and M share lies in a column and in a sensor cluster's box, each wider by the same snapping.
+  const double around = window.box.lo[0] - visible.lo[0];
+  const auto passesOver = [&](const Box& box) {
+    return std::any_of(columns.begin(), columns.end(), [&](const Box& c) { return overlap(box, c, around); });
+  };
+  addClusters(plan, plan.mask, sensor, window.frameFromMesh, window.error, passesOver, [](const Box&) {});
+}
+
+// Objects out of reach. What meets the visible box although nothing of it is in reach must not make a difference: the
+// pictures reach a rounding farther than select does.
+void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, const Reach& reach, const Box& visible,
+               const Vector& origin, const auto& placeInRange) {
+  auto next = reach.objects.begin();
+  for (ObjectId id = 0; id < scene.objects.size(); ++id) {
+    if (next != reach.objects.end() && next->object == id) {
+      ++next;
+    } else if (const Object& object = scene.objects[id].object;
+               scene.objects[id].used && !isExcluded(query, object, id)) {
+      const Mesh& mesh = scene.meshes[object.mesh];
+      const Affine m = frameFromRecentred(plan.axes, origin, object.worldFromMesh, mesh.centre);
+      const double error = placementError(mesh, m);
+      if (overlap(boxOfRecentred(mesh, m), visible, 2 * error)) continue;
+      plan.others.push_back(placeInRange(id, m, error));
+      addWhole(plan, plan.others.back(), mesh);
+    }
+  }
+}
+
 }  // namespace
 
 uint32_t chooseResolution(double windowSide, double meanEdge) {
@@ -60,7 +154,7 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
 }
 
 ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t subPixelBits,
-                bool select) {
+                Drawn drawn) {
   ViewPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   const SensorWindow window = lookAlong(query, sensor);
@@ -90,30 +184,17 @@ ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& h
   };
   plan.mask =
       place(kNone, query.mesh, window.frameFromMesh, window.error, -1 / maskScale, (maskBase + backPlane) / maskScale);
-  if (reach.objects.empty()) return plan;
-  const auto addRange = [&](std::vector<Placed>& to, ObjectId id, const Affine& m, double error) {
-    const MeshId mesh = scene.objects[id].object.mesh;
-    to.push_back(place(id, mesh, m, error, 1 / rangeScale, -backPlane / rangeScale));
-    plan.triangles += scene.meshes[mesh].triangleCount();
+  if (drawn != Drawn::inReach) addWhole(plan, plan.mask, sensor);
+  const auto placeInRange = [&](ObjectId id, const Affine& m, double error) {
+    return place(id, scene.objects[id].object.mesh, m, error, 1 / rangeScale, -backPlane / rangeScale);
   };
-  plan.triangles += sensor.triangleCount();
-  for (const Reached& r : reach.objects) addRange(plan.inReach, r.object, r.frameFromMesh, r.error);
-  if (select) return plan;
-  Box seen = window.box;
-  seen.hi[2] = backPlane + rangeScale;
-  auto next = reach.objects.begin();
-  for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-    if (next != reach.objects.end() && next->object == id) {
-      ++next;
-    } else if (const Object& object = scene.objects[id].object;
-               scene.objects[id].used && !isExcluded(query, object, id)) {
-      const Mesh& mesh = scene.meshes[object.mesh];
-      const Affine m = frameFromRecentred(plan.axes, window.origin, object.worldFromMesh, mesh.centre);
-      const double error = placementError(mesh, m);
-      // The pictures reach a rounding farther than select does; what lies in between must not make a difference.
-      if (!overlap(boxOfRecentred(mesh, m), seen, 2 * error)) addRange(plan.others, id, m, error);
-    }
+  const Box visible = visibleBox(window, plan, subPixelBits);
+  addReached(plan, scene, reach, visible, drawn, sensor, window, placeInRange);
+  for (const Run& run : plan.runs) plan.items += (run.count + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
+  if (drawn == Drawn::everything && !plan.inReach.empty()) {
+    addOthers(plan, query, scene, reach, visible, window.origin, placeInRange);
   }
+  for (const Run& run : plan.runs) plan.triangles += run.count;
   return plan;
 }
 

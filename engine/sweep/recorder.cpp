@@ -137,14 +137,14 @@ void Recorder::bind(const Pictures& pictures) {
 }
 
 void Recorder::drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
-                          gpu::DepthArray& target, const Scene::Impl& scene) const {
+                          gpu::DepthArray& target) const {
   for (const DepthPass& pass : passes) {
     target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
     for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
       const DrawCall& call = batch.calls[i];
       const gpu::MeshRecord& record = resident_.record(call.mesh);
-      vkCmdDrawIndexed(commands, static_cast<uint32_t>(scene.meshes[call.mesh].indices.size()), call.count,
-                       record.firstIndex, static_cast<int32_t>(record.firstVertex), call.firstDraw);
+      vkCmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
+                       static_cast<int32_t>(record.firstVertex), call.firstDraw);
     }
     vkCmdEndRenderPass(commands);
   }
@@ -181,9 +181,9 @@ void Recorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes)
   vkCmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
   vkCmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");
-  drawScopes(commands, batch, batch.rangePasses, pictures.range, scene);
+  drawScopes(commands, batch, batch.rangePasses, pictures.range);
   submission_.stage("mask");
-  drawScopes(commands, batch, batch.maskPasses, pictures.mask, scene);
+  drawScopes(commands, batch, batch.maskPasses, pictures.mask);
 
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
   submission_.stage("reduce");

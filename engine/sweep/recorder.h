@@ -52,7 +52,7 @@ class Recorder {
   void stage(const Batch& batch, const Scene::Impl& scene);
   void bind(const Pictures& pictures);
   void drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
-                  gpu::DepthArray& target, const Scene::Impl& scene) const;
+                  gpu::DepthArray& target) const;
 
   const Device::Impl* device_;
   uint64_t pictureBytes_;

@@ -50,6 +50,9 @@ VkDeviceSize ResidentScene::prepare(const Scene::Impl& scene) {
     }
     if (vertices > UINT32_MAX || indices > UINT32_MAX)
       throw Error("the scene's meshes exceed 2^32 vertices or indices");
+    refuseAbove("vertices", 12 * vertices);
+    refuseAbove("triangles", 4 * indices);
+    refuseAbove("clusters", sizeof(gpu::ClusterRecord) * nodes);
     buffers_.positions.reserve(12 * vertices);
     buffers_.originals.reserve(12 * vertices);
     buffers_.indices.reserve(4 * indices);

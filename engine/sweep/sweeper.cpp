@@ -40,15 +40,11 @@ Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const Sweep
   maxItems = std::min<uint64_t>(bufferBytes / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
 }
 
-void Sweeper::Impl::add(Load& load, const ViewPlan& plan) const {
+void Sweeper::Impl::add(Load& load, const ViewPlan& plan) {
   ++load.views;
   load.resolution = plan.view.resolution;
   load.draws += 1 + plan.inReach.size() + plan.others.size();
-  const auto items = [&](const Placed& placed) {
-    return (scene.impl().meshes[placed.mesh].triangleCount() + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
-  };
-  load.items += items(plan.mask);
-  for (const Placed& placed : plan.inReach) load.items += items(placed);
+  load.items += plan.items;
 }
 
 bool Sweeper::Impl::fits(const Load& load) const {
@@ -88,7 +84,7 @@ void Sweeper::Impl::submit(std::span<Pending> part) {
     plans.push_back(&pending.plan);
     flying.push_back(pending.query);
   }
-  fill(batch, plans, scene.impl());
+  fill(batch, plans);
   addCpuTime("encode", msSince(start));
   ++stats.submissions;
   stats.drawnObjects += batch.objects;
@@ -148,8 +144,8 @@ void Sweeper::Impl::runSampled(std::span<const size_t> which) {
   Load load;
   for (const size_t i : which) {
     const Clock::time_point start = Clock::now();
-    ViewPlan plan =
-        encode(asked[i], scene.impl(), copy->hierarchy, device.properties.limits.subPixelPrecisionBits, options.select);
+    ViewPlan plan = encode(asked[i], scene.impl(), copy->hierarchy, device.properties.limits.subPixelPrecisionBits,
+                           options.select ? Drawn::inReach : Drawn::everything);
     addCpuTime("select", msSince(start));
     if (plan.inReach.empty()) {
       answers[i] = decodeClear();
@@ -196,6 +192,8 @@ void Sweeper::Impl::landContact() {
       giveUp(query, error);
     }
     stats.pairs += found.state.boxPairs;
+    stats.clusterPairs += found.state.pairCount;
+    stats.solves += found.state.solved;
     decoding += Clock::now() - start;
   };
   for (const size_t i : contactRecorder.collect(contactPointers, scene.impl(), stats.stages, decodeOne)) {
@@ -235,6 +233,7 @@ void Sweeper::Impl::runContact(std::span<const size_t> which) {
       continue;
     }
     refs += plan.sensor.size() + plan.scene.size();
+    stats.clusters += plan.sensor.size() + plan.scene.size();
     slice.push_back(i);
     plans.push_back(std::move(plan));
     if (slice.size() == kMaxTargets || refs >= kMaxRefs) flushSlice();
@@ -295,11 +294,12 @@ Scopes Sweeper::scopes(const Query& query) {
   Impl& self = *impl_;
   self.refuseWrong({&query, 1});
   self.copy->hierarchy.update(self.scene.impl());
-  const ViewPlan plan = encode(query, self.scene.impl(), self.copy->hierarchy,
-                               self.device.properties.limits.subPixelPrecisionBits, self.options.select);
+  const ViewPlan plan =
+      encode(query, self.scene.impl(), self.copy->hierarchy, self.device.properties.limits.subPixelPrecisionBits,
+             self.options.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = self.tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
-  fill(self.batch, plans, self.scene.impl());
+  fill(self.batch, plans);
   StoredScopes stored;
   self.stats = {};
   self.recorder.submit(self.batch, self.scene.impl(), true);

@@ -48,7 +48,7 @@ struct Sweeper::Impl {
   enum class Flight { none, sampled, contact };
 
   bool fits(const Load& load) const;
-  void add(Load& load, const ViewPlan& plan) const;
+  static void add(Load& load, const ViewPlan& plan);
   std::string tooLarge(const ViewPlan& plan) const;
   void flush(std::vector<Pending>& slice);
   void submit(std::span<Pending> part);

@@ -127,8 +127,9 @@ TEST_CASE(
 }
 
 TEST_CASE("with the least room for pairs and contenders, and in the shortest runs, the answers have the same bits") {
-  const ContactRoom room = GENERATE(ContactRoom{.pairs = 1}, ContactRoom{.contenders = 1}, ContactRoom{.run = 1},
-                                    ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .contenders = 1, .run = 1});
+  const ContactRoom room =
+      GENERATE(ContactRoom{.pairs = 1, .pairsPerCluster = 0}, ContactRoom{.contenders = 1}, ContactRoom{.run = 1},
+               ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1});
   const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice);
   CAPTURE(tools::nameOf(family), room.pairs, room.contenders, room.run);
   const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 32, .seed = 4});

@@ -7,7 +7,7 @@
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
 #include "shaders/interop.h"
-#include "spirv/solve_comp.h"
+#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
 #include "support/test_device.h"
 
 namespace {
@@ -22,7 +22,7 @@ std::vector<std::string> messagesOf(bool withBarrier) {
     if (i != gpu::kBindRange && i != gpu::kBindMask) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
   }
   gpu::Bindings bindings(device, list, 8);
-  const gpu::Pipeline solve = gpu::computePipeline(device, bindings.layout(), k_solve_comp, "solve");
+  const gpu::Pipeline solve = gpu::computePipeline(device, bindings.layout(), k_solve_comp_RADAR_NO_DOUBLES, "solve");
   std::map<uint32_t, gpu::Buffer> buffers;
   for (const gpu::Binding& binding : list) {
     gpu::Buffer& buffer = buffers

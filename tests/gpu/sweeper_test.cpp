@@ -84,6 +84,20 @@ TEST_CASE("drawing every object gives the same bits as drawing those in reach") 
   CHECK(naive.stats().drawnObjects > 100 * culled.stats().drawnObjects);
 }
 
+TEST_CASE("drawing only the clusters in reach of one large mesh gives the same bits as drawing it whole") {
+  for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
+    Loaded loaded(tools::makeWorkload(tools::OneMesh{.triangles = 50'000, .sensors = 24, .shape = shape}), 0);
+    for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(17 + i * 37 % 150);
+    Sweeper culled(test::device(), loaded.player.scene());
+    Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
+    const std::vector<Result> expected = naive.run(loaded.queries);
+    checkSame(culled.run(loaded.queries), expected);
+    CHECK(5 * culled.stats().drawnTriangles < naive.stats().drawnTriangles);
+    for (size_t i = 0; i < loaded.queries.size(); i += 5)
+      checkSame({culled.scopes(loaded.queries[i]).result}, {expected[i]});
+  }
+}
+
 TEST_CASE("the order of a batch and mixed resolutions do not matter") {
   Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 65}), 0);
   for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(i * 37 % 150);

@@ -24,7 +24,7 @@ TEST_CASE("a device lost in the middle loses no query: the other does its chunks
   const Boxes boxes(400);
   const std::vector<Result> expected = boxes.answers();
   for (const char* call : {"vkQueueSubmit2", "vkWaitForFences"}) {
-    for (const int after : {0, 1, 2, 3}) {
+    for (const int after : {0, 3}) {
       CAPTURE(call, after);
       const Mended mended;
       Pool pool(twoDevices(), boxes.player.scene());

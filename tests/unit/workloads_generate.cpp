@@ -115,6 +115,7 @@ TEST_CASE("a workload is the same to the bit, always and everywhere") {
   CHECK(fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::box, 1})) == 0xe418389a437273fcull);
   CHECK(fingerprintOf(makeWorkload(Figure7{6, 300, 5, 7})) == 0xb0112bc0e6e512fbull);
   CHECK(fingerprintOf(makeWorkload(Scale{1000, 32, SensorShape::box, 11})) == 0xa0fa6130d5cc640ull);
+  CHECK(fingerprintOf(makeWorkload(OneMesh{10'000, 16, SensorShape::teapot, 19})) == 0x20a240b1ded4dc12ull);
   CHECK(fingerprintOf(makeWorkload(Soups{})) == 0x180343bab99329cfull);
   CHECK(fingerprintOf(makeWorkload(poses)) == 0x64d72d9557e3e7c6ull);
 }
@@ -149,6 +150,22 @@ TEST_CASE("a larger Table 1 scene begins with the smaller one") {
   CHECK(std::equal(small.scenes[0].instances.begin(), small.scenes[0].instances.end(), boxes.begin()));
 }
 
+TEST_CASE("sensors over one mesh begin above everything below them") {
+  const Workload workload = makeWorkload(OneMesh{.triangles = 20'000, .sensors = 64, .shape = SensorShape::box});
+  const MeshData& city = workload.meshes[2];
+  CHECK(city.triangleCount() == 20'000);
+  for (const QuerySpec& query : workload.queries) {
+    const auto& m = query.sensor.worldFromMesh.m;
+    double radius = 0;  // of the sphere around a unit box, placed
+    for (int k = 0; k < 3; ++k) radius += 0.25 * (m[k] * m[k] + m[4 + k] * m[4 + k] + m[8 + k] * m[8 + k]);
+    radius = std::sqrt(radius);
+    for (size_t v = 0; v < city.vertexCount(); ++v) {
+      const float* p = &city.positions[3 * v];
+      if (std::abs(p[0] - m[3]) <= radius && std::abs(p[1] - m[7]) <= radius) REQUIRE(p[2] < m[11] - radius);
+    }
+  }
+}
+
 TEST_CASE("each step of Figure 7 is a scene on the boxes in which every teapot asks and excludes itself") {
   const Workload workload = makeWorkload(Figure7{4, 50, 3});
   REQUIRE(workload.scenes.size() == 4);
@@ -168,10 +185,10 @@ TEST_CASE("each step of Figure 7 is a scene on the boxes in which every teapot a
 }
 
 TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
-  for (const Workload& workload :
-       {makeWorkload(Table1{300, 8}), makeWorkload(Figure7{5, 60, 4}), makeWorkload(Scale{200, 8}),
-        makeWorkload(Soups{}), makeWorkload(Soups{{Soup::tiny, Soup::far}, 9, 9, 5, 1e5}),
-        makeWorkload(RandomPoses{{makeTeapot(), makeBox({1, 1, 1})}, 9, 9})}) {
+  for (const Workload& workload : {makeWorkload(Table1{300, 8}), makeWorkload(Figure7{5, 60, 4}),
+                                   makeWorkload(Scale{200, 8}), makeWorkload(OneMesh{20'000, 8}), makeWorkload(Soups{}),
+                                   makeWorkload(Soups{{Soup::tiny, Soup::far}, 9, 9, 5, 1e5}),
+                                   makeWorkload(RandomPoses{{makeTeapot(), makeBox({1, 1, 1})}, 9, 9})}) {
     ScenePlayer player(workload);
     for (const QuerySpec& query : workload.queries) {
       player.show(query.scene);

@@ -14,9 +14,9 @@ enum class Family {
   nonConvex,     ///< teapots, rings, hooks, combs and cups
   interlocking,  ///< ring on peg, ring through ring, hook behind bar, ball in cup, comb in comb, ball inside teapot,
                  ///< key in keyhole; either as the sensor, turned a little
-  open,       ///< sheets, cylinders without ends, single triangles
-  crossing,   ///< meshes that pierce themselves, and meshes that hold triangles twice
-  soup,       ///< every kind of Soup, near the origin or 10^1 to 10^7 units from it
+  open,          ///< sheets, cylinders without ends, single triangles
+  crossing,      ///< meshes that pierce themselves, and meshes that hold triangles twice
+  soup,          ///< every kind of Soup, near the origin or 10^1 to 10^7 units from it
   lattice,    ///< boxes and triangles with whole corners along whole directions: ties, touching, contact at exactly D
   touching,   ///< the same turned and scaled alike, some poses off by roundings: gaps and overlaps of one ulp
   farPosed,   ///< shapes of every kind, 10^1 to 10^7 units from the origin by their poses

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "workloads/city.h"
 #include "workloads/clearance.h"
 
 namespace radar::tools {
@@ -66,9 +67,9 @@ std::vector<Instance> randomBoxes(Random& random, uint32_t count, double side, d
   return boxes;
 }
 
-/// Table 1's sensors: unit box, mesh 0, or teapot, mesh 1.
-void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, double side,
-                const Clearance& clearance) {
+/// Table 1's sensors: unit box, mesh 0, or teapot, mesh 1. `placeFor` finds a place for a sphere of the radius given.
+template <class PlaceFor>
+void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, const PlaceFor& placeFor) {
   const Bounds teapot = boundsOf(workload.meshes[1]);
   for (uint32_t i = 0; i < count; ++i) {
     QuerySpec query;
@@ -76,11 +77,11 @@ void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape 
     const auto rotation = random.rotation();
     const Vec3 edges = random.inBox({1, 1, 1}, {3, 3, 3});
     if (shape == SensorShape::box) {
-      const Vec3 at = freePlace(random, clearance, side, 0.5 * lengthOf(edges));
+      const Vec3 at = placeFor(0.5 * lengthOf(edges));
       query.sensor = {0, makePose(rotation, edges, at)};
     } else {
       const double scale = 3 / teapot.longest;
-      const Vec3 at = freePlace(random, clearance, side, scale * teapot.radius);
+      const Vec3 at = placeFor(scale * teapot.radius);
       query.sensor = {1, poseAround(teapot, rotation, scale, at)};
     }
     query.direction = random.direction();
@@ -95,7 +96,8 @@ Workload boxesAndSensors(uint32_t boxes, uint32_t sensors, SensorShape shape, do
   Random boxRandom(seed), sensorRandom(seed + 1'000'003);
   Clearance clearance(3);
   workload.scenes.push_back({"boxes", {}, randomBoxes(boxRandom, boxes, side, 0.3, 1.5, clearance), {}});
-  addSensors(workload, sensorRandom, sensors, shape, side, clearance);
+  addSensors(workload, sensorRandom, sensors, shape,
+             [&](double radius) { return freePlace(sensorRandom, clearance, side, radius); });
   return workload;
 }
 
@@ -196,6 +198,21 @@ Workload makeWorkload(const Figure7& options) {
     workload.scenes.push_back(std::move(scene));
     for (size_t i = 0; i < flights.size(); ++i) fly(flights, i, radius, clearance, random);
   }
+  return workload;
+}
+
+Workload makeWorkload(const OneMesh& options) {
+  Random random(options.seed), sensorRandom(options.seed + 1'000'003);
+  const City city(static_cast<uint32_t>(std::sqrt(0.5 * options.triangles)), random);
+  Workload workload;
+  workload.meshes = {makeBox({1, 1, 1}), makeTeapot(), city.mesh()};
+  workload.scenes.push_back({"city", {}, {{2, {}}}, {}});
+  addSensors(workload, sensorRandom, options.sensors, options.shape, [&](double radius) {
+    const double edge = city.halfSide();
+    Vec3 at = sensorRandom.inBox({-edge, -edge, 0.5}, {edge, edge, 6});
+    at[2] += radius + city.highestNear(at[0], at[1], radius);
+    return at;
+  });
   return workload;
 }
 

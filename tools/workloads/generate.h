@@ -47,6 +47,16 @@ struct Scale {
 };
 Workload makeWorkload(const Scale& options);
 
+/// A scene of one mesh, a city of about `triangles` triangles at one density, 10^4 to 10^7, and one batch of sensors,
+/// shaped as in Table 1, in random poses half a unit to six above what is highest below them; D is 10.
+struct OneMesh {
+  uint32_t triangles = 1'000'000;
+  uint32_t sensors = 64;
+  SensorShape shape = SensorShape::teapot;
+  uint64_t seed = 19;
+};
+Workload makeWorkload(const OneMesh& options);
+
 /// Random triangle soups (of each kind in turn, or of one kind) in random affine poses with scales of 0.3 to 2, mirrors
 /// among them, that overlap, interlock and miss: one scene, one batch. `origin` moves everything along x, y and z.
 struct Soups {

@@ -265,6 +265,9 @@ struct SweepStats {
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
   uint64_t pairs = 0;             ///< triangle pairs: nominated (sampled), or that reached a box test (contact)
   uint64_t cpuPairs = 0;          ///< pairs decided on the CPU
+  uint64_t clusters = 0;          ///< clusters in reach of either side, summed over sensors (contact)
+  uint64_t clusterPairs = 0;      ///< cluster pairs whose boxes can meet (contact)
+  uint64_t solves = 0;            ///< triangle pairs solved (contact)
   std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps (then CPU stages too)
 };
 

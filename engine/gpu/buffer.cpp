@@ -44,6 +44,7 @@ bool Buffer::reserve(VkDeviceSize bytes) {
                                     : residence_ == Residence::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                                                         : 0)};
   VkDeviceMemory memory;
+  check(device_->faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
   check(vkAllocateMemory(device_->device(), &allocate, nullptr, &memory), "vkAllocateMemory (" + what + ")");
   DeviceMemory owned(device_->device(), memory);
   check(vkBindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");

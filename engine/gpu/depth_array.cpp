@@ -102,6 +102,7 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
       .allocationSize = requirements.size,
       .memoryTypeIndex = memoryType(device, requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
   VkDeviceMemory memory;
+  check(device.faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
   check(vkAllocateMemory(device.device(), &allocate, nullptr, &memory), "vkAllocateMemory (" + what + ")");
   memory_ = {device.device(), memory};
   check(vkBindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory (" + what + ")");

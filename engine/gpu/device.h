@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "gpu/handle.h"
 #include "radar/radar.h"
@@ -31,6 +32,10 @@ struct Device::Impl {
   bool doubles = false;  ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
+  /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
+  /// vkWaitForFences, with that name; an error stands for the call's own. Empty otherwise.
+  std::function<VkResult(std::string_view call)> fault;
+  VkResult faultAt(std::string_view call) const { return fault ? fault(call) : VK_SUCCESS; }
   /// Names an object for debuggers and validation messages.
   void setName(VkObjectType type, uint64_t handle, const char* name) const;
   template <class T>

@@ -35,6 +35,7 @@ Submission::Submission(const Device::Impl& device, bool timestamps)
 }
 
 VkCommandBuffer Submission::begin() {
+  assert(!pending_);
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // a failed recording may have been left
@@ -65,17 +66,30 @@ void Submission::stage(const char* name) {
   device_->beginLabel(commands_, name);
 }
 
-void Submission::submitAndWait() {
+void Submission::submit() {
   endStage();
   check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
   const VkCommandBufferSubmitInfo commandInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                               .commandBuffer = commands_};
   const VkSubmitInfo2 submit{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commandInfo};
+  check(device_->faultAt("vkQueueSubmit2"), "vkQueueSubmit2");
   check(vkQueueSubmit2(device_->host.queue, 1, &submit, fence_.get()), "vkQueueSubmit2");
+  pending_ = true;
+}
+
+void Submission::wait() {
   const VkFence fence = fence_.get();
-  check(vkWaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  const VkResult waited = vkWaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
+  pending_ = false;
+  check(waited, "vkWaitForFences");
   check(vkResetFences(device_->device(), 1, &fence), "vkResetFences");
+  check(device_->faultAt("vkWaitForFences"), "vkWaitForFences");
+}
+
+void Submission::submitAndWait() {
+  submit();
+  wait();
 }
 
 void addStageTime(std::vector<StageTime>& stages, const std::string& name, double ms) {

@@ -1,4 +1,4 @@
-// One command buffer at a time: begin, record, submit and wait; with timestamps between its stages on request.
+// One command buffer at a time: begin, record, submit, wait; with timestamps between its stages on request.
 #pragma once
 
 #include <string>
@@ -19,7 +19,10 @@ class Submission {
   VkCommandBuffer begin();
   /// Opens a stage: a debug label, and the end of the stage before it.
   void stage(const char* name);
-  /// Submits and blocks until the device is done. Throws Error with VK_ERROR_DEVICE_LOST if it is lost.
+  /// Hands what was recorded to the queue, and returns while the device works on it; wait() comes before anything else.
+  void submit();
+  /// Blocks until the device is done with what was submitted. Throws Error with VK_ERROR_DEVICE_LOST if it is lost.
+  void wait();
   void submitAndWait();
   /// Adds the milliseconds of each stage of the last submission to those of its name; nothing without timestamps.
   void addTimes(std::vector<StageTime>& stages) const;
@@ -35,6 +38,7 @@ class Submission {
   Fence fence_;
   QueryPool queries_;
   std::vector<const char*> stages_;
+  bool pending_ = false;
 };
 
 }  // namespace radar::gpu

@@ -91,7 +91,7 @@ bool BoundedTier::fits(const Load& load, bool alone) const {
 }
 
 void BoundedTier::submit(std::span<const Query> queries, std::vector<Pending>& slice, const Scene::Impl& scene,
-                         Out out) {
+                         const Out& out) {
   if (slice.empty()) return;
   std::vector<const BoundedPlan*> plans;
   for (const Pending& pending : slice) plans.push_back(&pending.plan);
@@ -112,18 +112,14 @@ void BoundedTier::submit(std::span<const Query> queries, std::vector<Pending>& s
     }
     if (timestamps_) gpu::addStageTime(out.stats.stages, "decode", msSince(start));
   } catch (const Error& error) {
-    if (error.result == VK_SUCCESS) throw;
-    for (const Pending& pending : slice) {
-      out.results[pending.query] = Result();
-      out.reasons[pending.query] = error.what();
-    }
+    for (const Pending& pending : slice) out.giveUp(pending.query, error);
   }
   ++out.stats.submissions;
   slice.clear();
 }
 
 std::vector<size_t> BoundedTier::run(std::span<const Query> queries, std::span<const size_t> which,
-                                     const Scene::Impl& scene, const Hierarchy& hierarchy, Out out) {
+                                     const Scene::Impl& scene, const Hierarchy& hierarchy, const Out& out) {
   std::vector<size_t> open(which.begin(), which.end()), done;
   for (uint32_t step = kCoarsest; !open.empty() && step <= kFinest; step *= 2) {
     std::vector<Pending> slice;

@@ -1,6 +1,7 @@
 // The bounded tier: brackets from outer scopes, refined until they settle what was asked.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -18,16 +19,17 @@ class BoundedTier {
 
   /// What a run adds to, by query.
   struct Out {
-    std::vector<Result>& results;
+    std::span<Result> results;
     std::map<size_t, std::string>& reasons;
     SweepStats& stats;
+    std::function<void(size_t, const Error&)> giveUp;  ///< of a query whose submission failed
   };
 
   /// Answers the queries `which`: clear (tier select or bounded), or with the bracket that is known. In mode bounded a
   /// query that leaves the resolution open is refined, from kCoarsest by doubling to kFinest, while it is not settled;
   /// one of a dearer mode, or with a resolution, is looked at once. Returns those that are not settled, in order.
   std::vector<size_t> run(std::span<const Query> queries, std::span<const size_t> which, const Scene::Impl& scene,
-                          const Hierarchy& hierarchy, Out out);
+                          const Hierarchy& hierarchy, const Out& out);
 
  private:
   struct Pending {
@@ -41,7 +43,7 @@ class BoundedTier {
   };
 
   bool fits(const Load& load, bool alone) const;
-  void submit(std::span<const Query> queries, std::vector<Pending>& slice, const Scene::Impl& scene, Out out);
+  void submit(std::span<const Query> queries, std::vector<Pending>& slice, const Scene::Impl& scene, const Out& out);
 
   const Device::Impl* device_;
   uint64_t pictureBytes_, bufferBytes_;

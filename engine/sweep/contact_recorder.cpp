@@ -195,74 +195,86 @@ void ContactRecorder::finish(uint32_t targets, std::vector<StageTime>& stages) {
   }
 }
 
-std::vector<size_t> ContactRecorder::search(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
-                                            std::vector<StageTime>& stages,
-                                            const std::function<void(size_t, const Search&)>& found) {
-  std::vector<Room> rooms;
+// As many as the buffers hold; the others wait.
+std::vector<ContactRecorder::Room> ContactRecorder::nextGroup() {
+  const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
+  const uint64_t maxPairs = limit / sizeof(gpu::ClusterPair), maxContenders = limit / sizeof(gpu::Contender);
+  std::vector<Room> group, again;
+  uint64_t pairs = 0, contenders = 0;
+  for (const Room& room : waiting_) {
+    if (room.pairs > maxPairs || room.contenders > maxContenders) {
+      refused_.push_back(room.plan);
+    } else if (pairs + room.pairs <= maxPairs && contenders + room.contenders <= maxContenders) {
+      pairs += room.pairs;
+      contenders += room.contenders;
+      group.push_back(room);
+    } else {
+      again.push_back(room);
+    }
+  }
+  waiting_ = std::move(again);
+  return group;
+}
+
+void ContactRecorder::submitGroup(std::span<const ContactPlan* const> plans, const Scene::Impl& scene) {
+  group_ = nextGroup();
+  if (group_.empty()) return;
+  stage(plans, group_, scene);
+  bind();
+  const VkCommandBuffer commands = submission_.begin();
+  const VkDescriptorSet set = bindings_.set();
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  submission_.stage("upload");
+  upload_.record(commands);
+  gpu::uploadToRead(commands);
+  submission_.stage("bounds");
+  const auto refs = static_cast<uint32_t>(refList_.size()), items = static_cast<uint32_t>(itemList_.size());
+  dispatch(commands, bounds_, (refs + 63) / 64, refs);
+  gpu::computeWriteToComputeReadWrite(commands);
+  submission_.stage("pairs");
+  dispatch(commands, pairs_, items, items);
+  gpu::computeWriteToComputeReadWrite(commands);
+  recordSearch(commands, static_cast<uint32_t>(group_.size()));
+  submission_.submit();
+}
+
+void ContactRecorder::submit(std::span<const ContactPlan* const> plans, const Scene::Impl& scene) {
+  refused_.clear();
+  waiting_.clear();
   for (size_t i = 0; i < plans.size(); ++i) {
     const uint64_t clusters = plans[i]->sensor.size() + plans[i]->scene.size();
     const uint64_t pairs = std::min(allPairs(*plans[i]), std::max(room_.pairs, room_.pairsPerCluster * clusters));
-    rooms.push_back({i, pairs, room_.contenders, upward(plans[i]->target.distance)});
+    waiting_.push_back({i, pairs, room_.contenders, upward(plans[i]->target.distance)});
   }
-  const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
-  const uint64_t maxPairs = limit / sizeof(gpu::ClusterPair), maxContenders = limit / sizeof(gpu::Contender);
-  std::vector<size_t> refused;
-  while (!rooms.empty()) {
-    // As many as the buffers hold; the others wait.
-    std::vector<Room> group, again;
-    uint64_t pairs = 0, contenders = 0;
-    for (const Room& room : rooms) {
-      if (room.pairs > maxPairs || room.contenders > maxContenders) {
-        refused.push_back(room.plan);
-      } else if (pairs + room.pairs <= maxPairs && contenders + room.contenders <= maxContenders) {
-        pairs += room.pairs;
-        contenders += room.contenders;
-        group.push_back(room);
-      } else {
-        again.push_back(room);
-      }
-    }
-    rooms = std::move(again);
-    if (group.empty()) continue;
-    stage(plans, group, scene);
-    bind();
-    const auto targets = static_cast<uint32_t>(group.size());
-    const VkCommandBuffer commands = submission_.begin();
-    const VkDescriptorSet set = bindings_.set();
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
-    submission_.stage("upload");
-    upload_.record(commands);
-    gpu::uploadToRead(commands);
-    submission_.stage("bounds");
-    const auto refs = static_cast<uint32_t>(refList_.size()), items = static_cast<uint32_t>(itemList_.size());
-    dispatch(commands, bounds_, (refs + 63) / 64, refs);
-    gpu::computeWriteToComputeReadWrite(commands);
-    submission_.stage("pairs");
-    dispatch(commands, pairs_, items, items);
-    gpu::computeWriteToComputeReadWrite(commands);
-    recordSearch(commands, targets);
-    submission_.submitAndWait();
+  submitGroup(plans, scene);
+}
+
+std::vector<size_t> ContactRecorder::collect(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
+                                             std::vector<StageTime>& stages,
+                                             const std::function<void(size_t, const Search&)>& found) {
+  for (; !group_.empty(); submitGroup(plans, scene)) {
+    submission_.wait();
     resident_.confirm(scene);
     submission_.addTimes(stages);
-    finish(targets, stages);
+    finish(static_cast<uint32_t>(group_.size()), stages);
 
     // What outgrew its room goes again, with the room it is known to need.
     const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());
     const auto* lists = reinterpret_cast<const gpu::Contender*>(readback_.mapped() + bytesOf(stateList_));
-    for (uint32_t i = 0; i < targets; ++i) {
-      const Room& room = group[i];
+    for (uint32_t i = 0; i < group_.size(); ++i) {
+      const Room& room = group_[i];
       if (states[i].pairCount > room.pairs || states[i].progress == gpu::kSearchOverflow) {
         // What a search has certainly met bounds the next one, which then keeps few contenders.
         const bool bounded = states[i].hi < room.hi;
         const bool overflow = states[i].pairCount <= room.pairs && !bounded;
-        rooms.push_back({room.plan, std::max<uint64_t>(room.pairs, states[i].pairCount),
-                         overflow ? 8 * room.contenders : room.contenders, std::min(states[i].hi, room.hi)});
+        waiting_.push_back({room.plan, std::max<uint64_t>(room.pairs, states[i].pairCount),
+                            overflow ? 8 * room.contenders : room.contenders, std::min(states[i].hi, room.hi)});
       } else {
         found(room.plan, {states[i], {lists + targetList_[i].firstContender, states[i].contenderCount}});
       }
     }
   }
-  return refused;
+  return std::move(refused_);
 }
 
 }  // namespace radar

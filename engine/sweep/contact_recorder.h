@@ -1,6 +1,7 @@
 // The recipe of the contact tier: bounds, pairs of clusters, search. Owns its pipelines and buffers.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "gpu/pipeline.h"
@@ -29,12 +30,14 @@ class ContactRecorder {
  public:
   ContactRecorder(const Device::Impl& device, ResidentScene& resident, bool timestamps, const ContactRoom& room = {});
 
-  /// Searches the first contact of every plan: one upload, one command buffer, one readback; more only where a list was
-  /// longer than its room or a search longer than a dispatch may be, and that is found out and done. `found` is called
-  /// once for every plan, in no order.
+  /// Begins the search for the first contact of every plan: one upload, one command buffer, one readback; returns while
+  /// the device works on it, and collect() comes next, with the same arguments.
+  void submit(std::span<const ContactPlan* const> plans, const Scene::Impl& scene);
+  /// Waits for what was submitted; submits more only where a list was longer than its room or a search longer than a
+  /// dispatch may be. `found` is called once for every plan, in no order.
   /// Returns the plans whose lists are longer than a buffer of the device may be: for those `found` is not called.
-  std::vector<size_t> search(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
-                             std::vector<StageTime>& stages, const std::function<void(size_t, const Search&)>& found);
+  std::vector<size_t> collect(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
+                              std::vector<StageTime>& stages, const std::function<void(size_t, const Search&)>& found);
 
  private:
   /// Room for the lists of one plan.
@@ -45,6 +48,8 @@ class ContactRecorder {
     float hi;  ///< first contact is no later, world units
   };
 
+  std::vector<Room> nextGroup();
+  void submitGroup(std::span<const ContactPlan* const> plans, const Scene::Impl& scene);
   void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);
   void bind();
   void dispatch(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
@@ -66,6 +71,8 @@ class ContactRecorder {
   std::vector<gpu::PairItem> itemList_;
   std::vector<gpu::State> stateList_;
   uint64_t contenderTotal_ = 0;
+  std::vector<Room> waiting_, group_;  ///< to be searched, and with the device
+  std::vector<size_t> refused_;
 };
 
 }  // namespace radar

@@ -1,7 +1,7 @@
 #include "sweep/recorder.h"
 
 #include <algorithm>
-#include <cstring>
+#include <tuple>
 
 #include "gpu/barrier.h"
 #include "spirv/depth_vert.h"
@@ -150,17 +150,20 @@ void Recorder::drawScopes(VkCommandBuffer commands, const Batch& batch, const st
   }
 }
 
-Answers Recorder::submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                         StoredScopes* scopes) {
+// Where the parts of the readback lie.
+Recorder::Readback Recorder::readbackOf(const Batch& batch, bool scopes) {
+  const VkDeviceSize views = batch.views.size();
+  return {views * sizeof(gpu::Answer), views * gpu::kOpenPairs * sizeof(gpu::OpenPair),
+          scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
+}
+
+void Recorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
   bind(pictures);
   const auto views = static_cast<uint32_t>(batch.views.size());
-  const VkDeviceSize answerBytes = views * sizeof(gpu::Answer);
-  const VkDeviceSize openBytes = views * gpu::kOpenPairs * sizeof(gpu::OpenPair);
+  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes);
   const VkDeviceSize listBytes = answerBytes + openBytes;
-  const uint32_t width = batch.views[0].width, height = batch.views[0].height;
-  const VkDeviceSize pictureBytes = scopes != nullptr ? VkDeviceSize{width} * height * sizeof(float) : 0;
   readback_.reserve(listBytes + 2 * pictureBytes);
 
   const VkCommandBuffer commands = submission_.begin();
@@ -205,21 +208,27 @@ Answers Recorder::submit(const Batch& batch, const Scene::Impl& scene, std::vect
   const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
   vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
   vkCmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
-  if (scopes != nullptr) {
-    const uint32_t layer = batch.views[0].layer;
+  if (scopes) {
+    const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
     pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
     pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), listBytes + pictureBytes);
   }
   gpu::copyToHost(commands);
-  submission_.submitAndWait();
-  resident_.confirm(scene);
+  submission_.submit();
+}
 
+Answers Recorder::collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                          StoredScopes* scopes) {
+  submission_.wait();
+  resident_.confirm(scene);
   submission_.addTimes(stages);
+  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes != nullptr);
   if (scopes != nullptr) {
-    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + listBytes);
+    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes + openBytes);
     scopes->range.assign(at, at + pictureBytes / sizeof(float));
     scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
   }
+  const size_t views = batch.views.size();
   return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
           {reinterpret_cast<const gpu::OpenPair*>(readback_.mapped() + answerBytes), views * gpu::kOpenPairs}};
 }

@@ -33,16 +33,24 @@ class Recorder {
 
   /// Uploads what changed in the scene, and nothing else.
   void sync(const Scene::Impl& scene);
-  /// One upload, one command buffer, one readback. With `scopes`, the pictures of view 0 come too. Adds each stage's
-  /// time to `stages`.
-  Answers submit(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                 StoredScopes* scopes = nullptr);
+  /// One upload, one command buffer, one readback; returns while the device works on it, and collect() comes next, with
+  /// the same arguments. With `scopes`, the pictures of view 0 come too.
+  void submit(const Batch& batch, const Scene::Impl& scene, bool scopes = false);
+  /// Waits for what was submitted, and adds each stage's time to `stages`.
+  Answers collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                  StoredScopes* scopes = nullptr);
 
  private:
   struct Pictures {
     gpu::DepthArray range, mask;
   };
 
+  /// Bytes of each part.
+  struct Readback {
+    VkDeviceSize answers, openPairs, picture;
+  };
+
+  static Readback readbackOf(const Batch& batch, bool scopes);
   Pictures& picturesFor(const Batch& batch);
   void stage(const Batch& batch, const Scene::Impl& scene);
   void bind(const Pictures& pictures);

@@ -1,16 +1,13 @@
-// A query travels: run -> encode -> fill -> submit -> decode.
+// A query travels: begin -> encode -> fill -> submit ... finish -> land -> decode. One submission at a time is with the
+// device; it lands before the next is staged.
+#include "sweep/sweeper.h"
+
 #include <algorithm>
-#include <chrono>
+#include <cassert>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <optional>
-
-#include "gpu/device.h"
-#include "sweep/bounded_tier.h"
 #include "sweep/contact_decode.h"
 #include "sweep/decode.h"
-#include "sweep/recorder.h"
 
 namespace radar {
 
@@ -26,63 +23,21 @@ double msSince(Clock::time_point start) {
 constexpr size_t kMaxTargets = 2048;
 constexpr uint64_t kMaxRefs = 1u << 20;
 
-// One query of a slice on its way to the device.
-struct Pending {
-  size_t query;
-  ViewPlan plan;
-};
-
-// What one submission has to hold.
-struct Load {
-  uint64_t views = 0, draws = 0, items = 0;
-  uint32_t resolution = 0;
-};
-
 }  // namespace
 
-struct Sweeper::Impl {
-  Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given)
-      : device(openDevice.impl()),
-        scene(ownScene),
-        options(given),
-        resident(device),
-        recorder(device, resident, given.pictureBytes, given.timestamps),
-        contactRecorder(device, resident, given.timestamps) {
-    const VkPhysicalDeviceLimits& limits = device.properties.limits;
-    // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
-    bufferBytes = std::min<uint64_t>(limits.maxStorageBufferRange, 256ull << 20);
-    maxItems = std::min<uint64_t>(bufferBytes / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
-  }
-
-  bool fits(const Load& load) const;
-  static void add(Load& load, const ViewPlan& plan);
-  std::string tooLarge(const ViewPlan& plan) const;
-  void flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results);
-  void submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results);
-  void runSampled(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
-  std::vector<size_t> runBounded(std::span<const Query> queries, std::span<const size_t> which,
-                                 std::vector<Result>& results);
-  void runContact(std::span<const Query> queries, std::span<const size_t> which, std::vector<Result>& results);
-  void search(std::span<const size_t> which, std::span<const ContactPlan> plans, std::span<const Query> queries,
-              std::vector<Result>& results);
-  void giveUp(size_t query, const Error& error, std::vector<Result>& results);
-  void addCpuTime(const char* name, double ms);
-  void refuseWrong(std::span<const Query> queries) const;
-
-  const Device::Impl& device;
-  const Scene& scene;
-  SweeperOptions options;
-  ResidentScene resident;
-  Recorder recorder;
-  std::optional<BoundedTier> boundedTier;  ///< made when first needed: pipelines take a while
-  ContactRecorder contactRecorder;
-  Hierarchy hierarchy;
-  Batch batch;
-  SweepStats stats;
-  std::map<size_t, std::string> reasons;
-  uint64_t bufferBytes;
-  uint64_t maxItems;  // items name triangles in 32 bits
-};
+Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given,
+                    std::shared_ptr<SceneCopy> sceneCopy)
+    : device(openDevice.impl()),
+      scene(ownScene),
+      options(given),
+      copy(std::move(sceneCopy)),
+      recorder(device, copy->resident, given.pictureBytes, given.timestamps),
+      contactRecorder(device, copy->resident, given.timestamps) {
+  const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
+  bufferBytes = std::min<uint64_t>(limits.maxStorageBufferRange, 256ull << 20);
+  maxItems = std::min<uint64_t>(bufferBytes / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
+}
 
 void Sweeper::Impl::add(Load& load, const ViewPlan& plan) {
   ++load.views;
@@ -118,34 +73,43 @@ void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {
   }
 }
 
-// One submission.
-void Sweeper::Impl::submit(std::span<Pending> part, std::span<const Query> queries, std::vector<Result>& results) {
+void Sweeper::Impl::submit(std::span<Pending> part) {
   if (part.empty()) return;
+  land();
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
-  for (const Pending& pending : part) plans.push_back(&pending.plan);
+  flying.clear();
+  for (const Pending& pending : part) {
+    plans.push_back(&pending.plan);
+    flying.push_back(pending.query);
+  }
   fill(batch, plans);
   addCpuTime("encode", msSince(start));
-  try {
-    const Answers found = recorder.submit(batch, scene.impl(), stats.stages);
-    const Clock::time_point decodeStart = Clock::now();
-    for (size_t i = 0; i < part.size(); ++i) {
-      const size_t query = part[i].query;
-      results[query] = decode(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs),
-                              queries[query], scene.impl(), batch.views[i].resolution, stats.cpuPairs);
-      stats.pairs += found.answers[i].pairs;
-    }
-    addCpuTime("decode", msSince(decodeStart));
-  } catch (const Error& error) {
-    for (const Pending& pending : part) giveUp(pending.query, error, results);
-  }
   ++stats.submissions;
   stats.drawnObjects += batch.objects;
   stats.drawnTriangles += batch.triangles;
+  try {
+    recorder.submit(batch, scene.impl());
+    flight = Flight::sampled;
+  } catch (const Error& error) {
+    for (const size_t query : flying) giveUp(query, error);
+  }
+}
+
+void Sweeper::Impl::landSampled() {
+  const Answers found = recorder.collect(batch, scene.impl(), stats.stages);
+  deviceDone = Clock::now();
+  for (size_t i = 0; i < flying.size(); ++i) {
+    const size_t query = flying[i];
+    answers[query] = decode(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs),
+                            asked[query], scene.impl(), batch.views[i].resolution, stats.cpuPairs);
+    stats.pairs += found.answers[i].pairs;
+  }
+  addCpuTime("decode", msSince(deviceDone));
 }
 
 // Cuts a slice into submissions that fit.
-void Sweeper::Impl::flush(std::vector<Pending>& slice, std::span<const Query> queries, std::vector<Result>& results) {
+void Sweeper::Impl::flush(std::vector<Pending>& slice) {
   std::stable_sort(slice.begin(), slice.end(),
                    [](const Pending& a, const Pending& b) { return a.plan.view.resolution < b.plan.view.resolution; });
   size_t first = 0;
@@ -154,36 +118,36 @@ void Sweeper::Impl::flush(std::vector<Pending>& slice, std::span<const Query> qu
     Load next = load;
     add(next, slice[i].plan);
     if (i > first && !fits(next)) {
-      submit(std::span(slice).subspan(first, i - first), queries, results);
+      submit(std::span(slice).subspan(first, i - first));
       first = i;
       next = {};
       add(next, slice[i].plan);
     }
     load = next;
   }
-  submit(std::span(slice).subspan(first), queries, results);
+  submit(std::span(slice).subspan(first));
   slice.clear();
 }
 
-void Sweeper::Impl::giveUp(size_t query, const Error& error, std::vector<Result>& results) {
+void Sweeper::Impl::giveUp(size_t query, const Error& error) {
   if (error.result == VK_SUCCESS) throw error;
-  results[query] = Result();
+  if (!failure) failure = error;
+  answers[query] = Result();
   reasons[query] = error.what();
 }
 
-void Sweeper::Impl::runSampled(std::span<const Query> queries, std::span<const size_t> which,
-                               std::vector<Result>& results) {
+void Sweeper::Impl::runSampled(std::span<const size_t> which) {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
   std::vector<Pending> slice;
   Load load;
   for (const size_t i : which) {
     const Clock::time_point start = Clock::now();
-    ViewPlan plan = encode(queries[i], scene.impl(), hierarchy, device.properties.limits.subPixelPrecisionBits,
+    ViewPlan plan = encode(asked[i], scene.impl(), copy->hierarchy, device.properties.limits.subPixelPrecisionBits,
                            options.select ? Drawn::inReach : Drawn::everything);
     addCpuTime("select", msSince(start));
     if (plan.inReach.empty()) {
-      results[i] = decodeClear();
+      answers[i] = decodeClear();
       continue;
     }
     if (std::string reason = tooLarge(plan); !reason.empty()) {
@@ -193,67 +157,87 @@ void Sweeper::Impl::runSampled(std::span<const Query> queries, std::span<const s
     add(load, plan);
     slice.push_back({i, std::move(plan)});
     if (slice.size() >= device.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes || load.items > maxItems) {
-      flush(slice, queries, results);
+      flush(slice);
       load = {};
     }
   }
-  flush(slice, queries, results);
+  flush(slice);
 }
 
 // Returns what the bracket does not settle.
-std::vector<size_t> Sweeper::Impl::runBounded(std::span<const Query> queries, std::span<const size_t> which,
-                                              std::vector<Result>& results) {
+std::vector<size_t> Sweeper::Impl::runBounded(std::span<const size_t> which) {
   if (which.empty()) return {};
-  if (!boundedTier) boundedTier.emplace(device, resident, options.pictureBytes, options.timestamps);
-  return boundedTier->run(queries, which, scene.impl(), hierarchy, {results, reasons, stats});
+  land();
+  if (!boundedTier) boundedTier.emplace(device, copy->resident, options.pictureBytes, options.timestamps);
+  const auto fail = [&](size_t query, const Error& error) { giveUp(query, error); };
+  return boundedTier->run(asked, which, scene.impl(), copy->hierarchy, {answers, reasons, stats, fail});
 }
 
-void Sweeper::Impl::search(std::span<const size_t> which, std::span<const ContactPlan> plans,
-                           std::span<const Query> queries, std::vector<Result>& results) {
+void Sweeper::Impl::search(std::vector<size_t>& which, std::vector<ContactPlan>& plans) {
   if (plans.empty()) return;
-  std::vector<const ContactPlan*> pointers;
-  for (const ContactPlan& plan : plans) pointers.push_back(&plan);
-  double decodeMs = 0;
-  try {
-    const auto decodeOne = [&](size_t i, const Search& found) {
-      const Clock::time_point start = Clock::now();
-      try {
-        results[which[i]] = decodeContact(found, queries[which[i]], scene.impl(), stats.cpuPairs);
-      } catch (const Error& error) {
-        giveUp(which[i], error, results);
-      }
-      stats.pairs += found.state.boxPairs;
-      stats.clusterPairs += found.state.pairCount;
-      stats.solves += found.state.solved;
-      decodeMs += msSince(start);
-    };
-    for (const size_t i : contactRecorder.search(pointers, scene.impl(), stats.stages, decodeOne)) {
-      reasons[which[i]] = "capacity: more clusters or triangles meet than a buffer of the device can list";
-    }
-  } catch (const Error& error) {
-    for (const size_t i : which) giveUp(i, error, results);
-  }
-  addCpuTime("decode", decodeMs);
+  land();
+  flying.swap(which);
+  contactPlans.swap(plans);
+  contactPointers.clear();
+  for (const ContactPlan& plan : contactPlans) contactPointers.push_back(&plan);
   ++stats.submissions;
+  try {
+    contactRecorder.submit(contactPointers, scene.impl());
+    flight = Flight::contact;
+  } catch (const Error& error) {
+    for (const size_t query : flying) giveUp(query, error);
+  }
 }
 
-void Sweeper::Impl::runContact(std::span<const Query> queries, std::span<const size_t> which,
-                               std::vector<Result>& results) {
+void Sweeper::Impl::landContact() {
+  Clock::duration decoding{};
+  const auto decodeOne = [&](size_t i, const Search& found) {
+    const Clock::time_point start = Clock::now();
+    const size_t query = flying[i];
+    try {
+      answers[query] = decodeContact(found, asked[query], scene.impl(), stats.cpuPairs);
+    } catch (const Error& error) {
+      giveUp(query, error);
+    }
+    stats.pairs += found.state.boxPairs;
+    stats.clusterPairs += found.state.pairCount;
+    stats.solves += found.state.solved;
+    decoding += Clock::now() - start;
+  };
+  for (const size_t i : contactRecorder.collect(contactPointers, scene.impl(), stats.stages, decodeOne)) {
+    reasons[flying[i]] = "capacity: more clusters or triangles meet than a buffer of the device can list";
+  }
+  deviceDone = Clock::now() - decoding;
+  addCpuTime("decode", std::chrono::duration<double, std::milli>(decoding).count());
+}
+
+void Sweeper::Impl::land() {
+  const Flight landing = std::exchange(flight, Flight::none);
+  if (landing == Flight::none) return;
+  try {
+    if (landing == Flight::sampled) landSampled();
+    if (landing == Flight::contact) landContact();
+  } catch (const Error& error) {
+    for (const size_t query : flying) giveUp(query, error);
+  }
+}
+
+void Sweeper::Impl::runContact(std::span<const size_t> which) {
   std::vector<size_t> slice;
   std::vector<ContactPlan> plans;
   uint64_t refs = 0;
   const auto flushSlice = [&] {
-    search(slice, plans, queries, results);
+    search(slice, plans);
     slice.clear();
     plans.clear();
     refs = 0;
   };
   for (const size_t i : which) {
     const Clock::time_point start = Clock::now();
-    ContactPlan plan = planContact(queries[i], scene.impl(), hierarchy);
+    ContactPlan plan = planContact(asked[i], scene.impl(), copy->hierarchy);
     addCpuTime("select", msSince(start));
     if (plan.scene.empty()) {
-      results[i] = decodeClear();
+      answers[i] = decodeClear();
       continue;
     }
     refs += plan.sensor.size() + plan.scene.size();
@@ -265,53 +249,76 @@ void Sweeper::Impl::runContact(std::span<const Query> queries, std::span<const s
   flushSlice();
 }
 
-Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options)
-    : impl_(std::make_unique<Impl>(device, scene, options)) {}
-Sweeper::~Sweeper() = default;
-Sweeper::Sweeper(Sweeper&&) noexcept = default;
-Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;
-
-void Sweeper::sync() {
-  impl_->hierarchy.update(impl_->scene.impl());
-  impl_->recorder.sync(impl_->scene.impl());
+void Sweeper::Impl::sync() {
+  copy->hierarchy.update(scene.impl());
+  recorder.sync(scene.impl());
 }
 
-std::vector<Result> Sweeper::run(std::span<const Query> queries) {
-  Impl& self = *impl_;
-  self.refuseWrong(queries);
-  self.stats = {};
-  self.reasons.clear();
-  std::vector<Result> results(queries.size());
+void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {
+  assert(flight == Flight::none && queries.size() == results.size());
+  asked = queries;
+  answers = results;
+  stats = {};
+  reasons.clear();
+  failure.reset();
   const Clock::time_point start = Clock::now();
-  self.hierarchy.update(self.scene.impl());
-  self.addCpuTime("select", msSince(start));
+  copy->hierarchy.update(scene.impl());
+  addCpuTime("select", msSince(start));
   std::vector<size_t> sampled, bounded, contact;
   for (size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
     const bool bracket = query.mode == Mode::bounded || (query.mode == Mode::contact && query.tolerance > 0);
     (query.mode == Mode::sampled ? sampled : bracket ? bounded : contact).push_back(i);
   }
-  self.runSampled(queries, sampled, results);
-  for (const size_t i : self.runBounded(queries, bounded, results)) {
-    if (queries[i].mode == Mode::contact) contact.push_back(i);
+  try {
+    runSampled(sampled);
+    for (const size_t i : runBounded(bounded)) {
+      if (queries[i].mode == Mode::contact) contact.push_back(i);
+    }
+    runContact(contact);
+  } catch (...) {
+    land();  // nothing stays with the device behind an exception
+    throw;
   }
-  self.runContact(queries, contact, results);
+  deviceDone = Clock::now();  // in case nothing went there
+}
+
+void Sweeper::Impl::finish() {
+  land();
+}
+
+Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options)
+    : impl_(std::make_unique<Impl>(device, scene, options, std::make_shared<SceneCopy>(device.impl()))) {}
+Sweeper::~Sweeper() = default;
+Sweeper::Sweeper(Sweeper&&) noexcept = default;
+Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;
+
+void Sweeper::sync() {
+  impl_->sync();
+}
+
+std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+  impl_->refuseWrong(queries);
+  std::vector<Result> results(queries.size());
+  impl_->begin(queries, results);
+  impl_->finish();
   return results;
 }
 
 Scopes Sweeper::scopes(const Query& query) {
   Impl& self = *impl_;
   self.refuseWrong({&query, 1});
-  self.hierarchy.update(self.scene.impl());
+  self.copy->hierarchy.update(self.scene.impl());
   const ViewPlan plan =
-      encode(query, self.scene.impl(), self.hierarchy, self.device.properties.limits.subPixelPrecisionBits,
+      encode(query, self.scene.impl(), self.copy->hierarchy, self.device.properties.limits.subPixelPrecisionBits,
              self.options.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = self.tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
   fill(self.batch, plans);
   StoredScopes stored;
   self.stats = {};
-  const Answers found = self.recorder.submit(self.batch, self.scene.impl(), self.stats.stages, &stored);
+  self.recorder.submit(self.batch, self.scene.impl(), true);
+  const Answers found = self.recorder.collect(self.batch, self.scene.impl(), self.stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()

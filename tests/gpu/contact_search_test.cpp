@@ -55,7 +55,8 @@ class Searching {
       which.push_back(i);
     }
     std::vector<StageTime> stages;
-    const auto refused = recorder_.search(asked, scene_.impl(), stages, [&](size_t i, const Search& found) {
+    recorder_.submit(asked, scene_.impl());
+    const auto refused = recorder_.collect(asked, scene_.impl(), stages, [&](size_t i, const Search& found) {
       solved += found.state.solved;
       most = std::max(most, found.state.pairCount);
       uint64_t cpuPairs = 0;

@@ -53,16 +53,28 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
       part.queries.back().tolerance = spec.tolerance.value_or(options.tolerance);
     }
   }
-  if (needsDevice) {
-    device_ = Device::open({.index = options.device});
-    sweeper_.emplace(*device_, player_.scene(), SweeperOptions{.timestamps = options.timestamps});
+  const SweeperOptions sweeperOptions{.timestamps = options.timestamps};
+  if (needsDevice && options.pool) {
+    devices_ = openDevices(*options.pool);
+    pool_.emplace(devices_, player_.scene(), sweeperOptions);
+  } else if (needsDevice) {
+    devices_.push_back(Device::open({.index = options.device}));
+    sweeper_.emplace(devices_[0], player_.scene(), sweeperOptions);
   }
   if (needsReference) reference_ = std::make_unique<reference::Reference>(player_.scene());
 }
 
+void Answering::show(uint32_t scene) {
+  if (pool_) {
+    pool_->edit([&] { player_.show(scene); });
+  } else {
+    player_.show(scene);
+  }
+}
+
 double Answering::setUp() {
   const auto start = Clock::now();
-  if (!groups_.empty()) player_.show(groups_.front().scene);
+  if (!groups_.empty()) show(groups_.front().scene);
   if (sweeper_) sweeper_->sync();
   if (reference_) reference_->sync();
   return millisecondsSince(start);
@@ -75,7 +87,7 @@ Answering::Pass Answering::run(const std::string& label) {
   const uint64_t pairsBefore = reference_ ? reference_->pairs() : 0;
   const auto start = Clock::now();
   for (const Group& group : groups_) {
-    player_.show(group.scene);
+    show(group.scene);
     sweep(group.swept, pass, progress);
     refer(group.referred, pass, progress);
   }
@@ -89,6 +101,10 @@ Answering::Pass Answering::run(const std::string& label) {
 
 void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
+  if (pool_) {
+    share(part, pass, progress);
+    return;
+  }
   const std::vector<Result> results = sweeper_->run(part.queries);
   for (size_t i = 0; i < results.size(); ++i) {
     pass.answers[part.numbers[i]] = {results[i], answerModeOf(part.queries[i].mode), sweeper_->reason(i)};
@@ -98,6 +114,19 @@ void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
   pass.cpuPairs += stats.cpuPairs;
   for (const StageTime& stage : stats.stages) addStage(pass.stages, stage);
   progress.add(results.size());
+}
+
+void Answering::share(const Part& part, Pass& pass, Progress& progress) {
+  const PoolAnswers answers = pool_->submit(part.queries).get();
+  for (size_t i = 0; i < answers.results.size(); ++i) {
+    const AnswerMode mode = part.queries[i].mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
+    const auto reason = answers.reasons.find(i);
+    pass.answers[part.numbers[i]] = {answers.results[i], mode, reason == answers.reasons.end() ? "" : reason->second};
+  }
+  pass.pairs += answers.stats.pairs;
+  pass.cpuPairs += answers.stats.cpuPairs;
+  for (const StageTime& stage : answers.stats.stages) addStage(pass.stages, stage);
+  progress.add(answers.results.size());
 }
 
 void Answering::refer(const Part& part, Pass& pass, Progress& progress) {

@@ -7,17 +7,20 @@
 #include <vector>
 
 #include "cyber_radar/progress.h"
+#include "radar/pool.h"
 #include "reference/reference.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
 
 struct AnsweringOptions {
-  AnswerMode mode = AnswerMode::reference;  ///< of queries that do not choose one
-  uint32_t resolution = 0;                  ///< 0: chosen per sensor
-  double tolerance = 0;                     ///< of queries that have none, world units
-  uint32_t device = kNone;                  ///< kNone: the best
-  bool timestamps = false;                  ///< measure each stage
+  AnswerMode mode = AnswerMode::contact;  ///< of queries that do not choose one
+  uint32_t resolution = 0;                ///< 0: chosen per sensor
+  double tolerance = 0;                   ///< of queries that have none, world units
+  uint32_t device = kNone;                ///< kNone: the best
+  /// These devices share the work, instead of `device`; empty: all that are usable.
+  std::optional<std::vector<uint32_t>> pool;
+  bool timestamps = false;  ///< measure each stage
 };
 
 struct Answer {
@@ -45,7 +48,10 @@ class Answering {
   Pass run(const std::string& label);
 
   size_t batchCount() const { return groups_.size(); }
-  const Device* device() const { return device_ ? &*device_ : nullptr; }
+  /// Those opened: none where the reference answers everything.
+  std::span<const Device> devices() const { return devices_; }
+  /// Empty without a pool.
+  std::vector<PoolDevice> poolDevices() const { return pool_ ? pool_->devices() : std::vector<PoolDevice>(); }
 
  private:
   struct Part {
@@ -56,14 +62,17 @@ class Answering {
     uint32_t scene = 0;
     Part swept, referred;
   };
+  void show(uint32_t scene);
   void sweep(const Part& part, Pass& pass, Progress& progress);
+  void share(const Part& part, Pass& pass, Progress& progress);
   void refer(const Part& part, Pass& pass, Progress& progress);
 
   const Workload& workload_;
   std::vector<Group> groups_;
   ScenePlayer player_;
-  std::optional<Device> device_;
+  std::vector<Device> devices_;
   std::optional<Sweeper> sweeper_;
+  std::optional<Pool> pool_;
   std::unique_ptr<reference::Reference> reference_;
 };
 

@@ -14,6 +14,7 @@ void addQueryCommand(CLI::App& app, int& status);
 void addScopesCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app, int& status);
 void addDemoCommand(CLI::App& app, int& status);
+void addScaleCommand(CLI::App& app, int& status);
 void addWorkloadCommand(CLI::App& app);
 
 }  // namespace radar::tools

@@ -61,7 +61,7 @@ std::vector<Answer> answersIn(const Workload& workload, AnswerMode mode, const A
   Answering answering(workload, options);
   answering.setUp();
   std::vector<Answer> answers = answering.run(nameOf(mode)).answers;
-  if (answering.device()) device = answering.device()->name() + " (" + answering.device()->driver() + ")";
+  for (const Device& opened : answering.devices()) device = opened.name() + " (" + opened.driver() + ")";
   return answers;
 }
 

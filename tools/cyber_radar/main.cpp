@@ -15,6 +15,7 @@ constexpr const char* kExamples = R"(Try:
   cyber-radar query batch.json --out answers.jsonl
                                             many sweeps from a file, one JSON line each
   cyber-radar workload table1 --out DIR     a batch to try that with
+  cyber-radar scale --quick --out DIR       what several devices gain, and what limits them
   cyber-radar devices                       what could compute here, and what speaks against it
 
 Each command explains itself: cyber-radar sweep --help
@@ -42,6 +43,7 @@ int main(int argc, char** argv) try {
   radar::tools::addScopesCommand(app);
   radar::tools::addDevicesCommand(app, status);
   radar::tools::addDemoCommand(app, status);
+  radar::tools::addScaleCommand(app, status);
   radar::tools::addWorkloadCommand(app);
   try {
     app.parse(argc, argv);

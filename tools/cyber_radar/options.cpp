@@ -71,8 +71,11 @@ void EngineOptions::addResolutionTo(CLI::App& command) {
           "chooses from the size of the sensor and of its triangles, or refines from 64 to 256 in mode bounded")
       ->type_name("N|auto")
       ->capture_default_str();
-  command.add_option("--device", device, "Number of the device, as cyber-radar devices lists them; else the best one")
-      ->type_name("I");
+  command
+      .add_option("--device", device,
+                  std::string("Number of the device, as cyber-radar devices lists them; else the best one") +
+                      (severalDevices ? ". Several share the work: 0,1, or all" : ""))
+      ->type_name(severalDevices ? "I,...|all" : "I");
 }
 
 AnsweringOptions EngineOptions::checked() const {
@@ -87,8 +90,33 @@ AnsweringOptions EngineOptions::checked() const {
   }
   options.resolution = resolutionFrom(resolution);
   options.tolerance = tolerance;
-  options.device = device;
+  if (device.empty()) return options;
+  const std::vector<uint32_t> devices = devicesFrom(device);
+  if (devices.size() == 1) {
+    options.device = devices[0];
+  } else if (severalDevices) {
+    options.pool = devices;
+  } else {
+    throw InputError("--device", "", "expected the number of one device, got \"" + device + "\"");
+  }
   return options;
+}
+
+std::vector<uint32_t> devicesFrom(const std::string& text) {
+  std::vector<uint32_t> devices;
+  if (text == "all") return devices;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (;;) {
+    uint32_t value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || (next != end && *next != ',')) {
+      throw InputError("--device", "", "expected all or numbers with commas between, got \"" + text + "\"");
+    }
+    devices.push_back(value);
+    if (next == end) return devices;
+    at = next + 1;
+  }
 }
 
 void SweepOptions::addMotionTo(CLI::App& command) {

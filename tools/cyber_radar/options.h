@@ -13,8 +13,8 @@ namespace radar::tools {
 
 /// --mode, --resolution, --device, --tolerance.
 struct EngineOptions {
-  std::string mode = "reference", resolution = "auto";
-  uint32_t device = kNone;
+  std::string mode = "contact", resolution = "auto", device;
+  bool severalDevices = false;  ///< --device may name more than one
   double tolerance = 0;
 
   void addTo(CLI::App& command);
@@ -35,6 +35,9 @@ struct SweepOptions {
   /// Throws InputError that names the option or file.
   Workload load() const;
 };
+
+/// "all" or "0,1": the numbers, none for all. Throws InputError that names the option.
+std::vector<uint32_t> devicesFrom(const std::string& text);
 
 void printWarnings(const std::vector<std::string>& warnings);
 

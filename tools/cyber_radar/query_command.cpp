@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   cyber-radar query batch.json                       answers to standard output
   cyber-radar query batch.json --out answers.jsonl --mode sampled --resolution 256
+  cyber-radar query batch.json --mode contact --device all
   cyber-radar query batch.json --repeat 9 --stats stats.json --out answers.jsonl
 
 A query file is one JSON object of meshes, scenes and queries (format cyber-radar-queries-1); the answers are JSON
@@ -47,9 +48,13 @@ std::string statsOf(const Workload& workload, const Answering& answering, const 
   for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
   stats["pairs"] = pass.pairs;
   stats["cpu_pairs"] = pass.cpuPairs;
-  const Device* device = answering.device();
-  stats["device"] = device ? nlohmann::ordered_json(device->name()) : nullptr;
-  stats["driver"] = device ? nlohmann::ordered_json(device->driver()) : nullptr;
+  const std::span<const Device> devices = answering.devices();
+  stats["device"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].name());
+  stats["driver"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].driver());
+  for (const PoolDevice& device : answering.poolDevices()) {
+    stats["devices"].push_back(
+        {{"name", device.name}, {"driver", device.driver}, {"queries", device.queries}, {"chunks", device.chunks}});
+  }
   stats["commit"] = RADAR_COMMIT;
   return stats.dump(2) + "\n";
 }
@@ -104,6 +109,9 @@ int query(const Options& options) {
     const std::string chosen = resolutionsInWords(pass.answers);
     if (!chosen.empty()) std::cerr << "cyber-radar: " << chosen << " (chosen per sensor)\n";
   }
+  for (const PoolDevice& device : answering.poolDevices()) {
+    if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
+  }
   const bool someInvalid = std::any_of(pass.answers.begin(), pass.answers.end(),
                                        [](const Answer& a) { return a.result.status == Status::invalid; });
   return someInvalid ? kStatusSomeInvalid : 0;
@@ -117,6 +125,7 @@ void addQueryCommand(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   command->add_option("FILE.json", options->file, "Query file")->required();
   command->add_option("--out", options->out, "Where the answers go; else to standard output")->type_name("FILE.jsonl");
+  options->engine.severalDevices = true;
   options->engine.addTo(*command);
   CLI::Option* repeat =
       command->add_option("--repeat", options->repeat, "Answers N times, after one warm-up, and takes the median time")

@@ -48,7 +48,7 @@ int sweep(const Options& options) {
     const std::string resolution = resolutionsInWords({answer});
     if (!resolution.empty()) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "
-                << answering.device()->name() << "\n";
+                << answering.devices()[0].name() << "\n";
     }
   }
   return answer.result.status == Status::invalid ? kStatusSomeInvalid : 0;

@@ -319,8 +319,9 @@ class Sweeper {
   /// Why the i-th answer of the last run() is invalid; empty if it is not.
   const std::string& reason(size_t i) const;
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,87 @@
+#include "radar/pool.h"
+
+#include <algorithm>
+
+#include "pool/worker.h"
+
+namespace radar {
+
+std::vector<Device> openDevices(std::span<const uint32_t> indices,
+                                const std::function<void(const std::string&)>& onValidation) {
+  std::vector<uint32_t> wanted(indices.begin(), indices.end());
+  for (const uint32_t index : wanted) {
+    if (std::count(wanted.begin(), wanted.end(), index) > 1) {
+      throw Error("device " + std::to_string(index) + " is named twice");
+    }
+  }
+  if (wanted.empty()) {
+    const std::vector<DeviceReport> reports = listDevices();
+    std::vector<std::string> lines;
+    for (uint32_t i = 0; i < reports.size(); ++i) {
+      if (reports[i].usable()) wanted.push_back(i);
+      for (const std::string& reason : reports[i].reasons) {
+        lines.push_back("device " + std::to_string(i) + ", " + reports[i].name + ": " + reason);
+      }
+    }
+    if (wanted.empty()) throw Error("no usable Vulkan device", VK_SUCCESS, lines);
+  }
+  std::vector<Device> devices;
+  for (const uint32_t index : wanted) {
+    devices.push_back(Device::open({.index = index, .onValidation = onValidation}));
+  }
+  return devices;
+}
+
+struct Pool::Impl {
+  Impl(std::span<const Device> devices, const Scene& ownScene, const SweeperOptions& options)
+      : scene(ownScene), exchange(reportsOf(devices)) {
+    try {
+      for (uint32_t i = 0; i < devices.size(); ++i) {
+        workers.push_back(std::make_unique<Worker>(i, devices[i], scene, options, exchange));
+      }
+    } catch (...) {
+      exchange.close();
+      throw;
+    }
+  }
+  ~Impl() { exchange.close(); }
+
+  static std::vector<PoolDevice> reportsOf(std::span<const Device> devices) {
+    if (devices.empty()) throw Error("Pool: expected at least one device, got none");
+    std::vector<PoolDevice> reports;
+    for (size_t i = 0; i < devices.size(); ++i) {
+      for (size_t k = 0; k < i; ++k) {
+        if (devices[i].handles().queue != devices[k].handles().queue) continue;
+        throw Error("Pool: devices " + std::to_string(k) + " and " + std::to_string(i) + " have one queue");
+      }
+      reports.push_back({.name = devices[i].name(), .driver = devices[i].driver()});
+    }
+    return reports;
+  }
+
+  const Scene& scene;
+  Exchange exchange;
+  std::vector<std::unique_ptr<Worker>> workers;  // their threads end before the exchange does
+};
+
+Pool::Pool(std::span<const Device> devices, const Scene& scene, const SweeperOptions& options)
+    : impl_(std::make_unique<Impl>(devices, scene, options)) {}
+Pool::~Pool() = default;
+
+std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, std::stop_token stop) {
+  return impl_->exchange.post(std::move(queries), std::move(stop), impl_->scene);
+}
+
+void Pool::edit(const std::function<void()>& change) {
+  impl_->exchange.edit(change);
+}
+
+void Pool::drain() {
+  impl_->exchange.drain();
+}
+
+std::vector<PoolDevice> Pool::devices() const {
+  return impl_->exchange.devices();
+}
+
+}  // namespace radar

@@ -1,0 +1,112 @@
+#include "pool/worker.h"
+
+#ifdef __linux__
+#include <pthread.h>
+#endif
+
+#include <algorithm>
+
+namespace radar {
+
+namespace {
+
+bool isOutOfMemory(VkResult result) {
+  return result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
+void nameThread([[maybe_unused]] uint32_t number) {
+#ifdef __linux__
+  // 15 characters at most.
+  pthread_setname_np(pthread_self(), ("radar-device-" + std::to_string(number % 100)).c_str());
+#endif
+}
+
+}  // namespace
+
+Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options,
+               Exchange& exchange)
+    : number_(number), device_(device), scene_(scene), options_(options), exchange_(exchange), thread_([this] {
+        run();
+      }) {}
+
+void Worker::run() {
+  nameThread(number_);
+  try {
+    copy_ = std::make_shared<SceneCopy>(device_.impl());
+    while (serve()) {
+    }
+  } catch (const std::exception& error) {
+    // What another lane has with the device ends before its chunk goes to others.
+    std::vector<Chunk> chunks = chunksInFlight();
+    for (Lane& lane : lanes_) {
+      try {
+        if (lane.sweep) lane.sweep->finish();
+      } catch (const std::exception&) {  // the first error is the one to tell
+      }
+    }
+    exchange_.retire(number_, error.what(), std::move(chunks));
+  }
+}
+
+std::vector<Chunk> Worker::chunksInFlight() const {
+  std::vector<Chunk> chunks;
+  for (size_t i = 0; i < inFlight_; ++i) chunks.push_back(lanes_[(oldest_ + i) % kLanes].chunk);
+  return chunks;
+}
+
+// Takes a chunk, or finishes one. Returns whether there is more to do.
+bool Worker::serve() {
+  if (inFlight_ < kLanes) {
+    size_t queries = 0;
+    for (const Chunk& chunk : chunksInFlight()) queries += chunk.count;
+    if (std::optional<Chunk> chunk = exchange_.take(number_, queries)) {
+      begin(lanes_[(oldest_ + inFlight_) % kLanes], std::move(*chunk));
+      return true;
+    }
+    if (inFlight_ == 0) return false;
+  }
+  finish(lanes_[oldest_]);
+  return true;
+}
+
+void Worker::begin(Lane& lane, Chunk chunk) {
+  lane.chunk = std::move(chunk);
+  ++inFlight_;
+  lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = exchange_.now()};
+  lane.results.assign(lane.chunk.count, Result());
+  if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_, scene_, options_, copy_);
+  // The scene changes only while nothing is in flight, so the copy that both lanes read may be written now.
+  if (const uint64_t version = scene_.version(); version != seenVersion_) {
+    lane.sweep->sync();
+    seenVersion_ = version;
+  }
+  lane.sweep->begin(lane.chunk.queries(), lane.results);
+  lane.trace.submitted = exchange_.now();
+}
+
+void Worker::finish(Lane& lane) {
+  Sweeper::Impl& sweep = *lane.sweep;
+  lane.trace.awaited = exchange_.now();
+  sweep.finish();
+  lane.trace.done = std::max(lane.trace.submitted, exchange_.at(sweep.deviceDone));
+  lane.trace.decoded = exchange_.now();
+  lane.trace.stages = sweep.stats.stages;
+  // Any other failed call is the trouble of the queries at hand.
+  if (sweep.failure) {
+    const bool forMemory = isOutOfMemory(sweep.failure->result);
+    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || exchange_.isLast());
+    lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
+    if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
+  }
+  // The first use of a pipeline may take a hundred times as long: it says nothing of the device's speed.
+  bool& warm = lane.warm[lane.chunk.queries()[0].mode == Mode::sampled ? 0 : 1];
+  const double deviceMs = warm ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
+  warm = true;
+  lastDone_ = lane.trace.done;
+  oldest_ = (oldest_ + 1) % kLanes;
+  --inFlight_;
+  exchange_.deliver(std::exchange(lane.chunk, {}), lane.results, sweep.reasons, sweep.stats, std::move(lane.trace),
+                    deviceMs);
+}
+
+}  // namespace radar

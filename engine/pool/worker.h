@@ -1,0 +1,49 @@
+// One thread, one queue: takes chunks from the exchange and keeps its device at work.
+#pragma once
+
+#include <memory>
+#include <thread>
+
+#include "pool/exchange.h"
+#include "sweep/sweeper.h"
+
+namespace radar {
+
+class Worker {
+ public:
+  /// Begins at once. All arguments but `options` must outlive the worker; `number`: its place in the pool.
+  Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, Exchange& exchange);
+  /// Waits until the exchange has let the thread go.
+  ~Worker() { thread_.join(); }
+
+ private:
+  /// Two of them: while the device works on one, the other is encoded or decoded.
+  static constexpr size_t kLanes = 2;
+  struct Lane {
+    std::unique_ptr<Sweeper::Impl> sweep;  // made on first use: its pipelines take a while
+    Chunk chunk;
+    ChunkTrace trace;
+    std::vector<Result> results;
+    std::array<bool, 2> warm{};  // by mode: its pipelines have run
+  };
+
+  void run();
+  bool serve();
+  void begin(Lane& lane, Chunk chunk);
+  void finish(Lane& lane);
+  std::vector<Chunk> chunksInFlight() const;
+
+  const uint32_t number_;
+  const Device& device_;
+  const Scene& scene_;
+  const SweeperOptions options_;
+  Exchange& exchange_;
+  std::shared_ptr<SceneCopy> copy_;
+  std::array<Lane, kLanes> lanes_;
+  size_t oldest_ = 0, inFlight_ = 0;  // lanes in flight: from the oldest on, in a ring
+  uint64_t seenVersion_ = 0;
+  double lastDone_ = 0;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace radar

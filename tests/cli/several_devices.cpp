@@ -1,0 +1,77 @@
+// The program with two devices.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+TEST_CASE("query on all devices, or on named ones, writes the answers of one device") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload figure7 --teapots 6 --boxes 200 --steps 3 --out w").status == 0);
+  const Run one = runProgram(folder, "query w/queries.json --mode contact --device 0");
+  REQUIRE(one.status == 0);
+  for (const char* devices : {"all", "0,1", "1,0"}) {
+    const Run run =
+        runProgram(folder, std::string("query w/queries.json --mode contact --stats s.json --device ") + devices);
+    CHECK(run.status == 0);
+    CHECK(run.out == one.out);
+    const auto stats = nlohmann::json::parse(folder.read("s.json"));
+    REQUIRE(stats["devices"].size() == 2);
+    CHECK(stats["devices"][0]["queries"].get<int>() + stats["devices"][1]["queries"].get<int>() == 2 * 18);
+  }
+}
+
+TEST_CASE("devices that are not there, or not to be read, end with status 2 and the option's or device's name") {
+  const ScratchFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 2 --out w").status == 0);
+  const auto refused = [&](const std::string& arguments, const std::string& what) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, arguments);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains(what));
+  };
+  refused("query w/queries.json --mode contact --device 0,7", "device 7 does not exist");
+  refused("query w/queries.json --mode contact --device 1,1", "device 1 is named twice");
+  refused("query w/queries.json --mode contact --device 0,", "--device");
+  refused("query w/queries.json --mode contact --device some", "--device");
+  refused("sweep a.obj a.obj --direction 0 0 1 --distance 1 --device 0,1", "--device");
+  refused("scale --device 9", "device 9 does not exist");
+  refused("scale missing.json", "missing.json");
+  refused("scale --out a.obj", "--out");
+  refused("scale --mode fast", "--mode");
+}
+
+TEST_CASE("scale measures, tells what limits, and leaves a page, a table and a trace") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("speed-up") && Contains("With 3 sensors, 2 devices take"));
+  CHECK_THAT(folder.read("s/report.html"), Contains("<svg") && Contains("What limits it"));
+  const std::string csv = folder.read("s/scale.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * 4);  // one device, the other, and both: four lines a point
+  const auto trace = nlohmann::json::parse(folder.read("s/trace.json"));
+  size_t chunks = 0;
+  for (const auto& event : trace["traceEvents"]) {
+    if (event["ph"] != "X") continue;
+    CHECK(event["ts"].get<double>() >= 0);
+    CHECK(event["dur"].get<double>() > 0);
+    chunks += event["name"].get<std::string>().starts_with("chunk of");
+  }
+  CHECK(chunks > 0);
+  CHECK(folder.list() == "s");
+}
+
+TEST_CASE("scale takes a query file, and the first queries of each of its batches") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload table1 --boxes 100 --sensors 12 --shape box --out w").status == 0);
+  const Run run = runProgram(folder, "scale w/queries.json --mode contact --sensors 4,12 --repeat 1");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("w/queries.json") && Contains("With 12 sensors"));
+}

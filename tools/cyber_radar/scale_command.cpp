@@ -1,0 +1,191 @@
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+
+#include "batch/query_file.h"
+#include "batch/whole_file.h"
+#include "cyber_radar/commands.h"
+#include "cyber_radar/options.h"
+#include "scale/findings.h"
+#include "scale/report.h"
+#include "workloads/generate.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  cyber-radar scale --quick --out scaling           about a minute: report.html, scale.csv, trace.json
+  cyber-radar scale --mode naive --device 0,1 --out scaling
+  cyber-radar scale batch.json --mode contact --sensors 64,256,1024
+
+Without a query file, the paper's Figure 7: teapots, all of them sensors, fly among boxes; each step is a batch. With
+one, its batches; --sensors N,... then takes the first N queries of each. trace.json opens in ui.perfetto.dev.)";
+
+struct Options {
+  std::string file, device = "all", mode = "sampled", out;
+  EngineOptions engine;
+  std::vector<uint32_t> sensors;
+  uint32_t boxes = 2'000, steps = 20, repeats = 5;
+  bool quick = false;
+};
+
+std::vector<ScalePoint> figure7Points(const Options& options) {
+  std::vector<ScalePoint> points;
+  for (const uint32_t sensors : options.sensors) {
+    Figure7 settings;
+    settings.teapots = sensors;
+    settings.boxes = options.boxes;
+    settings.steps = options.steps;
+    points.push_back({static_cast<double>(sensors), makeWorkload(settings)});
+  }
+  return points;
+}
+
+// The first `most` queries of each batch; all for 0.
+ScalePoint firstOf(const Workload& whole, uint32_t most) {
+  ScalePoint point;
+  point.workload = whole;
+  point.workload.queries.clear();
+  const std::vector<Batch> batches = batchesOf(whole);
+  for (const Batch& batch : batches) {
+    const size_t count = most == 0 ? batch.queries.size() : std::min<size_t>(most, batch.queries.size());
+    for (size_t i = 0; i < count; ++i) point.workload.queries.push_back(whole.queries[batch.queries[i]]);
+  }
+  point.sensors = static_cast<double>(point.workload.queries.size()) / static_cast<double>(batches.size());
+  return point;
+}
+
+std::vector<ScalePoint> filePoints(const Options& options) {
+  std::vector<std::string> warnings;
+  const Workload whole = readQueryFile(options.file, warnings);
+  printWarnings(warnings);
+  if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
+  std::vector<ScalePoint> points;
+  if (options.sensors.empty()) points.push_back(firstOf(whole, 0));
+  for (const uint32_t most : options.sensors) points.push_back(firstOf(whole, most));
+  return points;
+}
+
+std::string today() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
+  return text;
+}
+
+std::vector<uint32_t> numbersOf(const std::string& text, size_t devices) {
+  std::vector<uint32_t> numbers = devicesFrom(text);
+  if (!numbers.empty()) return numbers;
+  const std::vector<DeviceReport> reports = listDevices();
+  for (uint32_t i = 0; i < reports.size() && numbers.size() < devices; ++i) {
+    if (reports[i].usable()) numbers.push_back(i);
+  }
+  return numbers;
+}
+
+void writeFiles(const Options& options, const ScaleReport& report, const std::string& scene) {
+  const std::filesystem::path folder = options.out;
+  std::string command = "cyber-radar scale";
+  if (!options.file.empty()) command += " " + options.file;
+  command += " --mode " + options.mode + " --device " + options.device + " --sensors ";
+  for (size_t i = 0; i < options.sensors.size(); ++i) {
+    command += (i == 0 ? "" : ",") + std::to_string(options.sensors[i]);
+  }
+  if (options.file.empty()) {
+    command += " --boxes " + std::to_string(options.boxes) + " --steps " + std::to_string(options.steps);
+  }
+  command += " --repeat " + std::to_string(options.repeats) + " --resolution " + options.engine.resolution;
+  const ScaleOrigin origin{command, RADAR_COMMIT, today(), scene, "mode " + options.mode};
+  writeWhole(folder / "scale.csv", csvOf(report));
+  writeWhole(folder / "trace.json", traceOf(report));
+  writeWhole(folder / "report.html", htmlOf(report, origin));
+  std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": report.html, scale.csv, trace.json\n";
+}
+
+int scale(Options options) {
+  if (options.quick) {
+    options.steps = std::min(options.steps, 4u);
+    options.repeats = std::min(options.repeats, 3u);
+  }
+  if (options.sensors.empty() && options.file.empty()) {
+    options.sensors = options.quick ? std::vector<uint32_t>{5, 15, 30} : std::vector<uint32_t>{5, 10, 15, 20, 25, 30};
+  }
+  std::sort(options.sensors.begin(), options.sensors.end());
+  ScaleSettings settings;
+  settings.mode = options.mode == "contact" ? Mode::contact : Mode::sampled;
+  settings.select = options.mode != "naive";
+  settings.repeats = options.repeats;
+  settings.resolution = options.engine.checked().resolution;
+  const std::vector<uint32_t> asked = devicesFrom(options.device);
+  if (!options.out.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(options.out, error);
+    if (!std::filesystem::is_directory(options.out)) {
+      throw InputError("--out", options.out, "expected a folder, or a place for one");
+    }
+  }
+  const std::vector<ScalePoint> points = options.file.empty() ? figure7Points(options) : filePoints(options);
+  const std::vector<Device> devices = openDevices(asked);
+  ScaleReport report;
+  {
+    Progress progress("measuring", scaleSteps(devices.size(), points.size(), settings));
+    report = measureScale(devices, points, settings, [&](const std::string&) { progress.add(1); });
+  }
+  report.numbers = numbersOf(options.device, devices.size());
+  const std::string scene = options.file.empty() ? "Teapots among " + std::to_string(options.boxes) + " boxes, " +
+                                                       std::to_string(options.steps) + " steps"
+                                                 : options.file;
+  std::cout << scene << "; mode " << options.mode << "\n";
+  for (size_t i = 0; i < devices.size(); ++i) {
+    std::cout << "device " << report.numbers[i] << ": " << devices[i].name() << ", " << devices[i].driver() << "\n";
+  }
+  std::cout << "\n" << tableOf(report) << "\n";
+  for (const std::string& finding : findingsOf(report)) std::cout << finding << "\n";
+  if (!options.out.empty()) writeFiles(options, report, scene);
+  return 0;
+}
+
+}  // namespace
+
+void addScaleCommand(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "scale", "Measures how the work scales over devices, and says what limits it: tables, charts, a timeline");
+  command->footer(kExamples);
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE.json", options->file, "Query file; else the paper's Figure 7");
+  command
+      ->add_option("--device", options->device,
+                   "Numbers of the devices, as cyber-radar devices lists them: 0,1, or all")
+      ->type_name("I,...|all")
+      ->capture_default_str();
+  command
+      ->add_option("--mode", options->mode,
+                   "sampled: the paper's method on the objects in reach; naive: on all objects, as the paper does; "
+                   "contact: exact")
+      ->check(CLI::IsMember({"sampled", "naive", "contact"}))
+      ->capture_default_str();
+  command->add_option("--sensors", options->sensors, "Sensors of a batch, with commas between: the axis; else 5 to 30")
+      ->delimiter(',')
+      ->check(CLI::Range(1u, 1'000'000u))
+      ->type_name("N,...");
+  command->add_option("--boxes", options->boxes, "Boxes in the scene")
+      ->check(CLI::Range(1u, 1'000'000u))
+      ->capture_default_str();
+  command->add_option("--steps", options->steps, "Time steps, each a batch")
+      ->check(CLI::Range(1u, 100'000u))
+      ->capture_default_str();
+  command->add_option("--repeat", options->repeats, "Timed passes; the median counts")
+      ->check(CLI::Range(1u, 10'000u))
+      ->capture_default_str();
+  command->add_option("--resolution", options->engine.resolution, "Pixels of a window's longer side")
+      ->type_name("N|auto")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for report.html, scale.csv and trace.json")->type_name("DIR");
+  command->add_flag("--quick", options->quick, "At most 4 steps and 3 passes; 5, 15 and 30 sensors: about a minute");
+  command->callback([options, &status] { status = scale(*options); });
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "scale/chart.h"
+#include "scale/findings.h"
+#include "scale/report.h"
+
+namespace radar::tools {
+
+namespace {
+
+// Okabe and Ito's colours, which the colour-blind tell apart; the dark page takes their lighter ones first.
+constexpr const char* kStyle = R"(<style>
+:root{color-scheme:light dark;--page:#fff;--ink:#1b1f24;--soft:#5b6470;--grid:#e3e6ea;--panel:#f6f7f9;
+--c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#cc79a7;--c4:#8a6d00;--c5:#56b4e9}
+@media(prefers-color-scheme:dark){:root{--page:#14171b;--ink:#e8eaed;--soft:#a2aab4;--grid:#2c323a;--panel:#1c2026;
+--c0:#56b4e9;--c1:#e69f00;--c2:#2bc59a;--c3:#cc79a7;--c4:#f0e442;--c5:#7f9cff}}
+*{box-sizing:border-box}
+body{margin:0;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
+main{max-width:1200px;margin:0 auto;padding:24px 16px 48px}
+h1{font-size:1.6rem;margin:0 0 4px}h2{font-size:1.15rem;margin:36px 0 8px}h3{font-size:1rem;margin:16px 0 4px}
+p{margin:4px 0}.soft{color:var(--soft)}
+.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,350px),1fr));gap:16px}
+figure{margin:0;padding:12px;background:var(--panel);border-radius:8px}
+figcaption{font-weight:600;margin-bottom:8px}
+svg{display:block;width:100%;height:auto;font:13px system-ui,sans-serif}
+svg text{fill:var(--ink)}.middle{text-anchor:middle}.end{text-anchor:end}
+.grid{stroke:var(--grid);fill:none}.line{fill:none;stroke-width:2.5}.ideal{fill:none;stroke:var(--soft);stroke-dasharray:6 5}
+.c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}
+.mark.c0,.bar.c0{fill:var(--c0)}.mark.c1,.bar.c1{fill:var(--c1)}.mark.c2,.bar.c2{fill:var(--c2)}
+.mark.c3,.bar.c3{fill:var(--c3)}.mark.c4,.bar.c4{fill:var(--c4)}.mark.c5,.bar.c5{fill:var(--c5)}
+.bar{stroke:var(--panel);stroke-width:.6}
+.scroll{overflow-x:auto}.scroll svg{min-width:720px}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}
+th,td{padding:3px 14px 3px 0;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}
+th:first-child,td:first-child{text-align:left}
+.key span{display:inline-block;margin-right:18px}.key i{display:inline-block;width:12px;height:12px;margin-right:6px}
+.findings li{margin:6px 0}code{overflow-wrap:anywhere}
+</style>
+)";
+
+template <class... Values>
+std::string print(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string countName(size_t count) {
+  return std::to_string(count) + (count == 1 ? " device" : " devices");
+}
+
+std::string setName(const ScaleReport& report, const ScaleRun& run) {
+  std::string text = run.devices.size() == 1 ? "device" : "devices";
+  for (size_t i = 0; i < run.devices.size(); ++i) {
+    text += (i == 0 ? " " : " + ") + std::to_string(report.numbers[run.devices[i]]);
+  }
+  return text;
+}
+
+std::string figure(const std::string& caption, const std::string& svg) {
+  return "<figure><figcaption>" + escaped(caption) + "</figcaption>\n" + svg + "</figure>\n";
+}
+
+// The value of each count of devices, over the points.
+template <class Value>
+std::vector<Series> seriesOf(const ScaleReport& report, size_t from, Value value) {
+  std::vector<Series> series;
+  for (size_t count = from; count <= report.devices.size(); ++count) {
+    Series& line = series.emplace_back(Series{countName(count), {}});
+    for (size_t p = 0; p < report.sensors.size(); ++p) line.values.push_back(value(report.run(p, count)));
+  }
+  return series;
+}
+
+std::string charts(const ScaleReport& report) {
+  const auto perBatch = [&](const ScaleRun& run) { return run.ms / static_cast<double>(report.batches[run.point]); };
+  std::vector<Series> times = seriesOf(report, 1, perBatch);
+  const size_t count = report.devices.size();
+  std::string text = "<div class=\"charts\">\n";
+  if (count > 1) {
+    Series ideal{"half of 1", {}, true};
+    if (count > 2) ideal.name = "1 / " + std::to_string(count);
+    for (const double ms : times[0].values) ideal.values.push_back(ms / static_cast<double>(count));
+    times.push_back(ideal);
+  }
+  text += figure("Time of a batch against sensors (the paper's Figure 7)",
+                 lineChart("Time of a batch against sensors", "sensors", "ms a batch", report.sensors, times));
+  if (count > 1) {
+    std::vector<Series> speedUps = seriesOf(report, 2, [&](const ScaleRun& run) { return report.speedUp(run); });
+    speedUps.push_back({"ideal", std::vector<double>(report.sensors.size(), static_cast<double>(count)), true});
+    text += figure("Speed-up against the first device alone",
+                   lineChart("Speed-up", "sensors", "times as fast", report.sensors, speedUps));
+    std::vector<Series> efficiencies =
+        seriesOf(report, 2, [&](const ScaleRun& run) { return 100 * report.efficiency(run); });
+    efficiencies.push_back({"ideal", std::vector<double>(report.sensors.size(), 100), true});
+    text += figure("Efficiency: share of what the devices can do together",
+                   lineChart("Efficiency", "sensors", "%", report.sensors, efficiencies));
+  }
+  return text + "</div>\n";
+}
+
+// A few batches from the middle, so that chunks can be seen.
+std::string timelineOf(const ScaleReport& report, const ScaleRun& run) {
+  constexpr size_t kBatches = 3;
+  const size_t shown = std::min(kBatches, run.batches.size()), first = (run.batches.size() - shown) / 2;
+  const double from = run.batches[first].submitted, to = run.batches[first + shown - 1].answered;
+  std::vector<Track> tracks;
+  for (const uint32_t device : run.devices) {
+    const std::string number = std::to_string(report.numbers[device]);
+    tracks.push_back({"device " + number, {}});
+    tracks.push_back({"its thread", {}});
+  }
+  std::vector<double> free(run.devices.size(), from);
+  for (size_t b = first; b < first + shown; ++b) {
+    for (const ChunkTrace& chunk : run.batches[b].chunks) {
+      const auto add = [&](size_t track, double begin, double end, int colour, const char* what) {
+        if (end <= begin) return;
+        tracks[track].bars.push_back(
+            {begin, end, colour, print("%s, %u queries, %.3f ms", what, chunk.queries, end - begin)});
+      };
+      const size_t track = 2 * size_t{chunk.device};
+      add(track, std::max(chunk.submitted, free[chunk.device]), chunk.done, 0, "with the device");
+      free[chunk.device] = std::max(free[chunk.device], chunk.done);
+      add(track + 1, chunk.begun, chunk.submitted, 1, "encode and submit");
+      add(track + 1, chunk.awaited, chunk.done, 5, "wait");
+      add(track + 1, std::max(chunk.done, chunk.awaited), chunk.decoded, 2, "decode");
+    }
+  }
+  const std::string title =
+      setName(report, run) + print(", batches %zu to %zu of %zu", first + 1, first + shown, run.batches.size());
+  return "<h3>" + escaped(title) + "</h3><div class=\"scroll\">" + timeline(title, from, to, tracks) + "</div>\n";
+}
+
+std::string row(std::initializer_list<std::string> cells, const char* tag = "td") {
+  std::string text = "<tr>";
+  for (const std::string& cell : cells) text += std::string("<") + tag + ">" + cell + "</" + tag + ">";
+  return text + "</tr>\n";
+}
+
+std::string runsTable(const ScaleReport& report) {
+  std::string text =
+      "<div class=\"scroll\"><table>\n" +
+      row({"devices", "sensors", "ms a batch", "range", "speed-up", "efficiency", "processor cores in use"}, "th");
+  for (const ScaleRun& run : report.runs) {
+    const auto batches = static_cast<double>(report.batches[run.point]);
+    text += row({setName(report, run), print("%g", report.sensors[run.point]), print("%.3f", run.ms / batches),
+                 print("%.3f to %.3f", run.least / batches, run.most / batches), print("%.2f", report.speedUp(run)),
+                 print("%.0f%%", 100 * report.efficiency(run)), print("%.2f", run.cores)});
+  }
+  return text + "</table></div>\n";
+}
+
+std::string sharesTable(const ScaleReport& report, size_t point) {
+  std::string text = "<div class=\"scroll\"><table>\n" +
+                     row({"set", "device", "busy", "idle: first chunk", "between chunks", "at the end", "queries",
+                          "chunks", "chunk sizes", "encode and submit, ms", "wait, ms", "decode, ms"},
+                         "th");
+  for (const ScaleRun& run : report.runs) {
+    if (run.point != point) continue;
+    for (size_t i = 0; i < run.shares.size(); ++i) {
+      const DeviceShare& share = run.shares[i];
+      const auto percent = [&](double ms) { return print("%.1f%%", 100 * ms / run.ms); };
+      text += row({setName(report, run), std::to_string(report.numbers[run.devices[i]]), percent(share.busy),
+                   percent(share.start), percent(share.gap), percent(share.tail), std::to_string(share.queries),
+                   std::to_string(share.chunks), print("%u to %u", share.leastChunk, share.mostChunk),
+                   print("%.2f", share.encode), print("%.2f", share.wait), print("%.2f", share.decode)});
+    }
+  }
+  return text + "</table></div>\n";
+}
+
+std::string lossesTable(const ScaleReport& report, size_t point) {
+  std::string text =
+      "<div class=\"scroll\"><table>\n" +
+      row({"set", "useful", "slower than alone", "first chunk", "between chunks", "imbalance", "scene edits"}, "th");
+  for (size_t count = 1; count <= report.devices.size(); ++count) {
+    const ScaleRun& run = report.run(point, count);
+    const Losses losses = lossesOf(report, run);
+    const auto percent = [](double share) { return print("%.1f%%", 100 * share); };
+    text += row({setName(report, run), percent(losses.useful), percent(losses.slower), percent(losses.start),
+                 percent(losses.gap), percent(losses.tail), percent(losses.scene)});
+  }
+  return text + "</table></div>\n";
+}
+
+std::string stagesTable(const ScaleReport& report, size_t point) {
+  std::string text = "<div class=\"scroll\"><table>\n<tr><th>stage</th>";
+  std::vector<const ScaleRun*> runs;
+  for (const ScaleRun& run : report.runs) {
+    if (run.point == point) runs.push_back(&run);
+  }
+  for (const ScaleRun* run : runs) text += "<th>" + setName(report, *run) + "</th>";
+  text += "</tr>\n";
+  for (const StageTime& stage : runs.front()->stages) {
+    text += "<tr><td>" + escaped(stage.name) + "</td>";
+    for (const ScaleRun* run : runs) {
+      const auto found = std::find_if(run->stages.begin(), run->stages.end(),
+                                      [&](const StageTime& other) { return other.name == stage.name; });
+      text += "<td>" + (found == run->stages.end() ? "-" : print("%.2f", found->ms)) + "</td>";
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table></div>\n";
+}
+
+}  // namespace
+
+std::string htmlOf(const ScaleReport& report, const ScaleOrigin& origin) {
+  const size_t last = report.sensors.size() - 1;
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+      "<title>Cyber Radar: scaling over devices</title>\n";
+  html += kStyle;
+  html += "</head>\n<body>\n<main>\n<h1>How it scales over devices</h1>\n<p>" + escaped(origin.scene) + "; " +
+          escaped(origin.mode) + "</p>\n<p class=\"soft\">" + escaped(origin.date) + ", commit " +
+          escaped(origin.commit) + print(", %u processor cores</p>\n<p class=\"soft\"><code>", report.processors) +
+          escaped(origin.command) + "</code></p>\n";
+  for (size_t i = 0; i < report.devices.size(); ++i) {
+    html += print("<p class=\"soft\">device %u: ", report.numbers[i]) + escaped(report.devices[i].name) + ", " +
+            escaped(report.devices[i].driver) + "</p>\n";
+  }
+  html += "<h2>What limits it</h2>\n<ul class=\"findings\">\n";
+  for (const std::string& finding : findingsOf(report)) html += "<li>" + escaped(finding) + "</li>\n";
+  html += std::string("</ul>\n<p class=\"soft\">Every set of devices gave ") +
+          (report.sameBits ? "the same answers, to the bit.</p>\n" : "answers of its own.</p>\n");
+  html += "<h2>Curves</h2>\n" + charts(report) + "<h2>Timelines</h2>\n" +
+          print("<p>%g sensors, the pass of median time. ", report.sensors[last]) +
+          "<span class=\"key\"><span><i style=\"background:var(--c0)\"></i>with the device</span>"
+          "<span><i style=\"background:var(--c1)\"></i>encode and submit</span>"
+          "<span><i style=\"background:var(--c5)\"></i>wait</span>"
+          "<span><i style=\"background:var(--c2)\"></i>decode</span></span></p>\n";
+  for (const ScaleRun& run : report.runs) {
+    if (run.point == last && !run.alone) html += timelineOf(report, run);
+  }
+  html += "<h2>Times</h2>\n" + runsTable(report);
+  html += print("<h2>Devices and their threads, %g sensors</h2>\n", report.sensors[last]) + sharesTable(report, last);
+  html +=
+      "<h2>Where the devices' time goes</h2>\n<p class=\"soft\">Of the devices' number times the time that passed. "
+      "Useful: as long as each device alone takes for as many queries.</p>\n" +
+      lossesTable(report, last);
+  html +=
+      "<h2>Stages</h2>\n<p class=\"soft\">Milliseconds of a pass of its own, by timestamps, summed over devices; "
+      "select, encode and decode are the threads'.</p>\n" +
+      stagesTable(report, last);
+  return html + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace radar::tools

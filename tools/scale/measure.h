@@ -1,0 +1,73 @@
+// How a workload scales over devices: each device alone, and the first 1, 2, ... of them together, timed and profiled.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "radar/pool.h"
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+/// A workload for one place on the axis of sensors.
+struct ScalePoint {
+  double sensors = 0;  ///< of a batch, in the mean
+  Workload workload;
+};
+
+struct ScaleSettings {
+  Mode mode = Mode::sampled;
+  bool select = true;  ///< false: every object is drawn for every sensor
+  uint32_t resolution = 0;
+  uint32_t repeats = 5;  ///< passes that are timed, after one that is not
+};
+
+/// What one device did in one pass, milliseconds.
+struct DeviceShare {
+  uint32_t queries = 0, chunks = 0;
+  uint32_t leastChunk = 0, mostChunk = 0;   ///< queries
+  double busy = 0;                          ///< some chunk was with the device, as its thread saw it
+  double start = 0;                         ///< idle from a batch's submission to the first chunk's
+  double gap = 0;                           ///< idle between chunks
+  double tail = 0;                          ///< idle after its last chunk while the batch went on
+  double encode = 0, wait = 0, decode = 0;  ///< of its thread
+};
+
+/// One set of devices on one point.
+struct ScaleRun {
+  std::vector<uint32_t> devices;  ///< places in ScaleReport::devices
+  bool alone = false;             ///< measured for itself, beside the first 1, 2, ... devices
+  size_t point = 0;
+  double ms = 0, least = 0, most = 0;  ///< of a pass over all batches: the median, and the range
+  double cores = 0;                    ///< processor time of this process over the time passed
+  double machine = 0;                  ///< share of all processor cores in use, by anyone; 0 where it is not known
+  double scene = 0;                    ///< between batches: the scene is edited
+  // Of the pass whose time is the median:
+  std::vector<DeviceShare> shares;
+  std::vector<PoolAnswers> batches;  ///< without results
+  std::vector<StageTime> stages;     ///< of a pass of its own, with timestamps; for the last point only
+};
+
+struct ScaleReport {
+  std::vector<PoolDevice> devices;
+  std::vector<uint32_t> numbers;  ///< of the devices, as the program lists them
+  std::vector<double> sensors;    ///< by point
+  std::vector<size_t> batches, queries;
+  std::vector<ScaleRun> runs;  ///< point by point: the first 1, 2, ... devices, then the second, third, ... alone
+  bool sameBits = true;        ///< every set gave the same answers
+  uint32_t processors = 0;     ///< of this machine
+
+  const ScaleRun& run(size_t point, size_t deviceCount) const;  ///< of the first devices
+  const ScaleRun& alone(size_t point, uint32_t device) const;
+  double speedUp(const ScaleRun& run) const;     ///< against the first device alone
+  double efficiency(const ScaleRun& run) const;  ///< its share of the speeds of its devices, each alone, added up
+};
+
+/// `step` is called before each of scaleSteps() passes with what it is. Throws Error where a query is not answered: a
+/// time without its answers says nothing.
+ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
+                         const ScaleSettings& settings, const std::function<void(const std::string&)>& step);
+size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings);
+
+}  // namespace radar::tools

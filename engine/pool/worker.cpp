@@ -99,7 +99,7 @@ void Worker::finish(Lane& lane) {
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
   // The first use of a pipeline may take a hundred times as long: it says nothing of the device's speed.
-  bool& warm = lane.warm[lane.chunk.queries()[0].mode == Mode::sampled ? 0 : 1];
+  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
   const double deviceMs = warm ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = true;
   lastDone_ = lane.trace.done;

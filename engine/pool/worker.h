@@ -24,7 +24,7 @@ class Worker {
     Chunk chunk;
     ChunkTrace trace;
     std::vector<Result> results;
-    std::array<bool, 2> warm{};  // by mode: its pipelines have run
+    std::array<bool, 3> warm{};  // by mode: its pipelines have run
   };
 
   void run();

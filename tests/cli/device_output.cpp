@@ -62,5 +62,5 @@ TEST_CASE("the demo leaves a table, answers, questions and pictures") {
   CHECK_THAT(run.out, Contains("teapot/0") && Contains("reference"));
   CHECK(isPng(folder.read("d/scene.png")));
   CHECK_FALSE(folder.read("d/table.txt").empty());
-  CHECK(runProgram(folder, "query d/queries.json").out == folder.read("d/answers-reference.jsonl"));
+  CHECK(runProgram(folder, "query d/queries.json --mode reference").out == folder.read("d/answers-reference.jsonl"));
 }

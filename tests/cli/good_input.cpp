@@ -71,8 +71,8 @@ TEST_CASE("query answers in the file's order, over scenes with a base, masks and
 TEST_CASE("query writes answers and statistics to files") {
   const ScratchFolder folder;
   writeTriangles(folder);
-  const Run plain = runProgram(folder, "query q.json");
-  const Run run = runProgram(folder, "query q.json --out a.jsonl --stats s.json --repeat 3");
+  const Run plain = runProgram(folder, "query q.json --mode reference");
+  const Run run = runProgram(folder, "query q.json --mode reference --out a.jsonl --stats s.json --repeat 3");
   REQUIRE(run.status == 0);
   CHECK(run.out.empty());
   CHECK(folder.read("a.jsonl") == plain.out);
@@ -87,6 +87,7 @@ TEST_CASE("query writes answers and statistics to files") {
   CHECK(stats["device"].is_null());
   CHECK(stats["driver"].is_null());
   CHECK(stats["commit"].is_string());
+  CHECK(runProgram(folder, "query q.json").out == runProgram(folder, "query q.json --mode contact").out);
 }
 
 TEST_CASE("sweep says in words what is hit, where and when, and --json prints the answer line") {

@@ -92,15 +92,16 @@ TEST_CASE("a pool that ends with work queued answers every future: finished, or 
   const Boxes boxes(300);
   const std::vector<Result> expected = boxes.answers();
   std::vector<std::future<PoolAnswers>> futures;
+  std::jthread releasing;  // outlives the pool, whose end waits for it
   {
     Pool pool(twoDevices(), boxes.player.scene());
     hold();
     for (int i = 0; i < 4; ++i) futures.push_back(pool.submit(boxes.queries));
     for (size_t i : {0, 1}) faults(i).awaitHeld();
-    std::thread([] {
+    releasing = std::jthread([] {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       release();
-    }).detach();
+    });
   }
   const size_t first = refused(futures[0].get(), expected, "the pool was closed");
   CHECK(first > 0);

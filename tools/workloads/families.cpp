@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "workloads/family_shapes.h"
 #include "workloads/generate.h"
 #include "workloads/shapes.h"
 
@@ -15,19 +16,9 @@ constexpr int kObjects = 60;
 constexpr Vec3 kFull{1, 1, 1};
 constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-double powerOfTen(int exponent) {
-  double power = 1;
-  for (int i = 0; i < std::abs(exponent); ++i) power *= 10;
-  return exponent < 0 ? 1 / power : power;
-}
-
 /// 10^least to 10^most, whole powers alike.
 double magnitude(Random& random, int least, int most) {
   return powerOfTen(least + static_cast<int>(random.below(static_cast<uint32_t>(most - least + 1))));
-}
-
-bool oneIn(Random& random, uint32_t n) {
-  return random.below(n) == 0;
 }
 
 Vec3 scaled(const Vec3& v, double factor) {
@@ -43,13 +34,13 @@ Vec3 wholeVector(Random& random, uint32_t limit) {
 
 Vec3 axis(Random& random) {
   Vec3 v{};
-  v[random.below(3)] = oneIn(random, 2) ? 1 : -1;
+  v[random.below(3)] = random.oneIn(2) ? 1 : -1;
   return v;
 }
 
 /// A whole direction, along an axis half of the time.
 Vec3 wholeDirection(Random& random) {
-  if (oneIn(random, 2)) return axis(random);
+  if (random.oneIn(2)) return axis(random);
   Vec3 v{};
   while (v == Vec3{}) v = wholeVector(random, 2);
   return v;
@@ -80,100 +71,6 @@ std::array<double, 9> slightRotation(Random& random, double angle) {
           2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
-
-// ---- shapes of a kind, about 2 wide, around the origin
-// ---------------------------------------------------------------- What is drawn at random is named first: the order in
-// which arguments are evaluated is the compiler's.
-
-MeshData convexShape(Random& random) {
-  const uint32_t segments = 3 + random.below(16);
-  const double size = random.uniform(0.01, 0.5);
-  switch (random.below(4)) {
-    case 0:
-      return makeBox(random.inBox({0.5, 0.5, 0.5}, {2, 2, 2}));
-    case 1:
-      return makeUvSphere(3 + random.below(8), segments);
-    case 2:
-      return makeRod(size, random.uniform(1, 3), segments);
-    default:
-      return makePlate(2, 1, powerOfTen(-static_cast<int>(random.below(6))));
-  }
-}
-
-MeshData nonConvexShape(Random& random) {
-  const uint32_t segments = 4 + random.below(24), tubeSegments = 3 + random.below(8);
-  switch (random.below(5)) {
-    case 0:
-      return makeTorus(1, random.uniform(0.05, 0.4), segments, tubeSegments);
-    case 1:
-      return makeHook(2, 0.9, 0.7, 0.25);
-    case 2:
-      return makeComb(2 + random.below(5), 0.5, 1, 0.3);
-    case 3:
-      return makeCup(1, 1.5, 0.15, segments);
-    default: {
-      MeshData teapot = makeTeapot();
-      for (float& value : teapot.positions) value *= 0.375f;
-      return teapot;
-    }
-  }
-}
-
-MeshData openShape(Random& random) {
-  switch (random.below(4)) {
-    case 0:
-      return makeSheet(1 + random.below(12), 0.3, random);
-    case 1: {
-      const std::array<std::array<double, 2>, 2> profile{{{random.uniform(0.2, 1), -1}, {random.uniform(0.2, 1), 1}}};
-      return makeLathe(profile, false, 3 + random.below(16));
-    }
-    case 2: {  // a triangle
-      MeshData mesh{"triangle", {}, {0, 1, 2}};
-      for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
-      return mesh;
-    }
-    default:
-      return makeSheet(1, 0, random);
-  }
-}
-
-MeshData crossingShape(Random& random) {
-  if (oneIn(random, 3)) {  // a profile that crosses the axis and itself
-    const std::array<std::array<double, 2>, 5> profile{{{0, -1}, {1, -0.5}, {-0.5, 0.3}, {0.8, 0.6}, {0, 1}}};
-    return makeLathe(profile, false, 3 + random.below(10));
-  }
-  MeshData mesh = oneIn(random, 2) ? convexShape(random) : openShape(random);
-  const MeshData again = mesh;
-  const double reach = oneIn(random, 2) ? 0 : 0.5;  // 0: every triangle twice
-  append(mesh, again, random.inBox(scaled(kFull, -reach), scaled(kFull, reach)));
-  return mesh;
-}
-
-MeshData soupShape(Random& random) {
-  const Soup soup = std::array{Soup::plain, Soup::needles, Soup::degenerate, Soup::lattice}[random.below(4)];
-  return makeSoup(soup, 1 + random.below(40), random);
-}
-
-MeshData anyShape(Random& random) {
-  switch (random.below(8)) {
-    case 0:
-    case 1:
-      return convexShape(random);
-    case 2:
-    case 3:
-      return nonConvexShape(random);
-    case 4:
-    case 5:
-      return openShape(random);
-    case 6:
-      return crossingShape(random);
-    default:
-      return soupShape(random);
-  }
-}
-
-// ---- scenes
-// -----------------------------------------------------------------------------------------------------------
 
 struct Making {
   Workload workload;
@@ -218,7 +115,7 @@ void scatter(Making& making, Shape shape, const Setting& setting = {}) {
   for (int i = 0; i < 6; ++i) making.workload.meshes.push_back(shape(random));
   const auto place = [&](double reach) {
     const Vec3 at = random.inBox(scaled(kFull, -reach), scaled(kFull, reach));
-    if (oneIn(random, 3)) return setting.placed(randomAffine(random, at));
+    if (random.oneIn(3)) return setting.placed(randomAffine(random, at));
     const double size = random.uniform(0.5, 1.5);
     return setting.placed(makePose(random.rotation(), scaled(kFull, size), at));
   };
@@ -230,7 +127,7 @@ void scatter(Making& making, Shape shape, const Setting& setting = {}) {
     const uint32_t mesh = making.anyMesh();
     const Pose pose = place(9);
     const Vec3 direction = random.direction();
-    making.ask(mesh, pose, direction, oneIn(random, 10) ? 0 : setting.scale * random.uniform(0, 12));
+    making.ask(mesh, pose, direction, random.oneIn(10) ? 0 : setting.scale * random.uniform(0, 12));
   }
 }
 
@@ -282,7 +179,7 @@ void interlock(Making& making) {
     const Pose poses[] = {makePose(slightly(), kFull, home),
                           makePose(product(slightly(), shapes[which].rotation), kFull, second)};
     making.addObject(2 * which + 1 - sensor, poses[1 - sensor]);
-    const Vec3 direction = oneIn(random, 2) ? turned(frame, axis(random)) : random.direction();
+    const Vec3 direction = random.oneIn(2) ? turned(frame, axis(random)) : random.direction();
     making.ask(2 * which + sensor, poses[sensor], direction, random.uniform(0.1, 8));
   }
 }
@@ -304,7 +201,7 @@ void onLattice(Making& making, const std::array<double, 9>& frame, const Setting
     Pose pose = setting.placed(makePose(frame, kFull, turned(frame, scaled(wholeVector(random, limit), 0.5))));
     if (!roundings) return pose;
     for (double& value : pose.m) {
-      if (oneIn(random, 4)) value = std::nextafter(value, oneIn(random, 2) ? 1e300 : -1e300);
+      if (random.oneIn(4)) value = std::nextafter(value, random.oneIn(2) ? 1e300 : -1e300);
     }
     return pose;
   };
@@ -322,9 +219,9 @@ void onLattice(Making& making, const std::array<double, 9>& frame, const Setting
 
 void touch(Making& making) {
   Random& random = making.random;
-  const auto frame = oneIn(random, 3) ? kUpright : random.rotation();
-  const Setting setting{magnitude(random, -3, 3), oneIn(random, 2) ? Vec3{} : farOrigin(random)};
-  onLattice(making, frame, setting, oneIn(random, 2));
+  const auto frame = random.oneIn(3) ? kUpright : random.rotation();
+  const Setting setting{magnitude(random, -3, 3), random.oneIn(2) ? Vec3{} : farOrigin(random)};
+  onLattice(making, frame, setting, random.oneIn(2));
 }
 
 /// Moves every mesh to `origin` in its own coordinates; a pose takes it back, or leaves it there.
@@ -336,7 +233,7 @@ void farBaked(Making& making) {
     append(moved, mesh, origin);
     mesh = std::move(moved);
   }
-  const bool back = oneIn(making.random, 2);
+  const bool back = making.random.oneIn(2);
   const auto move = [&](Pose& pose) {
     for (int row = 0; row < 3; ++row) {
       double* r = &pose.m[4 * row];
@@ -349,7 +246,7 @@ void farBaked(Making& making) {
 
 void onFloor(Making& making) {
   Random& random = making.random;
-  const auto frame = oneIn(random, 2) ? kUpright : random.rotation();
+  const auto frame = random.oneIn(2) ? kUpright : random.rotation();
   making.workload.meshes.push_back(makeSheet(1 + random.below(8), 0, random));
   for (int i = 0; i < 5; ++i) making.workload.meshes.push_back(anyShape(random));
   making.addObject(0, makePose(frame, {1e4, 1e4, 1e4}, {}));
@@ -358,9 +255,9 @@ void onFloor(Making& making) {
     const uint32_t mesh = 1 + random.below(5);
     const Pose pose = makePose(random.rotation(), {1e-2, 1e-2, 1e-2}, turned(frame, above));
     Vec3 down{0, 0, -1};
-    if (oneIn(random, 3)) down = {1, 0, -powerOfTen(-static_cast<int>(random.below(7)))};
-    if (oneIn(random, 3)) down = random.direction();
-    making.ask(mesh, pose, turned(frame, down), oneIn(random, 2) ? 1e5 : random.uniform(0, 1));
+    if (random.oneIn(3)) down = {1, 0, -powerOfTen(-static_cast<int>(random.below(7)))};
+    if (random.oneIn(3)) down = random.direction();
+    making.ask(mesh, pose, turned(frame, down), random.oneIn(2) ? 1e5 : random.uniform(0, 1));
   }
 }
 
@@ -368,10 +265,10 @@ void tiltedDirections(Making& making) {
   Random& random = making.random;
   making.workload.meshes = {makeBox({1, 1, 1}), makePlate(2, 2, 0.01), makeRod(0.2, 2, 8), makeSheet(3, 0, random),
                             makeSheet(4, 0.1, random)};
-  const auto frame = oneIn(random, 2) ? kUpright : random.rotation();
+  const auto frame = random.oneIn(2) ? kUpright : random.rotation();
   const auto place = [&](double reach) {
-    const Vec3 at = oneIn(random, 2) ? scaled(wholeVector(random, static_cast<uint32_t>(2 * reach)), 0.5)
-                                     : random.inBox(scaled(kFull, -reach), scaled(kFull, reach));
+    const Vec3 at = random.oneIn(2) ? scaled(wholeVector(random, static_cast<uint32_t>(2 * reach)), 0.5)
+                                    : random.inBox(scaled(kFull, -reach), scaled(kFull, reach));
     return makePose(frame, kFull, turned(frame, at));
   };
   for (int i = 0; i < kObjects; ++i) {
@@ -382,10 +279,10 @@ void tiltedDirections(Making& making) {
     const uint32_t mesh = making.anyMesh();
     const Pose pose = place(8);
     Vec3 direction = axis(random);
-    if (!oneIn(random, 4)) {
+    if (!random.oneIn(4)) {
       const double size = magnitude(random, -12, -2);
       const Vec3 off = scaled(random.direction(), size);
-      for (size_t k = 0; k < 3; ++k) direction[k] += oneIn(random, 3) ? 0 : off[k];
+      for (size_t k = 0; k < 3; ++k) direction[k] += random.oneIn(3) ? 0 : off[k];
     }
     const double length = magnitude(random, -12, 12);
     making.ask(mesh, pose, scaled(turned(frame, direction), length), random.uniform(0, 12));
@@ -393,7 +290,7 @@ void tiltedDirections(Making& making) {
 }
 
 Workload soups(Making& making) {
-  const double origin = oneIn(making.random, 2) ? 0 : magnitude(making.random, 1, 7);
+  const double origin = making.random.oneIn(2) ? 0 : magnitude(making.random, 1, 7);
   return makeWorkload(Soups{.sensors = making.queries,
                             .triangles = 1 + making.random.below(120),
                             .origin = origin,

@@ -1,6 +1,7 @@
 #include "workloads/random.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace radar::tools {
@@ -87,6 +88,12 @@ std::array<double, 2> circlePoint(uint32_t k, uint32_t n) {
   if (octant >= 2 && octant < 6) c = -c;
   if (octant >= 4) s = -s;
   return {c, s};
+}
+
+double powerOfTen(int exponent) {
+  double power = 1;
+  for (int i = 0; i < std::abs(exponent); ++i) power *= 10;
+  return exponent < 0 ? 1 / power : power;
 }
 
 }  // namespace radar::tools

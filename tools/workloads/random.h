@@ -16,8 +16,9 @@ class Random {
  public:
   explicit Random(uint64_t seed) : bits_(seed) {}
 
-  double uniform(double low, double high);        ///< in [low, high)
-  uint32_t below(uint32_t limit);                 ///< in 0 .. limit - 1; limit > 0
+  double uniform(double low, double high);  ///< in [low, high)
+  uint32_t below(uint32_t limit);           ///< in 0 .. limit - 1; limit > 0
+  bool oneIn(uint32_t n) { return below(n) == 0; }
   Vec3 inBox(const Vec3& low, const Vec3& high);  ///< a point
   Vec3 direction();                               ///< on the unit sphere
   std::array<double, 9> rotation();               ///< row-major, uniform over all rotations
@@ -31,6 +32,9 @@ Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Ve
 
 /// Turned, scaled by 0.3 to 2 per axis, sometimes sheared and sometimes mirrored.
 Pose randomAffine(Random& random, const Vec3& at);
+
+/// 10^exponent, the same bits everywhere.
+double powerOfTen(int exponent);
 
 /// {cos, sin} of 2 pi k / n, the same bits everywhere, exact at quarter turns.
 std::array<double, 2> circlePoint(uint32_t k, uint32_t n);

@@ -1,0 +1,96 @@
+// What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
+#include "workloads/family_shapes.h"
+
+#include "workloads/generate.h"
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+MeshData convexShape(Random& random) {
+  const uint32_t segments = 3 + random.below(16);
+  const double size = random.uniform(0.01, 0.5);
+  switch (random.below(4)) {
+    case 0:
+      return makeBox(random.inBox({0.5, 0.5, 0.5}, {2, 2, 2}));
+    case 1:
+      return makeUvSphere(3 + random.below(8), segments);
+    case 2:
+      return makeRod(size, random.uniform(1, 3), segments);
+    default:
+      return makePlate(2, 1, powerOfTen(-static_cast<int>(random.below(6))));
+  }
+}
+
+MeshData nonConvexShape(Random& random) {
+  const uint32_t segments = 4 + random.below(24), tubeSegments = 3 + random.below(8);
+  switch (random.below(5)) {
+    case 0:
+      return makeTorus(1, random.uniform(0.05, 0.4), segments, tubeSegments);
+    case 1:
+      return makeHook(2, 0.9, 0.7, 0.25);
+    case 2:
+      return makeComb(2 + random.below(5), 0.5, 1, 0.3);
+    case 3:
+      return makeCup(1, 1.5, 0.15, segments);
+    default: {
+      MeshData teapot = makeTeapot();
+      for (float& value : teapot.positions) value *= 0.375f;
+      return teapot;
+    }
+  }
+}
+
+MeshData openShape(Random& random) {
+  switch (random.below(4)) {
+    case 0:
+      return makeSheet(1 + random.below(12), 0.3, random);
+    case 1: {
+      const std::array<std::array<double, 2>, 2> profile{{{random.uniform(0.2, 1), -1}, {random.uniform(0.2, 1), 1}}};
+      return makeLathe(profile, false, 3 + random.below(16));
+    }
+    case 2: {  // a triangle
+      MeshData mesh{"triangle", {}, {0, 1, 2}};
+      for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
+      return mesh;
+    }
+    default:
+      return makeSheet(1, 0, random);
+  }
+}
+
+MeshData crossingShape(Random& random) {
+  if (random.oneIn(3)) {  // a profile that crosses the axis and itself
+    const std::array<std::array<double, 2>, 5> profile{{{0, -1}, {1, -0.5}, {-0.5, 0.3}, {0.8, 0.6}, {0, 1}}};
+    return makeLathe(profile, false, 3 + random.below(10));
+  }
+  MeshData mesh = random.oneIn(2) ? convexShape(random) : openShape(random);
+  const MeshData again = mesh;
+  const double reach = random.oneIn(2) ? 0 : 0.5;  // 0: every triangle twice
+  append(mesh, again, random.inBox({-reach, -reach, -reach}, {reach, reach, reach}));
+  return mesh;
+}
+
+MeshData soupShape(Random& random) {
+  const Soup soup = std::array{Soup::plain, Soup::needles, Soup::degenerate, Soup::lattice}[random.below(4)];
+  return makeSoup(soup, 1 + random.below(40), random);
+}
+
+MeshData anyShape(Random& random) {
+  switch (random.below(8)) {
+    case 0:
+    case 1:
+      return convexShape(random);
+    case 2:
+    case 3:
+      return nonConvexShape(random);
+    case 4:
+    case 5:
+      return openShape(random);
+    case 6:
+      return crossingShape(random);
+    default:
+      return soupShape(random);
+  }
+}
+
+}  // namespace radar::tools

@@ -145,22 +145,12 @@ void BoundedRecorder::stage(std::span<const BoundedPlan* const> plans, const Sce
 }
 
 void BoundedRecorder::bind() {
-  const ResidentScene::Buffers& scene = resident_.buffers();
-  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {{gpu::kBindPositions, &scene.positions},
-                                                             {gpu::kBindOriginals, &scene.originals},
-                                                             {gpu::kBindIndices, &scene.indices},
-                                                             {gpu::kBindMeshes, &scene.meshes},
-                                                             {gpu::kBindObjects, &scene.objects},
-                                                             {gpu::kBindViews, &views_},
-                                                             {gpu::kBindDraws, &draws_},
-                                                             {gpu::kBindItems, &items_},
-                                                             {gpu::kBindBands, &bands_},
-                                                             {gpu::kBindScopes, &scopes_},
-                                                             {gpu::kBindCandidates, &candidates_},
-                                                             {gpu::kBindRanks, &ranks_},
-                                                             {gpu::kBindAnswers, &answers_},
-                                                             {gpu::kBindOpenPairs, &openPairs_},
-                                                             {gpu::kBindTriangleIds, &scene.triangleIds}};
+  resident_.bindTo(bindings_);
+  bindings_.setBuffer(gpu::kBindTriangleIds, resident_.buffers().triangleIds);
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
+      {gpu::kBindViews, &views_}, {gpu::kBindDraws, &draws_},     {gpu::kBindItems, &items_},
+      {gpu::kBindBands, &bands_}, {gpu::kBindScopes, &scopes_},   {gpu::kBindCandidates, &candidates_},
+      {gpu::kBindRanks, &ranks_}, {gpu::kBindAnswers, &answers_}, {gpu::kBindOpenPairs, &openPairs_}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
 }
 

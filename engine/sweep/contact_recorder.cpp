@@ -134,21 +134,12 @@ void ContactRecorder::stage(std::span<const ContactPlan* const> plans, std::span
 }
 
 void ContactRecorder::bind() {
-  const ResidentScene::Buffers& scene = resident_.buffers();
-  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {{gpu::kBindPositions, &scene.positions},
-                                                             {gpu::kBindOriginals, &scene.originals},
-                                                             {gpu::kBindIndices, &scene.indices},
-                                                             {gpu::kBindMeshes, &scene.meshes},
-                                                             {gpu::kBindObjects, &scene.objects},
-                                                             {gpu::kBindNodes, &scene.nodes},
-                                                             {gpu::kBindTargets, &targets_},
-                                                             {gpu::kBindPlacements, &placements_},
-                                                             {gpu::kBindRefs, &refs_},
-                                                             {gpu::kBindBoxes, &boxes_},
-                                                             {gpu::kBindPairItems, &items_},
-                                                             {gpu::kBindClusterPairs, &clusterPairs_},
-                                                             {gpu::kBindStates, &states_},
-                                                             {gpu::kBindContenders, &contenders_}};
+  resident_.bindTo(bindings_);
+  bindings_.setBuffer(gpu::kBindNodes, resident_.buffers().nodes);
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
+      {gpu::kBindTargets, &targets_}, {gpu::kBindPlacements, &placements_}, {gpu::kBindRefs, &refs_},
+      {gpu::kBindBoxes, &boxes_},     {gpu::kBindPairItems, &items_},       {gpu::kBindClusterPairs, &clusterPairs_},
+      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
 }
 

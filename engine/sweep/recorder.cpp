@@ -117,20 +117,12 @@ void Recorder::stage(const Batch& batch, const Scene::Impl& scene) {
 }
 
 void Recorder::bind(const Pictures& pictures) {
-  const ResidentScene::Buffers& scene = resident_.buffers();
-  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {{gpu::kBindPositions, &scene.positions},
-                                                             {gpu::kBindOriginals, &scene.originals},
-                                                             {gpu::kBindIndices, &scene.indices},
-                                                             {gpu::kBindMeshes, &scene.meshes},
-                                                             {gpu::kBindObjects, &scene.objects},
-                                                             {gpu::kBindViews, &views_},
-                                                             {gpu::kBindDraws, &draws_},
-                                                             {gpu::kBindItems, &items_},
-                                                             {gpu::kBindCandidates, &candidates_},
-                                                             {gpu::kBindRanks, &ranks_},
-                                                             {gpu::kBindAnswers, &answers_},
-                                                             {gpu::kBindTriangleIds, &scene.triangleIds},
-                                                             {gpu::kBindOpenPairs, &openPairs_}};
+  resident_.bindTo(bindings_);
+  bindings_.setBuffer(gpu::kBindTriangleIds, resident_.buffers().triangleIds);
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
+      {gpu::kBindViews, &views_},           {gpu::kBindDraws, &draws_}, {gpu::kBindItems, &items_},
+      {gpu::kBindCandidates, &candidates_}, {gpu::kBindRanks, &ranks_}, {gpu::kBindAnswers, &answers_},
+      {gpu::kBindOpenPairs, &openPairs_}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
   bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
   bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());

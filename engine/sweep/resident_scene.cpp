@@ -123,4 +123,12 @@ void ResidentScene::confirm(const Scene::Impl& scene) {
   seenPoses_ = scene.poseVersion;
 }
 
+void ResidentScene::bindTo(gpu::Bindings& bindings) const {
+  bindings.setBuffer(gpu::kBindPositions, buffers_.positions);
+  bindings.setBuffer(gpu::kBindOriginals, buffers_.originals);
+  bindings.setBuffer(gpu::kBindIndices, buffers_.indices);
+  bindings.setBuffer(gpu::kBindMeshes, buffers_.meshes);
+  bindings.setBuffer(gpu::kBindObjects, buffers_.objects);
+}
+
 }  // namespace radar

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu/buffer.h"
+#include "gpu/pipeline.h"
 #include "scene/scene.h"
 #include "shaders/interop.h"
 
@@ -22,6 +23,8 @@ class ResidentScene {
   /// What was staged has arrived: until then a failed submission leaves it to be staged again.
   void confirm(const Scene::Impl& scene);
 
+  /// Binds what every set has at the same numbers: all but triangle ids and nodes.
+  void bindTo(gpu::Bindings& bindings) const;
   const Buffers& buffers() const { return buffers_; }
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
 

@@ -155,12 +155,12 @@ void BoundedRecorder::bind() {
 }
 
 // A workgroup per band, in as few rows as a device allows; the shader leaves what lies beyond.
-void BoundedRecorder::dispatchBands(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t first,
+void BoundedRecorder::dispatchBands(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first,
                                     uint32_t count) const {
   const OuterPush push{first, count, std::min(count, 65535u), plane_};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  vkCmdDispatch(commands, push.groupsX, (count + push.groupsX - 1) / push.groupsX, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  commands->CmdDispatch(commands, push.groupsX, (count + push.groupsX - 1) / push.groupsX, 1);
   gpu::computeWriteToComputeReadWrite(commands);
 }
 
@@ -192,16 +192,16 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   const VkDeviceSize planeBytes = plane_ * sizeof(uint32_t);
   readback_.reserve(answerBytes + openBytes + (scopes != nullptr ? 4 * planeBytes : 0));
 
-  const VkCommandBuffer commands = submission_.begin();
+  const gpu::Commands commands = submission_.begin();
   submission_.stage("upload");
   upload_.record(commands);
-  vkCmdFillBuffer(commands, scopes_.get(), 0, 2 * planeBytes, gpu::kNobody);
-  vkCmdFillBuffer(commands, scopes_.get(), 2 * planeBytes, 2 * planeBytes, 0);
+  commands->CmdFillBuffer(commands, scopes_.get(), 0, 2 * planeBytes, gpu::kNobody);
+  commands->CmdFillBuffer(commands, scopes_.get(), 2 * planeBytes, 2 * planeBytes, 0);
   gpu::uploadToRead(commands);
   gpu::fillToComputeReadWrite(commands);
 
   const VkDescriptorSet set = bindings_.set();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
   const auto bands = static_cast<uint32_t>(bandList_.size());
   submission_.stage("outer scene");
   dispatchBands(commands, drawFarthest_, 0, sceneBands_);
@@ -210,23 +210,23 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   submission_.stage("outer near");
   dispatchBands(commands, drawNearest_, 0, sceneBands_);
   submission_.stage("bound");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToComputeReadWrite(commands);
   submission_.stage("identify");
   dispatchBands(commands, identify_, 0, bands);
   submission_.stage("solve");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");
   const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
-  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  vkCmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
+  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
+  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
   if (scopes != nullptr) {
     const VkBufferCopy copy{0, answerBytes + openBytes, 4 * planeBytes};
-    vkCmdCopyBuffer(commands, scopes_.get(), readback_.get(), 1, &copy);
+    commands->CmdCopyBuffer(commands, scopes_.get(), readback_.get(), 1, &copy);
   }
   gpu::copyToHost(commands);
   submission_.submitAndWait();

@@ -31,7 +31,8 @@ class BoundedRecorder {
   gpu::Pipeline drawPipeline(const char* name, uint32_t draws) const;
   void stage(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene);
   void bind();
-  void dispatchBands(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
+  void dispatchBands(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first,
+                     uint32_t count) const;
   std::vector<OuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
 
   const Device::Impl* device_;

@@ -20,10 +20,6 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-bool meets(const Result& result) {
-  return result.status == Status::hit || result.status == Status::overlap;
-}
-
 /// What a row's medians are taken of.
 struct Filling {
   StabilityRow row;
@@ -40,15 +36,6 @@ void countTier(StabilityRow& row, const Result& result) {
   } else {
     ++row.byPictures;
   }
-}
-
-/// The paper's own reading: contact after min(L) if that is within D; a negative one is contact now.
-Result paperAnswer(const Query& query, const Result& sampled) {
-  Result paper = sampled;
-  const bool hit = sampled.paperMinL <= query.distance;
-  paper.status = hit ? Status::hit : Status::clear;
-  paper.t = hit ? std::max(sampled.paperMinL, 0.0) : NAN;
-  return paper;
 }
 
 Verdict judge(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
@@ -82,7 +69,7 @@ class Measuring {
 
  private:
   void askScene(uint64_t first, uint32_t count);
-  void ask(std::vector<Query> queries, const std::vector<Result>& exact, Mode mode, uint32_t resolution,
+  void ask(const std::vector<Query>& cases, const std::vector<Result>& exact, Method method, uint32_t resolution,
            uint64_t first);
   void count(Method method, const Query& query, const Result& result, const Result& exact, uint64_t number);
   void remember(const StabilityRow& row, Failure failure, uint64_t number, double amount);
@@ -125,7 +112,7 @@ void Measuring::remember(const StabilityRow& row, Failure failure, uint64_t numb
 }
 
 void Measuring::count(Method method, const Query& query, const Result& result, const Result& exact, uint64_t number) {
-  Filling& filled = filling(method, method == Method::contact ? 0 : query.resolution);
+  Filling& filled = filling(method, query.resolution);
   StabilityRow& row = filled.row;
   const Verdict verdict = judge(method, scene_, query, result, exact);
   const bool unseen = method == Method::sampled && meets(exact) && result.status == Status::undecided;
@@ -152,24 +139,16 @@ void Measuring::count(Method method, const Query& query, const Result& result, c
            std::to_string(number) + " --cases 1");
 }
 
-void Measuring::ask(std::vector<Query> queries, const std::vector<Result>& exact, Mode mode, uint32_t resolution,
-                    uint64_t first) {
-  for (Query& query : queries) {
-    query.mode = mode;
-    query.resolution = resolution;
-  }
+void Measuring::ask(const std::vector<Query>& cases, const std::vector<Result>& exact, Method method,
+                    uint32_t resolution, uint64_t first) {
+  const std::vector<Query> queries = asked(cases, method, resolution);
   const Clock::time_point start = Clock::now();
   const std::vector<Result> results = sweeper_.run(queries);
   const double microseconds = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-  const Method method = mode == Mode::sampled   ? Method::sampled
-                        : mode == Mode::bounded ? Method::bounded
-                                                : Method::contact;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (mode == Mode::sampled) {
-      const Result paper = paperAnswer(queries[i], results[i]);
-      count(Method::paper, queries[i], paper, exact[i], first + i);
-    }
     count(method, queries[i], results[i], exact[i], first + i);
+    if (method != Method::sampled) continue;
+    count(Method::paper, queries[i], paperAnswer(queries[i], results[i]), exact[i], first + i);
   }
   filling(method, resolution).microseconds.push_back(microseconds / static_cast<double>(queries.size()));
 }
@@ -186,10 +165,10 @@ void Measuring::askScene(uint64_t first, uint32_t number) {
   const uint64_t scene = first / kCasesPerScene;
   for (const uint32_t resolution : settings_.resolutions) {
     if (scene % strideOf(resolution) != 0) continue;
-    ask(queries, exact, Mode::sampled, resolution, first);
-    ask(queries, exact, Mode::bounded, resolution, first);
+    ask(queries, exact, Method::sampled, resolution, first);
+    ask(queries, exact, Method::bounded, resolution, first);
   }
-  ask(queries, exact, Mode::contact, 0, first);
+  ask(queries, exact, Method::contact, 0, first);
 }
 
 void Measuring::run(const StabilityFamily& family, uint64_t cases, const std::function<void(uint64_t)>& onProgress) {
@@ -213,11 +192,6 @@ void Measuring::run(const StabilityFamily& family, uint64_t cases, const std::fu
 }
 
 }  // namespace
-
-const char* nameOf(Method method) {
-  constexpr std::array<const char*, kMethods> kNames{"paper", "sampled", "bounded", "contact"};
-  return kNames[static_cast<size_t>(method)];
-}
 
 bool StabilityRow::right() const {
   if (method == Method::paper) return true;

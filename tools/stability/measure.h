@@ -3,18 +3,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "stability/method.h"
 #include "workloads/stability.h"
 
 namespace radar::tools {
-
-/// What answers: `paper` is the paper's literal min(L), which mode sampled tells beside its own answer.
-enum class Method { paper, sampled, bounded, contact };
-inline constexpr size_t kMethods = 4;
-const char* nameOf(Method method);
 
 /// One family, one method, one resolution. Lengths are in units of max(size of the sensor, t*).
 struct StabilityRow {

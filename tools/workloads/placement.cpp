@@ -49,4 +49,12 @@ Rotation slightRotation(Random& random, double angle) {
           2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
+Rotation quarterTurns(Random& random) {
+  Rotation rotation = kUpright;
+  for (uint32_t i = random.below(4); i > 0; --i) rotation = product({0, -1, 0, 1, 0, 0, 0, 0, 1}, rotation);
+  for (uint32_t i = random.below(4); i > 0; --i) rotation = product({0, 0, 1, 0, 1, 0, -1, 0, 0}, rotation);
+  for (uint32_t i = random.below(4); i > 0; --i) rotation = product(kOnEdge, rotation);
+  return rotation;
+}
+
 }  // namespace radar::tools

@@ -26,4 +26,7 @@ Vec3 axis(Random& random);
 /// About a random axis, by up to about half of `angle`.
 Rotation slightRotation(Random& random, double angle);
 
+/// By quarter turns: exact.
+Rotation quarterTurns(Random& random);
+
 }  // namespace radar::tools

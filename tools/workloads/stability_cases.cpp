@@ -27,15 +27,6 @@ Rotation roll(Random& random) {
   return {c, -s, 0, s, c, 0, 0, 0, 1};
 }
 
-/// A rotation by quarter turns.
-Rotation quarterTurns(Random& random) {
-  Rotation rotation = kUpright;
-  for (uint32_t i = random.below(4); i > 0; --i) rotation = product({0, -1, 0, 1, 0, 0, 0, 0, 1}, rotation);
-  for (uint32_t i = random.below(4); i > 0; --i) rotation = product({0, 0, 1, 0, 1, 0, -1, 0, 0}, rotation);
-  for (uint32_t i = random.below(4); i > 0; --i) rotation = product(kOnEdge, rotation);
-  return rotation;
-}
-
 MeshData resized(MeshData mesh, double factor) {
   for (float& value : mesh.positions) value = static_cast<float>(value * factor);
   return mesh;

@@ -123,8 +123,9 @@ void Measuring::count(Method method, const Query& query, const Result& result, c
   row.brackets += verdict.bracket;
   row.otherwise += !verdict.right() && !verdict.missed && !verdict.falseHit && !verdict.bracket;
   if (method != Method::paper) countTier(row, result);
-  if (verdict.missed || unseen) remember(row, Failure::missed, number, 1);
-  if (verdict.falseHit) remember(row, Failure::falseHit, number, 1);
+  const double negative = result.paperMinL < 0 ? -result.paperMinL : 0;  // tells of surfaces that have passed
+  if (verdict.missed || unseen) remember(row, Failure::missed, number, 1 + negative);
+  if (verdict.falseHit) remember(row, Failure::falseHit, number, 1 + negative);
   if (meets(result) && meets(exact)) {
     const double size = std::max(sensorSize(scene_, query), exact.t);
     row.late = std::max(row.late, (result.t - exact.t) / size);

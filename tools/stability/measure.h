@@ -41,7 +41,7 @@ struct TellingCase {
   Method method = Method::paper;
   Failure failure = Failure::missed;
   uint64_t number = 0;
-  double amount = 0;  ///< late and early: by how much, as in StabilityRow
+  double amount = 0;  ///< how grave; late and early: as in StabilityRow
 };
 inline constexpr uint32_t kTellingResolution = 64;
 

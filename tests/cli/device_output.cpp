@@ -76,8 +76,8 @@ TEST_CASE("stability asks every family, and leaves a page, a table and pictures"
   CHECK_THAT(page, Contains("### key in keyhole") && Contains("cyber-radar stability --cases 52 --seed 1"));
   CHECK_THAT(page, Contains("| D split in two | contact | 52 |"));
   CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 26 * 4);
-  CHECK_THAT(page, Contains("stability/thin.png"));
-  CHECK(isPng(folder.read("s/stability/thin.png")));
+  CHECK_THAT(page, Contains("stability/edge-on.png"));
+  CHECK(isPng(folder.read("s/stability/edge-on.png")));
 }
 
 TEST_CASE("stability asks one case again") {

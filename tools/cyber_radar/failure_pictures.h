@@ -8,7 +8,7 @@
 
 namespace radar::tools {
 
-/// One for each kind of failure that the run met, written into `folder`/stability.
+/// One for each kind of failure that the run met at kTellingResolution, written into `folder`/stability.
 std::vector<StabilityPicture> drawFailures(const Device& device, const StabilityReport& report, uint64_t seed,
                                            const std::filesystem::path& folder);
 

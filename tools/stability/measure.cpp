@@ -218,6 +218,7 @@ StabilityReport measureStability(const Device& device, const StabilitySettings& 
   for (const StabilityFamily& family : stabilityFamilies()) {
     if (names.empty() || std::find(names.begin(), names.end(), family.name) != names.end()) families.push_back(&family);
   }
+  if (families.empty()) throw Error("no family is called " + names.front());
   const uint64_t each = (settings.cases + families.size() - 1) / families.size();
   for (const StabilityFamily* family : families) measuring.run(*family, each, onProgress);
   return report;

@@ -23,7 +23,7 @@ struct ChangeRow {
 };
 
 struct ChangeSettings {
-  uint32_t cases = 256;
+  uint32_t cases = 1024;
   uint64_t seed = 1;
   uint32_t resolution = 64;  ///< of all modes but contact
 };

@@ -205,7 +205,7 @@ bool StabilityReport::right() const {
 }
 
 uint32_t strideOf(uint32_t resolution) {
-  return resolution <= 64 ? 1 : resolution <= 256 ? resolution / 64 : resolution / 32;
+  return std::max(1u, (resolution / 128) * (resolution / 128));
 }
 
 StabilityReport measureStability(const Device& device, const StabilitySettings& settings,

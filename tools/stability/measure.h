@@ -59,7 +59,7 @@ struct StabilityReport {
   bool right() const;
 };
 
-/// Every how many scenes of kCasesPerScene cases are asked at that resolution: large pictures are dear.
+/// Every how many scenes of kCasesPerScene cases are asked at that resolution: from 256 on fewer, as pixels grow more.
 uint32_t strideOf(uint32_t resolution);
 
 /// `onWrong` is told every broken promise, and how to ask again; `onProgress` how many cases were just done.

@@ -1,6 +1,7 @@
 #include "stability/page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -106,12 +107,20 @@ std::string stepsOf(const std::vector<StepRow>& rows) {
     line += "---|---|";
   }
   text += line;
+  std::array<StepRow, kMethods> all;
   for (const StepRow& row : rows) {
     if (row.method == Method::paper) {
       text += print("\n| %s | %llu |", row.family.c_str(), static_cast<unsigned long long>(row.steps));
     }
     text += print(" %.2g | %llu |", row.excess, static_cast<unsigned long long>(row.flips));
+    StepRow& sum = all[static_cast<size_t>(row.method)];
+    sum.steps += row.steps;
+    sum.flips += row.flips;
+    sum.excess = std::max(sum.excess, row.excess);
   }
+  text += print("\n| **all: the largest** | %llu |", static_cast<unsigned long long>(all[0].steps));
+  for (const StepRow& sum : all)
+    text += print(" %.2g | %llu |", sum.excess, static_cast<unsigned long long>(sum.flips));
   return text + "\n";
 }
 

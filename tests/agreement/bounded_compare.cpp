@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "agreement/compare.h"
-#include "agreement/promises.h"
 #include "reference/reference.h"
+#include "stability/promises.h"
 #include "support/test_device.h"
 
 namespace radar::test {
@@ -15,14 +15,14 @@ void check(const Scene& scene, const Query& query, const Result& result, const R
   tally.contacts += exact.status == Status::hit || exact.status == Status::overlap;
   tally.clear += result.status == Status::clear;
   tally.undecided += result.status == Status::undecided;
-  CHECK(judgeBracket(query, result, exact).words() == "");
+  CHECK(tools::judgeBracket(query, result, exact).words() == "");
   CHECK((result.tier == Tier::bounded || (result.tier == Tier::select && result.status == Status::clear)));
   const bool found = result.status == Status::hit || result.status == Status::overlap;
   CHECK(found == (result.object != kNone));
   CHECK(found == !std::isnan(result.hi));
   if (!found) return;
   ++tally.found;
-  tally.widthInPixels.push_back((result.hi - result.lo) * result.resolution / sensorSize(scene, query));
+  tally.widthInPixels.push_back((result.hi - result.lo) * result.resolution / tools::sensorSize(scene, query));
 }
 
 void compare(const Scene& scene, Sweeper& sweeper, reference::Reference& reference, std::vector<Query> queries,

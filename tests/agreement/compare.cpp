@@ -5,22 +5,10 @@
 #include <cmath>
 
 #include "reference/reference.h"
+#include "stability/promises.h"
 #include "support/test_device.h"
 
 namespace radar::test {
-
-double sensorSize(const Scene& scene, const Query& query) {
-  const MeshView mesh = scene.mesh(query.mesh);
-  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
-  for (uint32_t vertex : mesh.indices) {
-    const std::array<double, 3> p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], p[k]);
-      hi[k] = std::max(hi[k], p[k]);
-    }
-  }
-  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
-}
 
 namespace {
 
@@ -72,14 +60,14 @@ void checkAnswer(const Scene& scene, const Query& query, const Result& sampled, 
   CHECK(sampled.hi <= query.distance);
   CHECK(sampled.t == sampled.hi);
   // The reference rounds its t; `hi` adds its error bound to its own rounding.
-  const double rounding = 0x1p-50 * (exact.t + sensorSize(scene, query));
+  const double rounding = 0x1p-50 * (exact.t + tools::sensorSize(scene, query));
   CHECK(sampled.hi >= exact.t - rounding);
   if (sampled.status == Status::overlap) CHECK(exact.status == Status::overlap);
   const double own = pairContact(scene, query, sampled);
-  CHECK(sampled.hi <= own + 1e-6 * std::max(sensorSize(scene, query), own));
+  CHECK(sampled.hi <= own + 1e-6 * std::max(tools::sensorSize(scene, query), own));
   CHECK(sampled.hi >= own - rounding);
   if (sampled.resolution != 0) {
-    tally.excessInPixels.push_back((sampled.hi - exact.t) * sampled.resolution / sensorSize(scene, query));
+    tally.excessInPixels.push_back((sampled.hi - exact.t) * sampled.resolution / tools::sensorSize(scene, query));
   }
 }
 

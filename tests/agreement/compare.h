@@ -32,9 +32,6 @@ BoundedTally compareBounded(const Scene& scene, Sweeper& sweeper, reference::Ref
 /// Likewise every batch of the workload.
 BoundedTally compareBounded(const tools::Workload& workload, uint32_t resolution);
 
-/// Greatest extent of the sensor's box in the world.
-double sensorSize(const Scene& scene, const Query& query);
-
 struct ContactTally {
   uint32_t queries = 0, hits = 0, overlaps = 0, clear = 0;
 };

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "agreement/compare.h"
-#include "agreement/promises.h"
 #include "reference/reference.h"
+#include "stability/promises.h"
 #include "support/test_device.h"
 
 namespace radar::test {
@@ -22,7 +22,7 @@ void compare(const Scene& scene, Sweeper& sweeper, reference::Reference& referen
     tally.clear += exact[i].status == Status::clear;
     INFO("query " << names[i] << ", reference t " << exact[i].t << " of " << queries[i].distance << " object "
                   << exact[i].object << " triB " << exact[i].triB << " triA " << exact[i].triA);
-    const Verdict verdict = judgeContact(scene, queries[i], results[i], exact[i]);
+    const tools::Verdict verdict = tools::judgeContact(scene, queries[i], results[i], exact[i]);
     CHECK(verdict.words() == "");
     CHECK(verdict.error <= 1e-12);
     CHECK(

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "agreement/promises.h"
 #include "agreement/real_meshes.h"
 #include "reference/reference.h"
+#include "stability/promises.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
 
@@ -42,7 +42,7 @@ tools::Workload sceneOf(const std::string& family, uint64_t seed, uint64_t numbe
   return tools::makeWorkload(tools::FamilyScene{.family = *found, .queries = kQueriesPerScene, .seed = sceneSeed});
 }
 
-void count(RandomTally& tally, const Verdict& verdict, const Result& result, const Result& exact) {
+void count(RandomTally& tally, const tools::Verdict& verdict, const Result& result, const Result& exact) {
   ++tally.queries;
   tally.hits += exact.status == Status::hit;
   tally.clear += exact.status == Status::clear;
@@ -87,16 +87,7 @@ struct RandomQueries::Stage {
   explicit Stage(const Device& device) : sweeper(device, scene), reference(scene) {}
 
   void show(const tools::Workload& workload) {
-    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-      if (scene.hasObject(id)) scene.removeObject(id);
-    }
-    for (MeshId id = 0; id < scene.meshLimit(); ++id) {
-      if (scene.hasMesh(id)) scene.removeMesh(id);
-    }
-    for (const tools::MeshData& mesh : workload.meshes) scene.addMesh(mesh.positions, mesh.indices);
-    for (const tools::Instance& instance : workload.scenes.at(0).instances) {
-      scene.addObject({instance.mesh, instance.worldFromMesh, ~0u});
-    }
+    tools::replaceBy(workload, 0, scene);
     sweeper.sync();
     reference.sync();
   }
@@ -143,9 +134,9 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
     const std::vector<Result> exact = stage_->reference.run(queries);
     tally.referenceSeconds += secondsSince(referenceStart);
     for (size_t i = 0; i < queries.size(); ++i) {
-      const Verdict verdict = range.mode == Mode::bounded
-                                  ? judgeBracket(queries[i], results[i], exact[i])
-                                  : judgeContact(stage_->scene, queries[i], results[i], exact[i]);
+      const tools::Verdict verdict = range.mode == Mode::bounded
+                                         ? tools::judgeBracket(queries[i], results[i], exact[i])
+                                         : tools::judgeContact(stage_->scene, queries[i], results[i], exact[i]);
       count(tally, verdict, results[i], exact[i]);
       if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reason(i));
     }

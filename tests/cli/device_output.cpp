@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -63,4 +64,25 @@ TEST_CASE("the demo leaves a table, answers, questions and pictures") {
   CHECK(isPng(folder.read("d/scene.png")));
   CHECK_FALSE(folder.read("d/table.txt").empty());
   CHECK(runProgram(folder, "query d/queries.json --mode reference").out == folder.read("d/answers-reference.jsonl"));
+}
+
+TEST_CASE("stability asks every family, and leaves a page, a table and pictures") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "stability --cases 52 --resolution 64 --out s");
+  INFO(run.out);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("bounded 64") && !Contains("WRONG"));
+  const std::string page = folder.read("s/stability.md"), table = folder.read("s/stability/table.csv");
+  CHECK_THAT(page, Contains("### key in keyhole") && Contains("cyber-radar stability --cases 52 --seed 1"));
+  CHECK_THAT(page, Contains("| D split in two | contact | 52 |"));
+  CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 26 * 4);
+  CHECK_THAT(page, Contains("stability/edge-on.png"));
+  CHECK(isPng(folder.read("s/stability/edge-on.png")));
+}
+
+TEST_CASE("stability asks one case again") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "stability --family slope --first 40 --cases 1 --resolution 64");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("contact                  1           1"));
 }

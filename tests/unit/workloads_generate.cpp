@@ -5,6 +5,7 @@
 
 #include "workloads/families.h"
 #include "workloads/generate.h"
+#include "workloads/stability.h"
 
 using namespace radar;
 using namespace radar::tools;
@@ -195,4 +196,21 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
       CHECK(whatIsWrong(toQuery(query, radar::Mode::sampled), player.scene()).empty());
     }
   }
+}
+
+TEST_CASE("every stability family keeps the contracts of Scene and Query, and is the same to the bit everywhere") {
+  Fingerprint all;
+  for (const StabilityFamily& family : stabilityFamilies()) {
+    CAPTURE(family.name);
+    std::vector<StabilityCase> cases;
+    for (uint64_t i = 0; i < kCasesPerScene; ++i) cases.push_back(stabilityCase(family, i, 1));
+    const Workload workload = workloadOf(cases);
+    all.add(fingerprintOf(workload));
+    Scene scene;
+    replaceBy(workload, 0, scene);
+    CHECK(workload.queries.size() == kCasesPerScene);
+    for (const QuerySpec& query : workload.queries) CHECK(whatIsWrong(toQuery(query, Mode::contact), scene) == "");
+  }
+  // Recorded once, as above.
+  CHECK(all.value() == 0xb13c466fda645794ull);
 }

@@ -5,6 +5,7 @@
 
 #include "workloads/family_shapes.h"
 #include "workloads/generate.h"
+#include "workloads/placement.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -13,30 +14,6 @@ namespace {
 
 // Enough in a cube of edge 14 or so that sensors hit, miss and overlap in like numbers.
 constexpr int kObjects = 60;
-constexpr Vec3 kFull{1, 1, 1};
-constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-/// 10^least to 10^most, whole powers alike.
-double magnitude(Random& random, int least, int most) {
-  return powerOfTen(least + static_cast<int>(random.below(static_cast<uint32_t>(most - least + 1))));
-}
-
-Vec3 scaled(const Vec3& v, double factor) {
-  return {factor * v[0], factor * v[1], factor * v[2]};
-}
-
-/// Whole numbers of -limit to limit.
-Vec3 wholeVector(Random& random, uint32_t limit) {
-  Vec3 v{};
-  for (double& value : v) value = double(random.below(2 * limit + 1)) - limit;
-  return v;
-}
-
-Vec3 axis(Random& random) {
-  Vec3 v{};
-  v[random.below(3)] = random.oneIn(2) ? 1 : -1;
-  return v;
-}
 
 /// A whole direction, along an axis half of the time.
 Vec3 wholeDirection(Random& random) {
@@ -44,32 +21,6 @@ Vec3 wholeDirection(Random& random) {
   Vec3 v{};
   while (v == Vec3{}) v = wholeVector(random, 2);
   return v;
-}
-
-Vec3 turned(const std::array<double, 9>& rotation, const Vec3& v) {
-  Vec3 out{};
-  for (size_t row = 0; row < 3; ++row) {
-    for (size_t k = 0; k < 3; ++k) out[row] += rotation[3 * row + k] * v[k];
-  }
-  return out;
-}
-
-std::array<double, 9> product(const std::array<double, 9>& p, const std::array<double, 9>& q) {
-  std::array<double, 9> out{};
-  for (size_t i = 0; i < 9; ++i) {
-    for (size_t k = 0; k < 3; ++k) out[i] += p[i / 3 * 3 + k] * q[3 * k + i % 3];
-  }
-  return out;
-}
-
-/// About a random axis, by up to about half of `angle`.
-std::array<double, 9> slightRotation(Random& random, double angle) {
-  const double half = 0.5 * angle;
-  const Vec3 v = random.inBox({-half, -half, -half}, {half, half, half});
-  const double w = 1 / std::sqrt(1 + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), x = v[0] * w, y = v[1] * w, z = v[2] * w;
-  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
 }
 
 struct Making {
@@ -129,37 +80,6 @@ void scatter(Making& making, Shape shape, const Setting& setting = {}) {
     const Vec3 direction = random.direction();
     making.ask(mesh, pose, direction, random.oneIn(10) ? 0 : setting.scale * random.uniform(0, 12));
   }
-}
-
-/// Two meshes, and where the second is when they interlock and the first is at the origin.
-struct Interlocked {
-  MeshData first, second;
-  std::array<double, 9> rotation;
-  Vec3 offset;
-};
-
-/// A comb of narrower teeth that hang down between those of makeComb.
-MeshData looseComb() {
-  MeshData mesh = makeBox({3, 0.3, 0.3});
-  for (double x : {-1.0, 0.0, 1.0}) append(mesh, makeBox({0.3, 0.3, 1.5}), {x, 0, -0.9});
-  return mesh;
-}
-
-MeshData smallBall() {
-  MeshData ball = makeUvSphere(8, 12);
-  for (float& value : ball.positions) value *= 0.5f;
-  return ball;
-}
-
-std::vector<Interlocked> interlockedShapes() {
-  constexpr std::array<double, 9> kOnEdge{1, 0, 0, 0, 0, -1, 0, 1, 0};
-  return {{makeTorus(1, 0.2, 24, 12), makeRod(0.4, 6, 20), kUpright, {0, 0, 0.1}},
-          {makeTorus(1, 0.15, 24, 10), makeTorus(1, 0.15, 24, 10), kOnEdge, {1, 0, 0}},
-          {makeHook(4, 1.5, 1, 0.3), makeBox({0.3, 3, 0.3}), kUpright, {0.6, 0, -1.3}},
-          {makeCup(1, 2, 0.2, 24), smallBall(), kUpright, {0, 0, 1}},
-          {makeComb(4, 1, 1.5, 0.3), looseComb(), kUpright, {0, 0, 1.9}},
-          {makeTeapot(), smallBall(), kUpright, {0, 0, 1.2}},
-          {makeKeyhole(), makeKey(), kUpright, {0, 0, 0.5}}};
 }
 
 void interlock(Making& making) {

@@ -6,6 +6,23 @@
 
 namespace radar::tools {
 
+namespace {
+
+/// A comb of narrower teeth that hang down between those of makeComb.
+MeshData looseComb() {
+  MeshData mesh = makeBox({3, 0.3, 0.3});
+  for (double x : {-1.0, 0.0, 1.0}) append(mesh, makeBox({0.3, 0.3, 1.5}), {x, 0, -0.9});
+  return mesh;
+}
+
+MeshData smallBall() {
+  MeshData ball = makeUvSphere(8, 12);
+  for (float& value : ball.positions) value *= 0.5f;
+  return ball;
+}
+
+}  // namespace
+
 MeshData convexShape(Random& random) {
   const uint32_t segments = 3 + random.below(16);
   const double size = random.uniform(0.01, 0.5);
@@ -48,11 +65,8 @@ MeshData openShape(Random& random) {
       const std::array<std::array<double, 2>, 2> profile{{{random.uniform(0.2, 1), -1}, {random.uniform(0.2, 1), 1}}};
       return makeLathe(profile, false, 3 + random.below(16));
     }
-    case 2: {  // a triangle
-      MeshData mesh{"triangle", {}, {0, 1, 2}};
-      for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
-      return mesh;
-    }
+    case 2:
+      return triangleShape(random);
     default:
       return makeSheet(1, 0, random);
   }
@@ -91,6 +105,61 @@ MeshData anyShape(Random& random) {
     default:
       return soupShape(random);
   }
+}
+
+MeshData triangleShape(Random& random) {
+  MeshData mesh{"triangle", {}, {0, 1, 2}};
+  for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
+  return mesh;
+}
+
+MeshData degenerateShape(uint32_t kind, Random& random) {
+  MeshData mesh{"degenerate", {}, {}};
+  for (uint32_t count = 1 + random.below(6); count > 0; --count) {
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) corner = random.inBox({-1, -1, -1}, {1, 1, 1});
+    const auto between = [&](double part, double off) {
+      Vec3 p{};
+      for (size_t k = 0; k < 3; ++k) {
+        p[k] = corners[0][k] + part * (corners[1][k] - corners[0][k]) + off * (corners[2][k] - corners[0][k]);
+      }
+      return p;
+    };
+    if (kind == 0) corners[1] = corners[2] = corners[0];
+    if (kind == 1) corners[2] = between(random.uniform(-0.5, 1.5), 0);
+    if (kind == 2) corners[2] = corners[random.below(2)];
+    if (kind == 3) corners = {between(0, 0), between(1000, 0), between(1000, 1e-6)};
+    if (kind == 4) corners[2] = between(0.5, magnitude(random, -9, -4));
+    MeshData triangle{"", {}, {0, 1, 2}};
+    for (const Vec3& corner : corners) {
+      for (double value : corner) triangle.positions.push_back(static_cast<float>(value));
+    }
+    for (int copy = kind == 5 ? 3 : 1; copy > 0; --copy) append(mesh, triangle, {});
+  }
+  return mesh;
+}
+
+Block block(Random& random) {
+  switch (random.below(4)) {
+    case 0:
+      return {makeBox({1, 1, 1}), {0.5, 0.5, 0.5}};
+    case 1:
+      return {makeBox({2, 1, 1}), {1, 0.5, 0.5}};
+    case 2:
+      return {makePlate(2, 2, 1), {1, 1, 0.5}};
+    default:
+      return {makeUvSphere(2, 4), {1, 1, 1}};  // an octahedron: corners first
+  }
+}
+
+std::vector<Interlocked> interlockedShapes() {
+  return {{"ring on peg", makeTorus(1, 0.2, 24, 12), makeRod(0.4, 6, 20), kUpright, {0, 0, 0.1}},
+          {"ring through ring", makeTorus(1, 0.15, 24, 10), makeTorus(1, 0.15, 24, 10), kOnEdge, {1, 0, 0}},
+          {"hook behind bar", makeHook(4, 1.5, 1, 0.3), makeBox({0.3, 3, 0.3}), kUpright, {0.6, 0, -1.3}},
+          {"ball in cup", makeCup(1, 2, 0.2, 24), smallBall(), kUpright, {0, 0, 1}},
+          {"comb in comb", makeComb(4, 1, 1.5, 0.3), looseComb(), kUpright, {0, 0, 1.9}},
+          {"ball in teapot", makeTeapot(), smallBall(), kUpright, {0, 0, 1.2}},
+          {"key in keyhole", makeKeyhole(), makeKey(), kUpright, {0, 0, 0.5}}};
 }
 
 }  // namespace radar::tools

@@ -1,7 +1,9 @@
 // Random shapes of a kind, for the families: about 2 wide, around the origin.
 #pragma once
 
-#include "workloads/random.h"
+#include <vector>
+
+#include "workloads/placement.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -15,5 +17,26 @@ MeshData crossingShape(Random& random);
 MeshData soupShape(Random& random);
 /// One of the kinds above.
 MeshData anyShape(Random& random);
+
+MeshData triangleShape(Random& random);
+/// 1 to 6 triangles that are, by `kind` 0 to 5, points, segments, of a doubled corner, spikes, slivers, held three
+/// times.
+MeshData degenerateShape(uint32_t kind, Random& random);
+
+/// A shape whose faces, edges and corners lie at whole halves, and how far it reaches along each axis.
+struct Block {
+  MeshData mesh;
+  Vec3 reach;
+};
+Block block(Random& random);
+
+/// Two meshes, and where the second is when they interlock and the first is at the origin.
+struct Interlocked {
+  const char* name;
+  MeshData first, second;
+  Rotation rotation;
+  Vec3 offset;
+};
+std::vector<Interlocked> interlockedShapes();
 
 }  // namespace radar::tools

@@ -38,6 +38,27 @@ std::vector<Batch> batchesOf(const Workload& workload) {
   return batches;
 }
 
+void replaceBy(const Workload& workload, uint32_t scene, Scene& to) {
+  for (ObjectId id = 0; id < to.objectLimit(); ++id) {
+    if (to.hasObject(id)) to.removeObject(id);
+  }
+  for (MeshId id = 0; id < to.meshLimit(); ++id) {
+    if (to.hasMesh(id)) to.removeMesh(id);
+  }
+  for (const MeshData& mesh : workload.meshes) to.addMesh(mesh.positions, mesh.indices);
+  const SceneSpec& spec = workload.scenes[scene];
+  const std::map<uint32_t, uint32_t> masks(spec.masks.begin(), spec.masks.end());
+  uint32_t object = 0;
+  const auto add = [&](const std::vector<Instance>& instances) {
+    for (const Instance& instance : instances) {
+      const auto mask = masks.find(object++);
+      to.addObject({instance.mesh, instance.worldFromMesh, mask == masks.end() ? ~0u : mask->second});
+    }
+  };
+  if (spec.base) add(workload.scenes[*spec.base].instances);
+  add(spec.instances);
+}
+
 ScenePlayer::ScenePlayer(const Workload& workload) : workload_(workload) {
   for (const MeshData& mesh : workload.meshes) scene_.addMesh(mesh.positions, mesh.indices);
 }

@@ -77,6 +77,9 @@ struct Batch {
 };
 std::vector<Batch> batchesOf(const Workload& workload);
 
+/// Makes `to` hold the workload's meshes and one of its scenes, under the workload's numbers, and nothing else.
+void replaceBy(const Workload& workload, uint32_t scene, Scene& to);
+
 /// Plays a workload's scenes in one radar::Scene, whose mesh and object ids are the workload's numbers. From one scene
 /// to the next, objects that are the same stay untouched and those that only moved are moved.
 class ScenePlayer {

@@ -1,10 +1,10 @@
-#include "agreement/promises.h"
+#include "stability/promises.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace radar::test {
+namespace radar::tools {
 
 namespace {
 
@@ -66,19 +66,6 @@ double largest(const Corners& corners) {
   return size;
 }
 
-/// Longest edge of the box around the placed mesh.
-double sizeOf(const MeshView& mesh, const Pose& pose) {
-  Vector lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-  for (uint32_t vertex : mesh.indices) {
-    const Vector p = place(pose, &mesh.positions[3 * size_t{vertex}]);
-    for (size_t k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], p[k]);
-      hi[k] = std::max(hi[k], p[k]);
-    }
-  }
-  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
-}
-
 void judgePointAndNormal(const Scene& scene, const Query& query, const Result& result, const Result& exact,
                          Verdict& verdict) {
   const Object& object = scene.object(result.object);
@@ -136,7 +123,7 @@ Verdict judgeContact(const Scene& scene, const Query& query, const Result& resul
   verdict.wrongStatus = result.status != exact.status || result.detected != Detected::yes;
   verdict.wrongPair =
       result.object != exact.object || result.triB != exact.triB || result.triA != exact.triA || result.resolution != 0;
-  const double size = std::max(sizeOf(scene.mesh(query.mesh), query.worldFromMesh), exact.t);
+  const double size = std::max(sensorSize(scene, query), exact.t);
   verdict.error = result.t == exact.t ? 0 : std::abs(result.t - exact.t) / size;
   verdict.late = !(verdict.error <= 1e-9);
   // The reference's own bracket is a few roundings wide.
@@ -167,4 +154,23 @@ Verdict judgeBracket(const Query& query, const Result& result, const Result& exa
   return verdict;
 }
 
-}  // namespace radar::test
+Verdict judgeSampled(const Query& query, const Result& result, const Result& exact) {
+  Verdict verdict = judgeBracket(query, result, exact);
+  if (result.status != Status::clear && result.lo != 0) verdict.bracket = true;
+  return verdict;
+}
+
+double sensorSize(const Scene& scene, const Query& query) {
+  const MeshView mesh = scene.mesh(query.mesh);
+  Vector lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t vertex : mesh.indices) {
+    const Vector p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+    for (size_t k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], p[k]);
+      hi[k] = std::max(hi[k], p[k]);
+    }
+  }
+  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
+}
+
+}  // namespace radar::tools

@@ -6,7 +6,7 @@
 
 #include "radar/radar.h"
 
-namespace radar::test {
+namespace radar::tools {
 
 struct Verdict {
   bool missed = false;       ///< clear where there is a contact within D
@@ -32,4 +32,10 @@ Verdict judgeContact(const Scene& scene, const Query& query, const Result& resul
 /// The same for mode bounded: `late`, `wrongPair`, `point` and `normal` are not judged, and undecided is an answer.
 Verdict judgeBracket(const Query& query, const Result& result, const Result& exact);
 
-}  // namespace radar::test
+/// The same for mode sampled, whose `lo` is 0 and which may see nothing: then `unanswered` is not set either.
+Verdict judgeSampled(const Query& query, const Result& result, const Result& exact);
+
+/// Greatest extent of the placed sensor's box.
+double sensorSize(const Scene& scene, const Query& query);
+
+}  // namespace radar::tools

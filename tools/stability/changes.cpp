@@ -1,0 +1,138 @@
+#include "stability/changes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "workloads/same_contact.h"
+#include "workloads/stability.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr std::array kAsked{Method::sampled, Method::bounded, Method::contact};
+
+/// The answer to a way from the answers to its two parts, `first` long the first.
+Result joined(const Result& one, const Result& two, double first) {
+  if (meets(one)) return one;
+  Result result = two;
+  const bool clear = two.status == Status::clear;
+  if (one.status == Status::clear) {
+    if (clear) return result;
+    // The sums round.
+    result.lo = std::nextafter(first + two.lo, 0);
+    result.hi = std::nextafter(first + two.hi, INFINITY);
+    return result;
+  }
+  result.lo = one.lo;
+  if (clear) {  // the second part knows of nothing, the first is undecided
+    result = one;
+  } else {
+    result.hi = std::nextafter(first + two.hi, INFINITY);
+  }
+  return result;
+}
+
+class Comparing {
+ public:
+  Comparing(const Device& device, const ChangeSettings& settings) : sweeper_(device, scene_), settings_(settings) {}
+
+  /// By method, by case.
+  using Answers = std::array<std::vector<Result>, kAsked.size()>;
+  Answers answer(const std::vector<StabilityCase>& cases) {
+    const Workload workload = workloadOf(cases);
+    replaceBy(workload, 0, scene_);
+    std::vector<Query> queries;
+    for (const QuerySpec& spec : workload.queries) queries.push_back(toQuery(spec, Mode::contact));
+    Answers answers;
+    for (size_t m = 0; m < kAsked.size(); ++m) {
+      answers[m] = answersBy(kAsked[m], sweeper_, queries, settings_.resolution);
+    }
+    return answers;
+  }
+
+  Answers answerChanged(Change change, const std::vector<StabilityCase>& cases, Random& random) {
+    std::vector<StabilityCase> changed, rest;
+    for (const StabilityCase& made : cases) {
+      if (change == Change::moved) changed.push_back(movedTogether(made, random));
+      if (change == Change::swapped) changed.push_back(changedPlaces(made));
+      if (change == Change::cut) changed.push_back(cutInTwo(made, random));
+      if (change == Change::farObjects) changed.push_back(withFarObjects(made, random));
+      if (change != Change::split) continue;
+      const std::array<StabilityCase, 2> parts = splitWay(made, random);
+      changed.push_back(parts[0]);
+      rest.push_back(parts[1]);
+    }
+    Answers answers = answer(changed);
+    if (change != Change::split) return answers;
+    const Answers second = answer(rest);
+    for (size_t m = 0; m < kAsked.size(); ++m) {
+      for (size_t i = 0; i < cases.size(); ++i) {
+        answers[m][i] = joined(answers[m][i], second[m][i], changed[i].distance);
+      }
+    }
+    return answers;
+  }
+
+ private:
+  Scene scene_;
+  Sweeper sweeper_;
+  const ChangeSettings& settings_;
+};
+
+}  // namespace
+
+const char* nameOf(Change change) {
+  constexpr std::array<const char*, kChanges> kNames{"everything moved together", "sensor and object swapped",
+                                                     "triangles cut in two", "far objects added", "D split in two"};
+  return kNames[static_cast<size_t>(change)];
+}
+
+bool agree(const Result& one, const Result& other) {
+  if (meets(one) && meets(other)) return one.lo <= other.hi && other.lo <= one.hi;
+  if (meets(one) || meets(other)) {
+    const Result& found = meets(one) ? one : other;
+    const Result& missing = meets(one) ? other : one;
+    return missing.status == Status::undecided && missing.lo <= found.hi;
+  }
+  return one.status != Status::invalid && other.status != Status::invalid;
+}
+
+std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings& settings,
+                                      const std::function<void(const std::string&)>& onBroken,
+                                      const std::function<void(uint64_t)>& onProgress) {
+  Comparing comparing(device, settings);
+  std::vector<ChangeRow> rows;
+  for (size_t c = 0; c < kChanges; ++c) {
+    for (const Method method : kAsked) rows.push_back({static_cast<Change>(c), method, 0, 0, 0});
+  }
+  for (uint32_t next = 0; next < settings.cases; next += kCasesPerScene) {
+    std::vector<StabilityCase> cases;
+    const uint32_t end = std::min(settings.cases, next + kCasesPerScene);
+    for (uint32_t i = next; i < end; ++i) {
+      Random random(settings.seed * 1'000'003 + i);
+      cases.push_back(dyadicCase(random));
+    }
+    Random random(settings.seed * 7'919 + next);
+    const Comparing::Answers before = comparing.answer(cases);
+    for (size_t c = 0; c < kChanges; ++c) {
+      const Comparing::Answers after = comparing.answerChanged(static_cast<Change>(c), cases, random);
+      for (size_t m = 0; m < kAsked.size(); ++m) {
+        ChangeRow& row = rows[c * kAsked.size() + m];
+        for (size_t i = 0; i < cases.size(); ++i) {
+          ++row.cases;
+          row.contacts += meets(before[m][i]);
+          const bool undecided = kAsked[m] == Method::contact && after[m][i].status == Status::undecided;
+          if (agree(before[m][i], after[m][i]) && !undecided) continue;
+          ++row.broken;
+          onBroken(std::string(nameOf(row.change)) + ", " + nameOf(row.method) + ", case " + std::to_string(next + i));
+        }
+      }
+    }
+    onProgress(end - next);
+  }
+  return rows;
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,71 @@
+#include "stability/steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/reference.h"
+#include "stability/promises.h"
+#include "workloads/stability.h"
+
+namespace radar::tools {
+
+namespace {
+
+/// The query again and again, its sensor a step further each time.
+void appendSteps(std::vector<Query>& queries, const Query& first, const Vec3& step, uint32_t count) {
+  for (uint32_t i = 0; i <= count; ++i) {
+    Query query = first;
+    for (size_t k = 0; k < 3; ++k) query.worldFromMesh.m[4 * k + 3] += i * step[k];
+    queries.push_back(std::move(query));
+  }
+}
+
+void count(StepRow& row, const Result& before, const Result& after, const Result& exactBefore, const Result& exactAfter,
+           double size) {
+  if (!meets(exactBefore) || !meets(exactAfter)) return;
+  ++row.steps;
+  row.flips += meets(before) != meets(after);
+  if (!meets(before) || !meets(after)) return;
+  const double own = std::abs(after.t - before.t), due = std::abs(exactAfter.t - exactBefore.t);
+  row.excess = std::max(row.excess, (own - due) / std::max(size, exactAfter.t));
+}
+
+}  // namespace
+
+std::vector<StepRow> measureSteps(const Device& device, const StepSettings& settings,
+                                  const std::function<void(uint64_t)>& onProgress) {
+  Scene scene;
+  Sweeper sweeper(device, scene);
+  reference::Reference reference(scene);
+  std::vector<StepRow> rows;
+  for (const StabilityFamily& family : stabilityFamilies()) {
+    const size_t firstRow = rows.size();
+    for (size_t m = 0; m < kMethods; ++m) rows.push_back({family.name, static_cast<Method>(m), 0, 0, 0});
+    for (uint64_t next = 0; next < settings.cases; next += kCasesPerScene) {
+      std::vector<StabilityCase> cases;
+      const uint64_t end = std::min<uint64_t>(settings.cases, next + kCasesPerScene);
+      for (uint64_t i = next; i < end; ++i) cases.push_back(stabilityCase(family, i, settings.seed));
+      const Workload workload = workloadOf(cases);
+      replaceBy(workload, 0, scene);
+      Random random(settings.seed * 7'919 + next);
+      std::vector<Query> queries;
+      for (const QuerySpec& spec : workload.queries) {
+        const Query query = toQuery(spec, Mode::contact);
+        const Vec3 step = scaled(random.direction(), settings.size * sensorSize(scene, query));
+        appendSteps(queries, query, step, settings.steps);
+      }
+      const std::vector<Result> exact = reference.run(queries);
+      for (size_t m = 0; m < kMethods; ++m) {
+        const std::vector<Result> results = answersBy(static_cast<Method>(m), sweeper, queries, settings.resolution);
+        for (size_t i = 1; i < queries.size(); ++i) {
+          if (i % (settings.steps + 1) == 0) continue;
+          count(rows[firstRow + m], results[i - 1], results[i], exact[i - 1], exact[i], sensorSize(scene, queries[i]));
+        }
+      }
+      onProgress(end - next);
+    }
+  }
+  return rows;
+}
+
+}  // namespace radar::tools

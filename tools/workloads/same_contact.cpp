@@ -1,0 +1,131 @@
+#include "workloads/same_contact.h"
+
+#include <cmath>
+#include <utility>
+
+#include "workloads/family_shapes.h"
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr double kGrid = 0x1p-8;
+
+MeshData onGrid(MeshData mesh) {
+  for (float& value : mesh.positions) value = static_cast<float>(std::round(value / kGrid) * kGrid);
+  return mesh;
+}
+
+Vec3 wholeLength(Random& random) {
+  constexpr std::array<Vec3, 6> kWhole{{{0, 0, 1}, {0, 3, 4}, {0, 5, 12}, {1, 2, 2}, {2, 3, 6}, {1, 4, 8}}};
+  const Rotation rotation = quarterTurns(random);
+  return turned(rotation, kWhole[random.below(kWhole.size())]);
+}
+
+double lengthOf(const Vec3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+void bake(PlacedMesh& placed, const Vec3& offset) {
+  MeshData moved{placed.mesh.name, {}, {}};
+  append(moved, placed.mesh, offset);
+  placed.mesh = std::move(moved);
+}
+
+MeshData cut(const MeshData& mesh, Random& random) {
+  MeshData out{mesh.name, mesh.positions, {}};
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const size_t k = random.below(3);
+    const uint32_t a = mesh.indices[i + k], b = mesh.indices[i + (k + 1) % 3], c = mesh.indices[i + (k + 2) % 3];
+    if (random.oneIn(2)) {
+      out.indices.insert(out.indices.end(), {a, b, c});
+      continue;
+    }
+    const uint32_t middle = out.vertexCount();
+    for (size_t axis = 0; axis < 3; ++axis) {
+      out.positions.push_back(0.5f * (out.positions[3 * b + axis] + out.positions[3 * c + axis]));
+    }
+    out.indices.insert(out.indices.end(), {a, b, middle, a, middle, c});
+  }
+  return out;
+}
+
+}  // namespace
+
+StabilityCase dyadicCase(Random& random) {
+  StabilityCase made;
+  const auto placed = [&](const Vec3& where) {
+    MeshData mesh = onGrid(anyShape(random));
+    const double size = random.oneIn(3) ? 2 : random.oneIn(2) ? 0.5 : 1;
+    const Rotation rotation = quarterTurns(random);
+    return PlacedMesh{std::move(mesh), makePose(rotation, {size, size, size}, where)};
+  };
+  made.direction = wholeLength(random);
+  const double steps = random.below(96);
+  const Vec3 aside = scaled(wholeVector(random, 6), 0.25);
+  Vec3 where = scaled(made.direction, 0.0625 * steps);
+  for (size_t k = 0; k < 3; ++k) where[k] += aside[k];
+  made.sensor = placed({});
+  made.objects.push_back(placed(where));
+  made.distance = 0.0625 * lengthOf(made.direction) * (steps + random.below(48));
+  return made;
+}
+
+StabilityCase movedTogether(const StabilityCase& made, Random& random) {
+  StabilityCase out = made;
+  const Vec3 offset = scaled(wholeVector(random, 1000), 0.25);
+  if (random.oneIn(2)) {
+    place(out, quarterTurns(random), offset);
+    return out;
+  }
+  // In the vertices: each pose turns the offset back before, so that the world moves alike.
+  const auto bakeBack = [&](PlacedMesh& placed) {
+    bake(placed, offset);
+    for (size_t row = 0; row < 3; ++row) {
+      double* r = &placed.worldFromMesh.m[4 * row];
+      r[3] += offset[row] - (r[0] * offset[0] + r[1] * offset[1] + r[2] * offset[2]);
+    }
+  };
+  bakeBack(out.sensor);
+  for (PlacedMesh& object : out.objects) bakeBack(object);
+  return out;
+}
+
+StabilityCase changedPlaces(const StabilityCase& made) {
+  StabilityCase out = made;
+  std::swap(out.sensor, out.objects.at(0));
+  out.direction = scaled(out.direction, -1);
+  return out;
+}
+
+StabilityCase cutInTwo(const StabilityCase& made, Random& random) {
+  StabilityCase out = made;
+  out.sensor.mesh = cut(made.sensor.mesh, random);
+  for (PlacedMesh& object : out.objects) object.mesh = cut(object.mesh, random);
+  return out;
+}
+
+StabilityCase withFarObjects(const StabilityCase& made, Random& random) {
+  StabilityCase out = made;
+  const double beyond = 1000 + 2 * made.distance;
+  for (uint32_t i = 1 + random.below(5); i > 0; --i) {
+    const Vec3 where = scaled(random.direction(), beyond);
+    MeshData mesh = anyShape(random);
+    out.objects.push_back({std::move(mesh), makePose(kUpright, kFull, where)});
+  }
+  return out;
+}
+
+std::array<StabilityCase, 2> splitWay(const StabilityCase& made, Random& random) {
+  const double length = lengthOf(made.direction);
+  const auto steps = static_cast<uint32_t>(made.distance / (0.0625 * length));
+  const double part = 0.0625 * random.below(steps + 1);
+  std::array<StabilityCase, 2> parts{made, made};
+  parts[0].distance = part * length;
+  parts[1].distance = made.distance - parts[0].distance;
+  for (size_t k = 0; k < 3; ++k) parts[1].sensor.worldFromMesh.m[4 * k + 3] += part * made.direction[k];
+  return parts;
+}
+
+}  // namespace radar::tools

@@ -1,5 +1,3 @@
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include "batch/whole_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
+#include "cyber_radar/origin.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
@@ -67,13 +66,6 @@ std::vector<ScalePoint> filePoints(const Options& options) {
   if (options.sensors.empty()) points.push_back(firstOf(whole, 0));
   for (const uint32_t most : options.sensors) points.push_back(firstOf(whole, most));
   return points;
-}
-
-std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
-  return text;
 }
 
 std::vector<uint32_t> numbersOf(const std::string& text, size_t devices) {

@@ -34,8 +34,8 @@ LogLine lineFor(const std::string& family, const std::string& name) {
 std::string tipOf(const Cell& cell) {
   std::string text = cell.method + print(": %.4g us a query", cell.us);
   if (cell.threads > 1) text += print(", %u threads", cell.threads);
-  text += print("; worst error %.3g of the sensor's size; of %u contacts %u missed, %u false hits", cell.errorWorst,
-                cell.contacts, cell.misses, cell.falseHits);
+  text += print("; of %u contacts %u missed, %u false hits", cell.contacts, cell.misses, cell.falseHits);
+  if (!std::isnan(cell.errorWorst)) text += print("; worst error %.3g of the sensor's size", cell.errorWorst);
   if (cell.certified) text += print("; brackets violated: %u", cell.violations);
   return text;
 }
@@ -79,13 +79,14 @@ std::vector<LogLine> timeLines(const Record& record, const std::string& section,
   return lines;
 }
 
-Drawing resolutionDrawing(const Record& record, const WorkloadNote& workload) {
+std::vector<Drawing> resolutionDrawings(const Record& record, const WorkloadNote& workload) {
   LogChart chart;
   chart.title = "Time against resolution: " + workload.about;
   chart.xName = "pixels, or rays, of the longer side";
   chart.yName = "microseconds a query";
   for (const Cell* cell : shownCells(record, "front", workload.name)) {
-    if (cell->family != "sampled" && cell->family != "bounded" && cell->family != "Embree rays") continue;
+    const bool hasPixels = cell->family == "sampled" || cell->family == "bounded" || cell->family == "Embree rays";
+    if (!hasPixels || cell->size == 0) continue;
     auto line = std::find_if(chart.lines.begin(), chart.lines.end(),
                              [&](const LogLine& one) { return one.name == cell->family; });
     if (line == chart.lines.end()) line = chart.lines.insert(line, lineFor(cell->family, cell->family));
@@ -96,7 +97,8 @@ Drawing resolutionDrawing(const Record& record, const WorkloadNote& workload) {
     for (const LogPoint& point : line.points) points.push_back({point.x, point.y});
     if (points.size() > 1) line.name += print(" (^%.2f)", slopeOf(points));
   }
-  return {"growth-resolution", chart.title, {}, logChart(chart)};
+  if (chart.lines.empty()) return {};
+  return {{"growth-resolution", chart.title, {}, logChart(chart)}};
 }
 
 }  // namespace
@@ -159,7 +161,9 @@ std::vector<Drawing> growthDrawings(const Record& record) {
     if (chart.lines.empty()) continue;
     drawings.push_back({std::string("growth-") + axis.name, axis.title, {}, logChart(chart)});
   }
-  if (!record.workloads.empty()) drawings.push_back(resolutionDrawing(record, record.workloads.front()));
+  if (!record.workloads.empty()) {
+    for (const Drawing& drawing : resolutionDrawings(record, record.workloads.front())) drawings.push_back(drawing);
+  }
   for (Drawing& drawing : drawings) {
     drawing.notes.push_back("In brackets: the exponent p of time ~ x^p, fitted by least squares of logarithms.");
   }

@@ -178,8 +178,8 @@ std::vector<std::string> frontFindings(const Record& record, const std::string& 
     findings.push_back("Mode contact is the fastest without a wrong answer: " + timeOf(contact->us) + " a query.");
   }
   if (const Cell* reference = methodIn(cells, "reference"); reference != nullptr && *fastest != reference) {
-    findings.push_back("The exact search on the CPU takes " + timeOf(reference->us) +
-                       ": mode contact is " + against(contact->us, reference->us) + ".");
+    findings.push_back("The exact search on the CPU takes " + timeOf(reference->us) + ": mode contact is " +
+                       against(contact->us, reference->us) + ".");
   }
   return findings;
 }

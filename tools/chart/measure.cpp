@@ -89,19 +89,6 @@ void inThreads(uint32_t threads, size_t count, const Body& body) {
   for (std::thread& other : others) other.join();
 }
 
-Cell cellOf(const Case& which, const Method& method) {
-  Cell cell;
-  cell.section = which.section;
-  cell.workload = which.name;
-  cell.x = which.x;
-  cell.method = method.name();
-  cell.family = method.family;
-  cell.size = method.size;
-  cell.threads = method.threads;
-  cell.queries = static_cast<uint32_t>(which.workload.queries.size());
-  return cell;
-}
-
 // The whole question, whatever the file says of modes.
 Query asked(const QuerySpec& spec, Mode mode, uint32_t resolution) {
   Query query = toQuery(spec, mode, resolution);
@@ -180,22 +167,61 @@ Truth truthOf(const Workload& workload) {
   return truth;
 }
 
-Cell measureEngine(const Case& which, const Method& method, const Truth& truth, const Device& device,
-                   const Timing& timing) {
-  const Workload& workload = which.workload;
+struct Bench::Engine {
+  Engine(const Workload& workload, const Device& device, bool withSelect)
+      : select(withSelect), player(workload), sweeper(device, shown(), {.select = withSelect}) {
+    sweeper.sync();
+    prepareMs = msSince(start);
+  }
+  const Scene& shown() {
+    player.show(0);
+    return player.scene();
+  }
+
+  Clock::time_point start = Clock::now();
+  double prepareMs = 0;
+  bool select;
+  ScenePlayer player;
+  Sweeper sweeper;
+};
+
+Bench::Bench(const Case& which, const Device& device, const Timing& timing)
+    : which_(which), device_(device), timing_(timing), truth_(truthOf(which.workload)) {}
+
+Bench::~Bench() = default;
+
+Cell Bench::measure(const Method& method, const PeerRow* row) {
+  if (row != nullptr) return measurePeer(method, *row);
+  return method.family == "reference" ? measureReference(method) : measureEngine(method);
+}
+
+Cell Bench::cellOf(const Method& method) const {
+  Cell cell;
+  cell.section = which_.section;
+  cell.workload = which_.name;
+  cell.x = which_.x;
+  cell.method = method.name();
+  cell.family = method.family;
+  cell.size = method.size;
+  cell.threads = method.threads;
+  cell.queries = static_cast<uint32_t>(which_.workload.queries.size());
+  return cell;
+}
+
+Cell Bench::measureEngine(const Method& method) {
+  const Workload& workload = which_.workload;
   const Mode mode = method.family == "contact"   ? Mode::contact
                     : method.family == "bounded" ? Mode::bounded
                                                  : Mode::sampled;
-  Cell cell = cellOf(which, method);
+  Cell cell = cellOf(method);
   cell.certified = mode != Mode::sampled;
-  const Clock::time_point start = Clock::now();
-  ScenePlayer player(workload);
-  player.show(0);
-  Sweeper sweeper(device, player.scene(), {.select = method.family != "drawing all"});
-  sweeper.sync();
-  cell.prepareMs = msSince(start);
+  const bool select = method.family != "drawing all";
+  if (!engine_ || engine_->select != select) engine_ = std::make_unique<Engine>(workload, device_, select);
+  cell.prepareMs = engine_->prepareMs;
+  ScenePlayer& player = engine_->player;
+  Sweeper& sweeper = engine_->sweeper;
   std::vector<Result> results(workload.queries.size());
-  timePasses(cell, workload, timing,
+  timePasses(cell, workload, timing_,
              {[&](uint32_t scene) {
                 player.show(scene);
                 sweeper.sync();
@@ -206,14 +232,14 @@ Cell measureEngine(const Case& which, const Method& method, const Truth& truth, 
               }});
   std::vector<Told> told;
   for (const Result& result : results) told.push_back(toldBy(result, mode));
-  judge(cell, told, truth.results, truth.sizes);
+  judge(cell, told, truth_.results, truth_.sizes);
   countTiers(cell, results);
   return cell;
 }
 
-Cell measureReference(const Case& which, const Method& method, const Truth& truth, const Timing& timing) {
-  const Workload& workload = which.workload;
-  Cell cell = cellOf(which, method);
+Cell Bench::measureReference(const Method& method) {
+  const Workload& workload = which_.workload;
+  Cell cell = cellOf(method);
   cell.certified = true;
   const Clock::time_point start = Clock::now();
   ScenePlayer player(workload);
@@ -224,7 +250,7 @@ Cell measureReference(const Case& which, const Method& method, const Truth& trut
   cell.prepareMs = msSince(start);
   while (exact.size() < method.threads) exact.push_back(std::make_unique<reference::Reference>(player.scene()));
   std::vector<Result> results(workload.queries.size());
-  timePasses(cell, workload, timing,
+  timePasses(cell, workload, timing_,
              {[&](uint32_t scene) {
                 player.show(scene);
                 for (const auto& one : exact) one->sync();
@@ -237,15 +263,14 @@ Cell measureReference(const Case& which, const Method& method, const Truth& trut
               }});
   std::vector<Told> told;
   for (const Result& result : results) told.push_back(toldBy(result, Mode::contact));
-  judge(cell, told, truth.results, truth.sizes);
+  judge(cell, told, truth_.results, truth_.sizes);
   countTiers(cell, results);
   return cell;
 }
 
-Cell measurePeer(const Case& which, const Method& method, const PeerRow& row, const Truth& truth,
-                 const Timing& timing) {
-  Cell cell = cellOf(which, method);
-  const ChildOutcome outcome = inChild([&] { return castAll(which, method, row, timing); });
+Cell Bench::measurePeer(const Method& method, const PeerRow& row) {
+  Cell cell = cellOf(method);
+  const ChildOutcome outcome = inChild([&] { return castAll(which_, method, row, timing_); });
   cell.failed = outcome.failed;
   if (!cell.failed.empty()) return cell;
   size_t next = 0;
@@ -256,7 +281,7 @@ Cell measurePeer(const Case& which, const Method& method, const PeerRow& row, co
     const double t = outcome.values[next];
     told.push_back({std::isnan(t) ? Told::Kind::none : Told::Kind::contact, t, NAN, NAN});
   }
-  judge(cell, told, truth.results, truth.sizes);
+  judge(cell, told, truth_.results, truth_.sizes);
   return cell;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 
 #include "report/print.h"
@@ -60,21 +61,25 @@ std::string fingerprintOf(const Workload& workload) {
   return print.text();
 }
 
+// A full run measures all sizes, on one thread and on all; others three sizes, on all where the library can.
 std::vector<Method> peerMethods(const PeerRow& row, const std::string& section, const RunSettings& settings) {
+  const auto has = [](const auto& values, const auto& value) {
+    return std::find(values.begin(), values.end(), value) != values.end();
+  };
+  const bool full = settings.extent == Extent::full;
+  if (!has(row.sections, section) || (section == "growth" && !full)) return {};
   std::vector<uint32_t> sizes = row.sizes;
   if (section != "front") {
-    if (!row.grows) return {};
-    const bool hasOurs = std::find(sizes.begin(), sizes.end(), kGrowthSize) != sizes.end();
-    sizes = {hasOurs ? kGrowthSize : sizes.front()};
-  } else if (settings.extent != Extent::full && sizes.size() > 3) {
-    sizes = {sizes.front(), sizes[sizes.size() / 2], sizes.back()};
+    sizes = {has(sizes, kGrowthSize) ? kGrowthSize : sizes.front()};
+  } else if (!full && sizes.size() > 1) {
+    sizes = {16, 64, 256};
   }
   if (settings.extent == Extent::least) sizes.resize(1);
   std::vector<Method> methods;
   for (const uint32_t size : sizes) {
-    methods.push_back({row.family, size, 1, row.library});
-    if (settings.threads > 1 && row.threads)
-      methods.push_back({row.family, size, settings.threads, row.library});
+    const uint32_t most = row.threads ? settings.threads : 1;
+    if (full || most == 1) methods.push_back({row.family, size, 1, row.library});
+    if (most > 1) methods.push_back({row.family, size, most, row.library});
   }
   return methods;
 }
@@ -83,12 +88,6 @@ Timing timingOf(Extent extent) {
   if (extent == Extent::full) return {5, 300};
   if (extent == Extent::quick) return {3, 30};
   return {1, 0};
-}
-
-Cell measured(const Planned& planned, const Truth& truth, const Device& device, const Timing& timing) {
-  if (planned.row != nullptr) return measurePeer(*planned.which, planned.method, *planned.row, truth, timing);
-  if (planned.method.family == "reference") return measureReference(*planned.which, planned.method, truth, timing);
-  return measureEngine(*planned.which, planned.method, truth, device, timing);
 }
 
 }  // namespace
@@ -146,14 +145,14 @@ Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan,
     }
     writeRecord(folder, record);
   };
-  const Case* known = nullptr;
-  Truth truth;
+  std::unique_ptr<Bench> bench;
   for (size_t i = 0; i < plan.size(); ++i) {
     step(plan[i]);
     if (cells[i]) continue;
-    if (known != plan[i].which) truth = truthOf(plan[i].which->workload);
-    known = plan[i].which;
-    cells[i] = measured(plan[i], truth, device, timingOf(settings.extent));
+    if (!bench || &bench->which() != plan[i].which) {
+      bench = std::make_unique<Bench>(*plan[i].which, device, timingOf(settings.extent));
+    }
+    cells[i] = bench->measure(plan[i].method, plan[i].row);
     cells[i]->key = plan[i].key;
     write();
   }

@@ -171,7 +171,7 @@ std::vector<PeerRow> bulletRows() {
        .limits = "the sensor cast triangle by triangle, so it may be of any shape, at the cost of as many casts; no "
                  "certificate; deforming meshes need new trees.",
        .sizes = {0},
-       .grows = false,
+       .sections = {"front"},
        .make = make<true>}};
 }
 

@@ -32,8 +32,8 @@ struct PeerRow {
   std::string library;          ///< with its version
   std::string limits;           ///< what it cannot do, for the reader
   std::vector<uint32_t> sizes;  ///< resolutions or steps; {0}: the row has one member
-  bool grows = true;            ///< fast enough to be measured over Table 1 and growing work too
-  bool threads = true;          ///< it can be used in several threads at once
+  std::vector<std::string> sections{"front", "table1", "growth"};  ///< where it is fast enough to be measured
+  bool threads = true;                                             ///< it can be used in several threads at once
   std::unique_ptr<Peer> (*make)(const Workload& workload, uint32_t size);
 };
 

@@ -17,7 +17,7 @@ constexpr std::array kColours{
     Colour{"grid", "#e3e6ea", "#2c323a"}, Colour{"panel", "#f6f7f9", "#1c2026"}, Colour{"c0", "#0072b2", "#56b4e9"},
     Colour{"c1", "#d55e00", "#e69f00"},   Colour{"c2", "#009e73", "#2bc59a"},    Colour{"c3", "#cc79a7", "#cc79a7"},
     Colour{"c4", "#8a6d00", "#f0e442"},   Colour{"c5", "#56b4e9", "#7f9cff"},    Colour{"c6", "#1b1f24", "#e8eaed"},
-    Colour{"c7", "#b58900", "#ff8a5c"}};
+    Colour{"c7", "#c98500", "#ff8a5c"}};
 constexpr int kLineColours = 8;
 
 std::string withColours(std::string rules, std::string_view Colour::*scheme) {

@@ -75,6 +75,7 @@ class Drawing {
         if (!(point.missed > 0)) y.take(std::max(point.y, chart.floor));
       }
     }
+    if (x.high == 0) x = {1, 10};
     if (y.high == 0) y = {0.1, 1};
     x_ = widened(x);
     y_ = widened(y);
@@ -111,6 +112,12 @@ class Drawing {
     svg_ += print("<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", x, y, style) + escaped(content) + "</text>\n";
   }
 
+  void tickAt(double x) {
+    if (x < x_.low * 0.999 || x > x_.high * 1.001) return;
+    svg_ += print("<path d=\"M%.1f %.1fV%.1f\" class=\"grid\"/>", atX(x), kTop, kHeight - kBottom);
+    text(atX(x), kHeight - kBottom + 18, "middle", power(x));
+  }
+
   void drawGrid() {
     const double decades = std::log10(y_.high / y_.low);
     const double every = decades > 8 ? 1000 : 10;
@@ -118,9 +125,11 @@ class Drawing {
       svg_ += print("<path d=\"M%.1f %.1fH%.1f\" class=\"grid\"/>", kLeft, heightOf(y), kWidth - kRight);
       text(kLeft - 8, heightOf(y) + 4, "end", power(y));
     }
-    for (double x = std::pow(10, std::ceil(std::log10(x_.low) - 1e-9)); x <= x_.high * 1.001; x *= 10) {
-      svg_ += print("<path d=\"M%.1f %.1fV%.1f\" class=\"grid\"/>", atX(x), kTop, kHeight - kBottom);
-      text(atX(x), kHeight - kBottom + 18, "middle", power(x));
+    for (double x = std::pow(10, std::floor(std::log10(x_.low) + 1e-9)); x <= x_.high * 1.001; x *= 10) {
+      tickAt(x);
+      if (x_.high / x_.low > 100) continue;
+      tickAt(2 * x);
+      tickAt(5 * x);
     }
     text(0.5 * (kLeft + kWidth - kRight), kHeight - 8, "middle", chart_.xName);
     svg_ += print("<text transform=\"translate(16 %.1f) rotate(-90)\" class=\"middle\">",
@@ -161,6 +170,7 @@ class Drawing {
           "<path d=\"" + path +
           (line.dashed ? std::string("\" class=\"ideal\"/>\n") : print("\" class=\"line thin c%d\"/>\n", line.colour));
     }
+    for (size_t i = 0; i + 1 < line.points.size(); ++i) keepClear(line.points[i], line.points[i + 1]);
     if (line.dashed) return;
     for (const LogPoint& point : line.points) {
       const double x = atX(point.x), y = atY(point);
@@ -171,6 +181,17 @@ class Drawing {
         svg_ += print("<path d=\"M%.1f %.1fl8 8m0 -8l-8 8\" class=\"cross c%d\"/>", x - 4, y - 4, line.colour);
       }
       taken_.push_back({x - 5, y - 5, x + 5, y + 5});
+    }
+  }
+
+  // Names had better not stand on a line.
+  void keepClear(const LogPoint& from, const LogPoint& to) {
+    constexpr double kStep = 4;
+    const double x = atX(from.x), y = atY(from), dx = atX(to.x) - x, dy = atY(to) - y;
+    const double steps = std::ceil(std::hypot(dx, dy) / kStep);
+    for (double i = 0; i < steps; ++i) {
+      const double u = x + dx * i / steps, v = y + dy * i / steps;
+      taken_.push_back({u - 1.5, v - 1.5, u + 1.5, v + 1.5});
     }
   }
 
@@ -228,7 +249,7 @@ class Drawing {
   }
 
   void labelPoint(const LogLine& line, const LogPoint& point) {
-    constexpr double kSmallOverlap = 12;
+    constexpr double kSmallOverlap = 24;
     if (!point.label.empty()) placeBeside({point}, point.label, print("start small t%d", line.colour), kSmallOverlap);
   }
 

@@ -31,7 +31,7 @@ struct LogChart {
   std::vector<LogPoint> front;  ///< by rising x: the staircase below which there is nothing
 };
 
-/// Needs at least one point.
+/// Points may be none.
 std::string logChart(const LogChart& chart);
 
 }  // namespace radar::tools

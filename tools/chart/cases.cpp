@@ -43,7 +43,7 @@ Workload familyScenes(std::initializer_list<Family> families, Extent extent) {
 std::vector<uint32_t> resolutions(Extent extent) {
   if (extent == Extent::full) return {16, 32, 64, 128, 256, 512, 1024};
   if (extent == Extent::quick) return {16, 64, 256};
-  return {16, 32};
+  return {64, 256};
 }
 
 }  // namespace

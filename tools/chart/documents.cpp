@@ -68,31 +68,31 @@ std::string timesOf(const Record& record, const std::string& method) {
   return print("%.3g to %.3g us a query", us.least, us.most);
 }
 
-// Mode by mode, with the run's numbers.
+// Mode by mode, with the run's numbers: of what it measured.
 std::vector<std::string> adviceOf(const Record& record) {
-  std::vector<std::string> advice;
   const auto worst = [](const Cell& cell) { return cell.errorWorst; };
   const auto missed = [](const Cell& cell) { return 100 * wrongShare(cell); };
+  std::vector<std::string> advice;
+  advice.push_back("**A distance to rely upon: mode `contact`**, the default. " + timesOf(record, "contact") +
+                   print("; worst error over all workloads %.2g of the sensor's size. Use it for time of impact, "
+                         "placement, clearance.",
+                         spreadOf(record, "contact", worst).most));
   advice.push_back(
-      print("**A distance to rely upon: mode `contact`**, the default. Worst error over all workloads %.2g of "
-            "the sensor's size, ",
-            spreadOf(record, "contact", worst).most) +
-      timesOf(record, "contact") + " on this device. Use it for time of impact, placement, clearance.");
+      "**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
+      print(
+          "; worst error %.2g of the sensor's size or less, always on the safe side. Use it where a bracket suffices, "
+          "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
+          spreadOf(record, "bounded 64", worst).most));
   advice.push_back(
-      print("**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels its worst error is %.2g to %.2g "
-            "of the sensor's size, always on the safe side, ",
-            spreadOf(record, "bounded 64", worst).least, spreadOf(record, "bounded 64", worst).most) +
-      timesOf(record, "bounded 64") + ". Use it where a bracket suffices, with `--tolerance`.");
-  advice.push_back(
-      print("**The paper's method: mode `sampled`**. At 64 pixels up to %.1f%% of its answers on a workload "
-            "miss a contact, at 256 up to %.1f%%: more pixels do not mend that. ",
-            spreadOf(record, "sampled 64", missed).most, spreadOf(record, "sampled 256", missed).most) +
-      timesOf(record, "sampled 64") + " at 64. Use it to see what the paper's method sees.");
-  advice.push_back(
-      "**No device, rigid meshes, few queries: mode `reference`**. The exact answer from trees on the CPU, " +
-      timesOf(record, "reference") +
-      ". Where it is faster than mode `contact`, the charts of "
-      "[speed](speed.md) show it.");
+      "**The paper's method: mode `sampled`**. At 64 pixels " + timesOf(record, "sampled 64") +
+      print(
+          "; up to %.1f%% of its answers on a workload miss a contact, at 256 pixels up to %.1f%%. Use it to see what "
+          "the paper's method sees.",
+          spreadOf(record, "sampled 64", missed).most, spreadOf(record, "sampled 256", missed).most));
+  advice.push_back("**No device, or shapes that keep their form and few queries: mode `reference`**. " +
+                   timesOf(record, "reference") +
+                   ", exact, from trees on the CPU. Where it is faster than mode "
+                   "`contact` the sentences under each chart say by how much.");
   return advice;
 }
 

@@ -111,6 +111,17 @@ std::vector<Instance> objectsOf(const Workload& workload, uint32_t scene) {
   return objects;
 }
 
+// The queries, with what their masks leave out named as excluded.
+std::vector<QuerySpec> unmasked(const Workload& workload) {
+  std::vector<QuerySpec> queries = workload.queries;
+  for (QuerySpec& query : queries) {
+    for (const auto& [object, bits] : workload.scenes[query.scene].masks) {
+      if ((bits & query.mask) == 0) query.exclude.push_back(object);
+    }
+  }
+  return queries;
+}
+
 // The numbers that a child hands over, in one order for both ways.
 void eachTime(Cell& cell, const std::function<void(double&)>& visit) {
   for (double* value : {&cell.prepareMs, &cell.us, &cell.usLow, &cell.usHigh, &cell.cpuUs, &cell.sceneUs}) {
@@ -120,6 +131,7 @@ void eachTime(Cell& cell, const std::function<void(double&)>& visit) {
 
 std::vector<double> castAll(const Case& which, const Method& method, const PeerRow& row, const Timing& timing) {
   const Workload& workload = which.workload;
+  const std::vector<QuerySpec> queries = unmasked(workload);
   Cell cell;
   const Clock::time_point start = Clock::now();
   std::vector<std::unique_ptr<Peer>> peers;
@@ -127,7 +139,7 @@ std::vector<double> castAll(const Case& which, const Method& method, const PeerR
   peers[0]->show(objectsOf(workload, 0));
   cell.prepareMs = msSince(start);
   while (peers.size() < method.threads) peers.push_back(row.make(workload, method.size));
-  std::vector<double> told(workload.queries.size(), NAN);
+  std::vector<double> told(queries.size(), NAN);
   std::optional<uint32_t> shown;
   timePasses(cell, workload, timing,
              {[&](uint32_t scene) {
@@ -139,7 +151,7 @@ std::vector<double> castAll(const Case& which, const Method& method, const PeerR
               [&](const Batch& batch) {
                 inThreads(method.threads, batch.queries.size(), [&](uint32_t thread, size_t i) {
                   const uint32_t query = batch.queries[i];
-                  told[query] = peers[thread]->cast(workload.queries[query]).value_or(NAN);
+                  told[query] = peers[thread]->cast(queries[query]).value_or(NAN);
                 });
               }});
   std::vector<double> values{static_cast<double>(cell.passes)};

@@ -18,24 +18,32 @@ constexpr const char* kFormat = "cyber-radar-chart-1";
 
 struct ToJson {
   Json& row;
-  void operator()(const char* name, double value) const { row[name] = std::isfinite(value) ? Json(value) : Json(); }
+  void operator()(const char*, double value) const { row.push_back(std::isfinite(value) ? Json(value) : Json()); }
   template <class Value>
-  void operator()(const char* name, const Value& value) const {
-    row[name] = value;
+  void operator()(const char*, const Value& value) const {
+    row.push_back(value);
   }
 };
 
 struct FromJson {
   const Json& row;
-  void operator()(const char* name, double& value) const {
-    const Json& found = row.at(name);
+  size_t& next;
+  void operator()(const char*, double& value) const {
+    const Json& found = row.at(next++);
     value = found.is_null() ? NAN : found.get<double>();
   }
   template <class Value>
-  void operator()(const char* name, Value& value) const {
-    row.at(name).get_to(value);
+  void operator()(const char*, Value& value) const {
+    row.at(next++).get_to(value);
   }
 };
+
+std::vector<std::string> columnNames() {
+  std::vector<std::string> names;
+  const Cell none;
+  eachColumn(none, [&](const char* name, const auto&) { names.emplace_back(name); });
+  return names;
+}
 
 // Names may hold commas and quotes.
 struct ToCsv {
@@ -70,13 +78,17 @@ std::string jsonOf(const Record& record) {
     json["workloads"].push_back({{"name", note.name}, {"about", note.about}});
   }
   json["notes"] = record.notes;
-  json["cells"] = Json::array();
+  json["columns"] = columnNames();
+  // A line for each cell.
+  std::string text = json.dump(1);
+  text.erase(text.size() - 2);  // the end of the object
+  text += ",\n \"cells\": [";
   for (const Cell& cell : record.cells) {
-    Json row;
+    Json row = Json::array();
     eachColumn(cell, ToJson{row});
-    json["cells"].push_back(std::move(row));
+    text += (&cell == &record.cells.front() ? "\n  " : ",\n  ") + row.dump();
   }
-  return json.dump(1) + "\n";
+  return text + "\n ]\n}\n";
 }
 
 Record recordFrom(const std::string& text, const std::string& file) {
@@ -91,7 +103,13 @@ Record recordFrom(const std::string& text, const std::string& file) {
     json.at("date").get_to(record.date);
     for (const Json& note : json.at("workloads")) record.workloads.push_back({note.at("name"), note.at("about")});
     json.at("notes").get_to(record.notes);
-    for (const Json& row : json.at("cells")) eachColumn(record.cells.emplace_back(), FromJson{row});
+    if (json.at("columns").get<std::vector<std::string>>() != columnNames()) {
+      throw InputError(file, "columns", "expected those that this program writes");
+    }
+    for (const Json& row : json.at("cells")) {
+      size_t next = 0;
+      eachColumn(record.cells.emplace_back(), FromJson{row, next});
+    }
     return record;
   } catch (const nlohmann::json::exception& error) {
     throw InputError(file, "", std::string("expected what cyber-radar chart writes: ") + error.what());
@@ -100,8 +118,7 @@ Record recordFrom(const std::string& text, const std::string& file) {
 
 std::string csvOf(const Record& record) {
   std::string header;
-  const Cell none;
-  eachColumn(none, [&](const char* name, const auto&) { header += (header.empty() ? "" : ",") + std::string(name); });
+  for (const std::string& name : columnNames()) header += (header.empty() ? "" : ",") + name;
   std::string text = header + "\n";
   for (const Cell& cell : record.cells) {
     std::string line;

@@ -38,27 +38,27 @@ class Fingerprint {
 };
 
 std::string fingerprintOf(const Workload& workload) {
-  Fingerprint print;
+  Fingerprint all;
   for (const MeshData& mesh : workload.meshes) {
-    print.addAll(mesh.positions);
-    print.addAll(mesh.indices);
+    all.addAll(mesh.positions);
+    all.addAll(mesh.indices);
   }
   for (const SceneSpec& scene : workload.scenes) {
     const uint32_t base = scene.base.value_or(kNone);
-    print.add(&base, sizeof base);
-    for (const Instance& instance : scene.instances) print.add(instance);
-    for (const ObjectMask& mask : scene.masks) print.add(&mask, sizeof mask);
+    all.add(&base, sizeof base);
+    for (const Instance& instance : scene.instances) all.add(instance);
+    for (const ObjectMask& mask : scene.masks) all.add(&mask, sizeof mask);
   }
   for (const QuerySpec& query : workload.queries) {
-    print.add(&query.scene, sizeof query.scene);
-    print.add(&query.batch, sizeof query.batch);
-    print.add(query.sensor);
-    print.addAll(query.exclude);
-    print.add(query.direction.data(), sizeof query.direction);
-    print.add(&query.distance, sizeof query.distance);
-    print.add(&query.mask, sizeof query.mask);
+    all.add(&query.scene, sizeof query.scene);
+    all.add(&query.batch, sizeof query.batch);
+    all.add(query.sensor);
+    all.addAll(query.exclude);
+    all.add(query.direction.data(), sizeof query.direction);
+    all.add(&query.distance, sizeof query.distance);
+    all.add(&query.mask, sizeof query.mask);
   }
-  return print.text();
+  return all.text();
 }
 
 // A full run measures all sizes, on one thread and on all; others three sizes, on all where the library can.

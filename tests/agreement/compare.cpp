@@ -7,6 +7,7 @@
 #include "reference/reference.h"
 #include "stability/promises.h"
 #include "support/test_device.h"
+#include "workloads/workload.h"
 
 namespace radar::test {
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "scale/chart.h"
+#include "report/chart.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "support/test_device.h"

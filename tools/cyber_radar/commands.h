@@ -16,6 +16,7 @@ void addDevicesCommand(CLI::App& app, int& status);
 void addDemoCommand(CLI::App& app, int& status);
 void addScaleCommand(CLI::App& app, int& status);
 void addStabilityCommand(CLI::App& app, int& status);
+void addChartCommand(CLI::App& app);
 void addWorkloadCommand(CLI::App& app);
 
 }  // namespace radar::tools

@@ -6,7 +6,7 @@
 #include "batch/whole_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/words.h"
+#include "cyber_radar/origin.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "workloads/generate.h"

@@ -1,10 +1,8 @@
 #include "cyber_radar/words.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 namespace radar::tools {
 
@@ -90,13 +88,6 @@ std::string resolutionsInWords(const std::vector<Answer>& answers) {
   if (most == 0) return {};
   std::string text = "resolution: " + std::to_string(least);
   if (most != least) text += " to " + std::to_string(most);
-  return text;
-}
-
-std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
   return text;
 }
 

@@ -17,7 +17,4 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
 /// What --resolution auto chose over the answers: "resolution: 64 to 256"; empty where no picture was drawn.
 std::string resolutionsInWords(const std::vector<Answer>& answers);
 
-/// Year-month-day, UTC.
-std::string today();
-
 }  // namespace radar::tools

@@ -1,7 +1,8 @@
 #include "scale/findings.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "report/print.h"
 
 namespace radar::tools {
 
@@ -9,13 +10,6 @@ namespace {
 
 // Smaller shares are not worth a sentence.
 constexpr double kWorthWords = 0.02;
-
-template <class... Values>
-std::string words(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 double percent(double share) {
   return 100 * share;
@@ -37,18 +31,18 @@ double shareOf(const ScaleRun& run, std::initializer_list<const char*> names) {
 }
 
 std::string onSlower(const ScaleReport& report, const ScaleRun& run, double share) {
-  std::string text = words("%.0f%% goes because each device takes longer for a query than alone: ", percent(share));
+  std::string text = print("%.0f%% goes because each device takes longer for a query than alone: ", percent(share));
   const double own = run.cores / report.processors, others = run.machine - own;
   if (others > 0.1) {
-    text += words(
+    text += print(
         "other programs took %.0f%% of the machine's %u processor cores, so this run says little of the devices; ",
         percent(others), report.processors);
   }
   if (std::max(own, run.machine) > 0.9) {
-    return text + words("the %u cores were %.0f%% in use, so devices and the threads that feed them share them.",
+    return text + print("the %u cores were %.0f%% in use, so devices and the threads that feed them share them.",
                         report.processors, percent(std::max(own, run.machine)));
   }
-  return text + words(
+  return text + print(
                     "%.1f of %u processor cores were in use, so not cores but what else the devices share (memory, "
                     "bus, power) or the smaller chunks slow them.",
                     run.cores, report.processors);
@@ -61,7 +55,7 @@ std::string onTail(const ScaleReport& report, const ScaleRun& run, double share)
   }
   const double perBatch =
       static_cast<double>(report.queries[run.point]) / static_cast<double>(report.batches[run.point]);
-  return words(
+  return print(
       "%.0f%% is imbalance: a device waits for the last chunk of another. The smallest chunk held %u of a "
       "batch's %.0f queries; larger batches, or several submitted at once, waste less.",
       percent(share), least, perBatch);
@@ -103,7 +97,7 @@ std::vector<std::string> findingsOf(const ScaleReport& report) {
     findings.push_back("One device: nothing to compare. --device all, or 0,1, takes more.");
   } else {
     findings.push_back(
-        words("With %.0f sensors, %zu devices take %.2f ms where device %u alone takes %.2f ms: %.2f "
+        print("With %.0f sensors, %zu devices take %.2f ms where device %u alone takes %.2f ms: %.2f "
               "times as fast, %.0f%% of what the devices can do together.",
               report.sensors[last], count, run.ms, report.numbers[0], report.run(last, 1).ms, report.speedUp(run),
               percent(report.efficiency(run))));
@@ -112,15 +106,15 @@ std::vector<std::string> findingsOf(const ScaleReport& report) {
   std::vector<std::pair<double, std::string>> limits{
       {losses.slower, onSlower(report, run, losses.slower)},
       {losses.start,
-       words("%.0f%% is submission: devices wait while the first chunk of a batch is encoded.", percent(losses.start))},
-      {losses.gap, words("%.0f%% is between chunks: a device is done before the next chunk is encoded. Encoding takes "
+       print("%.0f%% is submission: devices wait while the first chunk of a batch is encoded.", percent(losses.start))},
+      {losses.gap, print("%.0f%% is between chunks: a device is done before the next chunk is encoded. Encoding takes "
                          "%.0f%% as long as the devices work.",
                          percent(losses.gap), percent(encodingShare(run)))},
       {losses.tail, onTail(report, run, losses.tail)},
       {losses.scene,
-       words("%.0f%% is between batches: the scene is edited while no device works.", percent(losses.scene))}};
+       print("%.0f%% is between batches: the scene is edited while no device works.", percent(losses.scene))}};
   const double transfers = shareOf(run, {"upload", "readback"});
-  limits.emplace_back(transfers, words("%.0f%% of the devices' own time is upload and readback.", percent(transfers)));
+  limits.emplace_back(transfers, print("%.0f%% of the devices' own time is upload and readback.", percent(transfers)));
   std::stable_sort(limits.begin(), limits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (limits.front().first < kWorthWords) findings.push_back("Nothing that was measured limits it by 2% or more.");
   for (const auto& [share, sentence] : limits) {
@@ -128,7 +122,7 @@ std::vector<std::string> findingsOf(const ScaleReport& report) {
   }
   if (encodingShare(run) > 0.15) {
     findings.push_back(
-        words("Encoding on the CPU takes %.0f%% as long as the devices work: where devices compute on "
+        print("Encoding on the CPU takes %.0f%% as long as the devices work: where devices compute on "
               "the same cores, that much is not shared out.",
               percent(encodingShare(run))));
   }

@@ -1,50 +1,14 @@
 #include <algorithm>
-#include <cstdio>
 
-#include "scale/chart.h"
+#include "report/chart.h"
+#include "report/page.h"
+#include "report/print.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 
 namespace radar::tools {
 
 namespace {
-
-// Okabe and Ito's colours, which the colour-blind tell apart; the dark page takes their lighter ones first.
-constexpr const char* kStyle = R"(<style>
-:root{color-scheme:light dark;--page:#fff;--ink:#1b1f24;--soft:#5b6470;--grid:#e3e6ea;--panel:#f6f7f9;
---c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#cc79a7;--c4:#8a6d00;--c5:#56b4e9}
-@media(prefers-color-scheme:dark){:root{--page:#14171b;--ink:#e8eaed;--soft:#a2aab4;--grid:#2c323a;--panel:#1c2026;
---c0:#56b4e9;--c1:#e69f00;--c2:#2bc59a;--c3:#cc79a7;--c4:#f0e442;--c5:#7f9cff}}
-*{box-sizing:border-box}
-body{margin:0;background:var(--page);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
-main{max-width:1200px;margin:0 auto;padding:24px 16px 48px}
-h1{font-size:1.6rem;margin:0 0 4px}h2{font-size:1.15rem;margin:36px 0 8px}h3{font-size:1rem;margin:16px 0 4px}
-p{margin:4px 0}.soft{color:var(--soft)}
-.charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,350px),1fr));gap:16px}
-figure{margin:0;padding:12px;background:var(--panel);border-radius:8px}
-figcaption{font-weight:600;margin-bottom:8px}
-svg{display:block;width:100%;height:auto;font:13px system-ui,sans-serif}
-svg text{fill:var(--ink)}.middle{text-anchor:middle}.end{text-anchor:end}
-.grid{stroke:var(--grid);fill:none}.line{fill:none;stroke-width:2.5}.ideal{fill:none;stroke:var(--soft);stroke-dasharray:6 5}
-.c0{stroke:var(--c0)}.c1{stroke:var(--c1)}.c2{stroke:var(--c2)}.c3{stroke:var(--c3)}.c4{stroke:var(--c4)}.c5{stroke:var(--c5)}
-.mark.c0,.bar.c0{fill:var(--c0)}.mark.c1,.bar.c1{fill:var(--c1)}.mark.c2,.bar.c2{fill:var(--c2)}
-.mark.c3,.bar.c3{fill:var(--c3)}.mark.c4,.bar.c4{fill:var(--c4)}.mark.c5,.bar.c5{fill:var(--c5)}
-.bar{stroke:var(--panel);stroke-width:.6}
-.scroll{overflow-x:auto}.scroll svg{min-width:720px}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}
-th,td{padding:3px 14px 3px 0;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}
-th:first-child,td:first-child{text-align:left}
-.key span{display:inline-block;margin-right:18px}.key i{display:inline-block;width:12px;height:12px;margin-right:6px}
-.findings li{margin:6px 0}code{overflow-wrap:anywhere}
-</style>
-)";
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string countName(size_t count) {
   return std::to_string(count) + (count == 1 ? " device" : " devices");
@@ -56,10 +20,6 @@ std::string setName(const ScaleReport& report, const ScaleRun& run) {
     text += (i == 0 ? " " : " + ") + std::to_string(report.numbers[run.devices[i]]);
   }
   return text;
-}
-
-std::string figure(const std::string& caption, const std::string& svg) {
-  return "<figure><figcaption>" + escaped(caption) + "</figcaption>\n" + svg + "</figure>\n";
 }
 
 // The value of each count of devices, over the points.
@@ -132,15 +92,9 @@ std::string timelineOf(const ScaleReport& report, const ScaleRun& run) {
   return "<h3>" + escaped(title) + "</h3><div class=\"scroll\">" + timeline(title, from, to, tracks) + "</div>\n";
 }
 
-std::string row(std::initializer_list<std::string> cells, const char* tag = "td") {
-  std::string text = "<tr>";
-  for (const std::string& cell : cells) text += std::string("<") + tag + ">" + cell + "</" + tag + ">";
-  return text + "</tr>\n";
-}
-
 std::string runsTable(const ScaleReport& report) {
   std::string text =
-      "<div class=\"scroll\"><table>\n" +
+      openTable() +
       row({"devices", "sensors", "ms a batch", "range", "speed-up", "efficiency", "processor cores in use"}, "th");
   for (const ScaleRun& run : report.runs) {
     const auto batches = static_cast<double>(report.batches[run.point]);
@@ -148,14 +102,14 @@ std::string runsTable(const ScaleReport& report) {
                  print("%.3f to %.3f", run.least / batches, run.most / batches), print("%.2f", report.speedUp(run)),
                  print("%.0f%%", 100 * report.efficiency(run)), print("%.2f", run.cores)});
   }
-  return text + "</table></div>\n";
+  return text + closeTable();
 }
 
 std::string sharesTable(const ScaleReport& report, size_t point) {
-  std::string text = "<div class=\"scroll\"><table>\n" +
-                     row({"set", "device", "busy", "idle: first chunk", "between chunks", "at the end", "queries",
-                          "chunks", "chunk sizes", "encode and submit, ms", "wait, ms", "decode, ms"},
-                         "th");
+  std::string text =
+      openTable() + row({"set", "device", "busy", "idle: first chunk", "between chunks", "at the end", "queries",
+                         "chunks", "chunk sizes", "encode and submit, ms", "wait, ms", "decode, ms"},
+                        "th");
   for (const ScaleRun& run : report.runs) {
     if (run.point != point) continue;
     for (size_t i = 0; i < run.shares.size(); ++i) {
@@ -167,12 +121,12 @@ std::string sharesTable(const ScaleReport& report, size_t point) {
                    print("%.2f", share.encode), print("%.2f", share.wait), print("%.2f", share.decode)});
     }
   }
-  return text + "</table></div>\n";
+  return text + closeTable();
 }
 
 std::string lossesTable(const ScaleReport& report, size_t point) {
   std::string text =
-      "<div class=\"scroll\"><table>\n" +
+      openTable() +
       row({"set", "useful", "slower than alone", "first chunk", "between chunks", "imbalance", "scene edits"}, "th");
   for (size_t count = 1; count <= report.devices.size(); ++count) {
     const ScaleRun& run = report.run(point, count);
@@ -181,11 +135,11 @@ std::string lossesTable(const ScaleReport& report, size_t point) {
     text += row({setName(report, run), percent(losses.useful), percent(losses.slower), percent(losses.start),
                  percent(losses.gap), percent(losses.tail), percent(losses.scene)});
   }
-  return text + "</table></div>\n";
+  return text + closeTable();
 }
 
 std::string stagesTable(const ScaleReport& report, size_t point) {
-  std::string text = "<div class=\"scroll\"><table>\n<tr><th>stage</th>";
+  std::string text = openTable() + "<tr><th>stage</th>";
   std::vector<const ScaleRun*> runs;
   for (const ScaleRun& run : report.runs) {
     if (run.point == point) runs.push_back(&run);
@@ -201,22 +155,18 @@ std::string stagesTable(const ScaleReport& report, size_t point) {
     }
     text += "</tr>\n";
   }
-  return text + "</table></div>\n";
+  return text + closeTable();
 }
 
 }  // namespace
 
 std::string htmlOf(const ScaleReport& report, const ScaleOrigin& origin) {
   const size_t last = report.sensors.size() - 1;
-  std::string html =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-      "<title>Cyber Radar: scaling over devices</title>\n";
-  html += kStyle;
-  html += "</head>\n<body>\n<main>\n<h1>How it scales over devices</h1>\n<p>" + escaped(origin.scene) + "; " +
-          escaped(origin.mode) + "</p>\n<p class=\"soft\">" + escaped(origin.date) + ", commit " +
-          escaped(origin.commit) + print(", %u processor cores</p>\n<p class=\"soft\"><code>", report.processors) +
-          escaped(origin.command) + "</code></p>\n";
+  std::string html = openPage("Cyber Radar: scaling over devices", "How it scales over devices") + "<p>" +
+                     escaped(origin.scene) + "; " + escaped(origin.mode) + "</p>\n<p class=\"soft\">" +
+                     escaped(origin.date) + ", commit " + escaped(origin.commit) +
+                     print(", %u processor cores</p>\n<p class=\"soft\"><code>", report.processors) +
+                     escaped(origin.command) + "</code></p>\n";
   for (size_t i = 0; i < report.devices.size(); ++i) {
     html += print("<p class=\"soft\">device %u: ", report.numbers[i]) + escaped(report.devices[i].name) + ", " +
             escaped(report.devices[i].driver) + "</p>\n";
@@ -244,7 +194,7 @@ std::string htmlOf(const ScaleReport& report, const ScaleOrigin& origin) {
       "<h2>Stages</h2>\n<p class=\"soft\">Milliseconds of a pass of its own, by timestamps, summed over devices; "
       "select, encode and decode are the threads'.</p>\n" +
       stagesTable(report, last);
-  return html + "</main>\n</body>\n</html>\n";
+  return html + closePage();
 }
 
 }  // namespace radar::tools

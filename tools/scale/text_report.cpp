@@ -1,19 +1,12 @@
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "report/print.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 
 namespace radar::tools {
 
 namespace {
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string setOf(const ScaleReport& report, const ScaleRun& run) {
   std::string text;

@@ -1,4 +1,5 @@
 #include "stability/promises.h"
+#include "workloads/workload.h"
 
 #include <algorithm>
 #include <array>
@@ -158,19 +159,6 @@ Verdict judgeSampled(const Query& query, const Result& result, const Result& exa
   Verdict verdict = judgeBracket(query, result, exact);
   if (result.status != Status::clear && result.lo != 0) verdict.bracket = true;
   return verdict;
-}
-
-double sensorSize(const Scene& scene, const Query& query) {
-  const MeshView mesh = scene.mesh(query.mesh);
-  Vector lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-  for (uint32_t vertex : mesh.indices) {
-    const Vector p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-    for (size_t k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], p[k]);
-      hi[k] = std::max(hi[k], p[k]);
-    }
-  }
-  return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
 }
 
 }  // namespace radar::tools

@@ -35,7 +35,4 @@ Verdict judgeBracket(const Query& query, const Result& result, const Result& exa
 /// The same for mode sampled, whose `lo` is 0 and which may see nothing: then `unanswered` is not set either.
 Verdict judgeSampled(const Query& query, const Result& result, const Result& exact);
 
-/// Greatest extent of the placed sensor's box.
-double sensorSize(const Scene& scene, const Query& query);
-
 }  // namespace radar::tools

@@ -6,6 +6,7 @@
 #include "reference/reference.h"
 #include "stability/promises.h"
 #include "workloads/stability.h"
+#include "workloads/workload.h"
 
 namespace radar::tools {
 

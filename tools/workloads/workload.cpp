@@ -1,6 +1,8 @@
 #include "workloads/workload.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <map>
 
 namespace radar::tools {
@@ -24,6 +26,19 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.resolution = resolution;
   query.tolerance = spec.tolerance.value_or(0);
   return query;
+}
+
+double sensorSize(const Scene& scene, const Query& query) {
+  const MeshView mesh = scene.mesh(query.mesh);
+  std::array<double, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+  for (const uint32_t vertex : mesh.indices) {
+    const std::array<double, 3> p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+    for (size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
 
 std::vector<Batch> batchesOf(const Workload& workload) {

@@ -70,6 +70,9 @@ struct Workload {
 /// tolerance of its own it has none.
 Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
 
+/// Greatest extent of the placed sensor's box.
+double sensorSize(const Scene& scene, const Query& query);
+
 /// The queries of one scene and one batch number, as positions in Workload::queries, in the order of first appearance.
 struct Batch {
   uint32_t scene = 0;

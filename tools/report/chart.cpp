@@ -1,8 +1,9 @@
-#include "scale/chart.h"
+#include "report/chart.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "report/print.h"
 
 namespace radar::tools {
 
@@ -10,13 +11,6 @@ namespace {
 
 constexpr double kWidth = 440, kHeight = 340, kLeft = 58, kRight = 84, kTop = 14, kBottom = 48;
 constexpr int kColours = 6;
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 // 1, 2 or 5 times a power of ten, so that about `steps` of them make `top`.
 double niceStep(double top, int steps) {

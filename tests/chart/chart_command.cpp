@@ -1,0 +1,58 @@
+// cyber-radar chart, as a person runs it.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+TEST_CASE("chart leaves numbers, charts, a page and documents, and takes up what it has measured") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload table1 --boxes 200 --sensors 4 --out own").status == 0);
+  folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
+  const std::string command = "chart --extent least --out c own/queries.json --mesh tetrahedron.obj";
+  const Run first = runProgram(folder, command);
+  INFO(first.err);
+  REQUIRE(first.status == 0);
+  CHECK_THAT(first.out, Contains("interlocking") && Contains("Queries of own/queries.json"));
+  const std::string csv = folder.read("c/chart.csv");
+  for (const char* workload : {"figure7", "interlocking", "thin", "meshes", "queries", "boxes", "triangles"}) {
+    CHECK_THAT(csv, Contains(std::string(",") + workload + ",") || Contains(std::string("growth,") + workload));
+  }
+  CHECK_THAT(folder.read("c/chart.html"), Contains("<svg") && !Contains("<script") && !Contains("http"));
+  CHECK_THAT(folder.read("c/front-interlocking.svg"), Contains("xmlns") && Contains("prefers-color-scheme"));
+  CHECK_THAT(folder.read("c/table1.png"), Catch::StartsWith("\x89PNG"));
+  // Nothing is measured a second time: times would differ.
+  CHECK(runProgram(folder, command).status == 0);
+  CHECK(folder.read("c/chart.csv") == csv);
+  CHECK(runProgram(folder, "chart --render --out c --docs d").status == 0);
+  CHECK_THAT(folder.read("d/accuracy.md"), Contains("](../c/front-thin.svg)"));
+  CHECK_THAT(folder.read("d/speed.md"), Contains("Table 1"));
+}
+
+TEST_CASE("chart refuses what it cannot do with status 2 and the option's or file's name") {
+  const ScratchFolder folder;
+  folder.write("file", "");
+  std::filesystem::create_directory(folder.path() / "broken");
+  folder.write("broken/chart.json", "{\"format\": 1}");
+  folder.write("none.json", R"({"format": "cyber-radar-queries-1", "meshes": [], "scenes": [], "queries": []})");
+  const auto refused = [&](const std::string& arguments, const std::string& what) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, arguments);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains(what));
+  };
+  refused("chart", "--out");
+  refused("chart --out file", "--out");
+  refused("chart --out c --docs file", "--docs");
+  refused("chart --out c --render", "chart.json");
+  refused("chart --out broken --render", "broken/chart.json");
+  refused("chart --out c missing.json", "missing.json");
+  refused("chart --out c none.json", "queries");
+  refused("chart --out c --mesh missing.ply", "missing.ply");
+  refused("chart --out c --device 99", "99");
+  refused("chart --out c --extent huge", "--extent");
+}

@@ -1,0 +1,222 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "chart/findings.h"
+#include "chart/in_child.h"
+#include "chart/report.h"
+#include "chart/run.h"
+#include "import/input_error.h"
+#include "support/scratch_folder.h"
+#include "support/test_device.h"
+#include "workloads/families.h"
+#include "workloads/generate.h"
+
+using namespace radar;
+using namespace radar::tools;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A cell of made-up numbers: 10 queries, each with a contact.
+Cell madeUp(const std::string& method, double us, double worst, uint32_t misses = 0) {
+  Cell cell;
+  cell.section = "front";
+  cell.workload = "w";
+  cell.method = cell.family = method;
+  cell.queries = cell.contacts = 10;
+  cell.us = us;
+  cell.errorWorst = worst;
+  cell.misses = misses;
+  cell.found = 10 - misses;
+  return cell;
+}
+
+std::vector<std::string> namesOn(const std::vector<Cell>& cells) {
+  std::vector<const Cell*> all;
+  for (const Cell& cell : cells) all.push_back(&cell);
+  std::vector<std::string> names;
+  for (const Cell* cell : frontOf(all)) names.push_back(cell->method);
+  return names;
+}
+
+Result truthAt(double t) {
+  Result result;
+  result.status = std::isnan(t) ? Status::clear : Status::hit;
+  result.t = result.lo = result.hi = t;
+  return result;
+}
+
+RunSettings smallRun() {
+  RunSettings settings;
+  settings.extent = Extent::least;
+  settings.cases.push_back(
+      {"front", "locked", "Interlocking shapes", 0, makeWorkload(FamilyScene{Family::interlocking, 12, 1})});
+  settings.cases.push_back(
+      {"front", "flight", "Teapots in flight", 0, makeWorkload(Figure7{.teapots = 4, .boxes = 2000, .steps = 2})});
+  return settings;
+}
+
+struct Ran {
+  Record record;
+  size_t steps = 0;
+};
+
+Ran run(const RunSettings& settings, const std::string& origin, const test::ScratchFolder& folder) {
+  const std::vector<PeerRow> none;
+  const std::vector<Planned> plan = planOf(settings, none, origin);
+  Record start;
+  start.workloads = {{"locked", "Interlocking shapes"}, {"flight", "Teapots in flight"}};
+  Ran ran;
+  ran.record = measureAll(settings, plan, start, test::device(), folder.path(), [&](const Planned&) { ++ran.steps; });
+  CHECK(ran.steps == plan.size());
+  return ran;
+}
+
+// Every column but those of time.
+std::string accuracyOf(const Record& record) {
+  Record bare = record;
+  for (Cell& cell : bare.cells) {
+    cell.passes = 0;
+    cell.prepareMs = cell.us = cell.usLow = cell.usHigh = cell.cpuUs = cell.sceneUs = NAN;
+  }
+  return csvOf(bare);
+}
+
+}  // namespace
+
+TEST_CASE("the front holds what nothing beats in both speed and accuracy, and a miss outweighs any error") {
+  CHECK(namesOn({madeUp("slow", 9, 0.1), madeUp("exact", 5, 0), madeUp("rough", 2, 0.5), madeUp("rougher", 3, 0.6),
+                 madeUp("blind", 1, 1e-9, 3), madeUp("blinder", 1.5, 0, 4)}) ==
+        std::vector<std::string>{"blind", "rough", "exact"});
+  CHECK(namesOn({madeUp("a", 2, 1e-15), madeUp("b", 1, 1e-14)}) == std::vector<std::string>{"b"});
+  CHECK(namesOn({}).empty());
+}
+
+TEST_CASE("of one method's rows the fastest number of threads is shown, and what failed apart") {
+  Record record;
+  record.cells = {madeUp("m", 4, 0), madeUp("m", 3, 0), madeUp("broken", NAN, NAN)};
+  record.cells[1].threads = 2;
+  record.cells[2].failed = "crashes: Segmentation fault";
+  const std::vector<const Cell*> shown = shownCells(record, "front", "w");
+  REQUIRE(shown.size() == 1);
+  CHECK(shown[0]->threads == 2);
+  REQUIRE(failedCells(record, "front", "w").size() == 1);
+}
+
+TEST_CASE("slopes are those of power laws, and lines cross where the first stays below") {
+  const std::vector<Point> law{{1, 3}, {10, 3 * std::sqrt(10.0)}, {100, 30}};
+  CHECK(slopeOf(law) == Approx(0.5));
+  const std::vector<Point> flat{{0, 2}, {10, 2}, {20, 2}}, rising{{0, 1}, {10, 3}, {20, 5}};
+  REQUIRE(crossing(flat, rising).has_value());
+  CHECK(*crossing(flat, rising) == Approx(5));
+  CHECK_FALSE(crossing(rising, flat).has_value());
+  CHECK_FALSE(crossing(flat, std::vector<Point>{{0, 3}, {10, 3}, {20, 3}}).has_value());
+}
+
+TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
+  using Kind = Told::Kind;
+  const std::vector<Result> truth{truthAt(2), truthAt(2), truthAt(NAN), truthAt(4), truthAt(4), truthAt(2)};
+  const std::vector<double> sizes(6, 2);
+  const std::vector<Told> told{{Kind::contact, 2.5, 1.5, 2.5}, {Kind::none},   {Kind::contact, 1, 0, 1},
+                               {Kind::bounded, NAN, 3, NAN},   {Kind::unseen}, {Kind::contact, 2.5, 2.25, 2.75}};
+  Cell cell;
+  cell.certified = true;
+  cell.queries = 6;
+  judge(cell, told, truth, sizes);
+  CHECK(cell.contacts == 5);
+  CHECK(cell.found == 2);
+  CHECK(cell.misses == 2);
+  CHECK(cell.falseHits == 1);
+  CHECK(cell.undecided == 1);
+  CHECK(cell.violations == 3);  // the certain "none", the invented contact, the lower bound beyond t*
+  CHECK(cell.errorMedian == 0.25);
+  CHECK(cell.errorWorst == 0.5);
+  CHECK(cell.widthWorst == 0.5);
+  CHECK(wrongShare(cell) == 0.5);
+  CHECK_FALSE(isCertain(cell));
+}
+
+TEST_CASE("quantiles are values at or above their rank") {
+  const std::vector<double> values{3, 1, 2, 4};
+  CHECK(quantile(values, 0.25) == 1);
+  CHECK(quantile(values, 0.5) == 2);
+  CHECK(quantile(values, 0.99) == 4);
+  CHECK(quantile(values, 1) == 4);
+  CHECK(std::isnan(quantile({}, 0.5)));
+}
+
+TEST_CASE("a record read is the record written, and its CSV has a line for each cell") {
+  Record record;
+  record.command = "cyber-radar chart \"x\"";
+  record.workloads = {{"w", "About, \"w\""}};
+  record.notes = {"one: text"};
+  record.cells = {madeUp("a", 0.1, 1.0 / 3), madeUp("b, \"quoted\"", NAN, NAN)};
+  const Record again = recordFrom(jsonOf(record), "chart.json");
+  CHECK(jsonOf(again) == jsonOf(record));
+  REQUIRE(again.cells.size() == 2);
+  CHECK(again.cells[0].errorWorst == 1.0 / 3);
+  CHECK(std::isnan(again.cells[1].us));
+  const std::string csv = csvOf(record);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 3);
+  CHECK_THAT(csv, Contains("\"b, \"\"quoted\"\"\"") && Contains("0.3333333333333333,"));
+  CHECK_THROWS_AS(recordFrom("{\"format\": \"other\"}", "chart.json"), InputError);
+  CHECK_THROWS_AS(recordFrom("{", "chart.json"), InputError);
+}
+
+TEST_CASE("a run that was interrupted measures only what is missing, and all of it for another program") {
+  const test::ScratchFolder folder;
+  const RunSettings settings = smallRun();
+  Record first = run(settings, "origin", folder).record;
+  REQUIRE(first.cells.size() > 3);
+  constexpr double kMark = 12'345;
+  for (Cell& cell : first.cells) cell.us = kMark;
+  const Cell lost = first.cells[1];
+  first.cells.erase(first.cells.begin() + 1);
+  writeRecord(folder.path(), first);
+  const Record second = run(settings, "origin", folder).record;
+  REQUIRE(second.cells.size() == first.cells.size() + 1);
+  for (const Cell& cell : second.cells) CHECK((cell.us == kMark) == (cell.key != lost.key));
+  CHECK(second.cells[1].method == lost.method);
+  for (const Cell& cell : run(settings, "another", folder).record.cells) CHECK(cell.us != kMark);
+}
+
+TEST_CASE("the accuracy columns of two runs are the same to the last digit, and every certificate holds") {
+  const test::ScratchFolder folder, other;
+  const Record first = run(smallRun(), "origin", folder).record;
+  CHECK(accuracyOf(first) == accuracyOf(run(smallRun(), "origin", other).record));
+  for (const Cell& cell : first.cells) {
+    CAPTURE(cell.workload, cell.method);
+    CHECK(cell.violations == 0);
+    CHECK(cell.us > 0);
+    CHECK(cell.contacts > 0);
+    if (cell.certified) CHECK(isCertain(cell));
+    CHECK(cell.settledSelect + cell.settledSampled + cell.settledBounded + cell.settledContact +
+              cell.settledReference ==
+          Approx(1));
+  }
+}
+
+TEST_CASE("the page and the documents stand by themselves and name every method") {
+  Record record;
+  record.command = "cyber-radar chart --out <here>";
+  record.workloads = {{"w", "Shapes & more"}};
+  record.notes = {"Peer: cannot <that>"};
+  record.cells = {madeUp("sampled", 3, 0.1, 2), madeUp("contact", 2, 0), madeUp("FCL steps", 1, 0, 10)};
+  record.cells[2].errorWorst = NAN;
+  const std::string page = pageOf(record);
+  CHECK_THAT(page, Contains("<svg") && Contains("Shapes &amp; more") && Contains("prefers-color-scheme:dark") &&
+                       Contains("--out &lt;here>") && Contains("FCL steps"));
+  CHECK_THAT(page, !Contains("http") && !Contains("nan") && !Contains("inf "));
+  CHECK_THAT(accuracyDocument(record, "chart"), Contains("](chart/front-w.svg)") && Contains("FCL steps"));
+  CHECK_THAT(speedDocument(record, "chart"), Contains("| contact |"));
+}
+
+TEST_CASE("a child hands over numbers, an exception's words, or the signal that ended it") {
+  CHECK(inChild([] { return std::vector<double>{1, 2.5}; }).values == std::vector<double>{1, 2.5});
+  CHECK(inChild([]() -> std::vector<double> { throw std::runtime_error("no such thing"); }).failed == "no such thing");
+  CHECK_THAT(inChild([] {
+               std::raise(SIGKILL);
+               return std::vector<double>();
+             }).failed,
+             Contains("crashes: Killed"));
+}

@@ -1,0 +1,94 @@
+#include "chart/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::tools {
+
+Told toldBy(const Result& result, Mode mode) {
+  switch (result.status) {
+    case Status::hit:
+    case Status::overlap:
+      return {Told::Kind::contact, result.t, result.lo, result.hi};
+    case Status::clear:
+      return {Told::Kind::none, NAN, NAN, NAN};
+    case Status::undecided:
+      return {mode == Mode::sampled ? Told::Kind::unseen : Told::Kind::bounded, NAN, result.lo, NAN};
+    case Status::invalid:
+      break;
+  }
+  throw Error("a query was not answered: a time without its answers says nothing");
+}
+
+double quantile(std::span<const double> values, double share) {
+  if (values.empty()) return NAN;
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
+}
+
+void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth, std::span<const double> sizes) {
+  std::vector<double> errors, widths;
+  for (size_t i = 0; i < told.size(); ++i) {
+    const bool contact = truth[i].status != Status::clear;
+    cell.contacts += contact;
+    switch (told[i].kind) {
+      case Told::Kind::contact:
+        if (!contact) {
+          ++cell.falseHits;
+          cell.violations += !std::isnan(told[i].hi);
+          break;
+        }
+        ++cell.found;
+        errors.push_back(std::abs(told[i].t - truth[i].t) / sizes[i]);
+        if (cell.certified) widths.push_back((told[i].hi - told[i].lo) / sizes[i]);
+        cell.violations += told[i].lo > truth[i].hi || told[i].hi < truth[i].lo;
+        break;
+      case Told::Kind::none:
+        cell.misses += contact;
+        cell.violations += cell.certified && contact;
+        break;
+      case Told::Kind::unseen:
+        cell.misses += contact;
+        break;
+      case Told::Kind::bounded:
+        if (!contact) break;
+        ++cell.undecided;
+        errors.push_back(std::abs(truth[i].t - told[i].lo) / sizes[i]);
+        cell.violations += told[i].lo > truth[i].hi;
+        break;
+    }
+  }
+  cell.errorMedian = quantile(errors, 0.5);
+  cell.error99 = quantile(errors, 0.99);
+  cell.errorWorst = quantile(errors, 1);
+  cell.widthMedian = quantile(widths, 0.5);
+  cell.width99 = quantile(widths, 0.99);
+  cell.widthWorst = quantile(widths, 1);
+}
+
+void countTiers(Cell& cell, std::span<const Result> results) {
+  const double each = 1 / static_cast<double>(results.size());
+  for (const Result& result : results) {
+    switch (result.tier) {
+      case Tier::select:
+        cell.settledSelect += each;
+        break;
+      case Tier::sampled:
+        cell.settledSampled += each;
+        break;
+      case Tier::bounded:
+        cell.settledBounded += each;
+        break;
+      case Tier::contact:
+        cell.settledContact += each;
+        break;
+      case Tier::reference:
+        cell.settledReference += each;
+        break;
+    }
+  }
+}
+
+}  // namespace radar::tools

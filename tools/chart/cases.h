@@ -1,0 +1,46 @@
+// What is measured on what: the workloads of each section of the chart, and the methods beside each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+/// How much: the counts of a full run, of a quick one, of a test.
+enum class Extent { full, quick, least };
+
+/// A workload with a place in the chart.
+struct Case {
+  std::string section;  ///< front, table1 or growth
+  std::string name, about;
+  double x = 0;  ///< on its section's axis
+  Workload workload;
+};
+
+/// Section front: the paper's Table 1 and Figure 7, convex, non-convex, interlocking, thin and grazing shapes.
+std::vector<Case> frontCases(Extent extent);
+/// Meshes in random poses; not empty.
+Case meshesCase(Extent extent, std::vector<MeshData> meshes);
+/// Section table1: teapots among 10,000 to 30,000 boxes; x is the number of boxes.
+std::vector<Case> table1Cases(Extent extent);
+/// Section growth: x is the number of boxes, of sensors in a batch, of triangles of each mesh, as the name says.
+std::vector<Case> growthCases(Extent extent);
+
+/// Pixels, rays or steps outside of section front.
+inline constexpr uint32_t kGrowthSize = 64;
+
+struct Method {
+  std::string family;    ///< sampled, bounded, contact, reference, "drawing all", or a peer's row
+  uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
+  uint32_t threads = 0;  ///< 0: as many as the device takes
+  std::string peer;      ///< whose row this is; empty: ours
+
+  std::string name() const { return size == 0 ? family : family + " " + std::to_string(size); }
+};
+
+/// What a section measures, peers not included. `threads`: of the processor.
+std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32_t threads);
+
+}  // namespace radar::tools

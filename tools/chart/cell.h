@@ -1,0 +1,82 @@
+// What was measured of one method on one workload: a row of the CSV file.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace radar::tools {
+
+struct Cell {
+  std::string key;      ///< fingerprint of the program, the workload, the method and the device
+  std::string section;  ///< front, table1 or growth
+  std::string workload;
+  double x = 0;        ///< where on its section's axis; 0 in section front
+  std::string method;  ///< family and size: "sampled 64"
+  std::string family;
+  uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
+  uint32_t threads = 0;  ///< 0: as many as the device takes
+  uint32_t queries = 0;
+  std::string failed;  ///< why there are no numbers; empty: there are
+
+  // How long: preparing once, then a pass over all queries, divided by their number.
+  double prepareMs = NAN;
+  uint32_t passes = 0;
+  double us = NAN, usLow = NAN, usHigh = NAN;  ///< median and quartiles over the passes, microseconds
+  double cpuUs = NAN;                          ///< processor time of all threads, in the mean
+  double sceneUs = NAN;                        ///< beside it: changing from scene to scene, divided alike
+
+  // How right. Held against the exact answers; lengths in sizes of the sensor (the greatest extent of its box).
+  uint32_t contacts = 0;    ///< queries with a contact within D, in truth
+  uint32_t found = 0;       ///< contacts for which a distance was told
+  uint32_t misses = 0;      ///< contacts told as none, or not seen
+  uint32_t falseHits = 0;   ///< no contact in truth, one told
+  uint32_t undecided = 0;   ///< contacts for which only a certain lower bound was told
+  uint32_t violations = 0;  ///< bounds, and certain "none"s, that do not hold
+  bool certified = false;   ///< the method tells a bracket, and "none" only where that is certain
+  double errorMedian = NAN, error99 = NAN, errorWorst = NAN;  ///< of what was found, and of the bound of the undecided
+  double widthMedian = NAN, width99 = NAN, widthWorst = NAN;  ///< of the brackets of what was found
+  double settledSelect = 0, settledSampled = 0, settledBounded = 0, settledContact = 0, settledReference = 0;
+};
+
+/// Calls visit(name, member) for each column, in the order of the file.
+template <class SomeCell, class Visit>
+void eachColumn(SomeCell& cell, const Visit& visit) {
+  visit("section", cell.section);
+  visit("workload", cell.workload);
+  visit("x", cell.x);
+  visit("method", cell.method);
+  visit("family", cell.family);
+  visit("size", cell.size);
+  visit("threads", cell.threads);
+  visit("queries", cell.queries);
+  visit("failed", cell.failed);
+  visit("prepare_ms", cell.prepareMs);
+  visit("passes", cell.passes);
+  visit("us_median", cell.us);
+  visit("us_quartile_1", cell.usLow);
+  visit("us_quartile_3", cell.usHigh);
+  visit("cpu_us", cell.cpuUs);
+  visit("scene_us", cell.sceneUs);
+  visit("contacts", cell.contacts);
+  visit("found", cell.found);
+  visit("misses", cell.misses);
+  visit("false_hits", cell.falseHits);
+  visit("undecided", cell.undecided);
+  visit("violations", cell.violations);
+  visit("certified", cell.certified);
+  visit("error_median", cell.errorMedian);
+  visit("error_99", cell.error99);
+  visit("error_worst", cell.errorWorst);
+  visit("width_median", cell.widthMedian);
+  visit("width_99", cell.width99);
+  visit("width_worst", cell.widthWorst);
+  visit("settled_select", cell.settledSelect);
+  visit("settled_sampled", cell.settledSampled);
+  visit("settled_bounded", cell.settledBounded);
+  visit("settled_contact", cell.settledContact);
+  visit("settled_reference", cell.settledReference);
+  visit("key", cell.key);
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,250 @@
+#include "chart/findings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "report/print.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr std::array kPaper{PaperRow{10'000, 14.73, 11.27}, PaperRow{30'000, 31.52, 85.48}};
+
+// Errors below the floor are alike.
+std::pair<double, double> rankOf(const Cell& cell) {
+  return {wrongShare(cell), std::isnan(cell.errorWorst) ? kErrorFloor : std::max(cell.errorWorst, kErrorFloor)};
+}
+
+std::string timeOf(double us) {
+  return us < 1000 ? print("%.3g us", us) : print("%.3g ms", us / 1000);
+}
+
+std::string listOf(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+// "3.2 times as fast as", or as slow.
+std::string against(double us, double other) {
+  return us <= other ? print("%.3g times as fast", other / us) : print("%.3g times as slow", us / other);
+}
+
+// The names of a family's members as one: "sampled 16 to 1024".
+std::vector<std::string> namesOf(const std::vector<const Cell*>& cells) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < cells.size();) {
+    size_t end = i;
+    while (end < cells.size() && cells[end]->family == cells[i]->family) ++end;
+    std::string name = cells[i]->method;
+    if (end - i > 1) name += print(" to %u", cells[end - 1]->size);
+    names.push_back(name);
+    i = end;
+  }
+  return names;
+}
+
+const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& method) {
+  const auto found = std::find_if(cells.begin(), cells.end(), [&](const Cell* cell) { return cell->method == method; });
+  return found == cells.end() ? nullptr : *found;
+}
+
+// Whether a member of the family is on the front of itself and the sampling methods.
+bool isOnFrontBesideSampling(const std::vector<const Cell*>& cells, const std::string& family) {
+  std::vector<const Cell*> beside;
+  for (const Cell* cell : cells) {
+    if (isSampling(*cell) || cell->family == family) beside.push_back(cell);
+  }
+  const std::vector<const Cell*> front = frontOf(beside);
+  return std::any_of(front.begin(), front.end(), [&](const Cell* cell) { return cell->family == family; });
+}
+
+// The fastest member of each family that is faster, by how much, and how many of its answers are wrong.
+std::vector<std::string> fasterThan(const std::vector<const Cell*>& cells, const Cell& contact) {
+  std::vector<const Cell*> best;
+  for (const Cell* cell : cells) {
+    if (cell->us >= contact.us) continue;
+    const auto same =
+        std::find_if(best.begin(), best.end(), [&](const Cell* one) { return one->family == cell->family; });
+    if (same == best.end()) {
+      best.push_back(cell);
+    } else if (cell->us < (*same)->us) {
+      *same = cell;
+    }
+  }
+  std::vector<std::string> names;
+  for (const Cell* cell : best) {
+    names.push_back(cell->method + print(" (%.3g times", contact.us / cell->us) +
+                    (wrongShare(*cell) > 0 ? print(", %.1f%% wrong)", 100 * wrongShare(*cell)) : ")"));
+  }
+  return names;
+}
+
+std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload) {
+  std::vector<std::string> methods;
+  for (const Cell& cell : record.cells) {
+    if (cell.section != section || cell.workload != workload || !cell.failed.empty()) continue;
+    if (std::find(methods.begin(), methods.end(), cell.method) == methods.end()) methods.push_back(cell.method);
+  }
+  return methods;
+}
+
+}  // namespace
+
+double wrongShare(const Cell& cell) {
+  return static_cast<double>(cell.misses + cell.falseHits) / cell.queries;
+}
+
+bool isCertain(const Cell& cell) {
+  return cell.certified && cell.violations == 0 && wrongShare(cell) == 0;
+}
+
+std::vector<const Cell*> shownCells(const Record& record, const std::string& section, const std::string& workload) {
+  std::vector<const Cell*> cells;
+  for (const Cell& cell : record.cells) {
+    if (cell.section != section || cell.workload != workload || !cell.failed.empty()) continue;
+    const auto same = std::find_if(cells.begin(), cells.end(), [&](const Cell* other) {
+      return other->method == cell.method && other->x == cell.x;
+    });
+    if (same == cells.end()) {
+      cells.push_back(&cell);
+    } else if (cell.us < (*same)->us) {
+      *same = &cell;
+    }
+  }
+  return cells;
+}
+
+std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload) {
+  std::vector<const Cell*> cells;
+  for (const Cell& cell : record.cells) {
+    if (cell.section == section && cell.workload == workload && !cell.failed.empty()) cells.push_back(&cell);
+  }
+  return cells;
+}
+
+std::vector<const Cell*> frontOf(std::span<const Cell* const> cells) {
+  std::vector<const Cell*> sorted(cells.begin(), cells.end()), front;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Cell* a, const Cell* b) {
+    return std::pair(a->us, rankOf(*a)) < std::pair(b->us, rankOf(*b));
+  });
+  for (const Cell* cell : sorted) {
+    if (front.empty() || rankOf(*cell) < rankOf(*front.back())) front.push_back(cell);
+  }
+  return front;
+}
+
+bool isSampling(const Cell& cell) {
+  return cell.family == "sampled" || cell.family.starts_with("Embree") || cell.family.ends_with("steps");
+}
+
+double slopeOf(std::span<const Point> points) {
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (const Point& point : points) {
+    const double u = std::log(point.x), v = std::log(point.y);
+    x += u;
+    y += v;
+    xx += u * u;
+    xy += u * v;
+  }
+  const auto n = static_cast<double>(points.size());
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+std::optional<double> crossing(std::span<const Point> first, std::span<const Point> second) {
+  std::optional<double> at;
+  for (size_t i = 0; i + 1 < first.size(); ++i) {
+    const double before = first[i].y - second[i].y, after = first[i + 1].y - second[i + 1].y;
+    if (before > 0 && after <= 0) at = first[i].x + (first[i + 1].x - first[i].x) * before / (before - after);
+    if (after > 0) at.reset();
+  }
+  return at;
+}
+
+std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
+                             const std::string& method) {
+  std::vector<Point> points;
+  for (const Cell* cell : shownCells(record, section, workload)) {
+    if (cell->method == method) points.push_back({cell->x, cell->us});
+  }
+  return points;
+}
+
+std::vector<std::string> frontFindings(const Record& record, const std::string& workload) {
+  const std::vector<const Cell*> cells = shownCells(record, "front", workload);
+  std::vector<const Cell*> right, certain;
+  for (const Cell* cell : cells) {
+    if (wrongShare(*cell) == 0) right.push_back(cell);
+    if (isCertain(*cell)) certain.push_back(cell);
+  }
+  std::vector<std::string> findings;
+  findings.push_back("Neither a miss nor a false hit: " + listOf(namesOf(right)) +
+                     ". With a certificate: " + listOf(namesOf(certain)) + ".");
+  findings.push_back("On the front: " + listOf(namesOf(frontOf(cells))) + ".");
+  findings.push_back(std::string("Beside methods that look at pixels, rays or steps, mode bounded is ") +
+                     (isOnFrontBesideSampling(cells, "bounded") ? "" : "not ") + "on the front, and mode contact is " +
+                     (isOnFrontBesideSampling(cells, "contact") ? "" : "not ") + "on it.");
+  const Cell* contact = methodIn(cells, "contact");
+  if (contact == nullptr) return findings;
+  const auto fastest =
+      std::min_element(right.begin(), right.end(), [](const Cell* a, const Cell* b) { return a->us < b->us; });
+  if (fastest != right.end() && *fastest != contact) {
+    findings.push_back("The fastest without a wrong answer is " + (*fastest)->method + ", " + timeOf((*fastest)->us) +
+                       " a query; mode contact takes " + timeOf(contact->us) + ", " +
+                       against(contact->us, (*fastest)->us) + ".");
+  } else {
+    findings.push_back("Mode contact is the fastest without a wrong answer: " + timeOf(contact->us) + " a query.");
+  }
+  findings.push_back("Faster than mode contact: " + listOf(fasterThan(cells, *contact)) + ".");
+  return findings;
+}
+
+std::vector<std::string> table1Findings(const Record& record) {
+  std::vector<std::string> findings;
+  const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
+  if (contact.size() < 2) return findings;
+  const std::string few = print("%.0f", contact.front().x), many = print("%.0f", contact.back().x);
+  for (const std::string& method : methodsOf(record, "table1", "boxes")) {
+    const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
+    if (times.size() != contact.size()) continue;
+    std::string text = method + ": " + timeOf(times.front().y) + " a query among " + few + " boxes, " +
+                       timeOf(times.back().y) + " among " + many +
+                       print(" (%.2f times)", times.back().y / times.front().y);
+    if (method != "contact") {
+      const double before = contact.front().y, after = contact.back().y;
+      text += "; contact is " + against(before, times.front().y) + ", then " + against(after, times.back().y);
+      if (const auto at = crossing(contact, times)) text += print("; they cross at %.0f boxes", *at);
+    }
+    findings.push_back(text + ".");
+  }
+  const PaperRow &first = kPaper.front(), &last = kPaper.back();
+  findings.push_back(
+      print("The paper, on its machine: Cyber Radar %.2f ms, then %.2f ms (%.2f times); OPCODE %.2f ms, "
+            "then %.2f ms (%.2f times): Cyber Radar was ahead only among many boxes.",
+            first.cyberRadar, last.cyberRadar, last.cyberRadar / first.cyberRadar, first.opcode, last.opcode,
+            last.opcode / first.opcode));
+  return findings;
+}
+
+std::vector<std::string> growthFindings(const Record& record) {
+  std::vector<std::string> findings;
+  for (const char* axis : {"boxes", "sensors", "triangles"}) {
+    for (const std::string& method : methodsOf(record, "growth", axis)) {
+      const std::vector<Point> points = timesOver(record, "growth", axis, method);
+      if (points.size() < 2) continue;
+      findings.push_back(method + ": time per query grows as " + axis + print("^%.2f, from ", slopeOf(points)) +
+                         timeOf(points.front().y) + print(" at %.0f to ", points.front().x) + timeOf(points.back().y) +
+                         print(" at %.0f.", points.back().x));
+    }
+  }
+  return findings;
+}
+
+std::span<const PaperRow> paperTable1() {
+  return kPaper;
+}
+
+}  // namespace radar::tools

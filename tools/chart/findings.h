@@ -1,0 +1,59 @@
+// What a run shows: the front of speed against accuracy, crossings, slopes, in numbers and in words.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chart/record.h"
+
+namespace radar::tools {
+
+/// Errors below this, in sizes of the sensor, are drawn at it and count as equal.
+inline constexpr double kErrorFloor = 1e-13;
+
+/// Share of answers that are wrong: a contact missed, or told where there is none.
+double wrongShare(const Cell& cell);
+
+/// Whether every bracket and every "clear" can be relied upon, and did hold.
+bool isCertain(const Cell& cell);
+
+/// The cells of a workload that have numbers, each method once: in the number of threads in which it was fastest.
+std::vector<const Cell*> shownCells(const Record& record, const std::string& section, const std::string& workload);
+/// Those that have none.
+std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload);
+
+/// Those to which no other is both as fast and as right, by rising time. Fewer wrong answers are better; of equal
+/// shares, a lesser worst error, down to kErrorFloor.
+std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
+
+/// Whether the method looks at pixels, rays or steps only, and so sees samples of the shapes or of the motion.
+bool isSampling(const Cell& cell);
+
+struct Point {
+  double x = 0, y = 0;
+};
+/// The exponent p of the power law y = c x^p that fits best, by least squares of logarithms. At least two different x.
+double slopeOf(std::span<const Point> points);
+
+/// Where the first line crosses below the second for good, linear between the points; both over the same x. Nothing
+/// where it does not, or is below from the start.
+std::optional<double> crossing(std::span<const Point> first, std::span<const Point> second);
+
+/// The times of one method over x, as of shownCells. `method`: Cell::method.
+std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
+                             const std::string& method);
+
+/// One sentence each.
+std::vector<std::string> frontFindings(const Record& record, const std::string& workload);
+std::vector<std::string> table1Findings(const Record& record);
+std::vector<std::string> growthFindings(const Record& record);
+
+/// The least time of Table 1 in the paper, and its greatest: for 10,000 and 30,000 boxes, milliseconds.
+struct PaperRow {
+  double boxes, cyberRadar, opcode;
+};
+std::span<const PaperRow> paperTable1();
+
+}  // namespace radar::tools

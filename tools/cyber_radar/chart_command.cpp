@@ -1,0 +1,142 @@
+#include <filesystem>
+#include <iostream>
+#include <thread>
+
+#include "batch/query_file.h"
+#include "chart/findings.h"
+#include "chart/report.h"
+#include "chart/run.h"
+#include "cyber_radar/commands.h"
+#include "cyber_radar/options.h"
+#include "cyber_radar/origin.h"
+#include "import/mesh_import.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  cyber-radar chart --quick --out chart             about a minute
+  cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
+  cyber-radar chart --out chart batch.json          with queries of your own
+  cyber-radar chart --out docs/chart --docs docs --render
+                                                    measures nothing: draws what is there anew
+
+In DIR: chart.csv and chart.json, chart.html with all charts, each chart as SVG and PNG. Each cell is on disk as soon as
+it is measured: a run that was interrupted goes on where it was, if program and device are the same. Libraries to compare
+with are measured by a program built with -DRADAR_PEERS=ON (./tools/bootstrap chart).)";
+
+struct Options {
+  std::vector<std::string> files, meshes;
+  std::string out, docs, device, extent = "full";
+  bool quick = false, render = false;
+};
+
+void requireFolder(const char* option, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) throw InputError(option, folder, "expected a folder, or a place for one");
+}
+
+std::vector<Case> casesOf(const Options& options, Extent extent) {
+  std::vector<Case> cases = frontCases(extent);
+  std::vector<std::string> warnings;
+  std::vector<MeshData> meshes;
+  for (const std::string& file : options.meshes) meshes.push_back(readMesh(file, warnings));
+  if (!meshes.empty()) cases.push_back(meshesCase(extent, std::move(meshes)));
+  for (const std::string& file : options.files) {
+    Workload workload = readQueryFile(file, warnings);
+    if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
+    cases.push_back(
+        {"front", std::filesystem::path(file).stem().string(), "Queries of " + file, 0, std::move(workload)});
+  }
+  printWarnings(warnings);
+  for (auto* more : {table1Cases, growthCases}) {
+    for (Case& which : more(extent)) cases.push_back(std::move(which));
+  }
+  return cases;
+}
+
+std::string commandOf(const Options& options) {
+  std::string command = "cyber-radar chart --out " + options.out;
+  if (options.extent != "full") command += " --extent " + options.extent;
+  if (!options.device.empty()) command += " --device " + options.device;
+  if (!options.docs.empty()) command += " --docs " + options.docs;
+  for (const std::string& mesh : options.meshes) command += " --mesh " + mesh;
+  for (const std::string& file : options.files) command += " " + file;
+  return command;
+}
+
+Record measure(const Options& options) {
+  EngineOptions engine;
+  engine.device = options.device;
+  const uint32_t number = engine.checked().device;
+  RunSettings settings;
+  settings.extent = options.extent == "full" ? Extent::full : options.extent == "quick" ? Extent::quick : Extent::least;
+  settings.threads = std::max(1u, std::thread::hardware_concurrency());
+  settings.cases = casesOf(options, settings.extent);
+  const Device device = Device::open({.index = number});
+  Record record;
+  record.command = commandOf(options);
+  record.machine = processorInWords();
+  record.device = device.name() + ", " + device.driver();
+  record.commit = RADAR_COMMIT;
+  record.date = today();
+  const std::vector<PeerRow> rows = peerRows();
+  for (const PeerRow& row : rows) record.notes.push_back(row.family + " (" + row.library + "): " + row.limits);
+  for (const Case& which : settings.cases) {
+    if (which.section == "front") record.workloads.push_back({which.name, which.about});
+  }
+  const std::vector<Planned> plan = planOf(settings, rows, programFingerprint() + record.device);
+  Progress progress("measuring", plan.size());
+  return measureAll(settings, plan, record, device, options.out, [&](const Planned&) { progress.add(1); });
+}
+
+void chart(Options options) {
+  if (options.quick) options.extent = "quick";
+  requireFolder("--out", options.out);
+  if (!options.docs.empty()) requireFolder("--docs", options.docs);
+  std::optional<Record> record;
+  if (options.render) {
+    record = readRecord(options.out);
+    if (!record) throw InputError("--out", options.out, "expected a folder with the chart.json of an earlier run");
+  } else {
+    record = measure(options);
+  }
+  writeReport(options.out, *record);
+  if (!options.docs.empty()) writeDocuments(options.docs, options.out, *record);
+  for (const WorkloadNote& workload : record->workloads) {
+    std::cout << workload.name << ": " << workload.about << "\n";
+    for (const std::string& finding : frontFindings(*record, workload.name)) std::cout << "  " << finding << "\n";
+  }
+  std::cout << "table1\n";
+  for (const std::string& finding : table1Findings(*record)) std::cout << "  " << finding << "\n";
+  std::cout << "growth\n";
+  for (const std::string& finding : growthFindings(*record)) std::cout << "  " << finding << "\n";
+  std::cout << "\nIn " << std::filesystem::absolute(options.out).string()
+            << ": chart.html, chart.csv, chart.json, charts as SVG and PNG\n";
+}
+
+}  // namespace
+
+void addChartCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "chart", "Measures every mode, and other libraries, on the same queries: accuracy against speed, in charts");
+  command->footer(kExamples);
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE.json", options->files, "Query files: workloads of your own");
+  command->add_option("--out", options->out, "Folder for what is measured and drawn")->required()->type_name("DIR");
+  command->add_option("--mesh", options->meshes, "Mesh files: one more workload, of these in random poses")
+      ->type_name("FILE...");
+  command->add_option("--device", options->device, "Number of the device, as cyber-radar devices lists them")
+      ->type_name("I");
+  command->add_option("--extent", options->extent, "How much: full; quick, about a minute; least, to try it out")
+      ->check(CLI::IsMember({"full", "quick", "least"}))
+      ->capture_default_str();
+  command->add_flag("--quick", options->quick, "--extent quick");
+  command->add_option("--docs", options->docs, "Folder for accuracy.md and speed.md")->type_name("DIR");
+  command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
+  command->callback([options] { chart(*options); });
+}
+
+}  // namespace radar::tools

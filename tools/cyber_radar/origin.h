@@ -1,0 +1,14 @@
+// What a report says of where and when it was made.
+#pragma once
+
+#include <string>
+
+namespace radar::tools {
+
+/// The day, in UTC: 2026-11-21.
+std::string today();
+
+/// The processor's model and its threads, in words.
+std::string processorInWords();
+
+}  // namespace radar::tools

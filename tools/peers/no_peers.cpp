@@ -1,0 +1,9 @@
+#include "peers/peer.h"
+
+namespace radar::tools {
+
+std::vector<PeerRow> peerRows() {
+  return {};
+}
+
+}  // namespace radar::tools

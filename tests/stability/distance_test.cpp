@@ -15,13 +15,16 @@ namespace {
 
 constexpr uint32_t kResolution = 32;
 
-/// One scene, its queries with D moved to the exact t, one rounding less and one more.
+/// One family after the other, its queries with D moved to the exact t, one rounding less and one more.
 struct AtContact {
-  explicit AtContact(const StabilityFamily& family) : reference(scene) {
+  AtContact() : sweeper(test::device(), scene), reference(scene) {}
+
+  void show(const StabilityFamily& family) {
     std::vector<StabilityCase> cases;
     for (uint64_t i = 0; i < kCasesPerScene; ++i) cases.push_back(stabilityCase(family, i, 17));
     const Workload workload = workloadOf(cases);
     replaceBy(workload, 0, scene);
+    queries.clear();
     for (const QuerySpec& spec : workload.queries) {
       Query query = toQuery(spec, Mode::contact);
       const Result first = reference.answer(query);
@@ -35,6 +38,7 @@ struct AtContact {
   }
 
   Scene scene;
+  Sweeper sweeper;
   reference::Reference reference;
   std::vector<Query> queries;
   std::vector<Result> exact;
@@ -43,12 +47,12 @@ struct AtContact {
 }  // namespace
 
 TEST_CASE("where methods fail, D at the contact and a rounding beside it keeps every promise") {
+  AtContact asking;
   for (const StabilityFamily& family : stabilityFamilies()) {
-    const AtContact asking(family);
+    asking.show(family);
     REQUIRE(asking.queries.size() >= 3);
-    Sweeper sweeper(test::device(), asking.scene);
-    const std::vector<Result> contact = answersBy(Method::contact, sweeper, asking.queries, 0);
-    const std::vector<Result> bounded = answersBy(Method::bounded, sweeper, asking.queries, kResolution);
+    const std::vector<Result> contact = answersBy(Method::contact, asking.sweeper, asking.queries, 0);
+    const std::vector<Result> bounded = answersBy(Method::bounded, asking.sweeper, asking.queries, kResolution);
     for (size_t i = 0; i < asking.queries.size(); ++i) {
       CAPTURE(family.name, i, asking.exact[i].t, asking.queries[i].distance);
       const Query& query = asking.queries[i];
@@ -59,12 +63,12 @@ TEST_CASE("where methods fail, D at the contact and a rounding beside it keeps e
 }
 
 TEST_CASE("where methods fail, whether there is a contact within D is decided rightly") {
+  AtContact asking;
   for (const StabilityFamily& family : stabilityFamilies()) {
-    AtContact asking(family);
+    asking.show(family);
     for (Query& query : asking.queries) query.decide = true;
-    Sweeper sweeper(test::device(), asking.scene);
-    const std::vector<Result> contact = answersBy(Method::contact, sweeper, asking.queries, 0);
-    const std::vector<Result> bounded = answersBy(Method::bounded, sweeper, asking.queries, kResolution);
+    const std::vector<Result> contact = answersBy(Method::contact, asking.sweeper, asking.queries, 0);
+    const std::vector<Result> bounded = answersBy(Method::bounded, asking.sweeper, asking.queries, kResolution);
     for (size_t i = 0; i < asking.queries.size(); ++i) {
       CAPTURE(family.name, i, asking.exact[i].t, asking.queries[i].distance);
       const bool meets = asking.exact[i].status != Status::clear;

@@ -4,7 +4,7 @@ namespace radar::gpu {
 
 namespace {
 
-void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
+void memoryBarrier(const Commands& commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
                    VkPipelineStageFlags2 toStage, VkAccessFlags2 toAccess) {
   const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                  .srcStageMask = fromStage,
@@ -13,10 +13,10 @@ void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, Vk
                                  .dstAccessMask = toAccess};
   const VkDependencyInfo info{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
-  vkCmdPipelineBarrier2(commands, &info);
+  commands->CmdPipelineBarrier2(commands, &info);
 }
 
-void depthBarrier(VkCommandBuffer commands, VkImage image, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
+void depthBarrier(const Commands& commands, VkImage image, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
                   VkImageLayout from, VkPipelineStageFlags2 toStage, VkAccessFlags2 toAccess, VkImageLayout to) {
   const VkImageMemoryBarrier2 barrier{
       .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
@@ -32,12 +32,12 @@ void depthBarrier(VkCommandBuffer commands, VkImage image, VkPipelineStageFlags2
       .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}};
   const VkDependencyInfo info{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
-  vkCmdPipelineBarrier2(commands, &info);
+  commands->CmdPipelineBarrier2(commands, &info);
 }
 
 }  // namespace
 
-void uploadToRead(VkCommandBuffer commands) {
+void uploadToRead(const Commands& commands) {
   memoryBarrier(
       commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
       VK_PIPELINE_STAGE_2_VERTEX_ATTRIBUTE_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
@@ -45,42 +45,42 @@ void uploadToRead(VkCommandBuffer commands) {
       VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 }
 
-void fillToComputeReadWrite(VkCommandBuffer commands) {
+void fillToComputeReadWrite(const Commands& commands) {
   // A clear by the specification, a copy by validation layer 1.3.239.
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                 VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
-void computeWriteToComputeReadWrite(VkCommandBuffer commands) {
+void computeWriteToComputeReadWrite(const Commands& commands) {
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                 VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
-void computeWriteToCopy(VkCommandBuffer commands) {
+void computeWriteToCopy(const Commands& commands) {
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
 }
 
-void copyToHost(VkCommandBuffer commands) {
+void copyToHost(const Commands& commands) {
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                 VK_ACCESS_2_HOST_READ_BIT);
 }
 
-void sampledDepthToCopy(VkCommandBuffer commands, VkImage image) {
+void sampledDepthToCopy(const Commands& commands, VkImage image) {
   depthBarrier(commands, image, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
-void undefinedToSampledDepth(VkCommandBuffer commands, VkImage image) {
+void undefinedToSampledDepth(const Commands& commands, VkImage image) {
   depthBarrier(commands, image, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_NONE, VK_IMAGE_LAYOUT_UNDEFINED,
                VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
-void everythingToEverything(VkCommandBuffer commands) {
+void everythingToEverything(const Commands& commands) {
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                 VK_ACCESS_2_NONE);
 }

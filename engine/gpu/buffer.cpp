@@ -29,11 +29,12 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   VkBuffer handle;
-  check(vkCreateBuffer(device_->device(), &info, nullptr, &handle), "vkCreateBuffer (" + what + ")");
-  BufferHandle buffer(device_->device(), handle);
+  check(device_->vk.CreateBuffer(device_->device(), &info, device_->host.allocator, &handle),
+        "vkCreateBuffer (" + what + ")");
+  BufferHandle buffer(*device_, handle);
   device_->setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
   VkMemoryRequirements requirements;
-  vkGetBufferMemoryRequirements(device_->device(), handle, &requirements);
+  device_->vk.GetBufferMemoryRequirements(device_->device(), handle, &requirements);
   constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   const bool onDevice = residence_ == Residence::device;
   const VkMemoryAllocateInfo allocate{
@@ -45,12 +46,13 @@ bool Buffer::reserve(VkDeviceSize bytes) {
                                                                         : 0)};
   VkDeviceMemory memory;
   check(device_->faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
-  check(vkAllocateMemory(device_->device(), &allocate, nullptr, &memory), "vkAllocateMemory (" + what + ")");
-  DeviceMemory owned(device_->device(), memory);
-  check(vkBindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");
+  check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory),
+        "vkAllocateMemory (" + what + ")");
+  DeviceMemory owned(*device_, memory);
+  check(device_->vk.BindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");
   void* mapped = nullptr;
   if (!onDevice) {
-    check(vkMapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory (" + what + ")");
+    check(device_->vk.MapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory (" + what + ")");
   }
   buffer_ = std::move(buffer);
   memory_ = std::move(owned);
@@ -86,8 +88,8 @@ void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkD
   used_ = aligned(used_ + bytes);
 }
 
-void Upload::record(VkCommandBuffer commands) const {
-  for (const Copy& copy : copies_) vkCmdCopyBuffer(commands, staging_.get(), copy.target, 1, &copy.region);
+void Upload::record(const Commands& commands) const {
+  for (const Copy& copy : copies_) commands->CmdCopyBuffer(commands, staging_.get(), copy.target, 1, &copy.region);
 }
 
 }  // namespace radar::gpu

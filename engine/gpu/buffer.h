@@ -51,7 +51,7 @@ class Upload {
   /// Copies `data` to `offset` in `target`; nothing happens for empty data.
   void add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset = 0);
   /// Records all copies. The caller puts the barriers.
-  void record(VkCommandBuffer commands) const;
+  void record(const Commands& commands) const;
 
  private:
   struct Copy {

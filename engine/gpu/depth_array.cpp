@@ -19,8 +19,8 @@ ImageView layerView(const Device::Impl& device, VkImage image, uint32_t first, u
                                    .format = kDepthFormat,
                                    .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, first, count}};
   VkImageView view;
-  check(vkCreateImageView(device.device(), &info, nullptr, &view), "vkCreateImageView");
-  return {device.device(), view};
+  check(device.vk.CreateImageView(device.device(), &info, device.host.allocator, &view), "vkCreateImageView");
+  return {device, view};
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ RenderPass depthRenderPass(const Device::Impl& device) {
                                     .dependencyCount = 2,
                                     .pDependencies = dependencies};
   VkRenderPass renderPass;
-  check(vkCreateRenderPass(device.device(), &info, nullptr, &renderPass), "vkCreateRenderPass");
-  return {device.device(), renderPass};
+  check(device.vk.CreateRenderPass(device.device(), &info, device.host.allocator, &renderPass), "vkCreateRenderPass");
+  return {device, renderPass};
 }
 
 Sampler texelSampler(const Device::Impl& device) {
@@ -72,8 +72,8 @@ Sampler texelSampler(const Device::Impl& device) {
                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   VkSampler sampler;
-  check(vkCreateSampler(device.device(), &info, nullptr, &sampler), "vkCreateSampler");
-  return {device.device(), sampler};
+  check(device.vk.CreateSampler(device.device(), &info, device.host.allocator, &sampler), "vkCreateSampler");
+  return {device, sampler};
 }
 
 DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side,
@@ -92,31 +92,32 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
                                .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                         VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
   VkImage image;
-  check(vkCreateImage(device.device(), &info, nullptr, &image), "vkCreateImage (" + what + ")");
-  image_ = {device.device(), image};
+  check(device.vk.CreateImage(device.device(), &info, device.host.allocator, &image), "vkCreateImage (" + what + ")");
+  image_ = {device, image};
   device.setName(VK_OBJECT_TYPE_IMAGE, image, name);
   VkMemoryRequirements requirements;
-  vkGetImageMemoryRequirements(device.device(), image, &requirements);
+  device.vk.GetImageMemoryRequirements(device.device(), image, &requirements);
   const VkMemoryAllocateInfo allocate{
       .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
       .allocationSize = requirements.size,
       .memoryTypeIndex = memoryType(device, requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
   VkDeviceMemory memory;
   check(device.faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
-  check(vkAllocateMemory(device.device(), &allocate, nullptr, &memory), "vkAllocateMemory (" + what + ")");
-  memory_ = {device.device(), memory};
-  check(vkBindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory (" + what + ")");
+  check(device.vk.AllocateMemory(device.device(), &allocate, device.host.allocator, &memory),
+        "vkAllocateMemory (" + what + ")");
+  memory_ = {device, memory};
+  check(device.vk.BindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory (" + what + ")");
   view_ = layerView(device, image, 0, layers);
 }
 
-void DepthArray::recordFirstUse(VkCommandBuffer commands) {
+void DepthArray::recordFirstUse(const Commands& commands) {
   if (targets_.size() > kKeptTargets) targets_.clear();
   if (used_) return;
   used_ = true;
   undefinedToSampledDepth(commands, image_.get());
 }
 
-void DepthArray::beginPass(VkCommandBuffer commands, uint32_t first, uint32_t count, uint32_t side) {
+void DepthArray::beginPass(const Commands& commands, uint32_t first, uint32_t count, uint32_t side) {
   auto [entry, fresh] = targets_.try_emplace({first, count});
   Target& target = entry->second;
   if (fresh) {
@@ -130,9 +131,9 @@ void DepthArray::beginPass(VkCommandBuffer commands, uint32_t first, uint32_t co
                                        .height = side_,
                                        .layers = count};
     VkFramebuffer framebuffer;
-    check(vkCreateFramebuffer(device_->device(), &info, nullptr, &framebuffer),
+    check(device_->vk.CreateFramebuffer(device_->device(), &info, device_->host.allocator, &framebuffer),
           "vkCreateFramebuffer (" + std::to_string(count) + " layers)");
-    target.framebuffer = {device_->device(), framebuffer};
+    target.framebuffer = {*device_, framebuffer};
   }
   const VkClearValue clear{.depthStencil = {1.0f, 0}};
   const VkRenderPassBeginInfo begin{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
@@ -141,20 +142,20 @@ void DepthArray::beginPass(VkCommandBuffer commands, uint32_t first, uint32_t co
                                     .renderArea = {{0, 0}, {side, side}},
                                     .clearValueCount = 1,
                                     .pClearValues = &clear};
-  vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+  commands->CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
   const VkViewport viewport{0, 0, static_cast<float>(side), static_cast<float>(side), 0, 1};
   const VkRect2D scissor{{0, 0}, {side, side}};
-  vkCmdSetViewport(commands, 0, 1, &viewport);
-  vkCmdSetScissor(commands, 0, 1, &scissor);
+  commands->CmdSetViewport(commands, 0, 1, &viewport);
+  commands->CmdSetScissor(commands, 0, 1, &scissor);
 }
 
-void DepthArray::recordCopy(VkCommandBuffer commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
+void DepthArray::recordCopy(const Commands& commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
                             VkDeviceSize offset) {
   sampledDepthToCopy(commands, image_.get());
   const VkBufferImageCopy region{.bufferOffset = offset,
                                  .imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, layer, 1},
                                  .imageExtent = {width, height, 1}};
-  vkCmdCopyImageToBuffer(commands, image_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target, 1, &region);
+  commands->CmdCopyImageToBuffer(commands, image_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target, 1, &region);
   used_ = false;
 }
 

@@ -27,13 +27,13 @@ class DepthArray {
 
   /// Before the passes of a submission, while none is pending. Puts all layers in SHADER_READ_ONLY layout where they
   /// are not, since a batch may draw only some of them.
-  void recordFirstUse(VkCommandBuffer commands);
+  void recordFirstUse(const Commands& commands);
   /// Begins the render pass on `count` layers from `first`, over `side` x `side` pixels from the corner; made on first
   /// use, so callers keep to few distinct ranges.
-  void beginPass(VkCommandBuffer commands, uint32_t first, uint32_t count, uint32_t side);
+  void beginPass(const Commands& commands, uint32_t first, uint32_t count, uint32_t side);
   /// Copies the corner of a layer that compute shaders have read, `width` x `height` floats, to `offset` in `target`.
   /// All layers lose their contents.
-  void recordCopy(VkCommandBuffer commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
+  void recordCopy(const Commands& commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
                   VkDeviceSize offset);
 
  private:

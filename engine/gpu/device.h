@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "gpu/handle.h"
+#include "gpu/api.h"
 #include "radar/radar.h"
 
 namespace radar {
@@ -16,6 +16,7 @@ struct Device::Impl {
 
   /// Only where opened here; declared first, so destroyed last.
   struct Owned {
+    gpu::Api vk{nullptr};
     VkInstance instance = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
@@ -25,6 +26,7 @@ struct Device::Impl {
   std::unique_ptr<Owned> owned;
 
   HostDevice host;
+  gpu::Api vk;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
@@ -46,18 +48,17 @@ struct Device::Impl {
     setName(type, reinterpret_cast<uint64_t>(handle), text);
   }
   /// Opens and closes a labelled region of a command buffer.
-  void beginLabel(VkCommandBuffer commands, const char* label) const;
-  void endLabel(VkCommandBuffer commands) const;
-
-  PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
-  PFN_vkCmdBeginDebugUtilsLabelEXT cmdBeginLabel = nullptr;
-  PFN_vkCmdEndDebugUtilsLabelEXT cmdEndLabel = nullptr;
+  void beginLabel(const gpu::Commands& commands, const char* label) const;
+  void endLabel(const gpu::Commands& commands) const;
 };
 
 namespace gpu {
 
 /// The first queue family that does graphics and compute, or kNone.
-uint32_t queueFamilyOf(VkPhysicalDevice device);
+uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device);
+
+/// Name and version, as the driver gives them.
+std::string driverText(const Api& vk, VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties);
 
 }  // namespace gpu
 }  // namespace radar

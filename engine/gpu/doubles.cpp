@@ -66,16 +66,16 @@ bool doublesAreRight(const Device::Impl& device) {
   upload.add(sums.data(), bytesOf(sums), given);
 
   Submission submission(device, false);
-  const VkCommandBuffer commands = submission.begin();
+  const Commands commands = submission.begin();
   submission.stage("doubles");
   upload.record(commands);
   uploadToRead(commands);
   const VkDescriptorSet set = bindings.set();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  vkCmdDispatch(commands, 1, 1, 1);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  commands->CmdDispatch(commands, 1, 1, 1);
   computeWriteToCopy(commands);
-  vkCmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);
+  commands->CmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);
   copyToHost(commands);
   submission.submitAndWait();
   for (size_t i = 0; i < sums.size(); ++i) {

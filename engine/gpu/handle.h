@@ -1,9 +1,9 @@
-// One move-only handle for every child object of a VkDevice: destroys what it owns.
+// One move-only handle for every child object of a VkDevice: destroys what it owns. The device outlives it.
 #pragma once
 
 #include <utility>
 
-#include <vulkan/vulkan_core.h>
+#include "gpu/device.h"
 
 namespace radar::gpu {
 
@@ -11,7 +11,7 @@ template <class T, auto Destroy>
 class Handle {
  public:
   Handle() = default;
-  Handle(VkDevice device, T value) : device_(device), value_(value) {}
+  Handle(const Device::Impl& device, T value) : device_(&device), value_(value) {}
   Handle(Handle&& other) noexcept
       : device_(other.device_), value_(std::exchange(other.value_, static_cast<T>(VK_NULL_HANDLE))) {}
   Handle& operator=(Handle&& other) noexcept {
@@ -20,29 +20,29 @@ class Handle {
     return *this;
   }
   ~Handle() {
-    if (value_ != VK_NULL_HANDLE) Destroy(device_, value_, nullptr);
+    if (value_ != VK_NULL_HANDLE) (device_->vk.*Destroy)(device_->device(), value_, device_->host.allocator);
   }
   T get() const { return value_; }
 
  private:
-  VkDevice device_ = VK_NULL_HANDLE;
+  const Device::Impl* device_ = nullptr;
   T value_ = VK_NULL_HANDLE;
 };
 
-using CommandPool = Handle<VkCommandPool, vkDestroyCommandPool>;
-using DescriptorPool = Handle<VkDescriptorPool, vkDestroyDescriptorPool>;
-using DescriptorSetLayout = Handle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
-using DeviceMemory = Handle<VkDeviceMemory, vkFreeMemory>;
-using Fence = Handle<VkFence, vkDestroyFence>;
-using Framebuffer = Handle<VkFramebuffer, vkDestroyFramebuffer>;
-using ImageHandle = Handle<VkImage, vkDestroyImage>;
-using ImageView = Handle<VkImageView, vkDestroyImageView>;
-using BufferHandle = Handle<VkBuffer, vkDestroyBuffer>;
-using Pipeline = Handle<VkPipeline, vkDestroyPipeline>;
-using PipelineLayout = Handle<VkPipelineLayout, vkDestroyPipelineLayout>;
-using QueryPool = Handle<VkQueryPool, vkDestroyQueryPool>;
-using RenderPass = Handle<VkRenderPass, vkDestroyRenderPass>;
-using Sampler = Handle<VkSampler, vkDestroySampler>;
-using ShaderModule = Handle<VkShaderModule, vkDestroyShaderModule>;
+using CommandPool = Handle<VkCommandPool, &Api::DestroyCommandPool>;
+using DescriptorPool = Handle<VkDescriptorPool, &Api::DestroyDescriptorPool>;
+using DescriptorSetLayout = Handle<VkDescriptorSetLayout, &Api::DestroyDescriptorSetLayout>;
+using DeviceMemory = Handle<VkDeviceMemory, &Api::FreeMemory>;
+using Fence = Handle<VkFence, &Api::DestroyFence>;
+using Framebuffer = Handle<VkFramebuffer, &Api::DestroyFramebuffer>;
+using ImageHandle = Handle<VkImage, &Api::DestroyImage>;
+using ImageView = Handle<VkImageView, &Api::DestroyImageView>;
+using BufferHandle = Handle<VkBuffer, &Api::DestroyBuffer>;
+using Pipeline = Handle<VkPipeline, &Api::DestroyPipeline>;
+using PipelineLayout = Handle<VkPipelineLayout, &Api::DestroyPipelineLayout>;
+using QueryPool = Handle<VkQueryPool, &Api::DestroyQueryPool>;
+using RenderPass = Handle<VkRenderPass, &Api::DestroyRenderPass>;
+using Sampler = Handle<VkSampler, &Api::DestroySampler>;
+using ShaderModule = Handle<VkShaderModule, &Api::DestroyShaderModule>;
 
 }  // namespace radar::gpu

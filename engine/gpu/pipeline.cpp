@@ -13,8 +13,9 @@ ShaderModule shaderModule(const Device::Impl& device, std::span<const uint32_t> 
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   VkShaderModule module;
-  check(vkCreateShaderModule(device.device(), &info, nullptr, &module), std::string("vkCreateShaderModule ") + name);
-  return {device.device(), module};
+  check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module),
+        std::string("vkCreateShaderModule ") + name);
+  return {device, module};
 }
 
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const ShaderModule& module) {
@@ -43,8 +44,9 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
                                                 .bindingCount = static_cast<uint32_t>(slots.size()),
                                                 .pBindings = slots.data()};
   VkDescriptorSetLayout setLayout;
-  check(vkCreateDescriptorSetLayout(device.device(), &setInfo, nullptr, &setLayout), "vkCreateDescriptorSetLayout");
-  setLayout_ = {device.device(), setLayout};
+  check(device.vk.CreateDescriptorSetLayout(device.device(), &setInfo, device.host.allocator, &setLayout),
+        "vkCreateDescriptorSetLayout");
+  setLayout_ = {device, setLayout};
 
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
   const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
@@ -53,8 +55,9 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
                                               .pushConstantRangeCount = 1,
                                               .pPushConstantRanges = &range};
   VkPipelineLayout layout;
-  check(vkCreatePipelineLayout(device.device(), &layoutInfo, nullptr, &layout), "vkCreatePipelineLayout");
-  pipelineLayout_ = {device.device(), layout};
+  check(device.vk.CreatePipelineLayout(device.device(), &layoutInfo, device.host.allocator, &layout),
+        "vkCreatePipelineLayout");
+  pipelineLayout_ = {device, layout};
 
   std::vector<VkDescriptorPoolSize> sizes;
   for (const auto& [type, count] : counts) sizes.push_back({type, count});
@@ -63,13 +66,14 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
                                             .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                             .pPoolSizes = sizes.data()};
   VkDescriptorPool pool;
-  check(vkCreateDescriptorPool(device.device(), &poolInfo, nullptr, &pool), "vkCreateDescriptorPool");
-  pool_ = {device.device(), pool};
+  check(device.vk.CreateDescriptorPool(device.device(), &poolInfo, device.host.allocator, &pool),
+        "vkCreateDescriptorPool");
+  pool_ = {device, pool};
   const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                              .descriptorPool = pool,
                                              .descriptorSetCount = 1,
                                              .pSetLayouts = &setLayout};
-  check(vkAllocateDescriptorSets(device.device(), &allocate, &set_), "vkAllocateDescriptorSets");
+  check(device.vk.AllocateDescriptorSets(device.device(), &allocate, &set_), "vkAllocateDescriptorSets");
 }
 
 void Bindings::setBuffer(uint32_t number, const Buffer& buffer) {
@@ -82,7 +86,7 @@ void Bindings::setBuffer(uint32_t number, const Buffer& buffer) {
                                    .descriptorCount = 1,
                                    .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                    .pBufferInfo = &info};
-  vkUpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
+  device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
 }
 
 void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
@@ -93,7 +97,7 @@ void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
                                    .descriptorCount = 1,
                                    .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                    .pImageInfo = &info};
-  vkUpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
+  device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
 }
 
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
@@ -108,10 +112,11 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
   const VkComputePipelineCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
   VkPipeline pipeline;
-  check(vkCreateComputePipelines(device.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
+                                         &pipeline),
         std::string("vkCreateComputePipelines ") + name);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
-  return {device.device(), pipeline};
+  return {device, pipeline};
 }
 
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
@@ -158,10 +163,11 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRe
                                           .layout = layout,
                                           .renderPass = renderPass};
   VkPipeline pipeline;
-  check(vkCreateGraphicsPipelines(device.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  check(device.vk.CreateGraphicsPipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
+                                          &pipeline),
         std::string("vkCreateGraphicsPipelines ") + name);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
-  return {device.device(), pipeline};
+  return {device, pipeline};
 }
 
 }  // namespace radar::gpu

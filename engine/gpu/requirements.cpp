@@ -11,18 +11,19 @@ namespace {
 struct Requirement {
   const char* name;
   const char* why;
-  VkBool32& (*in)(Features&);
+  VkBool32& (*in)(Requirements&);
 };
 
 // A sensor is a layer of an array image, chosen in the vertex stage; structs are shared in scalar layout.
 const Requirement kRequired[] = {
     {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage",
-     [](Features& f) -> VkBool32& { return f.v12.shaderOutputLayer; }},
+     [](Requirements& f) -> VkBool32& { return f.vulkan12.shaderOutputLayer; }},
     {"scalarBlockLayout", "buffers share the structs of C++",
-     [](Features& f) -> VkBool32& { return f.v12.scalarBlockLayout; }},
-    {"synchronization2", "barriers name exact stages", [](Features& f) -> VkBool32& { return f.v13.synchronization2; }},
+     [](Requirements& f) -> VkBool32& { return f.vulkan12.scalarBlockLayout; }},
+    {"synchronization2", "barriers name exact stages",
+     [](Requirements& f) -> VkBool32& { return f.vulkan13.synchronization2; }},
     {"maintenance4", "shaders are compiled for Vulkan 1.3",
-     [](Features& f) -> VkBool32& { return f.v13.maintenance4; }},
+     [](Requirements& f) -> VkBool32& { return f.vulkan13.maintenance4; }},
 };
 
 std::string versionText(uint32_t version) {
@@ -31,29 +32,22 @@ std::string versionText(uint32_t version) {
 
 }  // namespace
 
-Features::Features() {
-  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-  v12.pNext = &v13;
-  core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  core.pNext = &v12;
-}
-
-DeviceFacts factsOf(VkPhysicalDevice device) {
+DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(device, &properties);
+  vk.GetPhysicalDeviceProperties(device, &properties);
   DeviceFacts facts{
       .apiVersion = properties.apiVersion,
       .maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers),
       .subPixelBits = properties.limits.subPixelPrecisionBits,
       .groupInvocations = properties.limits.maxComputeWorkGroupInvocations,
       .stageBuffers = properties.limits.maxPerStageDescriptorStorageBuffers,
-      .graphicsAndComputeQueue = queueFamilyOf(device) != kNone,
+      .graphicsAndComputeQueue = queueFamilyOf(vk, device) != kNone,
       .doubles = false,
       .missingFeatures = {}};
   if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the feature structs below do not exist there
-  Features features;
-  vkGetPhysicalDeviceFeatures2(device, &features.core);
+  Requirements features;
+  features.chain();
+  vk.GetPhysicalDeviceFeatures2(device, &features.core);
   facts.doubles = features.core.features.shaderFloat64 == VK_TRUE;
   for (const Requirement& required : kRequired) {
     if (!required.in(features)) facts.missingFeatures.push_back(std::string(required.name) + " (" + required.why + ")");
@@ -83,9 +77,22 @@ std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
   return reasons;
 }
 
-void enableRequired(Features& features, bool doubles) {
-  features.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
-  for (const Requirement& required : kRequired) required.in(features) = VK_TRUE;
+}  // namespace radar::gpu
+
+namespace radar {
+
+const void* Requirements::chain(void* next) {
+  core.pNext = &vulkan12;
+  vulkan12.pNext = &vulkan13;
+  vulkan13.pNext = next;
+  return &core;
 }
 
-}  // namespace radar::gpu
+Requirements requirements(bool doubles) {
+  Requirements needed;
+  needed.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
+  for (const gpu::Requirement& required : gpu::kRequired) required.in(needed) = VK_TRUE;
+  return needed;
+}
+
+}  // namespace radar

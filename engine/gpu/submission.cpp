@@ -14,36 +14,37 @@ Submission::Submission(const Device::Impl& device, bool timestamps)
                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                          .queueFamilyIndex = device.host.queueFamily};
   VkCommandPool pool;
-  check(vkCreateCommandPool(device.device(), &poolInfo, nullptr, &pool), "vkCreateCommandPool");
-  pool_ = {device.device(), pool};
+  check(device.vk.CreateCommandPool(device.device(), &poolInfo, device.host.allocator, &pool), "vkCreateCommandPool");
+  pool_ = {device, pool};
   const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                              .commandPool = pool,
                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                              .commandBufferCount = 1};
-  check(vkAllocateCommandBuffers(device.device(), &allocate, &commands_), "vkAllocateCommandBuffers");
+  check(device.vk.AllocateCommandBuffers(device.device(), &allocate, &commands_.handle), "vkAllocateCommandBuffers");
+  commands_.api = &device.vk;
   const VkFenceCreateInfo fenceInfo{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
   VkFence fence;
-  check(vkCreateFence(device.device(), &fenceInfo, nullptr, &fence), "vkCreateFence");
-  fence_ = {device.device(), fence};
+  check(device.vk.CreateFence(device.device(), &fenceInfo, device.host.allocator, &fence), "vkCreateFence");
+  fence_ = {device, fence};
   if (!timestamps_) return;
   const VkQueryPoolCreateInfo queryInfo{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                         .queryCount = kMaxStages + 1};
   VkQueryPool queries;
-  check(vkCreateQueryPool(device.device(), &queryInfo, nullptr, &queries), "vkCreateQueryPool");
-  queries_ = {device.device(), queries};
+  check(device.vk.CreateQueryPool(device.device(), &queryInfo, device.host.allocator, &queries), "vkCreateQueryPool");
+  queries_ = {device, queries};
 }
 
-VkCommandBuffer Submission::begin() {
+Commands Submission::begin() {
   assert(!pending_);
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(vkResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // a failed recording may have been left
-  check(vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
+  check(commands_->ResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // a failed recording may have been left
+  check(commands_->BeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
   stages_.clear();
   if (timestamps_) {
-    vkCmdResetQueryPool(commands_, queries_.get(), 0, kMaxStages + 1);
-    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), 0);
+    commands_->CmdResetQueryPool(commands_, queries_.get(), 0, kMaxStages + 1);
+    commands_->CmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), 0);
   }
   return commands_;
 }
@@ -54,8 +55,8 @@ void Submission::endStage() {
   if (!timestamps_) return;
   // In profiling runs only: without a full barrier a timestamp is written before the stage's work is done.
   everythingToEverything(commands_);
-  vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
-                       static_cast<uint32_t>(stages_.size()));
+  commands_->CmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
+                                static_cast<uint32_t>(stages_.size()));
   everythingToEverything(commands_);
 }
 
@@ -68,22 +69,26 @@ void Submission::stage(const char* name) {
 
 void Submission::submit() {
   endStage();
-  check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  check(commands_->EndCommandBuffer(commands_), "vkEndCommandBuffer");
   const VkCommandBufferSubmitInfo commandInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                               .commandBuffer = commands_};
   const VkSubmitInfo2 submit{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commandInfo};
   check(device_->faultAt("vkQueueSubmit2"), "vkQueueSubmit2");
-  check(vkQueueSubmit2(device_->host.queue, 1, &submit, fence_.get()), "vkQueueSubmit2");
+  const HostDevice& host = device_->host;
+  if (host.lockQueue) host.lockQueue();
+  const VkResult submitted = device_->vk.QueueSubmit2(host.queue, 1, &submit, fence_.get());
+  if (host.unlockQueue) host.unlockQueue();
+  check(submitted, "vkQueueSubmit2");
   pending_ = true;
 }
 
 void Submission::wait() {
   const VkFence fence = fence_.get();
-  const VkResult waited = vkWaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
+  const VkResult waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
   pending_ = false;
   check(waited, "vkWaitForFences");
-  check(vkResetFences(device_->device(), 1, &fence), "vkResetFences");
+  check(device_->vk.ResetFences(device_->device(), 1, &fence), "vkResetFences");
   check(device_->faultAt("vkWaitForFences"), "vkWaitForFences");
 }
 
@@ -104,9 +109,9 @@ void addStageTime(std::vector<StageTime>& stages, const std::string& name, doubl
 void Submission::addTimes(std::vector<StageTime>& stages) const {
   if (!timestamps_ || stages_.empty()) return;
   std::vector<uint64_t> ticks(stages_.size() + 1);
-  check(vkGetQueryPoolResults(device_->device(), queries_.get(), 0, static_cast<uint32_t>(ticks.size()),
-                              ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  check(device_->vk.GetQueryPoolResults(device_->device(), queries_.get(), 0, static_cast<uint32_t>(ticks.size()),
+                                        ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                                        VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
   const double msPerTick = 1e-6 * device_->properties.limits.timestampPeriod;
   for (size_t i = 0; i < stages_.size(); ++i) {

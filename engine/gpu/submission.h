@@ -16,7 +16,7 @@ class Submission {
  public:
   Submission(const Device::Impl& device, bool timestamps);
 
-  VkCommandBuffer begin();
+  Commands begin();
   /// Opens a stage: a debug label, and the end of the stage before it.
   void stage(const char* name);
   /// Hands what was recorded to the queue, and returns while the device works on it; wait() comes before anything else.
@@ -34,7 +34,7 @@ class Submission {
   const Device::Impl* device_;
   bool timestamps_;
   CommandPool pool_;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  Commands commands_;
   Fence fence_;
   QueryPool queries_;
   std::vector<const char*> stages_;

@@ -188,17 +188,17 @@ void BoundedRecorder::bind() {
 }
 
 // A workgroup per band or strip, in as few rows as a device allows; the shader leaves what lies beyond.
-void BoundedRecorder::dispatchEach(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t first,
+void BoundedRecorder::dispatchEach(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first,
                                    uint32_t count) const {
   if (count == 0) return;
   const OuterPush push{first, count, std::min(count, 65535u), plane_};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  vkCmdDispatch(commands, push.groupsX, (count + push.groupsX - 1) / push.groupsX, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  commands->CmdDispatch(commands, push.groupsX, (count + push.groupsX - 1) / push.groupsX, 1);
   gpu::computeWriteToComputeReadWrite(commands);
 }
 
-void BoundedRecorder::draw(VkCommandBuffer commands, const DrawPipelines& pipelines, const Side& side) const {
+void BoundedRecorder::draw(const gpu::Commands& commands, const DrawPipelines& pipelines, const Side& side) const {
   dispatchEach(commands, pipelines.byTriangle, side.firstBand, side.bands);
   dispatchEach(commands, pipelines.byPixel, side.firstStrip, side.strips);
 }
@@ -233,16 +233,16 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   const VkDeviceSize planeBytes = plane_ * sizeof(uint32_t);
   readback_.reserve(answerBytes + openBytes + (scopes != nullptr ? 4 * planeBytes : 0));
 
-  const VkCommandBuffer commands = submission_.begin();
+  const gpu::Commands commands = submission_.begin();
   submission_.stage("upload");
   upload_.record(commands);
-  vkCmdFillBuffer(commands, scopes_.get(), 0, 2 * planeBytes, gpu::kNobody);
-  vkCmdFillBuffer(commands, scopes_.get(), 2 * planeBytes, 2 * planeBytes, 0);
+  commands->CmdFillBuffer(commands, scopes_.get(), 0, 2 * planeBytes, gpu::kNobody);
+  commands->CmdFillBuffer(commands, scopes_.get(), 2 * planeBytes, 2 * planeBytes, 0);
   gpu::uploadToRead(commands);
   gpu::fillToComputeReadWrite(commands);
 
   const VkDescriptorSet set = bindings_.set();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
   submission_.stage("outer scene");
   draw(commands, drawFarthest_, scene_);
   submission_.stage("outer sensor");
@@ -250,23 +250,23 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   submission_.stage("outer near");
   draw(commands, drawNearest_, scene_);
   submission_.stage("bound");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToComputeReadWrite(commands);
   submission_.stage("identify");
   dispatchEach(commands, identify_, 0, static_cast<uint32_t>(bandList_.size()));
   submission_.stage("solve");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");
   const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
-  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  vkCmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
+  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
+  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
   if (scopes != nullptr) {
     const VkBufferCopy copy{0, answerBytes + openBytes, 4 * planeBytes};
-    vkCmdCopyBuffer(commands, scopes_.get(), readback_.get(), 1, &copy);
+    commands->CmdCopyBuffer(commands, scopes_.get(), readback_.get(), 1, &copy);
   }
   gpu::copyToHost(commands);
   submission_.submitAndWait();

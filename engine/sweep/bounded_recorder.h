@@ -42,8 +42,8 @@ class BoundedRecorder {
                 uint32_t stripRows);
   void stage(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene);
   void bind();
-  void dispatchEach(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
-  void draw(VkCommandBuffer commands, const DrawPipelines& pipelines, const Side& side) const;
+  void dispatchEach(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
+  void draw(const gpu::Commands& commands, const DrawPipelines& pipelines, const Side& side) const;
   std::vector<OuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
 
   const Device::Impl* device_;

@@ -144,15 +144,15 @@ void ContactRecorder::bind() {
 }
 
 // `groups` workgroups in as few rows as a device allows; the shader leaves what lies beyond `count`.
-void ContactRecorder::dispatch(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t groups,
+void ContactRecorder::dispatch(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t groups,
                                uint32_t count) const {
   const CountPush push{count, std::min(groups, 65535u)};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  vkCmdDispatch(commands, push.groupsX, (groups + push.groupsX - 1) / push.groupsX, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  commands->CmdDispatch(commands, push.groupsX, (groups + push.groupsX - 1) / push.groupsX, 1);
 }
 
-void ContactRecorder::recordSearch(VkCommandBuffer commands, uint32_t targets) {
+void ContactRecorder::recordSearch(const gpu::Commands& commands, uint32_t targets) {
   submission_.stage("contact");
   for (uint32_t i = 0; i < kSearchDispatches; ++i) {
     dispatch(commands, contact_, targets, targets);
@@ -163,8 +163,8 @@ void ContactRecorder::recordSearch(VkCommandBuffer commands, uint32_t targets) {
   const VkDeviceSize stateBytes = bytesOf(stateList_);
   const VkBufferCopy stateCopy{0, 0, stateBytes};
   const VkBufferCopy contenderCopy{0, stateBytes, contenderTotal_ * sizeof(gpu::Contender)};
-  vkCmdCopyBuffer(commands, states_.get(), readback_.get(), 1, &stateCopy);
-  vkCmdCopyBuffer(commands, contenders_.get(), readback_.get(), 1, &contenderCopy);
+  commands->CmdCopyBuffer(commands, states_.get(), readback_.get(), 1, &stateCopy);
+  commands->CmdCopyBuffer(commands, contenders_.get(), readback_.get(), 1, &contenderCopy);
   gpu::copyToHost(commands);
 }
 
@@ -177,9 +177,10 @@ void ContactRecorder::finish(uint32_t targets, std::vector<StageTime>& stages) {
     for (uint32_t i = 0; i < targets; ++i) done += uint64_t{states[i].cursor} + states[i].boxPairs + states[i].round;
     if (done == before) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
     before = done;
-    const VkCommandBuffer commands = submission_.begin();
+    const gpu::Commands commands = submission_.begin();
     const VkDescriptorSet set = bindings_.set();
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+    commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0,
+                                    nullptr);
     recordSearch(commands, targets);
     submission_.submitAndWait();
     submission_.addTimes(stages);
@@ -212,9 +213,9 @@ void ContactRecorder::submitGroup(std::span<const ContactPlan* const> plans, con
   if (group_.empty()) return;
   stage(plans, group_, scene);
   bind();
-  const VkCommandBuffer commands = submission_.begin();
+  const gpu::Commands commands = submission_.begin();
   const VkDescriptorSet set = bindings_.set();
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
   submission_.stage("upload");
   upload_.record(commands);
   gpu::uploadToRead(commands);

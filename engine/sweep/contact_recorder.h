@@ -52,8 +52,8 @@ class ContactRecorder {
   void submitGroup(std::span<const ContactPlan* const> plans, const Scene::Impl& scene);
   void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);
   void bind();
-  void dispatch(VkCommandBuffer commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
-  void recordSearch(VkCommandBuffer commands, uint32_t targets);
+  void dispatch(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
+  void recordSearch(const gpu::Commands& commands, uint32_t targets);
   /// Submits until no search is unfinished.
   void finish(uint32_t targets, std::vector<StageTime>& stages);
 

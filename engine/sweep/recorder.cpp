@@ -78,7 +78,7 @@ void Recorder::sync(const Scene::Impl& scene) {
   if (bytes == 0) return;
   upload_.begin(bytes);
   resident_.upload(scene, upload_);
-  const VkCommandBuffer commands = submission_.begin();
+  const gpu::Commands commands = submission_.begin();
   submission_.stage("upload");
   upload_.record(commands);
   gpu::uploadToRead(commands);
@@ -128,17 +128,17 @@ void Recorder::bind(const Pictures& pictures) {
   bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
 }
 
-void Recorder::drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
+void Recorder::drawScopes(const gpu::Commands& commands, const Batch& batch, const std::vector<DepthPass>& passes,
                           gpu::DepthArray& target) const {
   for (const DepthPass& pass : passes) {
     target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
     for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
       const DrawCall& call = batch.calls[i];
       const gpu::MeshRecord& record = resident_.record(call.mesh);
-      vkCmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
-                       static_cast<int32_t>(record.firstVertex), call.firstDraw);
+      commands->CmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
+                               static_cast<int32_t>(record.firstVertex), call.firstDraw);
     }
-    vkCmdEndRenderPass(commands);
+    commands->CmdEndRenderPass(commands);
   }
 }
 
@@ -158,7 +158,7 @@ void Recorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes)
   const VkDeviceSize listBytes = answerBytes + openBytes;
   readback_.reserve(listBytes + 2 * pictureBytes);
 
-  const VkCommandBuffer commands = submission_.begin();
+  const gpu::Commands commands = submission_.begin();
   submission_.stage("upload");
   upload_.record(commands);
   pictures.range.recordFirstUse(commands);
@@ -168,38 +168,39 @@ void Recorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes)
   const VkDescriptorSet set = bindings_.set();
   const VkBuffer positions = resident_.buffers().positions.get();
   const VkDeviceSize zero = 0;
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0, nullptr);
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
-  vkCmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
-  vkCmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0,
+                                  nullptr);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
+  commands->CmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
+  commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");
   drawScopes(commands, batch, batch.rangePasses, pictures.range);
   submission_.stage("mask");
   drawScopes(commands, batch, batch.maskPasses, pictures.mask);
 
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
   submission_.stage("reduce");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToComputeReadWrite(commands);
 
   submission_.stage("identify");
   const auto items = static_cast<uint32_t>(batch.items.size());
   const IdentifyPush push{items, std::min(items, 65535u)};
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
-  vkCmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  vkCmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  commands->CmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
   gpu::computeWriteToComputeReadWrite(commands);
 
   submission_.stage("solve");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
-  vkCmdDispatch(commands, views, 1, 1);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");
   const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
-  vkCmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  vkCmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
+  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
+  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
   if (scopes) {
     const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
     pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);

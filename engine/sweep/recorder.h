@@ -54,7 +54,7 @@ class Recorder {
   Pictures& picturesFor(const Batch& batch);
   void stage(const Batch& batch, const Scene::Impl& scene);
   void bind(const Pictures& pictures);
-  void drawScopes(VkCommandBuffer commands, const Batch& batch, const std::vector<DepthPass>& passes,
+  void drawScopes(const gpu::Commands& commands, const Batch& batch, const std::vector<DepthPass>& passes,
                   gpu::DepthArray& target) const;
 
   const Device::Impl* device_;

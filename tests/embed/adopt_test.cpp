@@ -1,66 +1,107 @@
 // A miniature host: it owns instance, device and queue; the engine borrows them and destroys nothing.
+#include <mutex>
+#include <thread>
+
+#include <vulkan/vulkan.h>
 #include <catch2/catch.hpp>
 
-#include "gpu/check.h"
-#include "gpu/requirements.h"
+#include "embed/host.h"
 #include "support/test_device.h"
 #include "workloads/shapes.h"
 
 namespace {
 
 using namespace radar;
-using gpu::check;
 
-struct Host {
-  Host() {
-    const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
-    const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                            .pApplicationInfo = &application};
-    check(vkCreateInstance(&instanceInfo, nullptr, &handles.instance), "vkCreateInstance");
-    uint32_t count = 1;
-    vkEnumeratePhysicalDevices(handles.instance, &count, &handles.physicalDevice);
-    const float priority = 1;
-    const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                        .queueFamilyIndex = 0,
-                                        .queueCount = 1,
-                                        .pQueuePriorities = &priority};
-    gpu::Features features;
-    handles.doubles = gpu::factsOf(handles.physicalDevice).doubles;
-    gpu::enableRequired(features, handles.doubles);
-    const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                  .pNext = &features.core,
-                                  .queueCreateInfoCount = 1,
-                                  .pQueueCreateInfos = &queue};
-    check(vkCreateDevice(handles.physicalDevice, &info, nullptr, &handles.device), "vkCreateDevice");
-    vkGetDeviceQueue(handles.device, 0, 0, &handles.queue);
+// A box ahead of another.
+struct Boxes {
+  Boxes() {
+    const tools::MeshData box = tools::makeBox({1, 1, 1});
+    query.mesh = scene.addMesh(box.positions, box.indices);
+    scene.addObject({query.mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
   }
-  ~Host() {
-    vkDestroyDevice(handles.device, nullptr);
-    vkDestroyInstance(handles.instance, nullptr);
+  Result ask(const Device& device, Mode mode) {
+    query.mode = mode;
+    return Sweeper(device, scene).run({&query, 1})[0];
   }
-  HostDevice handles;
+  Scene scene;
+  Query query{.direction = {0, 0, 1}, .distance = 10};
 };
+
+constexpr Mode kModes[] = {Mode::sampled, Mode::bounded, Mode::contact};
 
 }  // namespace
 
 TEST_CASE("an adopted device answers like an opened one and is still the host's afterwards") {
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  Scene scene;
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
-  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled};
-  Sweeper own(test::device(), scene);
-  const Result expected = own.run({&query, 1})[0];
-
-  Host host;
-  for (int i = 0; i < 2; ++i) {
-    const Device device = Device::adopt(host.handles);
-    Sweeper sweeper(device, scene);
-    const Result result = sweeper.run({&query, 1})[0];
+  Boxes boxes;
+  test::Host host;
+  CHECK(reasonsAgainst(host.handles).empty());
+  for (const Mode mode : kModes) {
+    const Result expected = boxes.ask(test::device(), mode);
+    const Result result = boxes.ask(Device::adopt(host.handles), mode);
     CHECK(result.status == Status::hit);
     CHECK(result.t == expected.t);
   }
   CHECK(vkDeviceWaitIdle(host.handles.device) == VK_SUCCESS);
+}
+
+TEST_CASE("a host's own dispatch, allocator and pipeline cache are all that an engine uses") {
+  Boxes boxes;
+  test::Host host;
+  VkPipelineCache cache;
+  const VkPipelineCacheCreateInfo cacheInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  REQUIRE(vkCreatePipelineCache(host.handles.device, &cacheInfo, nullptr, &cache) == VK_SUCCESS);
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  host.handles.allocator = test::countingAllocator();
+  host.handles.pipelineCache = cache;
+  test::forget();
+  {
+    const Device device = Device::adopt(host.handles);
+    for (const Mode mode : kModes) CHECK(boxes.ask(device, mode).status == Status::hit);
+  }
+  const test::Counts& counts = test::counts();
+  CHECK(counts.submissions >= std::size(kModes));
+  CHECK(counts.cache == cache);
+  CHECK(counts.allocations > 0);
+  CHECK(counts.live == 0);
+  CHECK(counts.lookedUp.contains("vkQueueSubmit2"));
+  // What would wait for the host's own work, or end it, is not even looked up.
+  for (const char* never : {"vkDeviceWaitIdle", "vkQueueWaitIdle"}) CHECK_FALSE(counts.lookedUp.contains(never));
+  vkDestroyPipelineCache(host.handles.device, cache, nullptr);
+}
+
+TEST_CASE("a dispatch that lacks a function is refused by its name") {
+  test::Host host;
+  host.handles.getInstanceProcAddr = [](VkInstance instance, const char* name) -> PFN_vkVoidFunction {
+    return std::string(name) == "vkGetDeviceProcAddr" ? nullptr : vkGetInstanceProcAddr(instance, name);
+  };
+  CHECK_THROWS_WITH(Device::adopt(host.handles), Catch::Contains("vkGetDeviceProcAddr is missing"));
+}
+
+TEST_CASE("two engines on two threads share a host's queue under its lock") {
+  test::Host host;
+  std::mutex mutex;
+  uint64_t locked = 0;
+  host.handles.lockQueue = [&] {
+    mutex.lock();
+    ++locked;
+  };
+  host.handles.unlockQueue = [&] { mutex.unlock(); };
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  test::forget();
+  std::vector<std::jthread> threads;
+  std::array<double, 2> t{};
+  for (double& answer : t) {
+    threads.emplace_back([&] {
+      Boxes boxes;
+      const Device device = Device::adopt(host.handles);
+      Sweeper sweeper(device, boxes.scene);
+      for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1})[0].t;
+    });
+  }
+  threads.clear();
+  CHECK(t == std::array<double, 2>{3, 3});
+  CHECK(locked == test::counts().submissions);
 }
 
 TEST_CASE("several sweepers share one device and one scene") {

@@ -37,13 +37,13 @@ std::vector<std::string> messagesOf(bool withBarrier) {
   upload.begin(sizeof(nothing));
   upload.add(&nothing, sizeof(nothing), buffers.at(gpu::kBindViews));
   gpu::Submission submission(device, false);
-  const VkCommandBuffer commands = submission.begin();
+  const gpu::Commands commands = submission.begin();
   const VkDescriptorSet set = bindings.set();
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve.get());
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve.get());
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
   upload.record(commands);
   if (withBarrier) gpu::uploadToRead(commands);
-  vkCmdDispatch(commands, 1, 1, 1);
+  commands->CmdDispatch(commands, 1, 1, 1);
   submission.submitAndWait();
   return test::takeValidationMessages();
 }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "gpu/requirements.h"
+#include "radar/radar.h"
 
 namespace {
 
@@ -43,13 +44,20 @@ TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
 }
 
 TEST_CASE("every required feature is switched on for a device that is opened") {
-  radar::gpu::Features features;
-  radar::gpu::enableRequired(features, false);
-  CHECK(features.core.features.shaderFloat64 == VK_FALSE);
-  CHECK(features.v12.shaderOutputLayer == VK_TRUE);
-  CHECK(features.v12.scalarBlockLayout == VK_TRUE);
-  CHECK(features.v13.synchronization2 == VK_TRUE);
-  CHECK(features.v13.maintenance4 == VK_TRUE);
-  radar::gpu::enableRequired(features, true);
-  CHECK(features.core.features.shaderFloat64 == VK_TRUE);
+  radar::Requirements needed = radar::requirements(false);
+  CHECK(needed.core.features.shaderFloat64 == VK_FALSE);
+  CHECK(needed.vulkan12.shaderOutputLayer == VK_TRUE);
+  CHECK(needed.vulkan12.scalarBlockLayout == VK_TRUE);
+  CHECK(needed.vulkan13.synchronization2 == VK_TRUE);
+  CHECK(needed.vulkan13.maintenance4 == VK_TRUE);
+  CHECK(radar::requirements(true).core.features.shaderFloat64 == VK_TRUE);
+}
+
+TEST_CASE("the requirements chain in front of what a host asks for itself") {
+  VkPhysicalDeviceRobustness2FeaturesEXT own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ROBUSTNESS_2_FEATURES_EXT};
+  radar::Requirements needed = radar::requirements(false);
+  CHECK(needed.chain(&own) == &needed.core);
+  CHECK(needed.core.pNext == &needed.vulkan12);
+  CHECK(needed.vulkan12.pNext == &needed.vulkan13);
+  CHECK(needed.vulkan13.pNext == &own);
 }

@@ -14,8 +14,8 @@ namespace radar {
 
 /// Opens the devices of these numbers in listDevices(), in this order; every usable one if none is named. Throws Error
 /// that names the device, also for a number given twice, or with all reasons if none is usable.
-std::vector<Device> openDevices(std::span<const uint32_t> indices = {},
-                                const std::function<void(const std::string&)>& onValidation = nullptr);
+RADAR_API std::vector<Device> openDevices(std::span<const uint32_t> indices = {},
+                                          const std::function<void(const std::string&)>& onValidation = nullptr);
 
 /// The way of a chunk of a batch through a device. Times are milliseconds since the pool was made, on the host's clock.
 struct ChunkTrace {
@@ -56,7 +56,7 @@ struct PoolDevice {
 /// A device that is lost, or fails to allocate, or cannot hold the scene is retired: the other devices do its chunks
 /// anew. Where a chunk fails for want of memory on a second device too, or on the last, the trouble is the queries':
 /// those are invalid, and the device stays.
-class Pool {
+class RADAR_API Pool {
  public:
   /// A thread for each device, which makes its pipelines; nothing is awaited. `devices` and `scene` must outlive the
   /// pool, and nothing else uses the devices' queues meanwhile. Throws if there is no device, or two have one queue.

@@ -26,9 +26,16 @@
 
 #include <vulkan/vulkan_core.h>
 
+// What a shared library shows.
+#if defined(_WIN32)
+#define RADAR_API
+#else
+#define RADAR_API __attribute__((visibility("default")))
+#endif
+
 namespace radar {
 
-/// Semantic version of this interface.
+/// Semantic version of this interface: before 1.0 a new minor version may break what was there, a patch never does.
 inline constexpr uint32_t kVersionMajor = 0;
 inline constexpr uint32_t kVersionMinor = 1;
 inline constexpr uint32_t kVersionPatch = 0;
@@ -38,7 +45,7 @@ inline constexpr uint32_t kNone = 0xffffffffu;
 
 /// What went wrong, in words that name the call, the value and what was expected. `reasons` holds one line per device
 /// where no device was usable, else it is empty; `result` is the VkResult of a failed Vulkan call, else VK_SUCCESS.
-class Error : public std::runtime_error {
+class RADAR_API Error : public std::runtime_error {
  public:
   explicit Error(const std::string& what, VkResult code = VK_SUCCESS, std::vector<std::string> perDevice = {})
       : std::runtime_error(what), result(code), reasons(std::move(perDevice)) {}
@@ -54,7 +61,7 @@ struct Pose {
 };
 
 /// Where `pose` puts the mesh vertex `p`, by the formula above.
-std::array<double, 3> place(const Pose& pose, const float* p);
+RADAR_API std::array<double, 3> place(const Pose& pose, const float* p);
 
 /// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed; the
 /// least free id is given next, so objects added to a fresh scene are 0, 1, 2, ...
@@ -77,7 +84,7 @@ struct Object {
 
 /// Meshes, and objects that place them. Plain data on the CPU: a scene knows no device, and any number of sweepers and
 /// references may read it. Copies everything it is given.
-class Scene {
+class RADAR_API Scene {
  public:
   Scene();
   ~Scene();
@@ -164,7 +171,7 @@ enum class Detected : uint32_t {
 ///
 /// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
 /// normal do not exist; lo and hi still hold t*, more loosely; only the status is independent of order and culling.
-struct Result {
+struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
@@ -186,8 +193,8 @@ static_assert(sizeof(Result) == 120);
 
 /// Checks what Scene and Query promise of their numbers. Return an empty string, or what is wrong and what was
 /// expected.
-std::string whatIsWrong(const Pose& worldFromMesh);
-std::string whatIsWrong(const Query& query, const Scene& scene);
+RADAR_API std::string whatIsWrong(const Pose& worldFromMesh);
+RADAR_API std::string whatIsWrong(const Query& query, const Scene& scene);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
@@ -200,11 +207,10 @@ struct DeviceReport {
 
 /// Every physical device that the Vulkan loader lists, in its order. Throws where there is no loader or no driver at
 /// all.
-std::vector<DeviceReport> listDevices();
+RADAR_API std::vector<DeviceReport> listDevices();
 
-/// Vulkan handles of a host that owns them and outlives the Device made from them. Needed of `device`: Vulkan 1.3 and
-/// the features listed in docs/embedding.md, enabled. `queue` belongs to family `queueFamily`, which does graphics and
-/// compute.
+/// Vulkan handles of a host that owns them, all of which outlive the Device made from them. `device` has enabled what
+/// requirements() lists. `queue` belongs to family `queueFamily`, which does graphics and compute.
 struct HostDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -213,7 +219,30 @@ struct HostDevice {
   VkQueue queue = VK_NULL_HANDLE;
   bool doubles = true;      ///< the feature shaderFloat64 is enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
+  /// The host's own way to Vulkan: all functions are looked up through it. Null: the loader of this machine.
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
+  const VkAllocationCallbacks* allocator = nullptr;  ///< for every object made; not for what the loader makes
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline made; any, or none
+  /// Called around each vkQueueSubmit2, on the submitting thread, where other threads use the queue too; both or none.
+  std::function<void()> lockQueue, unlockQueue;
 };
+
+/// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. A host chains it into its
+/// VkDeviceCreateInfo (without pEnabledFeatures), or copies the features that are on into structs of its own.
+struct Requirements {
+  uint32_t apiVersion = VK_API_VERSION_1_3;  ///< of instance and device
+  VkPhysicalDeviceFeatures2 core{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  /// For VkDeviceCreateInfo::pNext: all three, chained, then `next`; valid while this object stays where it is.
+  const void* chain(void* next = nullptr);
+};
+/// `doubles`: with shaderFloat64, which is not needed but makes mode contact leave less to the CPU.
+RADAR_API Requirements requirements(bool doubles);
+
+/// Why a host's physical device cannot be used, a line for each thing it lacks; empty if it can. Looks at `instance`,
+/// `physicalDevice` and `getInstanceProcAddr` only.
+RADAR_API std::vector<std::string> reasonsAgainst(const HostDevice& host);
 
 struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
@@ -223,12 +252,13 @@ struct DeviceOptions {
 };
 
 /// A logical device with one queue: opened here (and then owned), or a host's (and then only borrowed).
-class Device {
+class RADAR_API Device {
  public:
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
   /// Throws with reasons if the physical device lacks something. While this and a Sweeper of this device run, the host
-  /// keeps other threads from using `queue`.
+  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Any number of Devices may be
+  /// made of one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -294,7 +324,7 @@ struct Scopes {
 };
 
 /// Answers batches of queries against one scene on one device.
-class Sweeper {
+class RADAR_API Sweeper {
  public:
   /// Creates the pipelines. `device` and `scene` must outlive the sweeper.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});

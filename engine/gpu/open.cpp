@@ -1,0 +1,180 @@
+// A device of its own: the engine makes instance, device and queue, then adopts them like a host's.
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/check.h"
+#include "gpu/device.h"
+#include "gpu/requirements.h"
+
+namespace radar {
+
+using gpu::check;
+
+Device::Impl::Owned::~Owned() {
+  if (device != VK_NULL_HANDLE) vk.DestroyDevice(device, nullptr);
+  if (messenger != VK_NULL_HANDLE) vk.DestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
+  if (instance != VK_NULL_HANDLE) vk.DestroyInstance(instance, nullptr);
+}
+
+namespace {
+
+const char* typeText(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "CPU";
+    default:
+      return "other";
+  }
+}
+
+// Preferred first, as listed in DeviceOptions::index.
+int preference(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 3;
+    default:
+      return 4;
+  }
+}
+
+bool hasExtension(const gpu::Api& vk, const char* name) {
+  uint32_t count = 0;
+  check(vk.EnumerateInstanceExtensionProperties(nullptr, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
+  std::vector<VkExtensionProperties> extensions(count);
+  check(vk.EnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()),
+        "vkEnumerateInstanceExtensionProperties");
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+// Throws away nothing that the layers call a warning or an error.
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  static_cast<Device::Impl::Owned*>(user)->onValidation(data->pMessage);
+  return VK_FALSE;
+}
+
+std::unique_ptr<Device::Impl::Owned> openInstance(std::function<void(const std::string&)> onValidation) {
+  auto owned = std::make_unique<Device::Impl::Owned>();
+  owned->onValidation = std::move(onValidation);
+  const bool listens = owned->onValidation != nullptr;
+  if (listens && !hasExtension(owned->vk, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) {
+    throw Error("DeviceOptions::onValidation: the instance extension VK_EXT_debug_utils is missing");
+  }
+  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  const VkDebugUtilsMessengerCreateInfoEXT messenger{
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+      .pfnUserCallback = onMessage,
+      .pUserData = owned.get()};
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                      .pEngineName = "Cyber Radar",
+                                      .engineVersion = VK_MAKE_VERSION(kVersionMajor, kVersionMinor, kVersionPatch),
+                                      .apiVersion = VK_API_VERSION_1_3};
+  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                  .pNext = listens ? &messenger : nullptr,
+                                  .pApplicationInfo = &application,
+                                  .enabledExtensionCount = listens ? 1u : 0u,
+                                  .ppEnabledExtensionNames = extensions};
+  check(owned->vk.CreateInstance(&info, nullptr, &owned->instance), "vkCreateInstance (is a Vulkan driver installed?)");
+  owned->vk.load(owned->instance);
+  if (listens) {
+    check(owned->vk.CreateDebugUtilsMessengerEXT(owned->instance, &messenger, nullptr, &owned->messenger),
+          "vkCreateDebugUtilsMessengerEXT");
+  }
+  return owned;
+}
+
+std::vector<VkPhysicalDevice> physicalDevices(const gpu::Api& vk, VkInstance instance) {
+  uint32_t count = 0;
+  check(vk.EnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vk.EnumeratePhysicalDevices(instance, &count, devices.data()), "vkEnumeratePhysicalDevices");
+  return devices;
+}
+
+DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
+  VkPhysicalDeviceProperties properties;
+  vk.GetPhysicalDeviceProperties(device, &properties);
+  return {properties.deviceName, gpu::driverText(vk, device, properties), typeText(properties.deviceType),
+          gpu::reasonsAgainst(gpu::factsOf(vk, device))};
+}
+
+VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>& devices, uint32_t index) {
+  if (index != kNone && index >= devices.size()) {
+    throw Error("device " + std::to_string(index) + " does not exist: there are " + std::to_string(devices.size()));
+  }
+  std::vector<std::string> lines;
+  VkPhysicalDevice best = VK_NULL_HANDLE;
+  int bestPreference = 0;
+  for (uint32_t i = 0; i < devices.size(); ++i) {
+    VkPhysicalDeviceProperties properties;
+    vk.GetPhysicalDeviceProperties(devices[i], &properties);
+    const std::vector<std::string> reasons = gpu::reasonsAgainst(gpu::factsOf(vk, devices[i]));
+    for (const std::string& reason : reasons) {
+      lines.push_back("device " + std::to_string(i) + ", " + properties.deviceName + ": " + reason);
+    }
+    const int rank = preference(properties.deviceType);
+    const bool wanted = index == kNone ? best == VK_NULL_HANDLE || rank < bestPreference : i == index;
+    if (reasons.empty() && wanted) {
+      best = devices[i];
+      bestPreference = rank;
+    }
+  }
+  if (best == VK_NULL_HANDLE) {
+    throw Error(index == kNone ? "no usable Vulkan device" : "device " + std::to_string(index) + " cannot be used",
+                VK_SUCCESS, lines);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<DeviceReport> listDevices() {
+  const auto owned = openInstance(nullptr);
+  std::vector<DeviceReport> reports;
+  for (VkPhysicalDevice device : physicalDevices(owned->vk, owned->instance))
+    reports.push_back(report(owned->vk, device));
+  return reports;
+}
+
+Device Device::open(const DeviceOptions& options) {
+  auto owned = openInstance(options.onValidation);
+  HostDevice host{.instance = owned->instance, .debugNames = options.onValidation != nullptr};
+  host.physicalDevice = choose(owned->vk, physicalDevices(owned->vk, owned->instance), options.index);
+  host.queueFamily = gpu::queueFamilyOf(owned->vk, host.physicalDevice);
+  const float priority = 1.0f;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = host.queueFamily,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  host.doubles = options.doubles && gpu::factsOf(owned->vk, host.physicalDevice).doubles;
+  Requirements needed = requirements(host.doubles);
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = needed.chain(),
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue};
+  check(owned->vk.CreateDevice(host.physicalDevice, &info, nullptr, &owned->device), "vkCreateDevice");
+  owned->vk.load(owned->device);
+  host.device = owned->device;
+  owned->vk.GetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);
+  Device device = adopt(host);
+  device.impl_->owned = std::move(owned);
+  return device;
+}
+
+}  // namespace radar

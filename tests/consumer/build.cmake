@@ -1,0 +1,35 @@
+# Builds the README's example in a project of its own and runs it: cmake -DHOW=... -P build.cmake.
+cmake_minimum_required(VERSION 3.25)
+
+file(MAKE_DIRECTORY ${FOLDER})
+if(HOW STREQUAL "pkg-config")
+  file(GLOB_RECURSE description ${INSTALLED}/*/cyber-radar.pc)
+  cmake_path(GET description PARENT_PATH folder)
+  set(ENV{PKG_CONFIG_PATH} ${folder})
+  execute_process(COMMAND pkg-config --static --cflags --libs "cyber-radar = ${VERSION}"
+    OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags)
+  execute_process(COMMAND ${CXX} -std=c++20 ${SOURCE}/tests/consumer/readme.cpp ${flags} -o ${FOLDER}/app
+    COMMAND_ERROR_IS_FATAL ANY)
+else()
+  # A quick build: what is tried is whether it builds, and that it finds the contact.
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer/project -B ${FOLDER} -G Ninja -DHOW=${HOW}
+    -DSOURCE=${SOURCE} -DCMAKE_PREFIX_PATH=${INSTALLED} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-g0
+    -DCMAKE_CXX_COMPILER=${CXX} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)
+endif()
+execute_process(COMMAND ${FOLDER}/app OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+if(NOT said MATCHES "touches object 0 after 5")
+  message(FATAL_ERROR "the example said \"${said}\", expected \"touches object 0 after 5\"")
+endif()
+
+if(HOW STREQUAL "FetchContent")
+  # A shared library shows its interface and nothing else.
+  file(GLOB library ${FOLDER}/_deps/cyberradar-build/engine/libcyber-radar.so.*.*.*)
+  execute_process(COMMAND ${NM} -DC --defined-only ${library} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[^\n]* radar::(gpu|exact|tools|reference)::[^\n]*" inner "${symbols}")
+  string(REGEX MATCHALL "[^\n]*(BoundedTier|Recorder|Hierarchy|ResidentScene)[^\n]*" more "${symbols}")
+  if(inner OR more OR NOT symbols MATCHES "radar::Sweeper::run")
+    message(FATAL_ERROR "the shared library shows more, or less, than its interface:\n${inner}\n${more}")
+  endif()
+endif()

@@ -1,0 +1,189 @@
+#include "embed/host.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "support/test_device.h"
+
+namespace radar::test {
+
+namespace {
+
+Counts counted;
+std::mutex mutex;
+std::atomic<int64_t> allocations, live;
+PFN_vkGetDeviceProcAddr getDeviceProcAddr;
+PFN_vkQueueSubmit2 queueSubmit2;
+PFN_vkWaitForFences waitForFences;
+PFN_vkCreateComputePipelines createComputePipelines;
+
+void require(VkResult result, const char* call) {
+  if (result != VK_SUCCESS) throw Error(std::string("the host's ") + call + " failed", result);
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
+  onValidation(data->pMessage);
+  return VK_FALSE;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
+  const std::lock_guard lock(mutex);
+  ++counted.submissions;
+  return queueSubmit2(queue, count, infos, fence);
+}
+
+// Under the same lock: where one thread submits while another waits, the layer's synchronization validation forgets
+// the wait now and then, and reports hazards that are none.
+VKAPI_ATTR VkResult VKAPI_CALL waitFor(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
+                                       uint64_t timeout) {
+  const std::lock_guard lock(mutex);
+  return waitForFences(device, count, fences, all, timeout);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL makePipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
+                                             const VkComputePipelineCreateInfo* infos,
+                                             const VkAllocationCallbacks* allocator, VkPipeline* pipelines) {
+  {
+    const std::lock_guard lock(mutex);
+    counted.cache = cache;
+  }
+  return createComputePipelines(device, cache, count, infos, allocator, pipelines);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) {
+  const std::lock_guard lock(mutex);
+  counted.lookedUp.insert(name);
+  const PFN_vkVoidFunction found = getDeviceProcAddr(device, name);
+  if (std::strcmp(name, "vkQueueSubmit2") == 0) {
+    queueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(found);
+    return reinterpret_cast<PFN_vkVoidFunction>(submit);
+  }
+  if (std::strcmp(name, "vkWaitForFences") == 0) {
+    waitForFences = reinterpret_cast<PFN_vkWaitForFences>(found);
+    return reinterpret_cast<PFN_vkVoidFunction>(waitFor);
+  }
+  if (std::strcmp(name, "vkCreateComputePipelines") == 0) {
+    createComputePipelines = reinterpret_cast<PFN_vkCreateComputePipelines>(found);
+    return reinterpret_cast<PFN_vkVoidFunction>(makePipelines);
+  }
+  return found;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
+  const std::lock_guard lock(mutex);
+  counted.lookedUp.insert(name);
+  const PFN_vkVoidFunction found = vkGetInstanceProcAddr(instance, name);
+  if (std::strcmp(name, "vkGetDeviceProcAddr") != 0) return found;
+  getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(found);
+  return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
+}
+
+// The size stands before the block, for reallocation.
+constexpr size_t kHeader = 64;
+
+VKAPI_ATTR void* VKAPI_CALL allocate(void*, size_t size, size_t alignment, VkSystemAllocationScope) {
+  const size_t step = std::max(alignment, kHeader);
+  auto* block = static_cast<std::byte*>(std::aligned_alloc(step, (size + 2 * step - 1) / step * step + step));
+  if (block == nullptr) return nullptr;
+  std::memcpy(block + step - sizeof(size), &size, sizeof(size));
+  std::memcpy(block + step - 2 * sizeof(size), &step, sizeof(step));
+  ++allocations;
+  ++live;
+  return block + step;
+}
+
+VKAPI_ATTR void VKAPI_CALL release(void*, void* memory) {
+  if (memory == nullptr) return;
+  size_t step;
+  std::memcpy(&step, static_cast<std::byte*>(memory) - 2 * sizeof(step), sizeof(step));
+  std::free(static_cast<std::byte*>(memory) - step);
+  --live;
+}
+
+VKAPI_ATTR void* VKAPI_CALL reallocate(void* user, void* memory, size_t size, size_t alignment,
+                                       VkSystemAllocationScope scope) {
+  void* moved = size == 0 ? nullptr : allocate(user, size, alignment, scope);
+  if (memory != nullptr && moved != nullptr) {
+    size_t old;
+    std::memcpy(&old, static_cast<std::byte*>(memory) - sizeof(old), sizeof(old));
+    std::memcpy(moved, memory, std::min(old, size));
+  }
+  if (size == 0 || moved != nullptr) release(user, memory);
+  return moved;
+}
+
+}  // namespace
+
+Host::Host() {
+  const VkDebugUtilsMessengerCreateInfoEXT messenger{
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+      .pfnUserCallback = onMessage};
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
+  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                          .pNext = &messenger,
+                                          .pApplicationInfo = &application,
+                                          .enabledExtensionCount = 1,
+                                          .ppEnabledExtensionNames = &extension};
+  require(vkCreateInstance(&instanceInfo, nullptr, &handles.instance), "vkCreateInstance");
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(handles.instance, "vkCreateDebugUtilsMessengerEXT"));
+  require(create(handles.instance, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
+  uint32_t count = 1;
+  vkEnumeratePhysicalDevices(handles.instance, &count, &handles.physicalDevice);
+  const float priority = 1;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = 0,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  VkPhysicalDeviceFeatures features;
+  vkGetPhysicalDeviceFeatures(handles.physicalDevice, &features);
+  handles.doubles = features.shaderFloat64 == VK_TRUE && wantsDoubles();
+  Requirements needed = requirements(handles.doubles);
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = needed.chain(),
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue};
+  require(vkCreateDevice(handles.physicalDevice, &info, nullptr, &handles.device), "vkCreateDevice");
+  vkGetDeviceQueue(handles.device, 0, 0, &handles.queue);
+}
+
+Host::~Host() {
+  vkDestroyDevice(handles.device, nullptr);  // the layers complain of what an engine left behind
+  const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(handles.instance, "vkDestroyDebugUtilsMessengerEXT"));
+  destroy(handles.instance, messenger_, nullptr);
+  vkDestroyInstance(handles.instance, nullptr);
+}
+
+const Counts& counts() {
+  counted.allocations = allocations;
+  counted.live = live;
+  return counted;
+}
+
+void forget() {
+  counted = {};
+  allocations = 0;
+}
+
+PFN_vkGetInstanceProcAddr countingLoader() {
+  return instanceFunction;
+}
+
+const VkAllocationCallbacks* countingAllocator() {
+  static const VkAllocationCallbacks kCallbacks{
+      .pfnAllocation = allocate, .pfnReallocation = reallocate, .pfnFree = release};
+  return &kCallbacks;
+}
+
+}  // namespace radar::test

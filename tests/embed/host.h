@@ -1,0 +1,37 @@
+// A miniature host: it owns instance, device and queue, and sees what the engine does with them, since every function
+// that the engine calls is looked up through it.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "radar/radar.h"
+
+namespace radar::test {
+
+class Host {
+ public:
+  Host();
+  ~Host();
+  Host(const Host&) = delete;
+  Host& operator=(const Host&) = delete;
+
+  HostDevice handles;
+
+ private:
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+};
+
+/// What engines have done through `countingLoader` and `countingAllocator` since `forget`.
+struct Counts {
+  std::set<std::string> lookedUp;     ///< functions
+  int64_t allocations = 0, live = 0;  ///< of host memory, through the callbacks
+  uint64_t submissions = 0;
+  VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline made
+};
+const Counts& counts();
+void forget();
+PFN_vkGetInstanceProcAddr countingLoader();
+const VkAllocationCallbacks* countingAllocator();
+
+}  // namespace radar::test

@@ -1,0 +1,49 @@
+#include <cstdio>
+#include <vector>
+
+#include <radar/radar.h>
+#include <vulkan/vulkan.h>
+
+int main() {
+  // Stands for a renderer's own set-up: an instance, a device with what the engine needs, a queue.
+  VkInstance instance;
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
+  const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                          .pApplicationInfo = &application};
+  if (vkCreateInstance(&instanceInfo, nullptr, &instance) != VK_SUCCESS) return 1;
+  radar::HostDevice host{.instance = instance, .doubles = false, .getInstanceProcAddr = vkGetInstanceProcAddr};
+  uint32_t count = 1;
+  vkEnumeratePhysicalDevices(instance, &count, &host.physicalDevice);
+  for (const std::string& reason : radar::reasonsAgainst(host)) std::printf("this device %s\n", reason.c_str());
+
+  radar::Requirements needed = radar::requirements(host.doubles);
+  const float priority = 1;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = host.queueFamily,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  const VkDeviceCreateInfo deviceInfo{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                      .pNext = needed.chain(),
+                                      .queueCreateInfoCount = 1,
+                                      .pQueueCreateInfos = &queue};
+  if (vkCreateDevice(host.physicalDevice, &deviceInfo, nullptr, &host.device) != VK_SUCCESS) return 1;
+  vkGetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);
+
+  // The engine, on that device. It ends before the device does.
+  {
+    const radar::Device device = radar::Device::adopt(host);
+    radar::Scene scene;
+    const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const uint32_t triangle[] = {0, 1, 2};
+    const radar::MeshId mesh = scene.addMesh(corners, triangle);
+    const radar::ObjectId wall = scene.addObject({.mesh = mesh});
+    radar::Sweeper sweeper(device, scene);
+    for (int frame = 0; frame < 3; ++frame) {
+      scene.setPose(wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5.0 + frame}});
+      const std::vector<radar::Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10}};
+      for (const radar::Result& result : sweeper.run(queries)) std::printf("free for %g\n", result.t);
+    }
+  }
+  vkDestroyDevice(host.device, nullptr);
+  vkDestroyInstance(instance, nullptr);
+}

@@ -73,6 +73,8 @@ INTEROP_CONST kContactBindings = 14;
 // The bounded tier has the sampled tier's set, but for the depth images.
 INTEROP_CONST kBindScopes = 11;       // uint: keys of depth (outer.glsl), the four planes kScope*
 INTEROP_CONST kBindBands = 12;        // Band
+INTEROP_CONST kBindStrips = 15;       // Strip
+INTEROP_CONST kBoundedBindings = 16;
 
 // Triangles of a cluster, at most.
 INTEROP_CONST kCluster = 64;
@@ -178,14 +180,14 @@ INTEROP_CONST kDrawFarthest = 1;
 INTEROP_CONST kDrawSensor = 2;
 INTEROP_CONST kDrawNearest = 3;
 
-// A cluster in the pixels of the window where a workgroup draws it, with all that its triangles share.
+// A cluster in the pixels of the window that it may touch, with all that its triangles share.
 struct Band {
   Rows pixelsFromMesh;  // recentred mesh -> pixels on all axes, from the window's corner and the frame's origin
   float snap;        // how far a vertex may be off, pixels
   float slack;       // how far a depth may be off
   uint view;
   uint firstPixel;   // of the view, in each plane
-  uint width;        // of the view
+  uint pitch;        // pixels from row to row
   uint firstVertex;  // of the mesh
   uint firstIndex;   // of the first triangle
   uint triangles;    // kCluster at most
@@ -193,11 +195,24 @@ struct Band {
   uint endColumn;
   uint firstRow;
   uint endRow;
+  uint fromRow;      // of those, what is drawn by triangle: bounds do not depend on it
+  uint toRow;
   uint item;
   uint isSensor;
 };
-// Pixels of a band, at most. Lavapipe ends loops silently after 65,535 iterations of an invocation:
-// each pixel takes two, of kCluster / 8 triangles. Less also keeps a device's invocations evenly busy.
+// Some rows of one view, and the bands that are drawn there.
+struct Strip {
+  uint firstRow;
+  uint endRow;
+  uint firstBand;
+  uint endBand;
+};
+// A row of outer scopes begins at a multiple of this.
+INTEROP_CONST kPixelGroup = 4;
+// Of a strip an invocation has every so many groups of a row.
+INTEROP_CONST kGroupStep = 8;
+// Pixels of a band that is drawn by triangle, and of a strip, at most. Lavapipe ends loops silently after 65,535 iterations of
+// an invocation: each pixel takes two, of kCluster / 8 triangles. Less also keeps a device's invocations evenly busy.
 INTEROP_CONST kBandPixels = 2048;
 
 // ---- the contact tier --------------------------------------------------------------------------------------------------

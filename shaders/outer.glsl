@@ -1,5 +1,5 @@
 // What a triangle may touch, pixel by pixel, and the depths it may have there: never less than the truth, whatever float
-// loses (docs/method.md, "Outer scopes"). One unit is a pixel's side on all three axes; u = 2^-24.
+// loses (docs/method.md, "Outer scopes"). All of it is precise: several shaders must get the same bits. One unit is a pixel's side on all three axes; u = 2^-24.
 
 const float kUnit = 5.9604644775390625e-8;
 
@@ -33,10 +33,10 @@ Facet facetOf(vec3 p0, vec3 p1, vec3 p2, float spread, uvec2 low, uvec2 high) {
   precise const vec2 a = p1.xy - p0.xy, b = p2.xy - p0.xy, c = p2.xy - p1.xy;
   precise const float ab = a.x * b.y, ba = a.y * b.x;
   precise const float area = ab - ba;
-  const float products = abs(ab) + abs(ba);
+  precise const float products = abs(ab) + abs(ba);
   f.alongX = vec3(a.x, c.x, -b.x);
   f.alongY = vec3(a.y, c.y, -b.y);
-  const vec3 margin = (abs(f.alongX) + abs(f.alongY)) * halfSide +
+  precise const vec3 margin = (abs(f.alongX) + abs(f.alongY)) * halfSide +
                       16.0 * kUnit * (abs(f.alongY) * farX + abs(f.alongX) * farY) + 5.0 * kUnit * products + 1e-20;
   f.least = min(area, 0.0) - margin;
   f.most = max(area, 0.0) + margin;
@@ -49,9 +49,9 @@ Facet facetOf(vec3 p0, vec3 p1, vec3 p2, float spread, uvec2 low, uvec2 high) {
   const float divisor = sound ? area : 1.0;
   const vec2 rise = vec2(p1.z - p0.z, p2.z - p0.z);
   precise const vec2 gradient = vec2(rise.x * b.y - rise.y * a.y, rise.y * a.x - rise.x * b.x) / divisor;
-  const vec2 sums = vec2(abs(rise.x * b.y) + abs(rise.y * a.y), abs(rise.y * a.x) + abs(rise.x * b.x));
-  const vec2 gradientError = 6.0 * kUnit * (sums + abs(gradient) * products) / abs(divisor);
-  const float across = (abs(gradient.x) + abs(gradient.y)) * halfSide;
+  precise const vec2 sums = vec2(abs(rise.x * b.y) + abs(rise.y * a.y), abs(rise.y * a.x) + abs(rise.x * b.x));
+  precise const vec2 gradientError = 6.0 * kUnit * (sums + abs(gradient) * products) / abs(divisor);
+  precise const float across = (abs(gradient.x) + abs(gradient.y)) * halfSide;
   const vec2 far = vec2(farX.x, farY.x);
   const bool plane = sound && across < f.farthest - f.nearest;
   precise const float reach = across + dot(gradientError, far + halfSide) +
@@ -63,7 +63,7 @@ Facet facetOf(vec3 p0, vec3 p1, vec3 p2, float spread, uvec2 low, uvec2 high) {
 
 // Whether the triangle may touch the square about `centre`, which lies in its box.
 bool covers(Facet f, vec2 centre) {
-  const vec3 side = f.alongX * (centre.y - f.fromY) - f.alongY * (centre.x - f.fromX);
+  precise const vec3 side = f.alongX * (centre.y - f.fromY) - f.alongY * (centre.x - f.fromX);
   return all(greaterThanEqual(side, f.least)) && all(lessThanEqual(side, f.most));
 }
 
@@ -84,5 +84,7 @@ float depthOf(uint key) { return uintBitsToFloat((key & 0x80000000u) != 0 ? key 
 
 vec3 inPixels(Band band, vec3 q) {
   const vec4 corner = vec4(q, 1.0);
-  return vec3(dot(band.pixelsFromMesh[0], corner), dot(band.pixelsFromMesh[1], corner), dot(band.pixelsFromMesh[2], corner));
+  precise const vec3 placed = vec3(dot(band.pixelsFromMesh[0], corner), dot(band.pixelsFromMesh[1], corner),
+                                   dot(band.pixelsFromMesh[2], corner));
+  return placed;
 }

@@ -1,5 +1,5 @@
-// Draws outer scopes: a workgroup takes a band, an invocation some of its triangles. A pixel that a triangle may touch
-// keeps the extreme of the depths it may have there.
+// Draws outer scopes by triangle: a workgroup takes a band, an invocation some of its triangles. A pixel that a triangle
+// may touch keeps the extreme of the depths it may have there. outer_fill.comp draws the same by pixel.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -59,14 +59,15 @@ void main() {
     const vec3 p1 = inPixels(band, positions[band.firstVertex + indices[corner + 1]]);
     const vec3 p2 = inPixels(band, positions[band.firstVertex + indices[corner + 2]]);
     const Facet f = facetOf(p0, p1, p2, band.snap, firstPixel, endPixel);
-    uvec2 next = f.first;
-    while (next.y < f.end.y) {
+    const uint endRow = min(f.end.y, band.toRow);
+    uvec2 next = uvec2(f.first.x, max(f.first.y, band.fromRow));
+    while (next.y < endRow) {
       // Pixels are skipped until one counts: lavapipe runs both sides of an `if`, but leaves a loop.
       bool found = false;
       uint at = 0;
       vec2 centre = vec2(0.0);
-      while (next.y < f.end.y && !found) {
-        at = band.firstPixel + band.width * next.y + next.x;
+      while (next.y < endRow && !found) {
+        at = band.firstPixel + band.pitch * next.y + next.x;
         centre = vec2(next) + 0.5;
         found = covers(f, centre) && !idle(at);
         ++next.x;

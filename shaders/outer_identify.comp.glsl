@@ -63,7 +63,9 @@ void main() {
     const vec3 p1 = inPixels(band, positions[band.firstVertex + indices[corner + 1]]);
     const vec3 p2 = inPixels(band, positions[band.firstVertex + indices[corner + 2]]);
     // The same pixels as when it was drawn, and so the same bits.
-    const Facet f = facetOf(p0, p1, p2, band.snap, firstPixel, endPixel);
+    Facet f = facetOf(p0, p1, p2, band.snap, firstPixel, endPixel);
+    f.first.y = max(f.first.y, band.fromRow);
+    f.end.y = min(f.end.y, band.toRow);
     if (f.first.y < f.end.y) nameAt(band, f, cellsPerPixel, kItemTriangles * band.item + triangle);
   }
 }

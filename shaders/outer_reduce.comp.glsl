@@ -27,7 +27,8 @@ shared uint least;
 void main() {
   const uint v = gl_WorkGroupID.x;
   const uint cell = gl_LocalInvocationID.x;
-  const uint width = views[v].width, side = views[v].cell, firstPixel = views[v].firstPixel;
+  const uint width = views[v].width, pitch = (width + kPixelGroup - 1) / kPixelGroup * kPixelGroup;
+  const uint side = views[v].cell, firstPixel = views[v].firstPixel;
   const uvec2 first = side * uvec2(cell % kCellsPerSide, cell / kCellsPerSide);
   const uvec2 end = min(first + side, uvec2(width, views[v].height));
   if (cell == 0) {
@@ -40,7 +41,7 @@ void main() {
   uvec2 pixel = first;
   const bool some = all(lessThan(first, end));
   while (some && pixel.y < end.y) {
-    const uint at = firstPixel + width * pixel.y + pixel.x;
+    const uint at = firstPixel + pitch * pixel.y + pixel.x;
     const uint range = scopes[kScopeR * push.plane + at], mask = scopes[kScopeM * push.plane + at];
     // Where either is missing, no pair of triangles can meet; the difference rounds by u.
     const float bound = max((depthOf(range) - depthOf(mask)) * (1.0 - 4.0 * kUnit), 0.0);

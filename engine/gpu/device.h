@@ -1,6 +1,7 @@
 // A logical device with one queue, opened or adopted. Opening is making the handles, then adopting them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,6 +38,8 @@ struct Device::Impl {
   /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
   /// vkWaitForFences, with that name; an error stands for the call's own. Empty otherwise.
   std::function<VkResult(std::string_view call)> fault;
+  /// Where a test wants outer scopes to be drawn in one way.
+  std::optional<bool> outerByPixel;
   VkResult faultAt(std::string_view call) const { return fault ? fault(call) : VK_SUCCESS; }
   /// Names an object for debuggers and validation messages.
   void setName(VkObjectType type, uint64_t handle, const char* name) const;

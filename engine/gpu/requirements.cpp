@@ -68,8 +68,8 @@ std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
   if (facts.groupInvocations < 256) {
     reasons.push_back("256 invocations in a workgroup are needed, it has " + std::to_string(facts.groupInvocations));
   }
-  if (facts.stageBuffers < 15) {
-    reasons.push_back("15 storage buffers in a stage are needed, it has " + std::to_string(facts.stageBuffers));
+  if (facts.stageBuffers < 16) {
+    reasons.push_back("16 storage buffers in a stage are needed, it has " + std::to_string(facts.stageBuffers));
   }
   if (facts.subPixelBits < 4) {
     reasons.push_back("4 bits of subpixel precision are needed, it has " + std::to_string(facts.subPixelBits));

@@ -16,6 +16,12 @@ constexpr double kMaxPixels = 0x1p40, kMaxEntry = 0x1p80;
 // What a part below float's normal range may lose, pixels.
 constexpr double kUnderflow = 0x1p-30;
 
+// Lavapipe ends loops silently after 65,535 iterations of an invocation.
+constexpr uint64_t kMostLoops = 50'000;
+
+// From so many pixels of its cluster's box for each triangle, drawing by pixel is cheaper (docs/method.md).
+constexpr uint64_t kLargeTriangle = 64;
+
 // Clusters are held against so many boxes one by one; with more it would cost what it saves.
 constexpr size_t kMostBoxes = 64;
 
@@ -61,23 +67,52 @@ bool place(const PixelGrid& grid, const Mesh& mesh, const Affine& frameFromMesh,
   return band.slack < kMaxPixels;
 }
 
-// The pixels of the window that a box meets, cut into bands of a bounded number. One pixel more on each side makes room
-// for rounding.
-void addBands(const PixelGrid& grid, const Box& box, gpu::Band band, std::vector<gpu::Band>& bands) {
+// Adds the pixels of the window that a box meets. One pixel more on each side makes room for rounding.
+void addBand(const PixelGrid& grid, const Box& box, gpu::Band band, std::vector<gpu::Band>& bands) {
   const auto pixelAt = [&](double x, int axis, double more, uint32_t limit) {
     const double at = std::floor((x - grid.corner[static_cast<size_t>(axis)]) * grid.scale) + more;
     return static_cast<uint32_t>(std::clamp(at, 0.0, static_cast<double>(limit)));
   };
   band.firstColumn = pixelAt(box.lo[0], 0, -1, grid.columns);
   band.endColumn = pixelAt(box.hi[0], 0, 2, grid.columns);
-  if (band.firstColumn >= band.endColumn) return;
-  const uint32_t end = pixelAt(box.hi[1], 1, 2, grid.rows);
-  const uint32_t height = std::max(1u, gpu::kBandPixels / (band.endColumn - band.firstColumn));
-  for (uint32_t row = pixelAt(box.lo[1], 1, -1, grid.rows); row < end; row += height) {
-    band.firstRow = row;
-    band.endRow = std::min(row + height, end);
-    bands.push_back(band);
+  band.firstRow = pixelAt(box.lo[1], 1, -1, grid.rows);
+  band.endRow = pixelAt(box.hi[1], 1, 2, grid.rows);
+  band.fromRow = band.firstRow;
+  band.toRow = band.endRow;
+  if (band.firstColumn < band.endColumn && band.firstRow < band.endRow) bands.push_back(band);
+}
+
+// Bands of a bounded number of pixels.
+void cut(std::vector<gpu::Band>& bands) {
+  std::vector<gpu::Band> whole;
+  whole.swap(bands);
+  for (gpu::Band band : whole) {
+    const uint32_t height = std::max(1u, gpu::kBandPixels / (band.endColumn - band.firstColumn));
+    for (; band.fromRow < band.endRow; band.fromRow = band.toRow) {
+      band.toRow = std::min(band.fromRow + height, band.endRow);
+      bands.push_back(band);
+    }
   }
+}
+
+// How a side is drawn, by the pixels that its clusters take for each triangle unless `byPixel` says it: the rows of a
+// strip, or 0 and the bands are cut.
+uint32_t stripOf(const BoundedPlan& plan, std::vector<gpu::Band>& bands, std::optional<bool> byPixel) {
+  uint64_t pixels = 0, triangles = 0;
+  for (const gpu::Band& band : bands) {
+    pixels += uint64_t{band.endColumn - band.firstColumn} * (band.endRow - band.firstRow);
+    triangles += band.triangles;
+  }
+  uint64_t rows = 0;
+  if (triangles > 0 && byPixel.value_or(pixels >= kLargeTriangle * triangles)) {
+    // Loops of an invocation: two for each of its groups of pixels, one for each triangle and band.
+    const uint64_t perRow = 2 * ((plan.pitch() / gpu::kPixelGroup + gpu::kGroupStep - 1) / gpu::kGroupStep);
+    const uint64_t perTriangle = kMostLoops / (triangles + bands.size());
+    const uint32_t most = std::max(1u, gpu::kBandPixels / plan.pitch());
+    if (perTriangle > 2) rows = std::min<uint64_t>((perTriangle - 2) / perRow, most);
+  }
+  if (rows == 0) cut(bands);
+  return static_cast<uint32_t>(rows);
 }
 
 struct Side {
@@ -129,7 +164,7 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
     const ClusterNode& node = mesh.clusters.nodes[part.node];
     shape.item = static_cast<uint32_t>(plan.items.size());
     shape.triangles = node.count;
-    addBands(grid, part.box, shape, bands);
+    addBand(grid, part.box, shape, bands);
     plan.items.push_back({draw, node.first, node.first + node.count});
     around.merge(part.box);
   }
@@ -138,7 +173,8 @@ Box addSide(BoundedPlan& plan, const PixelGrid& grid, const Scene::Impl& scene, 
 
 }  // namespace
 
-BoundedPlan planBounded(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t resolution) {
+BoundedPlan planBounded(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t resolution,
+                        std::optional<bool> byPixel) {
   BoundedPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   const SensorWindow window = lookAlong(query, sensor);
@@ -171,6 +207,8 @@ BoundedPlan planBounded(const Query& query, const Scene::Impl& scene, const Hier
   if (plan.sceneBands.empty()) return plan;
   addSide(plan, grid, scene, {kNone, query.mesh, window.frameFromMesh, window.error}, reached, plan.sensorBands);
   if (plan.sensorBands.empty()) plan.sceneBands.clear();
+  plan.sceneStrip = stripOf(plan, plan.sceneBands, byPixel);
+  plan.sensorStrip = stripOf(plan, plan.sensorBands, byPixel);
   return plan;
 }
 

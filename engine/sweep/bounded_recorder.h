@@ -28,11 +28,22 @@ class BoundedRecorder {
                  std::vector<OuterScopes>* scopes = nullptr);
 
  private:
-  gpu::Pipeline drawPipeline(const char* name, uint32_t draws) const;
+  struct DrawPipelines {
+    gpu::Pipeline byTriangle, byPixel;
+  };
+  /// The bands of all views' scenes or sensors that are drawn by triangle, and the strips of those drawn by pixel.
+  struct Side {
+    uint32_t firstBand, bands, firstStrip, strips;
+  };
+
+  DrawPipelines drawPipelines(const char* name, uint32_t draws) const;
+  Side listSide(std::span<const BoundedPlan* const> plans, bool isSensor);
+  void listView(const BoundedPlan& plan, std::span<const gpu::Band> bands, uint32_t view, uint32_t firstItem,
+                uint32_t stripRows);
   void stage(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene);
   void bind();
-  void dispatchBands(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first,
-                     uint32_t count) const;
+  void dispatchEach(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
+  void draw(const gpu::Commands& commands, const DrawPipelines& pipelines, const Side& side) const;
   std::vector<OuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
 
   const Device::Impl* device_;
@@ -40,13 +51,15 @@ class BoundedRecorder {
   gpu::Upload upload_;
   gpu::Submission submission_;
   gpu::Bindings bindings_;
-  gpu::Pipeline drawFarthest_, drawSensor_, drawNearest_, reduce_, identify_, solve_;
-  gpu::Buffer views_, draws_, items_, bands_, scopes_, candidates_, ranks_, answers_, openPairs_, readback_;
+  DrawPipelines drawFarthest_, drawSensor_, drawNearest_;
+  gpu::Pipeline reduce_, identify_, solve_;
+  gpu::Buffer views_, draws_, items_, bands_, strips_, scopes_, candidates_, ranks_, answers_, openPairs_, readback_;
   std::vector<gpu::View> viewList_;
   std::vector<gpu::Draw> drawList_;
   std::vector<gpu::Item> itemList_;
-  std::vector<gpu::Band> bandList_;  ///< the scenes', then the sensors'
-  uint32_t sceneBands_ = 0;
+  std::vector<gpu::Band> bandList_;
+  std::vector<gpu::Strip> stripList_;
+  Side scene_{}, sensor_{};
   uint32_t plane_ = 0;  ///< pixels of all views
 };
 

@@ -131,7 +131,7 @@ std::vector<size_t> BoundedTier::run(std::span<const Query> queries, std::span<c
     for (const size_t i : open) {
       const Clock::time_point start = Clock::now();
       const uint32_t resolution = queries[i].resolution != 0 ? queries[i].resolution : step;
-      BoundedPlan plan = planBounded(queries[i], scene, hierarchy, resolution);
+      BoundedPlan plan = planBounded(queries[i], scene, hierarchy, resolution, device_->outerByPixel);
       if (timestamps_) gpu::addStageTime(out.stats.stages, "select", msSince(start));
       if (plan.sceneBands.empty()) {
         out.results[i] = decodeClear();

@@ -6,6 +6,7 @@
 
 #include "agreement/compare.h"
 #include "agreement/real_meshes.h"
+#include "gpu/device.h"
 #include "reference/reference.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -239,6 +240,33 @@ TEST_CASE("to decide, a bracket on one side of the distance is enough") {
   }
   CHECK(decided >= 85);
   CHECK(coarse >= 20);
+}
+
+TEST_CASE("a bracket does not depend on how outer scopes are drawn") {
+  const tools::Workload workload = tools::makeWorkload(tools::Soups{.sensors = 40, .triangles = 30, .seed = 13});
+  tools::ScenePlayer player(workload);
+  player.show(0);
+  const uint32_t resolution = GENERATE(24, 64, 100);
+  std::vector<Query> queries;
+  for (const tools::QuerySpec& spec : workload.queries) {
+    queries.push_back(tools::toQuery(spec, Mode::bounded, resolution));
+  }
+  Sweeper sweeper(test::device(), player.scene());
+  std::optional<bool>& byPixel = test::device().impl().outerByPixel;
+  const std::vector<Result> measured = sweeper.run(queries);
+  byPixel = true;
+  const std::vector<Result> pixels = sweeper.run(queries);
+  byPixel = false;
+  const std::vector<Result> triangles = sweeper.run(queries);
+  byPixel.reset();
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (size_t i = 0; i < queries.size(); ++i) {
+    for (const Result& other : {pixels[i], triangles[i]}) {
+      CHECK(measured[i].status == other.status);
+      CHECK((same(measured[i].lo, other.lo) && same(measured[i].hi, other.hi)));
+      CHECK((measured[i].object == other.object && measured[i].triA == other.triA && measured[i].triB == other.triB));
+    }
+  }
 }
 
 TEST_CASE("a bracket does not depend on the batch it is asked in") {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "agreement/random_queries.h"
+#include "gpu/device.h"
 
 namespace {
 
@@ -35,7 +36,7 @@ int main(int argc, char** argv) {
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone, resolution = 0;
   bool withoutDoubles = false;
-  std::string mode = "contact";
+  std::string mode = "contact", outer;
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
@@ -43,12 +44,15 @@ int main(int argc, char** argv) {
   app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
   app.add_option("--mode", mode, "What is asked")->check(CLI::IsMember({"contact", "bounded"}))->capture_default_str();
   app.add_option("--resolution", resolution, "Of mode bounded, pixels; 0: it refines")->capture_default_str();
+  app.add_option("--outer", outer, "How mode bounded draws; else as it is cheaper")
+      ->check(CLI::IsMember({"by-triangle", "by-pixel"}));
   app.add_option("--device", index, "As `cyber-radar devices` numbers them");
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = radar::test::familyNames();
 
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});
+  if (!outer.empty()) device.impl().outerByPixel = outer == "by-pixel";
   std::printf("device %s, driver %s, commit %s, seed %llu, %s doubles\n", device.name().c_str(),
               device.driver().c_str(), RADAR_COMMIT, static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "exact/dyadic.h"
@@ -101,7 +102,6 @@ std::array<double, 2> depthsOver(const std::array<double, 3> (&t)[3], const doub
 }
 
 constexpr double kSpacing = 64;  // of the triangles, along the motion
-constexpr uint32_t kSide = 16;   // pixels
 
 enum class Kind { random, large, tiny, sliver, line, point, edgeOn, aligned, count };
 
@@ -141,7 +141,7 @@ std::array<float, 9> corners(Kind kind, Random& random) {
 }
 
 struct Tally {
-  uint64_t triangles = 0, touched = 0, extra = 0, missed = 0, wrongDepth = 0;
+  uint64_t triangles = 0, touched = 0, extra = 0, missed = 0, wrongDepth = 0, unlike = 0;
 };
 
 void check(const BoundedPlan& plan, const OuterScopes& scopes, const SensorWindow& window, const Pose& pose,
@@ -174,8 +174,13 @@ void check(const BoundedPlan& plan, const OuterScopes& scopes, const SensorWindo
   }
 }
 
-// One submission: `count` triangles, each before a square sensor of its own, far enough apart not to see each other.
-void checkBatch(uint32_t count, Random& random, Tally& tally) {
+bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+// `count` triangles, each before a square sensor of its own, far enough apart not to see each other; drawn in one
+// submission by triangle, and in another by pixel.
+void checkBatch(uint32_t count, uint32_t pixels, Random& random, Tally& tally) {
   Scene scene;
   const float h = 1;
   const std::vector<float> square{-h, -h, 0, h, -h, 0, h, h, 0, -h, h, 0};
@@ -210,59 +215,71 @@ void checkBatch(uint32_t count, Random& random, Tally& tally) {
   hierarchy.update(scene.impl());
   ResidentScene resident(test::device().impl());
   BoundedRecorder recorder(test::device().impl(), resident, false);
-  std::vector<BoundedPlan> plans;
-  std::vector<const BoundedPlan*> drawn;
+  std::vector<BoundedPlan> plans, byPixel;
+  std::vector<const BoundedPlan*> drawn, drawnByPixel;
   std::vector<SensorWindow> windows;
   std::vector<uint32_t> numbers;
   for (uint32_t i = 0; i < count; ++i) {
     Query query{.mesh = sensor, .direction = {0, 0, 1}, .distance = 40};
     query.worldFromMesh.m[11] = kSpacing * i;
-    BoundedPlan plan = planBounded(query, scene.impl(), hierarchy, kSide);
+    BoundedPlan plan = planBounded(query, scene.impl(), hierarchy, pixels, false);
     if (plan.sceneBands.empty()) continue;
     REQUIRE(plan.measurable);
+    REQUIRE(plan.sensorStrip + plan.sceneStrip == 0);
     plans.push_back(std::move(plan));
+    byPixel.push_back(planBounded(query, scene.impl(), hierarchy, pixels, true));
+    REQUIRE(std::min(byPixel.back().sensorStrip, byPixel.back().sceneStrip) > 0);
     windows.push_back(lookAlong(query, scene.impl().meshes[sensor]));
     numbers.push_back(i);
   }
   for (const BoundedPlan& plan : plans) drawn.push_back(&plan);
-  std::vector<OuterScopes> scopes;
+  for (const BoundedPlan& plan : byPixel) drawnByPixel.push_back(&plan);
+  std::vector<OuterScopes> scopes, scopesByPixel;
   std::vector<StageTime> stages;
   recorder.submit(drawn, scene.impl(), stages, &scopes);
+  recorder.submit(drawnByPixel, scene.impl(), stages, &scopesByPixel);
   for (size_t i = 0; i < plans.size(); ++i) {
     check(plans[i], scopes[i], windows[i], poses[numbers[i]], triangles[numbers[i]], tally);
+    const OuterScopes &a = scopes[i], &b = scopesByPixel[i];
+    tally.unlike += !(sameBits(a.sensorNearest, b.sensorNearest) && sameBits(a.sceneNearest, b.sceneNearest) &&
+                      sameBits(a.sceneFarthest, b.sceneFarthest) && sameBits(a.sensorFarthest, b.sensorFarthest));
   }
 }
 
-void checkTriangles(uint32_t batches, uint64_t seed) {
+void checkTriangles(uint32_t batches, uint32_t pixels, uint64_t seed) {
   Random random(seed);
   Tally tally;
-  for (uint32_t i = 0; i < batches; ++i) checkBatch(1024, random, tally);
+  for (uint32_t i = 0; i < batches; ++i) checkBatch(1024, pixels, random, tally);
   WARN(tally.triangles << " triangles, " << tally.touched << " pixels touched, extra pixels "
                        << 100.0 * tally.extra / tally.touched << "%");
   CHECK(tally.triangles > 500 * batches);
   CHECK(tally.touched > 5000 * batches);
   CHECK(tally.missed == 0);
   CHECK(tally.wrongDepth == 0);
+  CHECK(tally.unlike == 0);  // the two ways
   CHECK(tally.extra < 0.02 * tally.touched);
 }
 
 }  // namespace
 
 TEST_CASE("an outer scope misses no pixel that a triangle touches, and bounds its depth there") {
-  checkTriangles(4, 1);
+  checkTriangles(4, 17, 1);  // rows that are no whole groups of pixels
 }
 
-TEST_CASE("a cluster of triangles that each fill the window is drawn to its last pixel") {
+TEST_CASE("triangles that each fill the window are drawn to its last pixel, by triangle and by pixel") {
   // Lavapipe ends loops silently after 65,535 iterations of an invocation.
-  const uint32_t resolution = GENERATE(64, 256, 1024);
+  const auto [resolution, triangles] =
+      GENERATE(table<uint32_t, uint32_t>({{64, 64}, {64, 3000}, {256, 64}, {1024, 64}}));
+  const bool byPixel = GENERATE(false, true);
+  CAPTURE(resolution, triangles, byPixel);
   constexpr double kPlacement = 1e-4;  // of a mesh that reaches as far as 66
   Scene scene;
   const std::vector<float> square{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   const MeshId sensor = scene.addMesh(square, std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
   std::vector<float> positions;
   std::vector<uint32_t> indices;
-  for (uint32_t i = 0; i < gpu::kCluster; ++i) {
-    const float z = 3 + static_cast<float>(i);
+  for (uint32_t i = 0; i < triangles; ++i) {
+    const float z = 3 + 63 * static_cast<float>(i) / static_cast<float>(triangles - 1);
     positions.insert(positions.end(), {-9, -9, z, 9, -9, z, 0, 18, z});
     for (uint32_t k = 0; k < 3; ++k) indices.push_back(3 * i + k);
   }
@@ -271,8 +288,9 @@ TEST_CASE("a cluster of triangles that each fill the window is drawn to its last
   hierarchy.update(scene.impl());
   ResidentScene resident(test::device().impl());
   BoundedRecorder recorder(test::device().impl(), resident, false);
-  const BoundedPlan plan =
-      planBounded({.mesh = sensor, .direction = {0, 0, 1}, .distance = 100}, scene.impl(), hierarchy, resolution);
+  const BoundedPlan plan = planBounded({.mesh = sensor, .direction = {0, 0, 1}, .distance = 100}, scene.impl(),
+                                       hierarchy, resolution, byPixel);
+  REQUIRE((plan.sceneStrip > 0) == byPixel);
   const BoundedPlan* plans[] = {&plan};
   std::vector<OuterScopes> scopes;
   std::vector<StageTime> stages;
@@ -289,5 +307,5 @@ TEST_CASE("a cluster of triangles that each fill the window is drawn to its last
 }
 
 TEST_CASE("an outer scope misses no pixel of nearly a million triangles", "[.][million]") {
-  checkTriangles(1100, 2);
+  checkTriangles(1100, 16, 2);
 }

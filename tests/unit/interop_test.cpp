@@ -15,6 +15,7 @@
 #include "spirv/depth_vert.h"
 #include "spirv/identify_comp.h"
 #include "spirv/outer_draw_comp.h"
+#include "spirv/outer_fill_comp.h"
 #include "spirv/outer_identify_comp.h"
 #include "spirv/outer_reduce_comp.h"
 #include "spirv/pairs_comp.h"
@@ -66,6 +67,7 @@ const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
     {"pairs.comp", k_pairs_comp},
     {"contact.comp", k_contact_comp},
     {"outer_draw.comp", k_outer_draw_comp},
+    {"outer_fill.comp", k_outer_fill_comp},
     {"outer_reduce.comp", k_outer_reduce_comp},
     {"outer_identify.comp", k_outer_identify_comp},
     {"contact.comp without doubles", k_contact_comp_RADAR_NO_DOUBLES},
@@ -103,9 +105,12 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       {"Band",
        sizeof(Band),
        {MEMBER(Band, pixelsFromMesh), MEMBER(Band, snap), MEMBER(Band, slack), MEMBER(Band, view),
-        MEMBER(Band, firstPixel), MEMBER(Band, width), MEMBER(Band, firstVertex), MEMBER(Band, firstIndex),
+        MEMBER(Band, firstPixel), MEMBER(Band, pitch), MEMBER(Band, firstVertex), MEMBER(Band, firstIndex),
         MEMBER(Band, triangles), MEMBER(Band, firstColumn), MEMBER(Band, endColumn), MEMBER(Band, firstRow),
-        MEMBER(Band, endRow), MEMBER(Band, item), MEMBER(Band, isSensor)}},
+        MEMBER(Band, endRow), MEMBER(Band, fromRow), MEMBER(Band, toRow), MEMBER(Band, item), MEMBER(Band, isSensor)}},
+      {"Strip",
+       sizeof(Strip),
+       {MEMBER(Strip, firstRow), MEMBER(Strip, endRow), MEMBER(Strip, firstBand), MEMBER(Strip, endBand)}},
       {"Item", sizeof(Item), {MEMBER(Item, draw), MEMBER(Item, firstTriangle), MEMBER(Item, endTriangle)}},
       {"Candidate",
        sizeof(Candidate),

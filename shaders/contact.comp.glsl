@@ -26,6 +26,7 @@ layout(scalar, binding = kBindBoxes) readonly restrict buffer Boxes { RefBox box
 layout(scalar, binding = kBindClusterPairs) restrict buffer ClusterPairs { ClusterPair pairs[]; };
 layout(scalar, binding = kBindStates) restrict buffer States { State states[]; };
 layout(scalar, binding = kBindContenders) restrict buffer Contenders { Contender contenders[]; };
+layout(scalar, binding = kBindTiles) readonly restrict buffer Tiles { uvec2 tiles[]; };
 
 layout(push_constant) uniform Push { uint count; uint groupsX; } push;
 
@@ -40,6 +41,14 @@ const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps o
 // Cluster pairs are taken in runs of so many, nearest first within a run, so that going through them once leaves room for
 // work; what a run has found cuts the next one short.
 layout(constant_id = 1) const uint kRun = 4096;
+// Whether only triangles count that the mask leaves.
+layout(constant_id = 2) const uint kMasked = 0;
+// What things cost, in box tests, and how many times the mask's cost must be left for it to pay, since what it leaves
+// costs, too: as measured on lavapipe (docs/method.md, "The mask").
+const uint kTrimCost = 1;
+const uint kEstimateCost = 1;
+const uint kSolveCost = 24;
+const float kMaskPays = 1.5;
 // Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
 const uint kTested = 128;
 const uint kQueue = 384;
@@ -53,6 +62,9 @@ shared uint chosen[kChosen];
 shared uint countA, countB;             // triangles left after trimming, and where they are in the frame
 shared uint slotsA[kCluster], slotsB[kCluster];
 shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
+shared uvec2 tilesA[kCluster], tilesB[kCluster];  // where they are alive
+shared uint listed;                     // triangles to look at
+shared uint list[kCluster];
 shared uint passed;                     // pairs of those that passed the tests: one of A, one of B << 8
 shared uint passing[kTested];
 shared uint touched;                    // bits of the least distance of a certain contact
@@ -65,45 +77,73 @@ double hi;       // as hiFloat, not rounded
 #endif
 
 float hiFloat;   // no contact is sought beyond, world units: D, or a certain contact
-uint v, work, boxPairs, solved;
-
+uint v, work, boxPairs, solved, spent, met, firstTiles;
 
 vec3 framed(Rows frameFromMesh, vec3 q) {
   const vec4 p = vec4(q, 1.0);
   return vec3(dot(frameFromMesh[0], p), dot(frameFromMesh[1], p), dot(frameFromMesh[2], p));
 }
 
-// Triangles of cluster `ref` that can meet something in the box: they overlap it across the motion, and lie at the right
-// depth. `behind`: the box moves towards the cluster, else away from it, the cluster being the sensor's.
-bool reaches(vec3 c[3], float error, vec3 lo, vec3 hi_, bool isSensor) {
-  const vec3 low = min(min(c[0], c[1]), c[2]) - error, high = max(max(c[0], c[1]), c[2]) + error;
-  const bool across = all(lessThanEqual(low.xy, hi_.xy)) && all(lessThanEqual(lo.xy, high.xy));
-  return across && (isSensor ? hi_.z >= low.z && lo.z - high.z <= hiFloat : high.z >= lo.z && low.z - hi_.z <= hiFloat);
+// Whether a triangle can meet something in the box: they overlap across the motion, and it lies at the right depth. The
+// box moves towards the triangle, or away from it where that is the sensor's.
+bool reaches(vec3 low, vec3 high, float error, vec3 boxLow, vec3 boxHigh, bool isSensor) {
+  low -= error;
+  high += error;
+  const bool across = all(lessThanEqual(low.xy, boxHigh.xy)) && all(lessThanEqual(boxLow.xy, high.xy));
+  return across && (isSensor ? boxHigh.z >= low.z && boxLow.z - high.z <= hiFloat
+                             : high.z >= boxLow.z && low.z - boxHigh.z <= hiFloat);
 }
 
+// The tiles of a cluster's triangle, or of any where `triangle` is kCluster.
+uvec2 tilesOf(uint ref, uint triangle) { return tiles[kTilesPerCluster * (ref + firstTiles) + triangle]; }
+
+// Lists the triangles of cluster `ref` that are alive where something of the other is; returns how many.
+uint listAlive(uint ref, uint triangles_, uint other) {
+  const uvec2 there = tilesOf(other, kCluster);
+  barrier();
+  if (gl_LocalInvocationID.x == 0) listed = 0;
+  barrier();
+  for (uint i = gl_LocalInvocationID.x; i < triangles_; i += kLanes) {
+    if ((tilesOf(ref, i) & there) != uvec2(0)) list[atomicAdd(listed, 1)] = i;
+  }
+  barrier();
+  return listed;
+}
+
+// Keeps the triangles of cluster `ref` that can meet something of cluster `other`.
 void trim(uint ref, uint other, bool isSensor) {
   const uint placement = refs[ref].placement;
   const ClusterRecord node = nodes[meshes[placements[placement].mesh].firstNode + refs[ref].node];
-  const vec3 lo = boxes[other].lo, high = boxes[other].hi;
+  const vec3 boxLow = boxes[other].lo, boxHigh = boxes[other].hi;
   const float error = placements[placement].error;
   const Rows frameFromMesh = placements[placement].frameFromMesh;
   const MeshRecord mesh = meshes[placements[placement].mesh];
-  for (uint i = gl_LocalInvocationID.x; i < node.count; i += kLanes) {
+  const uint count = kMasked != 0 ? listAlive(ref, node.count, other) : node.count;
+  for (uint k = gl_LocalInvocationID.x; k < count; k += kLanes) {
+    const uint i = kMasked != 0 ? list[k] : k;
     const uvec3 corner = triangles[mesh.firstIndex / 3 + node.first + i] + mesh.firstVertex;
-    const vec3 c[3] = vec3[3](framed(frameFromMesh, positions[corner.x]), framed(frameFromMesh, positions[corner.y]),
-                              framed(frameFromMesh, positions[corner.z]));
-    if (!reaches(c, error, lo, high, isSensor)) continue;
+    const vec3 c0 = framed(frameFromMesh, positions[corner.x]), c1 = framed(frameFromMesh, positions[corner.y]),
+               c2 = framed(frameFromMesh, positions[corner.z]);
+    const vec3 low = min(min(c0, c1), c2), high = max(max(c0, c1), c2);
+    if (!reaches(low, high, error, boxLow, boxHigh, isSensor)) continue;
     if (isSensor) {
       const uint at = atomicAdd(countA, 1);
       slotsA[at] = node.first + i;
-      for (uint k = 0; k < 3; ++k) cornersA[3 * at + k] = c[k];
+      cornersA[3 * at] = c0;
+      cornersA[3 * at + 1] = c1;
+      cornersA[3 * at + 2] = c2;
+      if (kMasked != 0) tilesA[at] = tilesOf(ref, i);
     } else {
       const uint at = atomicAdd(countB, 1);
       slotsB[at] = node.first + i;
-      for (uint k = 0; k < 3; ++k) cornersB[3 * at + k] = c[k];
+      cornersB[3 * at] = c0;
+      cornersB[3 * at + 1] = c1;
+      cornersB[3 * at + 2] = c2;
+      if (kMasked != 0) tilesB[at] = tilesOf(ref, i);
     }
   }
   work += (node.count / kLanes + 1) * kTrimWork;
+  spent += node.count * kTrimCost;
 }
 
 // Whether an edge of p separates the projections of p and q by more than `error`.
@@ -121,12 +161,13 @@ bool separates(vec2 p0, vec2 p1, vec2 p2, vec2 q0, vec2 q1, vec2 q2, float error
 }
 
 bool mayMeet(uint i, uint j, float error) {
+  const bool alive = kMasked == 0 || (tilesA[i] & tilesB[j]) != uvec2(0);
   const vec3 a0 = cornersA[3 * i], a1 = cornersA[3 * i + 1], a2 = cornersA[3 * i + 2];
   const vec3 b0 = cornersB[3 * j], b1 = cornersB[3 * j + 1], b2 = cornersB[3 * j + 2];
   const vec3 loA = min(min(a0, a1), a2), hiA = max(max(a0, a1), a2), loB = min(min(b0, b1), b2), hiB = max(max(b0, b1), b2);
   const bool box = all(lessThanEqual(loA.xy, hiB.xy + error)) && all(lessThanEqual(loB.xy, hiA.xy + error)) &&
                    hiB.z + error >= loA.z && loB.z - hiA.z - error <= hiFloat;
-  return box && !separates(a0.xy, a1.xy, a2.xy, b0.xy, b1.xy, b2.xy, error) &&
+  return alive && box && !separates(a0.xy, a1.xy, a2.xy, b0.xy, b1.xy, b2.xy, error) &&
          !separates(a1.xy, a2.xy, a0.xy, b0.xy, b1.xy, b2.xy, error) &&
          !separates(a2.xy, a0.xy, a1.xy, b0.xy, b1.xy, b2.xy, error) &&
          !separates(b0.xy, b1.xy, b2.xy, a0.xy, a1.xy, a2.xy, error) &&
@@ -245,6 +286,7 @@ void flush() {
     solve(queue[min(q, count - 1)], q < count);
     work += kSolveWork + kLanes;
     solved += min(kLanes, count - first);
+    spent += min(kLanes, count - first) * kSolveCost;
   }
 #ifndef RADAR_NO_DOUBLES
   hiFloat = min(hiFloat, float(hi) * 1.000001 + 1e-37);
@@ -256,6 +298,7 @@ void flush() {
 
 // All triangle pairs of one pair of clusters.
 void meetClusters(ClusterPair pair) {
+  if (kMasked != 0 && (tilesOf(pair.a, kCluster) & tilesOf(pair.b, kCluster)) == uvec2(0)) return;
   barrier();
   if (gl_LocalInvocationID.x == 0) countA = countB = 0;
   barrier();
@@ -265,10 +308,11 @@ void meetClusters(ClusterPair pair) {
   const uint placement = refs[pair.b].placement;
   const float error = 2.0 * (placements[refs[pair.a].placement].error + placements[placement].error);
   const uint all_ = countA * countB;
+  const float perRow = 1.0 / float(max(countB, 1));  // dividing integers costs lavapipe more than the test
   for (uint first = 0; first < all_; first += kTested) {
     const uint end = min(first + kTested, all_);
     for (uint p = first + gl_LocalInvocationID.x; p < end; p += kLanes) {
-      const uint i = p / countB, j = p % countB;
+      const uint i = uint((float(p) + 0.5) * perRow), j = p - i * countB;
       if (mayMeet(i, j, error)) passing[atomicAdd(passed, 1)] = i | j << 8;
     }
     barrier();
@@ -278,16 +322,31 @@ void meetClusters(ClusterPair pair) {
     hiFloat = min(hiFloat, uintBitsToFloat(touched));
     if (gl_LocalInvocationID.x == 0) passed = 0;
     work += (end - first + count) / kLanes + 2;
+    spent += count * kEstimateCost;
     barrier();
     if (queued > kQueue - kTested) flush();
   }
   boxPairs += all_;
+  spent += all_;
+  ++met;
 }
 
 bool goesOn() { return work < kWorkPerDispatch && !overflows() && !decided(); }
 
-// All cluster pairs of `count` that are no farther than `limit`.
-void meetNearest(uint first, uint count, float limit) {
+// A round stops to ask what is left when it has cost as much as the mask.
+uint pauseAt() {
+  const uint cost = targets[v].maskCost;
+  return kMasked != 0 || spent > kNoMask - cost ? kNobody : spent + cost;
+}
+
+// Whether the mask pays: `left` cluster pairs, at what those so far have cost, are dearer.
+bool asksMask(uint left) {
+  if (kMasked != 0 || met == 0 || targets[v].maskCost == kNoMask) return false;
+  return float(left) * float(spent) > kMaskPays * float(targets[v].maskCost) * float(met);
+}
+
+// All cluster pairs of `count` that are no farther than `limit`, until that has cost `pause` in all.
+void meetNearest(uint first, uint count, float limit, uint pause) {
   for (uint i = gl_LocalInvocationID.x; i < count; i += kLanes) {
     const float gap = pairs[first + i].gap;
     if (gap >= 0.0 && gap <= min(limit, hiFloat)) chosen[atomicAdd(chosenCount, 1)] = first + i;
@@ -295,7 +354,7 @@ void meetNearest(uint first, uint count, float limit) {
   barrier();
   const uint found = chosenCount;
   work += count / kLanes + found + 1;
-  for (uint i = 0; i < found && goesOn(); ++i) {
+  for (uint i = 0; i < found && goesOn() && spent < pause; ++i) {
     const ClusterPair pair = pairs[chosen[i]];
     if (pair.gap > hiFloat) continue;
     meetClusters(pair);
@@ -306,8 +365,9 @@ void meetNearest(uint first, uint count, float limit) {
   barrier();
 }
 
-// The gap up to which this round goes: that of the round's quota of nearest pairs, in steps of a bucket.
-float roundLimit(uint first, uint count, float nearest, uint quota) {
+// The gap up to which this round goes: that of the round's quota of nearest pairs, in steps of a bucket. `within`: how many
+// are no farther than what is known to be touched.
+float roundLimit(uint first, uint count, float nearest, uint quota, out uint within) {
   const float width = max(hiFloat - nearest, 1e-30) / float(kBuckets);
   for (uint i = gl_LocalInvocationID.x; i < kBuckets; i += kLanes) bucket[i] = 0;
   barrier();
@@ -317,15 +377,17 @@ float roundLimit(uint first, uint count, float nearest, uint quota) {
   }
   barrier();
   uint sum = 0, last = 0;
+  within = 0;
+  for (uint i = 0; i < kBuckets; ++i) within += bucket[i];
   while (last + 1 < kBuckets && sum + bucket[last] < quota) sum += bucket[last++];
-  work += count / kLanes + 2 * kBuckets;
+  work += count / kLanes + 3 * kBuckets;
   return last + 1 == kBuckets ? hiFloat : nearest + width * float(last + 1);
 }
 
 void main() {
   v = gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX;
   if (v >= push.count) return;
-  if (states[v].progress != kSearchUnfinished) return;
+  if (states[v].progress != (kMasked != 0 ? kSearchMasked : kSearchUnfinished)) return;
   const uint total = states[v].pairCount;
   uint cursor = states[v].cursor;
   if (total > targets[v].pairCapacity) {
@@ -337,6 +399,9 @@ void main() {
   hi = double(hiFloat);
 #endif
   work = boxPairs = solved = 0;
+  spent = states[v].spent;
+  met = states[v].met;
+  firstTiles = states[v].tiles;
   if (gl_LocalInvocationID.x == 0) {
     queued = passed = chosenCount = 0;
     touched = floatBitsToUint(hiFloat);
@@ -344,6 +409,7 @@ void main() {
   }
   barrier();
   uint round = states[v].round;
+  bool asks = false;
   while (cursor < total && goesOn()) {
     const uint first = targets[v].firstPair + cursor, count = min(kRun, total - cursor);
     barrier();
@@ -360,8 +426,14 @@ void main() {
       round = 0;
       continue;
     }
-    const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)));
-    for (uint start = 0; start < count && goesOn(); start += kChosen) meetNearest(first + start, min(kChosen, count - start), limit);
+    uint within;
+    const float limit = roundLimit(first, count, uintBitsToFloat(nearestGap), kFirstRound << (2 * min(round, 12u)), within);
+    asks = asksMask(within + total - cursor - count);
+    if (asks) break;
+    const uint pause = pauseAt();
+    for (uint start = 0; start < count && goesOn() && spent < pause; start += kChosen) {
+      meetNearest(first + start, min(kChosen, count - start), limit, pause);
+    }
     flush();
     memoryBarrierBuffer();
     barrier();
@@ -371,11 +443,18 @@ void main() {
   if (gl_LocalInvocationID.x == 0) {
     states[v].hi = hiFloat;
     states[v].contenderCount = contended;
-    states[v].progress =
-        decided() || (cursor >= total && !overflows()) ? kSearchDone : (overflows() ? kSearchOverflow : kSearchUnfinished);
+    if (decided() || (cursor >= total && !overflows())) {
+      states[v].progress = kSearchDone;
+    } else if (overflows()) {
+      states[v].progress = kSearchOverflow;
+    } else if (asks) {
+      states[v].progress = kSearchAsksMask;
+    }
     states[v].boxPairs += boxPairs;
     states[v].solved += solved;
     states[v].round = round;
     states[v].cursor = cursor;
+    states[v].spent = spent;
+    states[v].met = met;
   }
 }

@@ -68,7 +68,13 @@ INTEROP_CONST kBindPairItems = 10;    // PairItem
 INTEROP_CONST kBindClusterPairs = 11; // ClusterPair
 INTEROP_CONST kBindStates = 12;       // State, one per Target
 INTEROP_CONST kBindContenders = 13;   // Contender
-INTEROP_CONST kContactBindings = 14;
+INTEROP_CONST kBindTiles = 14;        // uvec2, kTilesPerCluster for each cluster under a mask
+INTEROP_CONST kContactBindings = 15;
+
+// The mask in contact has a set of its own, too: the contact tier's buffers at the numbers above but for the last four,
+// and these.
+INTEROP_CONST kBindMaskScopes = 10;   // uint: keys of depth (outer.glsl), the four planes kScope*
+INTEROP_CONST kBindMaskItems = 11;    // MaskItem
 
 // The bounded tier has the sampled tier's set, but for the depth images.
 INTEROP_CONST kBindScopes = 11;       // uint: keys of depth (outer.glsl), the four planes kScope*
@@ -237,7 +243,11 @@ struct Target {
   uint contenderCapacity;
   float enough;             // a contact certainly before this ends the search: D, rounded down, where only "within D or
                             // not" is asked; else 0
+  float corner[2];          // of the mask's pixels, in the frame
+  float pixelsPerUnit;      // of the mask
+  uint maskCost;            // what the mask costs, in box tests; or kNoMask
 };
+INTEROP_CONST kNoMask = 0xffffffffu;
 
 // A mesh in a sensor's frame: axes across and along the motion, about the sensor's centre, world units.
 struct Placement {
@@ -288,6 +298,8 @@ INTEROP_CONST kContenderSharp = 0x100;  // certainly first at `at`, and nothing 
 INTEROP_CONST kSearchDone = 0;
 INTEROP_CONST kSearchUnfinished = 1;  // cluster pairs are left: dispatch again
 INTEROP_CONST kSearchOverflow = 2;    // more contenders than room: begin again with more
+INTEROP_CONST kSearchAsksMask = 3;    // cluster pairs are left that cost more than the mask
+INTEROP_CONST kSearchMasked = 4;      // cluster pairs of what the mask leaves are left
 
 struct State {
   float hi;             // first contact is certainly no later, world units; at first D, rounded up
@@ -298,6 +310,36 @@ struct State {
   uint solved;          // triangle pairs solved
   uint round;
   uint cursor;          // cluster pairs before this one are dealt with
+  uint spent;           // cost of what was done, in box tests
+  uint met;             // cluster pairs that this was for
+  uint tiles;           // where its clusters' tiles begin, less its first ClusterRef; only if kSearchMasked
+};
+
+// ---- the mask in contact -----------------------------------------------------------------------------------------------
+
+// Pixels of its window, both ways.
+INTEROP_CONST kMaskSide = 32;
+INTEROP_CONST kMaskPixels = 1024;
+// A tile is kTileSide pixels wide; 8 x 8 of them have a bit each. A cluster has the tiles where each of its triangles is
+// alive, and last those where any is.
+INTEROP_CONST kTileSide = 4;
+INTEROP_CONST kTilesPerRow = 8;
+INTEROP_CONST kTilesPerCluster = 65;
+
+// What a dispatch draws: F of the scene; S and M of the sensor, where not behind F; R of the scene, where not before S,
+// and where its triangles are alive; where the sensor's are.
+INTEROP_CONST kMaskFarthest = 1;
+INTEROP_CONST kMaskSensor = 2;
+INTEROP_CONST kMaskNearest = 3;
+INTEROP_CONST kMaskAlive = 4;
+
+// A cluster, drawn by a workgroup.
+struct MaskItem {
+  uint target;
+  uint ref;         // ClusterRef
+  uint firstPixel;  // of the target, in each plane
+  uint firstOther;  // ClusterRef: the other side's
+  uint endOther;
 };
 
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the

@@ -13,6 +13,7 @@ struct ContactPlan {
   std::vector<gpu::Placement> placements;  ///< the sensor's first
   std::vector<gpu::ClusterRef> sensor;     ///< placement: into `placements`
   std::vector<gpu::ClusterRef> scene;      ///< empty: certainly clear
+  float hi = 0;  ///< nothing beyond counts, world units, rounded up: D, or what is certainly met
 };
 
 ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy);

@@ -15,9 +15,19 @@
 //                                                    refs, items, states
 // bounds     nodes, placements, refs                 boxes                       computeWriteToComputeReadWrite
 // pairs      targets, boxes, items                   cluster pairs, states       computeWriteToComputeReadWrite
-// contact    scene, targets, placements, refs, boxes cluster pairs, states,      computeWriteToComputeReadWrite,
-//   (some)                                           contenders                  computeWriteToCopy after the last
-// readback   states, contenders                      readback                    copyToHost
+// contact    scene, targets, placements, refs, boxes cluster pairs, states,      computeWriteToComputeReadWrite
+//   (some)                                           contenders
+// readback   states, contenders                      readback                    computeWriteToCopy before it,
+//                                                                                copyToHost
+//
+// Where a search is not finished, once more; where it asks for the mask, with its passes first:
+//
+// upload     staging                                 items, states, mask items,  uploadToRead,
+//                                                    mask scopes (emptied)       fillToComputeReadWrite
+// mask       (mask_recorder.cpp)                     tiles, boxes
+// pairs      as above
+// masked     as contact, tiles                       as contact                  computeWriteToComputeReadWrite
+//   (some)
 
 namespace radar {
 
@@ -52,10 +62,11 @@ uint64_t allPairs(const ContactPlan& plan) {
   return uint64_t{plan.sensor.size()} * plan.scene.size();
 }
 
-void addItems(std::vector<gpu::PairItem>& items, uint32_t target, uint32_t firstA, uint32_t endA, uint32_t endB) {
-  for (uint32_t a = firstA; a < endA; a += gpu::kPairItemA) {
-    for (uint32_t b = endA; b < endB; b += gpu::kPairItemB) {
-      items.push_back({target, a, std::min(a + gpu::kPairItemA, endA), b, std::min(b + gpu::kPairItemB, endB)});
+void addItems(std::vector<gpu::PairItem>& items, const MaskRecorder::Sides& s) {
+  for (uint32_t a = s.firstSensor; a < s.firstScene; a += gpu::kPairItemA) {
+    for (uint32_t b = s.firstScene; b < s.end; b += gpu::kPairItemB) {
+      items.push_back(
+          {s.target, a, std::min(a + gpu::kPairItemA, s.firstScene), b, std::min(b + gpu::kPairItemB, s.end)});
     }
   }
 }
@@ -72,8 +83,9 @@ ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resi
       bindings_(device, bindingList(), sizeof(CountPush)),
       bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
       pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
-      contact_(gpu::computePipeline(device, bindings_.layout(), searchShader(device), "contact",
-                                    std::array{std::clamp(device.subgroupSize, 8u, 128u), room.run})),
+      direct_(searchPipeline("contact", 0)),
+      masked_(searchPipeline("contact masked", 1)),
+      mask_(device, resident),
       targets_(device, "targets", Residence::device, kUploaded),
       placements_(device, "placements", Residence::device, kUploaded),
       refs_(device, "cluster refs", Residence::device, kUploaded),
@@ -84,9 +96,15 @@ ContactRecorder::ContactRecorder(const Device::Impl& device, ResidentScene& resi
       contenders_(device, "contenders", Residence::device, kComputed),
       readback_(device, "contact readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
+gpu::Pipeline ContactRecorder::searchPipeline(const char* name, uint32_t masked) const {
+  return gpu::computePipeline(*device_, bindings_.layout(), searchShader(*device_), name,
+                              std::array{std::clamp(device_->subgroupSize, 8u, 128u), room_.run, masked});
+}
+
 void ContactRecorder::stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms,
                             const Scene::Impl& scene) {
   targetList_.clear();
+  sides_.clear();
   placementList_.clear();
   refList_.clear();
   itemList_.clear();
@@ -106,10 +124,15 @@ void ContactRecorder::stage(std::span<const ContactPlan* const> plans, std::span
       for (const gpu::ClusterRef& ref : *list) refList_.push_back({ref.placement + firstPlacement, ref.node});
     }
     placementList_.insert(placementList_.end(), plan.placements.begin(), plan.placements.end());
-    addItems(itemList_, static_cast<uint32_t>(targetList_.size()), firstRef,
-             firstRef + static_cast<uint32_t>(plan.sensor.size()), static_cast<uint32_t>(refList_.size()));
+    const auto number = static_cast<uint32_t>(targetList_.size());
+    sides_.push_back({number, firstRef, firstRef + static_cast<uint32_t>(plan.sensor.size()),
+                      static_cast<uint32_t>(refList_.size())});
+    addItems(itemList_, sides_.back());
+    const bool canMask = target.maskCost != gpu::kNoMask && sides_.back().clusters() <= MaskRecorder::kMostClusters;
+    if (room_.way == ContactWay::direct || !canMask) target.maskCost = gpu::kNoMask;
     targetList_.push_back(target);
-    stateList_.push_back({.hi = room.hi, .progress = gpu::kSearchUnfinished});
+    const bool masked = room_.way == ContactWay::masked && canMask;
+    stateList_.push_back({.hi = room.hi, .progress = masked ? gpu::kSearchAsksMask : gpu::kSearchUnfinished});
     pairs += room.pairs;
     contenderTotal_ += room.contenders;
   }
@@ -139,7 +162,7 @@ void ContactRecorder::bind() {
   const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
       {gpu::kBindTargets, &targets_}, {gpu::kBindPlacements, &placements_}, {gpu::kBindRefs, &refs_},
       {gpu::kBindBoxes, &boxes_},     {gpu::kBindPairItems, &items_},       {gpu::kBindClusterPairs, &clusterPairs_},
-      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}};
+      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}, {gpu::kBindTiles, &mask_.tiles()}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
 }
 
@@ -152,12 +175,22 @@ void ContactRecorder::dispatch(const gpu::Commands& commands, const gpu::Pipelin
   commands->CmdDispatch(commands, push.groupsX, (groups + push.groupsX - 1) / push.groupsX, 1);
 }
 
-void ContactRecorder::recordSearch(const gpu::Commands& commands, uint32_t targets) {
-  submission_.stage("contact");
+void ContactRecorder::recordPairs(const gpu::Commands& commands) {
+  submission_.stage("pairs");
+  const auto items = static_cast<uint32_t>(itemList_.size());
+  dispatch(commands, pairs_, items, items);
+  gpu::computeWriteToComputeReadWrite(commands);
+}
+
+void ContactRecorder::recordSearch(const gpu::Commands& commands, const gpu::Pipeline& pipeline) {
+  const auto targets = static_cast<uint32_t>(targetList_.size());
   for (uint32_t i = 0; i < kSearchDispatches; ++i) {
-    dispatch(commands, contact_, targets, targets);
-    if (i + 1 < kSearchDispatches) gpu::computeWriteToComputeReadWrite(commands);
+    dispatch(commands, pipeline, targets, targets);
+    gpu::computeWriteToComputeReadWrite(commands);
   }
+}
+
+void ContactRecorder::recordReadback(const gpu::Commands& commands) {
   gpu::computeWriteToCopy(commands);
   submission_.stage("readback");
   const VkDeviceSize stateBytes = bytesOf(stateList_);
@@ -168,20 +201,65 @@ void ContactRecorder::recordSearch(const gpu::Commands& commands, uint32_t targe
   gpu::copyToHost(commands);
 }
 
-void ContactRecorder::finish(uint32_t targets, std::vector<StageTime>& stages) {
+bool ContactRecorder::stageMasks() {
   const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());
-  const auto unfinished = [](const gpu::State& s) { return s.progress == gpu::kSearchUnfinished; };
+  std::vector<MaskRecorder::Sides> asking;
+  itemList_.clear();
+  uint32_t clusters = 0;
+  for (uint32_t i = 0; i < stateList_.size(); ++i) {
+    stateList_[i] = states[i];
+    if (states[i].progress != gpu::kSearchAsksMask) continue;
+    if (clusters + sides_[i].clusters() > MaskRecorder::kMostClusters) continue;  // the next time
+    // What is alive is searched from the start, within what is known to be met.
+    stateList_[i].progress = gpu::kSearchMasked;
+    stateList_[i].pairCount = stateList_[i].contenderCount = stateList_[i].round = stateList_[i].cursor = 0;
+    stateList_[i].tiles = clusters - sides_[i].firstSensor;  // modulo 2^32, as in the shader
+    clusters += sides_[i].clusters();
+    asking.push_back(sides_[i]);
+    addItems(itemList_, sides_[i]);
+  }
+  if (asking.empty()) return false;
+  upload_.begin(mask_.prepare(asking) + Upload::aligned(bytesOf(itemList_)) + Upload::aligned(bytesOf(stateList_)));
+  mask_.upload(upload_);
+  upload_.add(itemList_.data(), bytesOf(itemList_), items_);
+  upload_.add(stateList_.data(), bytesOf(stateList_), states_);
+  return true;
+}
+
+void ContactRecorder::finish(std::vector<StageTime>& stages) {
+  const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());
+  const auto is = [&](uint32_t progress) {
+    return std::any_of(states, states + stateList_.size(), [&](const gpu::State& s) { return s.progress == progress; });
+  };
   uint64_t before = 0;
-  while (std::any_of(states, states + targets, unfinished)) {
+  while (is(gpu::kSearchUnfinished) || is(gpu::kSearchAsksMask) || is(gpu::kSearchMasked)) {
     uint64_t done = 1;
-    for (uint32_t i = 0; i < targets; ++i) done += uint64_t{states[i].cursor} + states[i].boxPairs + states[i].round;
-    if (done == before) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
+    for (uint32_t i = 0; i < stateList_.size(); ++i)
+      done += uint64_t{states[i].cursor} + states[i].boxPairs + states[i].round;
+    const bool asked = stageMasks();
+    if (done == before && !asked) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
     before = done;
+    const bool direct = is(gpu::kSearchUnfinished), masked = asked || is(gpu::kSearchMasked);
+    if (asked) bind();
     const gpu::Commands commands = submission_.begin();
+    if (asked) {
+      submission_.stage("upload");
+      upload_.record(commands);
+      mask_.clear(commands);
+      gpu::uploadToRead(commands);
+      gpu::fillToComputeReadWrite(commands);
+      submission_.stage("mask");
+      mask_.record(commands, {targets_, placements_, refs_, boxes_, states_});
+    }
     const VkDescriptorSet set = bindings_.set();
     commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0,
                                     nullptr);
-    recordSearch(commands, targets);
+    if (asked) recordPairs(commands);
+    submission_.stage("contact");
+    if (direct) recordSearch(commands, direct_);
+    submission_.stage("contact masked");
+    if (masked) recordSearch(commands, masked_);
+    recordReadback(commands);
     submission_.submitAndWait();
     submission_.addTimes(stages);
   }
@@ -220,13 +298,13 @@ void ContactRecorder::submitGroup(std::span<const ContactPlan* const> plans, con
   upload_.record(commands);
   gpu::uploadToRead(commands);
   submission_.stage("bounds");
-  const auto refs = static_cast<uint32_t>(refList_.size()), items = static_cast<uint32_t>(itemList_.size());
+  const auto refs = static_cast<uint32_t>(refList_.size());
   dispatch(commands, bounds_, (refs + 63) / 64, refs);
   gpu::computeWriteToComputeReadWrite(commands);
-  submission_.stage("pairs");
-  dispatch(commands, pairs_, items, items);
-  gpu::computeWriteToComputeReadWrite(commands);
-  recordSearch(commands, static_cast<uint32_t>(group_.size()));
+  recordPairs(commands);
+  submission_.stage("contact");
+  recordSearch(commands, direct_);
+  recordReadback(commands);
   submission_.submit();
 }
 
@@ -236,7 +314,7 @@ void ContactRecorder::submit(std::span<const ContactPlan* const> plans, const Sc
   for (size_t i = 0; i < plans.size(); ++i) {
     const uint64_t clusters = plans[i]->sensor.size() + plans[i]->scene.size();
     const uint64_t pairs = std::min(allPairs(*plans[i]), std::max(room_.pairs, room_.pairsPerCluster * clusters));
-    waiting_.push_back({i, pairs, room_.contenders, upward(plans[i]->target.distance)});
+    waiting_.push_back({i, pairs, room_.contenders, plans[i]->hi});
   }
   submitGroup(plans, scene);
 }
@@ -248,7 +326,7 @@ std::vector<size_t> ContactRecorder::collect(std::span<const ContactPlan* const>
     submission_.wait();
     resident_.confirm(scene);
     submission_.addTimes(stages);
-    finish(static_cast<uint32_t>(group_.size()), stages);
+    finish(stages);
 
     // What outgrew its room goes again, with the room it is known to need.
     const auto* states = reinterpret_cast<const gpu::State*>(readback_.mapped());

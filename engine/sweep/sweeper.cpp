@@ -26,13 +26,13 @@ constexpr uint64_t kMaxRefs = 1u << 20;
 }  // namespace
 
 Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given,
-                    std::shared_ptr<SceneCopy> sceneCopy)
+                    std::shared_ptr<SceneCopy> sceneCopy, const ContactRoom& room)
     : device(openDevice.impl()),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
       recorder(device, copy->resident, given.pictureBytes, given.timestamps),
-      contactRecorder(device, copy->resident, given.timestamps) {
+      contactRecorder(device, copy->resident, given.timestamps, room) {
   const VkPhysicalDeviceLimits& limits = device.properties.limits;
   // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
   bufferBytes = std::min<uint64_t>(limits.maxStorageBufferRange, 256ull << 20);
@@ -240,6 +240,8 @@ void Sweeper::Impl::runContact(std::span<const size_t> which) {
       answers[i] = decodeClear();
       continue;
     }
+    // What a bounded look has met for certain; the numbers told come from the pair, whatever bounded the search.
+    if (answers[i].hi < asked[i].distance) plan.hi = upward(answers[i].hi);
     refs += plan.sensor.size() + plan.scene.size();
     stats.clusters += plan.sensor.size() + plan.scene.size();
     slice.push_back(i);
@@ -266,6 +268,7 @@ void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> resu
   addCpuTime("select", msSince(start));
   std::vector<size_t> sampled, bounded, contact;
   for (size_t i = 0; i < queries.size(); ++i) {
+    answers[i] = Result();
     const Query& query = queries[i];
     const bool bracket = query.mode == Mode::bounded || (query.mode == Mode::contact && query.tolerance > 0);
     (query.mode == Mode::sampled ? sampled : bracket ? bounded : contact).push_back(i);

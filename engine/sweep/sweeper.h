@@ -22,7 +22,8 @@ struct SceneCopy {
 struct Sweeper::Impl {
   /// `copy` may be shared with others of the same device and scene, used by the same thread; a scene that changed is
   /// then brought there by sync(), while nothing is with the device.
-  Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<SceneCopy> copy);
+  Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<SceneCopy> copy,
+       const ContactRoom& room = {});
 
   void sync();
   /// Encodes `queries`, which keep their contracts, and submits them; on return the last submission is still with the

@@ -7,6 +7,7 @@
 #include "agreement/real_meshes.h"
 #include "reference/reference.h"
 #include "stability/promises.h"
+#include "sweep/sweeper.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
 
@@ -84,7 +85,8 @@ void RandomTally::add(const RandomTally& other) {
 
 /// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.
 struct RandomQueries::Stage {
-  explicit Stage(const Device& device) : sweeper(device, scene), reference(scene) {}
+  Stage(const Device& device, ContactWay way)
+      : sweeper(device, scene, {}, std::make_shared<SceneCopy>(device.impl()), {.way = way}), reference(scene) {}
 
   void show(const tools::Workload& workload) {
     tools::replaceBy(workload, 0, scene);
@@ -103,11 +105,11 @@ struct RandomQueries::Stage {
   }
 
   Scene scene;
-  Sweeper sweeper;
+  Sweeper::Impl sweeper;
   reference::Reference reference;
 };
 
-RandomQueries::RandomQueries(const Device& device) : stage_(std::make_unique<Stage>(device)) {}
+RandomQueries::RandomQueries(const Device& device, ContactWay way) : stage_(std::make_unique<Stage>(device, way)) {}
 RandomQueries::~RandomQueries() = default;
 
 RandomTally RandomQueries::run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,
@@ -126,10 +128,12 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
     stage_->show(workload);
     if (range.family == kAtDistance) stage_->moveDistances(queries, first);
     const Clock::time_point start = Clock::now();
-    const std::vector<Result> results = stage_->sweeper.run(queries);
+    std::vector<Result> results(queries.size());
+    stage_->sweeper.begin(queries, results);
+    stage_->sweeper.finish();
     tally.deviceSeconds += secondsSince(start);
-    tally.pairs += stage_->sweeper.stats().pairs;
-    tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
+    tally.pairs += stage_->sweeper.stats.pairs;
+    tally.cpuPairs += stage_->sweeper.stats.cpuPairs;
     const Clock::time_point referenceStart = Clock::now();
     const std::vector<Result> exact = stage_->reference.run(queries);
     tally.referenceSeconds += secondsSince(referenceStart);
@@ -138,7 +142,7 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
                                          ? tools::judgeBracket(queries[i], results[i], exact[i])
                                          : tools::judgeContact(stage_->scene, queries[i], results[i], exact[i]);
       count(tally, verdict, results[i], exact[i]);
-      if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reason(i));
+      if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reasons[i]);
     }
     onProgress(next - range.first);
   }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "radar/radar.h"
+#include "sweep/contact_recorder.h"
 
 namespace radar::test {
 
@@ -29,7 +29,7 @@ struct RandomTally {
 
 class RandomQueries {
  public:
-  explicit RandomQueries(const Device& device);
+  explicit RandomQueries(const Device& device, ContactWay way = ContactWay::cheaper);
   ~RandomQueries();
 
   struct Range {

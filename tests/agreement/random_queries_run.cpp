@@ -36,13 +36,16 @@ int main(int argc, char** argv) {
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone, resolution = 0;
   bool withoutDoubles = false;
-  std::string mode = "contact", outer;
+  std::string mode = "contact", outer, way = "cheaper";
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
   app.add_option("--first", first, "Number of each family's first query: to ask one again");
   app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
   app.add_option("--mode", mode, "What is asked")->check(CLI::IsMember({"contact", "bounded"}))->capture_default_str();
+  app.add_option("--way", way, "How mode contact goes about it")
+      ->check(CLI::IsMember({"cheaper", "direct", "masked"}))
+      ->capture_default_str();
   app.add_option("--resolution", resolution, "Of mode bounded, pixels; 0: it refines")->capture_default_str();
   app.add_option("--outer", outer, "How mode bounded draws; else as it is cheaper")
       ->check(CLI::IsMember({"by-triangle", "by-pixel"}));
@@ -57,15 +60,17 @@ int main(int argc, char** argv) {
               device.driver().c_str(), RADAR_COMMIT, static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without");
   printHeader();
-  RandomQueries asking(device);
+  RandomQueries asking(device, way == "direct"   ? radar::ContactWay::direct
+                               : way == "masked" ? radar::ContactWay::masked
+                                                 : radar::ContactWay::cheaper);
   RandomTally all;
   const radar::Mode asked = mode == "bounded" ? radar::Mode::bounded : radar::Mode::contact;
   const uint64_t each = (queries + families.size() - 1) / families.size();
   for (const std::string& family : families) {
     const auto onWrong = [&](uint64_t query, const std::string& words) {
-      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1 --mode %s --resolution %u\n",
+      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1 --mode %s --way %s --resolution %u\n",
                   words.c_str(), family.c_str(), static_cast<unsigned long long>(seed),
-                  static_cast<unsigned long long>(query), mode.c_str(), resolution);
+                  static_cast<unsigned long long>(query), mode.c_str(), way.c_str(), resolution);
     };
     const auto onProgress = [&](uint64_t done) {
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),

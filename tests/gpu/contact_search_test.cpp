@@ -18,7 +18,10 @@ using namespace radar;
 /// Every cluster of the sensor and of every object that takes part, placed so loosely that each box holds everything:
 /// all pairs of clusters have gap 0, which leaves one round, and every pair of triangles is solved.
 ContactPlan everything(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy) {
-  ContactPlan plan{.target = planContact(query, scene, hierarchy).target, .placements = {}, .sensor = {}, .scene = {}};
+  ContactPlan plan = planContact(query, scene, hierarchy);
+  plan.placements.clear();
+  plan.sensor.clear();
+  plan.scene.clear();
   const auto add = [&](MeshId mesh, ObjectId object, std::vector<gpu::ClusterRef>& refs) {
     const auto placement = static_cast<uint32_t>(plan.placements.size());
     plan.placements.push_back({.frameFromMesh = {}, .error = 1e15f, .mesh = mesh, .object = object, .pad = 0});
@@ -110,7 +113,7 @@ TEST_CASE(
   const std::vector<Query> queries = show(workload, player);
   Sweeper sweeper(test::device(), player.scene());
   const std::vector<Result> culled = sweeper.run(queries);
-  Searching searching(player.scene(), {});
+  Searching searching(player.scene(), {.way = ContactWay::direct});
   const std::vector<Result> all = searching.run(queries, false);
   uint64_t pairs = 0, contacts = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
@@ -129,7 +132,9 @@ TEST_CASE(
 TEST_CASE("with the least room for pairs and contenders, and in the shortest runs, the answers have the same bits") {
   const ContactRoom room =
       GENERATE(ContactRoom{.pairs = 1, .pairsPerCluster = 0}, ContactRoom{.contenders = 1}, ContactRoom{.run = 1},
-               ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1});
+               ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1},
+               ContactRoom{.contenders = 1, .way = ContactWay::masked},
+               ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1, .way = ContactWay::masked});
   const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice);
   CAPTURE(tools::nameOf(family), room.pairs, room.contenders, room.run);
   const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 32, .seed = 4});

@@ -14,6 +14,7 @@
 #include "spirv/contact_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/depth_vert.h"
 #include "spirv/identify_comp.h"
+#include "spirv/mask_comp.h"
 #include "spirv/outer_draw_comp.h"
 #include "spirv/outer_fill_comp.h"
 #include "spirv/outer_identify_comp.h"
@@ -66,6 +67,7 @@ const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
     {"bounds.comp", k_bounds_comp},
     {"pairs.comp", k_pairs_comp},
     {"contact.comp", k_contact_comp},
+    {"mask.comp", k_mask_comp},
     {"outer_draw.comp", k_outer_draw_comp},
     {"outer_fill.comp", k_outer_fill_comp},
     {"outer_reduce.comp", k_outer_reduce_comp},
@@ -133,7 +135,8 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        sizeof(Target),
        {MEMBER(Target, pose), MEMBER(Target, direction), MEMBER(Target, directionLength), MEMBER(Target, distance),
         MEMBER(Target, mesh), MEMBER(Target, firstPair), MEMBER(Target, pairCapacity), MEMBER(Target, firstContender),
-        MEMBER(Target, contenderCapacity), MEMBER(Target, enough)}},
+        MEMBER(Target, contenderCapacity), MEMBER(Target, enough), MEMBER(Target, corner),
+        MEMBER(Target, pixelsPerUnit), MEMBER(Target, maskCost)}},
       {"Placement",
        sizeof(Placement),
        {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),
@@ -152,7 +155,12 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       {"State",
        sizeof(State),
        {MEMBER(State, hi), MEMBER(State, pairCount), MEMBER(State, contenderCount), MEMBER(State, progress),
-        MEMBER(State, boxPairs), MEMBER(State, solved), MEMBER(State, round), MEMBER(State, cursor)}},
+        MEMBER(State, boxPairs), MEMBER(State, solved), MEMBER(State, round), MEMBER(State, cursor),
+        MEMBER(State, spent), MEMBER(State, met), MEMBER(State, tiles)}},
+      {"MaskItem",
+       sizeof(MaskItem),
+       {MEMBER(MaskItem, target), MEMBER(MaskItem, ref), MEMBER(MaskItem, firstPixel), MEMBER(MaskItem, firstOther),
+        MEMBER(MaskItem, endOther)}},
   };
   std::set<std::string> seen;
   for (const auto& [shader, spirv] : kShaders) {

@@ -1,0 +1,105 @@
+// What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
+#include "workloads/interlocking.h"
+
+#include <cmath>
+
+#include "workloads/random.h"
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+namespace {
+
+// A sheet of strips along x, cut with gaps as wide as they are: two triangles each.
+MeshData makeGrating(uint32_t strips, double length, double pitch) {
+  MeshData mesh{"grating", {}, {}};
+  for (uint32_t i = 0; i < strips; ++i) {
+    const double low = pitch * (i - 0.5 * strips);
+    for (const double x : {-0.5 * length, 0.5 * length}) {
+      for (const double y : {low, low + 0.5 * pitch}) {
+        for (const double value : {x, y, 0.0}) mesh.positions.push_back(static_cast<float>(value));
+      }
+    }
+    for (const uint32_t corner : {0u, 1u, 2u, 1u, 3u, 2u}) mesh.indices.push_back(4 * i + corner);
+  }
+  return mesh;
+}
+
+// A comb of round teeth with room between them for another's.
+MeshData makeRoundComb(uint32_t teeth) {
+  MeshData mesh = makeBox({0.5 * teeth, 0.3, 0.3});
+  mesh.name = "round comb";
+  for (uint32_t i = 0; i < teeth; ++i) {
+    append(mesh, makeRod(0.075, 3, 64), {0.5 * (i + 0.5) - 0.25 * teeth, 0, 1.65});
+  }
+  return mesh;
+}
+
+Vec3 turned(const std::array<double, 9>& rotation, const Vec3& v) {
+  Vec3 out{};
+  for (size_t i = 0; i < 9; ++i) out[i / 3] += rotation[i] * v[i % 3];
+  return out;
+}
+
+std::array<double, 9> product(const std::array<double, 9>& p, const std::array<double, 9>& q) {
+  std::array<double, 9> out{};
+  for (size_t i = 0; i < 9; ++i) {
+    for (size_t k = 0; k < 3; ++k) out[i] += p[i / 3 * 3 + k] * q[3 * k + i % 3];
+  }
+  return out;
+}
+
+struct Shapes {
+  MeshData sensor, scene;
+  Vec3 offset;  // of the scene's, in the sensor's axes
+  std::array<double, 9> turn;
+  Vec3 free;  // where the sensor can move far
+};
+
+Shapes shapesOf(Interlocking kind) {
+  constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1}, kReversed{1, 0, 0, 0, -1, 0, 0, 0, -1};
+  constexpr std::array<double, 9> kTurned{0.28, -0.96, 0, 0.96, 0.28, 0, 0, 0, 1};
+  constexpr std::array<double, 9> kSlightly{0.9998, 0, 0.02, 0, 1, 0, -0.02, 0, 0.9998};
+  constexpr std::array<double, 9> kTilted{0.9968, 0, 0.08, 0, 1, 0, -0.08, 0, 0.9968};
+  switch (kind) {
+    case Interlocking::ringOnPeg:
+      return {makeTorus(1, 0.25, 96, 32), makeRod(0.65, 8, 256), {0, 0, 0.3}, kUpright, {0, 0, 1}};
+    case Interlocking::combInComb:
+      return {makeRoundComb(8), makeRoundComb(8), {0.25, 0.02, 4.4}, product(kSlightly, kReversed), {0, 0, 1}};
+    default:
+      return {makeGrating(256, 8, 0.03), makeGrating(256, 8, 0.03), {0, 0, 0.6}, product(kTilted, kTurned), {0, 0, 1}};
+  }
+}
+
+}  // namespace
+
+const char* nameOf(Interlocking kind) {
+  constexpr std::array<const char*, kInterlocking.size()> kNames{"ring on peg", "comb in comb", "crossing"};
+  return kNames[static_cast<size_t>(kind)];
+}
+
+Workload makeWorkload(const InterlockingPairs& options) {
+  Random random(options.seed);
+  Shapes shapes = shapesOf(options.kind);
+  Workload workload;
+  workload.scenes.push_back({nameOf(options.kind), {}, {}, {}});
+  for (uint32_t i = 0; i < options.sensors; ++i) {
+    const Vec3 home{100.0 * i, 0, 0};
+    const auto frame = random.rotation();
+    Vec3 second = turned(frame, shapes.offset);
+    for (size_t k = 0; k < 3; ++k) second[k] += home[k];
+    workload.scenes[0].instances.push_back({1, makePose(product(frame, shapes.turn), {1, 1, 1}, second)});
+    Vec3 towards = random.inBox({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3});
+    for (size_t k = 0; k < 3; ++k) towards[k] += shapes.free[k];
+    QuerySpec query;
+    query.id = std::to_string(i);
+    query.sensor = {0, makePose(frame, {1, 1, 1}, home)};
+    query.direction = turned(frame, towards);
+    query.distance = random.uniform(1, 8);
+    workload.queries.push_back(std::move(query));
+  }
+  workload.meshes = {std::move(shapes.sensor), std::move(shapes.scene)};
+  return workload;
+}
+
+}  // namespace radar::tools

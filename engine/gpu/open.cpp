@@ -90,10 +90,10 @@ std::unique_ptr<Device::Impl::Owned> openInstance(std::function<void(const std::
                                   .pApplicationInfo = &application,
                                   .enabledExtensionCount = listens ? 1u : 0u,
                                   .ppEnabledExtensionNames = extensions};
-  check(owned->vk.CreateInstance(&info, owned->host.allocator, &owned->instance), "vkCreateInstance (is a Vulkan driver installed?)");
+  check(owned->vk.CreateInstance(&info, nullptr, &owned->instance), "vkCreateInstance (is a Vulkan driver installed?)");
   owned->vk.load(owned->instance);
   if (listens) {
-    check(owned->vk.CreateDebugUtilsMessengerEXT(owned->instance, &messenger, owned->host.allocator, &owned->messenger),
+    check(owned->vk.CreateDebugUtilsMessengerEXT(owned->instance, &messenger, nullptr, &owned->messenger),
           "vkCreateDebugUtilsMessengerEXT");
   }
   return owned;
@@ -168,7 +168,7 @@ Device Device::open(const DeviceOptions& options) {
                                 .pNext = needed.chain(),
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue};
-  check(owned->vk.CreateDevice(host.physicalDevice, &info, owned->host.allocator, &owned->device), "vkCreateDevice");
+  check(owned->vk.CreateDevice(host.physicalDevice, &info, nullptr, &owned->device), "vkCreateDevice");
   owned->vk.load(owned->device);
   host.device = owned->device;
   owned->vk.GetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);

@@ -65,7 +65,7 @@ Spread spreadOf(const Record& record, const std::string& method, const Number& n
 
 std::string timesOf(const Record& record, const std::string& method) {
   const Spread us = spreadOf(record, method, [](const Cell& cell) { return cell.us; });
-  return print("%.3g to %.3g us a query", us.least, us.most);
+  return inWords(us.least) + " to " + inWords(us.most) + " us a query";
 }
 
 // Mode by mode, with the run's numbers: of what it measured.

@@ -33,14 +33,13 @@ std::string against(double us, double other) {
   return us <= other ? print("%.3g times as fast", other / us) : print("%.3g times as slow", us / other);
 }
 
-// The names of a family's members as one: "sampled 16 to 1024".
+// The names of a family's members as one: "sampled 16/64/1024".
 std::vector<std::string> namesOf(const std::vector<const Cell*>& cells) {
   std::vector<std::string> names;
   for (size_t i = 0; i < cells.size();) {
-    size_t end = i;
-    while (end < cells.size() && cells[end]->family == cells[i]->family) ++end;
     std::string name = cells[i]->method;
-    if (end - i > 1) name += print(" to %u", cells[end - 1]->size);
+    size_t end = i + 1;
+    for (; end < cells.size() && cells[end]->family == cells[i]->family; ++end) name += print("/%u", cells[end]->size);
     names.push_back(name);
     i = end;
   }

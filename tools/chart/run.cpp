@@ -85,7 +85,7 @@ std::vector<Method> peerMethods(const PeerRow& row, const std::string& section, 
 }
 
 Timing timingOf(Extent extent) {
-  if (extent == Extent::full) return {5, 300};
+  if (extent == Extent::full) return {5, 200};
   if (extent == Extent::quick) return {3, 30};
   return {1, 0};
 }

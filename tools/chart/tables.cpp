@@ -58,7 +58,7 @@ Table timesTable(const Record& record, const std::string& section, const std::st
 }  // namespace
 
 std::string inWords(double value) {
-  return std::isnan(value) ? "-" : print("%.3g", value);
+  return std::isnan(value) ? "-" : print(value < 1000 ? "%.3g" : "%.0f", value);
 }
 
 Table accuracyTable(const Record& record, const std::string& workload) {

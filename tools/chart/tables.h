@@ -19,7 +19,7 @@ Table table1Table(const Record& record);
 /// Times over a growing axis: boxes, sensors or triangles.
 Table growthTable(const Record& record, const std::string& axis);
 
-/// The number as its row, or a dash where it does not exist.
+/// Three digits, or whole; a dash where there is no number.
 std::string inWords(double value);
 
 }  // namespace radar::tools

@@ -182,6 +182,10 @@ BoundedPlan planBounded(const Query& query, const Scene::Impl& scene, const Hier
   if (reach.objects.empty()) return plan;
   const PixelGrid grid(window, resolution);
   plan.pixel = grid.pixel;
+  plan.axes = window.axes;
+  for (size_t i = 0; i < 3; ++i) {
+    plan.corner[i] = window.origin[i] + window.axes[0][i] * grid.corner[0] + window.axes[1][i] * grid.corner[1];
+  }
   gpu::View& view = plan.view;
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), view.pose);
   const Vector direction = scaledDirection(query.direction);

@@ -16,7 +16,9 @@ struct BoundedPlan {
   std::vector<gpu::Band> sensorBands, sceneBands;  ///< all but where meshes and pixels begin; none: certainly clear
   /// Rows of a strip where a side is drawn by pixel, a band for each cluster; 0: by triangle, in bands of few pixels.
   uint32_t sensorStrip = 0, sceneStrip = 0;
-  double pixel = 0;        ///< side of a pixel, world units
+  double pixel = 0;              ///< side of a pixel, world units
+  std::array<Vector, 3> axes{};  ///< of the frame, world; the last along the motion
+  Vector corner{};         ///< world position of the window's lower left corner at the depth of the frame's origin
   bool measurable = true;  ///< false: float cannot tell the scene's pixels apart; not to be drawn
   /// Of a row in the outer scopes.
   uint32_t pitch() const { return (view.width + gpu::kPixelGroup - 1) / gpu::kPixelGroup * gpu::kPixelGroup; }

@@ -203,10 +203,10 @@ void BoundedRecorder::draw(const gpu::Commands& commands, const DrawPipelines& p
   dispatchEach(commands, pipelines.byPixel, side.firstStrip, side.strips);
 }
 
-std::vector<OuterScopes> BoundedRecorder::scopesOf(std::span<const BoundedPlan* const> plans,
-                                                   const std::byte* stored) const {
+std::vector<StoredOuterScopes> BoundedRecorder::scopesOf(std::span<const BoundedPlan* const> plans,
+                                                         const std::byte* stored) const {
   const auto* keys = reinterpret_cast<const uint32_t*>(stored);
-  std::vector<OuterScopes> scopes(plans.size());
+  std::vector<StoredOuterScopes> scopes(plans.size());
   for (size_t i = 0; i < plans.size(); ++i) {
     std::vector<float>* planes[] = {&scopes[i].sensorNearest, &scopes[i].sceneNearest, &scopes[i].sceneFarthest,
                                     &scopes[i].sensorFarthest};
@@ -224,7 +224,7 @@ std::vector<OuterScopes> BoundedRecorder::scopesOf(std::span<const BoundedPlan* 
 }
 
 Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene,
-                                std::vector<StageTime>& stages, std::vector<OuterScopes>* scopes) {
+                                std::vector<StageTime>& stages, std::vector<StoredOuterScopes>* scopes) {
   stage(plans, scene);
   bind();
   const auto views = static_cast<uint32_t>(plans.size());

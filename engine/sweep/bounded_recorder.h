@@ -11,7 +11,7 @@ namespace radar {
 
 /// Outer scopes of one view, row by row, depth along the motion from the frame's origin in pixels; NaN where there is
 /// none.
-struct OuterScopes {
+struct StoredOuterScopes {
   std::vector<float> sensorNearest, sceneNearest, sceneFarthest, sensorFarthest;  ///< S, R, F, M
 };
 
@@ -25,7 +25,7 @@ class BoundedRecorder {
   /// Every plan is measurable and has bands on both sides. One upload, one command buffer, one readback. With `scopes`,
   /// those of every view come too. Adds each stage's time to `stages`.
   Answers submit(std::span<const BoundedPlan* const> plans, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                 std::vector<OuterScopes>* scopes = nullptr);
+                 std::vector<StoredOuterScopes>* scopes = nullptr);
 
  private:
   struct DrawPipelines {
@@ -44,7 +44,7 @@ class BoundedRecorder {
   void bind();
   void dispatchEach(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t first, uint32_t count) const;
   void draw(const gpu::Commands& commands, const DrawPipelines& pipelines, const Side& side) const;
-  std::vector<OuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
+  std::vector<StoredOuterScopes> scopesOf(std::span<const BoundedPlan* const> plans, const std::byte* stored) const;
 
   const Device::Impl* device_;
   ResidentScene& resident_;

@@ -118,6 +118,44 @@ void BoundedTier::submit(std::span<const Query> queries, std::vector<Pending>& s
   slice.clear();
 }
 
+OuterScopes BoundedTier::look(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy,
+                              SweepStats& stats) {
+  const BoundedPlan plan =
+      planBounded(query, scene, hierarchy, query.resolution != 0 ? query.resolution : kCoarsest, device_->outerByPixel);
+  OuterScopes out;
+  out.result = decodeClear();
+  if (plan.sceneBands.empty()) return out;
+  if (!plan.measurable) throw Error("outer scopes: float cannot tell the scene's pixels apart");
+  Load load;
+  load.add(plan);
+  if (!fits(load, true)) throw Error("outer scopes: what is in reach needs a larger buffer than the device allows");
+  const BoundedPlan* plans[] = {&plan};
+  std::vector<StoredOuterScopes> stored;
+  const Answers found = recorder_.submit(plans, scene, stats.stages, &stored);
+  ++stats.submissions;
+  const Result nominated =
+      decode(found.answers[0], found.openPairs, query, scene, plan.view.resolution, stats.cpuPairs);
+  out.result = bracketOf(plan, found.answers[0], query, nominated);
+  out.width = plan.view.width;
+  out.height = plan.view.height;
+  out.pixel = plan.pixel;
+  out.origin = plan.corner;
+  out.right = plan.axes[0];
+  out.up = plan.axes[1];
+  out.forward = plan.axes[2];
+  const StoredOuterScopes& s = stored[0];
+  for (size_t i = 0; i < s.sceneNearest.size(); ++i) {
+    const double free = double{s.sceneNearest[i]} - s.sensorFarthest[i];  // NaN where either is
+    out.bound.push_back(static_cast<float>(plan.pixel * (free < 0 ? 0 : free)));
+  }
+  for (const auto& [from, to] :
+       {std::pair{&s.sensorNearest, &out.sensorNearest}, std::pair{&s.sensorFarthest, &out.sensorFarthest},
+        std::pair{&s.sceneNearest, &out.sceneNearest}, std::pair{&s.sceneFarthest, &out.sceneFarthest}}) {
+    for (const float depth : *from) to->push_back(static_cast<float>(plan.pixel * depth));
+  }
+  return out;
+}
+
 std::vector<size_t> BoundedTier::run(std::span<const Query> queries, std::span<const size_t> which,
                                      const Scene::Impl& scene, const Hierarchy& hierarchy, const Out& out) {
   std::vector<size_t> open(which.begin(), which.end()), done;

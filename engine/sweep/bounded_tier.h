@@ -31,6 +31,9 @@ class BoundedTier {
   std::vector<size_t> run(std::span<const Query> queries, std::span<const size_t> which, const Scene::Impl& scene,
                           const Hierarchy& hierarchy, const Out& out);
 
+  /// One look, with its pictures.
+  OuterScopes look(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, SweepStats& stats);
+
  private:
   struct Pending {
     size_t query;

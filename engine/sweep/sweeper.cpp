@@ -164,13 +164,17 @@ void Sweeper::Impl::runSampled(std::span<const size_t> which) {
   flush(slice);
 }
 
+BoundedTier& Sweeper::Impl::bounded() {
+  if (!boundedTier) boundedTier.emplace(device, copy->resident, options.pictureBytes, options.timestamps);
+  return *boundedTier;
+}
+
 // Returns what the bracket does not settle.
 std::vector<size_t> Sweeper::Impl::runBounded(std::span<const size_t> which) {
   if (which.empty()) return {};
   land();
-  if (!boundedTier) boundedTier.emplace(device, copy->resident, options.pictureBytes, options.timestamps);
   const auto fail = [&](size_t query, const Error& error) { giveUp(query, error); };
-  return boundedTier->run(asked, which, scene.impl(), copy->hierarchy, {answers, reasons, stats, fail});
+  return bounded().run(asked, which, scene.impl(), copy->hierarchy, {answers, reasons, stats, fail});
 }
 
 void Sweeper::Impl::search(std::vector<size_t>& which, std::vector<ContactPlan>& plans) {
@@ -346,6 +350,14 @@ Scopes Sweeper::scopes(const Query& query) {
     out.L.push_back(hasR && hasM ? R - sensor : null);
   }
   return out;
+}
+
+OuterScopes Sweeper::outerScopes(const Query& query) {
+  Impl& self = *impl_;
+  self.refuseWrong({&query, 1});
+  self.copy->hierarchy.update(self.scene.impl());
+  self.stats = {};
+  return self.bounded().look(query, self.scene.impl(), self.copy->hierarchy, self.stats);
 }
 
 const SweepStats& Sweeper::stats() const {

@@ -71,6 +71,7 @@ struct Sweeper::Impl {
   SweeperOptions options;
   std::shared_ptr<SceneCopy> copy;
   Recorder recorder;
+  BoundedTier& bounded();
   std::optional<BoundedTier> boundedTier;  ///< made when first needed: pipelines take a while
   ContactRecorder contactRecorder;
   uint64_t bufferBytes;

@@ -144,7 +144,7 @@ struct Tally {
   uint64_t triangles = 0, touched = 0, extra = 0, missed = 0, wrongDepth = 0, unlike = 0;
 };
 
-void check(const BoundedPlan& plan, const OuterScopes& scopes, const SensorWindow& window, const Pose& pose,
+void check(const BoundedPlan& plan, const StoredOuterScopes& scopes, const SensorWindow& window, const Pose& pose,
            const std::array<float, 9>& t, Tally& tally) {
   ++tally.triangles;
   Point p[3];
@@ -234,13 +234,13 @@ void checkBatch(uint32_t count, uint32_t pixels, Random& random, Tally& tally) {
   }
   for (const BoundedPlan& plan : plans) drawn.push_back(&plan);
   for (const BoundedPlan& plan : byPixel) drawnByPixel.push_back(&plan);
-  std::vector<OuterScopes> scopes, scopesByPixel;
+  std::vector<StoredOuterScopes> scopes, scopesByPixel;
   std::vector<StageTime> stages;
   recorder.submit(drawn, scene.impl(), stages, &scopes);
   recorder.submit(drawnByPixel, scene.impl(), stages, &scopesByPixel);
   for (size_t i = 0; i < plans.size(); ++i) {
     check(plans[i], scopes[i], windows[i], poses[numbers[i]], triangles[numbers[i]], tally);
-    const OuterScopes &a = scopes[i], &b = scopesByPixel[i];
+    const StoredOuterScopes &a = scopes[i], &b = scopesByPixel[i];
     tally.unlike += !(sameBits(a.sensorNearest, b.sensorNearest) && sameBits(a.sceneNearest, b.sceneNearest) &&
                       sameBits(a.sceneFarthest, b.sceneFarthest) && sameBits(a.sensorFarthest, b.sensorFarthest));
   }
@@ -292,7 +292,7 @@ TEST_CASE("triangles that each fill the window are drawn to its last pixel, by t
                                        hierarchy, resolution, byPixel);
   REQUIRE((plan.sceneStrip > 0) == byPixel);
   const BoundedPlan* plans[] = {&plan};
-  std::vector<OuterScopes> scopes;
+  std::vector<StoredOuterScopes> scopes;
   std::vector<StageTime> stages;
   const float lo = recorder.submit(plans, scene.impl(), stages, &scopes).answers[0].lo;
   CHECK(lo * plan.pixel == Approx(3).margin(kPlacement));

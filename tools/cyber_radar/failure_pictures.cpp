@@ -58,7 +58,7 @@ StabilityPicture draw(const Device& device, const Kind& kind, const TellingCase&
       "):  D = " + inDigits(query.distance) + ",  exact t = " + (contact ? inDigits(exact.t) : "none") +
       ",  min(L) = " + (std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL));
   const std::string file = std::string("stability/") + kind.file + ".png";
-  writeScopePicture(folder / file, numbers, scopes, panelsOf(scopes));
+  writeScopePicture(folder / file, numbers, scopes.width, scopes.height, panelsOf(scopes));
   return {file, kind.title, std::string(kind.why) + " Here, " + numbers + "."};
 }
 

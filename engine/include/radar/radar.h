@@ -323,6 +323,19 @@ struct Scopes {
   Result result;  ///< the answer to the same query
 };
 
+/// What one look in mode bounded sees of a query, as pictures laid out like Scopes. Depths along the motion from the
+/// sensor's centre, world units: the extremes of what may lie anywhere in a pixel; NaN where there is nothing that
+/// could meet something of the other side.
+struct OuterScopes {
+  uint32_t width = 0, height = 0;  ///< both 0 where nothing is in reach
+  double pixel = 0;                ///< side of a pixel, world units
+  std::vector<float> sensorNearest, sensorFarthest, sceneNearest, sceneFarthest;
+  std::vector<float> bound;  ///< nothing in the pixel meets before; NaN: nothing in it can meet
+  /// worldFromWindow as in Scopes, from the window's corner at the depth of the sensor's centre.
+  std::array<double, 3> origin{}, right{}, up{}, forward{};
+  Result result;  ///< the answer that this look gives
+};
+
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
@@ -342,8 +355,11 @@ class RADAR_API Sweeper {
   /// before anything is submitted. Blocks until the answers are here.
   std::vector<Result> run(std::span<const Query> queries);
 
-  /// The pictures behind the answer to `query`.
+  /// The pictures behind the answer to `query`: in mode sampled, and of one look in mode bounded, at the query's
+  /// resolution (0: chosen from the meshes; 64). Throws Error where they do not fit the device, or float cannot tell
+  /// the pixels apart.
   Scopes scopes(const Query& query);
+  OuterScopes outerScopes(const Query& query);
 
   const SweepStats& stats() const;
   /// Why the i-th answer of the last run() is invalid; empty if it is not.

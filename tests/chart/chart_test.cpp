@@ -211,12 +211,19 @@ TEST_CASE("the page and the documents stand by themselves and name every method"
   CHECK_THAT(speedDocument(record, "chart"), Contains("| contact |"));
 }
 
-TEST_CASE("a child hands over numbers, an exception's words, or the signal that ended it") {
-  CHECK(inChild([] { return std::vector<double>{1, 2.5}; }).values == std::vector<double>{1, 2.5});
-  CHECK(inChild([]() -> std::vector<double> { throw std::runtime_error("no such thing"); }).failed == "no such thing");
-  CHECK_THAT(inChild([] {
-               std::raise(SIGKILL);
-               return std::vector<double>();
-             }).failed,
-             Contains("crashes: Killed"));
+TEST_CASE("a child hands over numbers, an exception's words, the signal that ended it, or that it took too long") {
+  CHECK(inChild([] { return std::vector<double>{1, 2.5}; }, 60).values == std::vector<double>{1, 2.5});
+  const auto throws = []() -> std::vector<double> { throw std::runtime_error("no such thing"); };
+  CHECK(inChild(throws, 60).failed == "no such thing");
+  const auto dies = [] {
+    std::raise(SIGKILL);
+    return std::vector<double>();
+  };
+  CHECK_THAT(inChild(dies, 60).failed, Contains("crashes: Killed"));
+  const auto never = [] {
+    for (volatile bool on = true; on;) {
+    }
+    return std::vector<double>();
+  };
+  CHECK(inChild(never, 1).failed == "stopped after 1 s of processor time");
 }

@@ -1,10 +1,12 @@
 #include "chart/in_child.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -38,7 +40,9 @@ std::string receiveAll(int file) {
   }
 }
 
-[[noreturn]] void beChild(int file, const std::function<std::vector<double>()>& work) {
+[[noreturn]] void beChild(int file, const std::function<std::vector<double>()>& work, unsigned mostSeconds) {
+  const rlimit limit{mostSeconds, mostSeconds + 1};
+  setrlimit(RLIMIT_CPU, &limit);
   // What libraries print (ODE and Bullet do) is not for our reader.
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, STDOUT_FILENO);
@@ -56,7 +60,7 @@ std::string receiveAll(int file) {
 
 }  // namespace
 
-ChildOutcome inChild(const std::function<std::vector<double>()>& work) {
+ChildOutcome inChild(const std::function<std::vector<double>()>& work, unsigned mostSeconds) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
   std::fflush(nullptr);
@@ -64,13 +68,16 @@ ChildOutcome inChild(const std::function<std::vector<double>()>& work) {
   if (child < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
   if (child == 0) {
     close(ends[0]);
-    beChild(ends[1], work);
+    beChild(ends[1], work, mostSeconds);
   }
   close(ends[1]);
   const std::string text = receiveAll(ends[0]);
   close(ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    return {{}, "stopped after " + std::to_string(mostSeconds) + " s of processor time"};
   }
   if (WIFSIGNALED(status)) return {{}, std::string("crashes: ") + strsignal(WTERMSIG(status))};
   if (WEXITSTATUS(status) != 0 || text.empty()) return {{}, "ends its process"};

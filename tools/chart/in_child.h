@@ -12,8 +12,8 @@ struct ChildOutcome {
   std::string failed;          ///< how it ended instead; empty: it returned
 };
 
-/// Runs `work` in a forked child. An exception's words and a signal's name end up in `failed`. Throws
-/// std::runtime_error where no child can be made.
-ChildOutcome inChild(const std::function<std::vector<double>()>& work);
+/// Runs `work` in a forked child, which is stopped after so many seconds of processor time. An exception's words and a
+/// signal's name end up in `failed`. Throws std::runtime_error where no child can be made.
+ChildOutcome inChild(const std::function<std::vector<double>()>& work, unsigned mostSeconds);
 
 }  // namespace radar::tools

@@ -17,6 +17,9 @@ namespace radar::tools {
 
 namespace {
 
+// Of processor time, for a peer to prepare itself and answer: a hull of many triangles takes minutes.
+constexpr unsigned kMostSeconds = 25;
+
 using Clock = std::chrono::steady_clock;
 
 // A slow method gets so many budgets, then fewer passes than it should.
@@ -283,7 +286,7 @@ Cell Bench::measureReference(const Method& method) {
 
 Cell Bench::measurePeer(const Method& method, const PeerRow& row) {
   Cell cell = cellOf(method);
-  const ChildOutcome outcome = inChild([&] { return castAll(which_, method, row, timing_); });
+  const ChildOutcome outcome = inChild([&] { return castAll(which_, method, row, timing_); }, kMostSeconds);
   cell.failed = outcome.failed;
   if (!cell.failed.empty()) return cell;
   size_t next = 0;

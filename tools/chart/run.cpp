@@ -78,8 +78,8 @@ std::vector<Method> peerMethods(const PeerRow& row, const std::string& section, 
   std::vector<Method> methods;
   for (const uint32_t size : sizes) {
     const uint32_t most = row.threads ? settings.threads : 1;
-    if (full || most == 1) methods.push_back({row.family, size, 1, row.library});
-    if (most > 1) methods.push_back({row.family, size, most, row.library});
+    if (full || most == 1) methods.push_back({row.family, size, 1, row.product});
+    if (most > 1) methods.push_back({row.family, size, most, row.product});
   }
   return methods;
 }

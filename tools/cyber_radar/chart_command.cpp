@@ -83,7 +83,7 @@ Record measure(const Options& options) {
   record.commit = RADAR_COMMIT;
   record.date = today();
   const std::vector<PeerRow> rows = peerRows();
-  for (const PeerRow& row : rows) record.notes.push_back(row.family + " (" + row.library + "): " + row.limits);
+  for (const PeerRow& row : rows) record.notes.push_back(row.family + " (" + row.product + "): " + row.limits);
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.workloads.push_back({which.name, which.about});
   }

@@ -157,17 +157,17 @@ std::unique_ptr<Peer> make(const Workload& workload, uint32_t) {
 }  // namespace
 
 std::vector<PeerRow> bulletRows() {
-  const std::string library =
+  const std::string product =
       "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100) + ", doubles";
   return {
       {.family = "Bullet hull",
-       .library = library,
+       .product = product,
        .limits = "casts convex shapes only: a sensor that is not is swept as its hull, which is another shape; no "
                  "certificate; deforming meshes need new trees.",
        .sizes = {0},
        .make = make<false>},
       {.family = "Bullet triangles",
-       .library = library,
+       .product = product,
        .limits = "the sensor cast triangle by triangle, so it may be of any shape, at the cost of as many casts; no "
                  "certificate; deforming meshes need new trees.",
        .sizes = {0},

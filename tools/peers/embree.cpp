@@ -270,10 +270,10 @@ class VertexRays : public Embree {
 }  // namespace
 
 std::vector<PeerRow> embreeRows() {
-  const std::string library = "Embree " RTC_VERSION_STRING;
+  const std::string product = "Embree " RTC_VERSION_STRING;
   return {
       {.family = "Embree rays",
-       .library = library,
+       .product = product,
        .limits = "a ray for each pixel, from the sensor's front: what falls between pixels, or lies behind the front "
                  "in a concavity, is missed, and what surrounds the start is; no certificate; deforming meshes need "
                  "new trees.",
@@ -282,7 +282,7 @@ std::vector<PeerRow> embreeRows() {
          return std::make_unique<PixelRays>(workload, size);
        }},
       {.family = "Embree vertex rays",
-       .library = library,
+       .product = product,
        .limits = "rays from the vertices of both sides: contacts of two edges are missed; no certificate; deforming "
                  "meshes need new trees.",
        .sizes = {0},

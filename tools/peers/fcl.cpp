@@ -116,7 +116,7 @@ class Fcl : public Peer {
 
 std::vector<PeerRow> fclRows() {
   return {{.family = "FCL steps",
-           .library = "FCL " FCL_VERSION,
+           .product = "FCL " FCL_VERSION,
            .limits =
                "asks whether shapes meet, at so many steps of the motion, then bisects: what is thinner than a step "
                "is passed through; no certificate; shears, scales and deforming meshes need new trees.",

@@ -100,7 +100,7 @@ class Ode : public Peer {
 
 std::vector<PeerRow> odeRows() {
   return {{.family = "ODE/OPCODE steps",
-           .library = "ODE " dODE_VERSION,
+           .product = "ODE " dODE_VERSION,
            .limits =
                "asks whether shapes meet, at so many steps of the motion, then bisects: what is thinner than a step "
                "is passed through, and so is what lies inside another without a contact point; no certificate; one "

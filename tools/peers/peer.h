@@ -29,7 +29,7 @@ class Peer {
 /// A row of the chart: a library, used in one way.
 struct PeerRow {
   std::string family;
-  std::string library;          ///< with its version
+  std::string product;          ///< with its version
   std::string limits;           ///< what it cannot do, for the reader
   std::vector<uint32_t> sizes;  ///< resolutions or steps; {0}: the row has one member
   std::vector<std::string> sections{"front", "table1", "growth"};  ///< where it is fast enough to be measured

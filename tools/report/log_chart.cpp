@@ -213,7 +213,8 @@ class Drawing {
   // The freest place beside one of the points; false where there is none with less overlap than `most`.
   bool placeBeside(const std::vector<LogPoint>& points, const std::string& content, const std::string& style,
                    double most) {
-    const double width = widthOf(content);
+    constexpr double kBold = 1.25;  // bold letters are that much wider
+    const double width = widthOf(content) * (style.find("bold") == std::string::npos ? 1 : kBold);
     double best = INFINITY;
     Box where{};
     for (size_t i = points.size(); i-- > 0;) {

@@ -4,41 +4,37 @@
 
 #include <vulkan/vulkan_core.h>
 
-#define RADAR_GLOBAL_FUNCTIONS(X) X(CreateInstance) X(EnumerateInstanceExtensionProperties)
+// The formatter does not settle on lists like these.
+// clang-format off
+#define RADAR_GLOBAL_FUNCTIONS(X) \
+  X(CreateInstance) X(EnumerateInstanceExtensionProperties)
 
-#define RADAR_INSTANCE_FUNCTIONS(X)                                                                                   \
-  X(CreateDevice)                                                                                                     \
-  X(DestroyInstance)                                                                                                  \
-  X(EnumeratePhysicalDevices) X(GetDeviceProcAddr) X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties) \
-      X(GetPhysicalDeviceProperties) X(GetPhysicalDeviceProperties2) X(GetPhysicalDeviceQueueFamilyProperties)
+#define RADAR_INSTANCE_FUNCTIONS(X) \
+  X(CreateDevice) X(DestroyInstance) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr) \
+  X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties) X(GetPhysicalDeviceProperties) \
+  X(GetPhysicalDeviceProperties2) X(GetPhysicalDeviceQueueFamilyProperties)
 
-#define RADAR_DEVICE_FUNCTIONS(X)                                                                                      \
-  X(AllocateCommandBuffers)                                                                                            \
-  X(AllocateDescriptorSets)                                                                                            \
-  X(AllocateMemory) X(BeginCommandBuffer) X(BindBufferMemory) X(BindImageMemory) X(CmdBeginRenderPass)                 \
-      X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) X(CmdBindVertexBuffers) X(CmdCopyBuffer)       \
-          X(CmdCopyImageToBuffer) X(CmdDispatch) X(CmdDrawIndexed) X(CmdEndRenderPass) X(CmdFillBuffer)                \
-              X(CmdPipelineBarrier2) X(CmdPushConstants) X(CmdResetQueryPool) X(CmdSetScissor) X(CmdSetViewport)       \
-                  X(CmdWriteTimestamp2) X(CreateBuffer) X(CreateCommandPool) X(CreateComputePipelines)                 \
-                      X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateFence) X(CreateFramebuffer)         \
-                          X(CreateGraphicsPipelines) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout)         \
-                              X(CreateQueryPool) X(CreateRenderPass) X(CreateSampler) X(CreateShaderModule)            \
-                                  X(DestroyBuffer) X(DestroyCommandPool) X(DestroyDescriptorPool)                      \
-                                      X(DestroyDescriptorSetLayout) X(DestroyDevice) X(DestroyFence)                   \
-                                          X(DestroyFramebuffer) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline) \
-                                              X(DestroyPipelineLayout) X(DestroyQueryPool) X(DestroyRenderPass)        \
-                                                  X(DestroySampler) X(DestroyShaderModule) X(EndCommandBuffer)         \
-                                                      X(FreeMemory) X(GetBufferMemoryRequirements) X(GetDeviceQueue)   \
-                                                          X(GetImageMemoryRequirements) X(GetQueryPoolResults)         \
-                                                              X(MapMemory) X(QueueSubmit2) X(ResetCommandBuffer)       \
-                                                                  X(ResetFences) X(UpdateDescriptorSets)               \
-                                                                      X(WaitForFences)
+#define RADAR_DEVICE_FUNCTIONS(X) \
+  X(AllocateCommandBuffers) X(AllocateDescriptorSets) X(AllocateMemory) X(BeginCommandBuffer) X(BindBufferMemory) \
+  X(BindImageMemory) X(CmdBeginRenderPass) X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) \
+  X(CmdBindVertexBuffers) X(CmdCopyBuffer) X(CmdCopyImageToBuffer) X(CmdDispatch) X(CmdDrawIndexed) \
+  X(CmdEndRenderPass) X(CmdFillBuffer) X(CmdPipelineBarrier2) X(CmdPushConstants) X(CmdResetQueryPool) \
+  X(CmdSetScissor) X(CmdSetViewport) X(CmdWriteTimestamp2) X(CreateBuffer) X(CreateCommandPool) \
+  X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateFence) \
+  X(CreateFramebuffer) X(CreateGraphicsPipelines) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout) \
+  X(CreateQueryPool) X(CreateRenderPass) X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) \
+  X(DestroyCommandPool) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyDevice) X(DestroyFence) \
+  X(DestroyFramebuffer) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) \
+  X(DestroyQueryPool) X(DestroyRenderPass) X(DestroySampler) X(DestroyShaderModule) X(EndCommandBuffer) \
+  X(FreeMemory) X(GetBufferMemoryRequirements) X(GetDeviceQueue) X(GetImageMemoryRequirements) \
+  X(GetQueryPoolResults) X(MapMemory) X(QueueSubmit2) X(ResetCommandBuffer) X(ResetFences) X(UpdateDescriptorSets) \
+  X(WaitForFences)
 
 // Of the extension VK_EXT_debug_utils: null where the instance does not have it.
 #define RADAR_DEBUG_FUNCTIONS(X) \
-  X(CmdBeginDebugUtilsLabelEXT)  \
-  X(CmdEndDebugUtilsLabelEXT)    \
-  X(CreateDebugUtilsMessengerEXT) X(DestroyDebugUtilsMessengerEXT) X(SetDebugUtilsObjectNameEXT)
+  X(CmdBeginDebugUtilsLabelEXT) X(CmdEndDebugUtilsLabelEXT) X(CreateDebugUtilsMessengerEXT) \
+  X(DestroyDebugUtilsMessengerEXT) X(SetDebugUtilsObjectNameEXT)
+// clang-format on
 
 namespace radar::gpu {
 

@@ -46,7 +46,8 @@ TEST_CASE("scopes draws R, M and L, and writes their values on request") {
                              "--out p --raw");
   INFO(run.err);
   REQUIRE(run.status == 0);
-  for (const char* name : {"p/R.png", "p/M.png", "p/L.png", "p/scopes.png", "p/outer.png"}) CHECK(isPng(folder.read(name)));
+  for (const char* name : {"p/R.png", "p/M.png", "p/L.png", "p/scopes.png", "p/outer.png"})
+    CHECK(isPng(folder.read(name)));
   const auto sidecar = nlohmann::json::parse(folder.read("p/scopes.json"));
   CHECK(sidecar["width"] == 32);
   CHECK(sidecar["height"] == 32);

@@ -71,6 +71,11 @@ INTEROP_CONST kBindContenders = 13;   // Contender
 INTEROP_CONST kBindTiles = 14;        // uvec2, kTilesPerCluster for each cluster under a mask
 INTEROP_CONST kContactBindings = 15;
 
+// Telling has a set of its own, too: those it needs of the contact tier's at the numbers above, and these.
+INTEROP_CONST kBindSlotIds = 7;        // uint: the triangle at a slot of the cluster order
+INTEROP_CONST kBindResults = 8;        // RadarResult, one per Target
+INTEROP_CONST kBindOpenContenders = 9; // OpenCount, then OpenContender
+
 // The mask in contact has a set of its own, too: the contact tier's buffers at the numbers above but for the last four,
 // and these.
 INTEROP_CONST kBindMaskScopes = 10;   // uint: keys of depth (outer.glsl), the four planes kScope*
@@ -246,6 +251,8 @@ struct Target {
   float corner[2];          // of the mask's pixels, in the frame
   float pixelsPerUnit;      // of the mask
   uint maskCost;            // what the mask costs, in box tests; or kNoMask
+  uint decides;             // only "within D or not" is asked
+  uint result;              // where its answer goes
 };
 INTEROP_CONST kNoMask = 0xffffffffu;
 
@@ -294,6 +301,23 @@ struct Contender {
 INTEROP_CONST kContenderPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kContenderMeets = 0x200;  // certainly, no later than at + error
 INTEROP_CONST kContenderSharp = 0x100;  // certainly first at `at`, and nothing of it may come earlier
+
+// A pair that the device cannot decide, for the host: its name, its corners as given, and the object's pose.
+struct OpenContender {
+  uint target;
+  uint object;
+  uint triB;
+  uint triA;
+  Point a[3];
+  Point b[3];
+  PreciseRows pose;
+};
+// Contenders of a search, for each lane that tells of it: telling takes an iteration for each.
+INTEROP_CONST kMostListed = 60000;
+struct OpenCount {
+  uint count;  // of all; kept up to the capacity
+  uint pad;
+};
 
 INTEROP_CONST kSearchDone = 0;
 INTEROP_CONST kSearchUnfinished = 1;  // cluster pairs are left: dispatch again
@@ -348,8 +372,8 @@ INTEROP_CONST kFeatureEdges = 6;
 
 // ---- the self-test of doubles ------------------------------------------------------------------------------------------
 
-INTEROP_CONST kBindSums = 0;     // Sum
-INTEROP_CONST kBindResults = 1;  // SumResult
+INTEROP_CONST kBindSums = 0;        // Sum
+INTEROP_CONST kBindSumResults = 1;  // SumResult
 INTEROP_CONST kSumBindings = 2;
 INTEROP_CONST kSums = 256;
 

@@ -1,39 +1,49 @@
 #include "exact/common_point.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+// Shaders compute the same, operation by operation (shaders/twofold.glsl).
 
 namespace radar::exact {
 
 namespace {
 
-using Point = Eigen::Vector3d;
-
 struct Candidate {
   double inside;  ///< least barycentric coordinate in the pierced triangle
-  Point at;
+  Vec at;
 };
 
-Point point(const Vec& v) {
-  return {v[0], v[1], v[2]};
+Vec minus(const Vec& p, const Vec& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+Vec cross(const Vec& p, const Vec& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+double dot(const Vec& p, const Vec& q) {
+  return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
 }
 
 /// All of `face` and `other` is relative to a corner of `face`.
-void pierce(const std::array<Point, 3>& face, const std::array<Point, 3>& other, Candidate& best) {
-  const Point normal = (face[1] - face[0]).cross(face[2] - face[0]);
-  const double square = normal.squaredNorm();
+void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
+  const Vec normal = cross(minus(face[1], face[0]), minus(face[2], face[0]));
+  const double square = dot(normal, normal);
   if (square == 0) return;
   for (int i = 0; i < 3; ++i) {
-    const Point &p = other[i], &q = other[(i + 1) % 3];
-    const double above = normal.dot(p - face[0]), below = normal.dot(q - face[0]);
+    const Vec &p = other[i], &q = other[(i + 1) % 3];
+    const double above = dot(normal, minus(p, face[0])), below = dot(normal, minus(q, face[0]));
     if ((above > 0) == (below > 0) && above != 0 && below != 0) continue;
     if (above == below) continue;
-    const Point at = p + above / (above - below) * (q - p);
+    const double share = above / (above - below);
+    const Vec edge = minus(q, p);
+    const Vec at{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
     double inside = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const Point &r = face[k], &s = face[(k + 1) % 3];
-      inside = std::min(inside, normal.dot((s - r).cross(at - r)) / square);
+      const Vec &r = face[k], &s = face[(k + 1) % 3];
+      inside = std::min(inside, dot(normal, cross(minus(s, r), minus(at, r))) / square);
     }
     if (inside > best.inside) best = {inside, at};
   }
@@ -43,24 +53,25 @@ void pierce(const std::array<Point, 3>& face, const std::array<Point, 3>& other,
 
 Vec commonPoint(const Triangle& a, const Triangle& b) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const Point origin = point(b[0]);
-  std::array<Point, 3> pa, pb;
+  const Vec origin = b[0];
+  Triangle pa, pb;
   double size = 0;
   for (int i = 0; i < 3; ++i) {
-    pa[i] = point(a[i]) - origin;
-    pb[i] = point(b[i]) - origin;
-    size = std::max({size, pa[i].cwiseAbs().maxCoeff(), pb[i].cwiseAbs().maxCoeff()});
+    pa[i] = minus(a[i], origin);
+    pb[i] = minus(b[i], origin);
+    for (int k = 0; k < 3; ++k) size = std::max({size, std::abs(pa[i][k]), std::abs(pb[i][k])});
   }
   // Of unit size, so that products neither under- nor overflow.
-  for (int i = 0; i < 3; ++i) {
-    pa[i] /= size;
-    pb[i] /= size;
+  for (Triangle* t : {&pa, &pb}) {
+    for (Vec& p : *t) {
+      for (double& c : p) c /= size;
+    }
   }
   Candidate best{-1e-9, {kNaN, kNaN, kNaN}};
   pierce(pb, pa, best);
   pierce(pa, pb, best);
-  best.at = best.at * size + origin;
-  return {best.at[0], best.at[1], best.at[2]};
+  for (int k = 0; k < 3; ++k) best.at[k] = best.at[k] * size + origin[k];
+  return best.at;
 }
 
 }  // namespace radar::exact

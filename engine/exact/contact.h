@@ -47,7 +47,8 @@ int sign(const Event& event);
 int compare(const Event& p, const Event& q);
 /// -1, 0 or 1: the event's distance s * |direction| is below, equal to or above `distance`, which is not negative.
 int compareToDistance(const Event& event, double distance);
-/// The event's parameter, rounded to the nearest double.
+/// The event's parameter: the double nearest to some number that is off by less than 2^-60 of it. Events of the same
+/// features have the same bits.
 double parameter(const Event& event);
 /// |direction|, rounded to the nearest double.
 double length(const Vec& direction);

@@ -151,8 +151,7 @@ int compareToDistance(const Event& e, double distance) {
 
 double parameter(const Event& e) {
   const FineParameter fine = fineParameter(e);
-  const double below = fine.s.high + (fine.s.low - fine.error), above = fine.s.high + (fine.s.low + fine.error);
-  if (below == above) return below;
+  if (fine.error <= 0x1p-60 * std::abs(fine.s.high)) return fine.s.high;
   countExactDecision();
   return quotient(exactly(numerator(e)), exactly(denominator(e)));
 }
@@ -223,6 +222,17 @@ Vec point(const Event& e, double s) {
   return along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1}));
 }
 
+namespace {
+
+/// The square root of 1 <= x < 16 by what every device rounds alike, so that shaders find the same bits (twofold.glsl).
+double rootOf(double x) {
+  double root = 0.5 * (1 + x);
+  for (int i = 0; i < 7; ++i) root = 0.5 * (root + x / root);
+  return root;
+}
+
+}  // namespace
+
 Vec normal(const Event& e) {
   if (e.kind > Kind::edgeEdge) return {NAN, NAN, NAN};
   Twofold x[3], y[3];
@@ -240,9 +250,11 @@ Vec normal(const Event& e) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     n[k] = (x[i] * y[j] - x[j] * y[i]).high;
   }
-  const double size = std::hypot(n[0], n[1], n[2]);
+  const int size = std::ilogb(std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])}));
+  for (double& c : n) c = std::ldexp(c, -size);
+  const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
   const double turn = sign(denominator(e)) > 0 ? -1 : 1;
-  for (double& c : n) c *= turn / size;
+  for (double& c : n) c = turn * c / root;
   return n;
 }
 

@@ -11,10 +11,12 @@ void uploadToRead(const Commands& commands);
 void fillToComputeReadWrite(const Commands& commands);
 /// A compute shader's buffers are read, or written again, by the next one.
 void computeWriteToComputeReadWrite(const Commands& commands);
-/// A compute shader's buffers are copied to the host.
+/// A compute shader's buffers are copied.
 void computeWriteToCopy(const Commands& commands);
 /// What was copied is read by the host after the fence.
 void copyToHost(const Commands& commands);
+/// What was copied, or written by a compute shader, is read by the host after the fence.
+void writtenToHost(const Commands& commands);
 /// Depth that a render pass left in SHADER_READ_ONLY layout is copied; the layout changes to TRANSFER_SRC.
 void sampledDepthToCopy(const Commands& commands, VkImage image);
 

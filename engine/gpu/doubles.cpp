@@ -47,7 +47,7 @@ SumResult expected(const Sum& s) {
 bool doublesAreRight(const Device::Impl& device) {
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const Binding list[] = {{kBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                          {kBindResults, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+                          {kBindSumResults, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
   static_assert(std::size(list) == kSumBindings);
   Bindings bindings(device, list, sizeof(uint32_t));
   const Pipeline pipeline = computePipeline(device, bindings.layout(), k_doubles_comp, "doubles");
@@ -61,7 +61,7 @@ bool doublesAreRight(const Device::Impl& device) {
   computed.reserve(copy.size);
   readback.reserve(copy.size);
   bindings.setBuffer(kBindSums, given);
-  bindings.setBuffer(kBindResults, computed);
+  bindings.setBuffer(kBindSumResults, computed);
   upload.begin(Upload::aligned(bytesOf(sums)));
   upload.add(sums.data(), bytesOf(sums), given);
 

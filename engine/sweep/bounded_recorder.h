@@ -4,8 +4,8 @@
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
 #include "sweep/bounded_plan.h"
-#include "sweep/recorder.h"
 #include "sweep/resident_scene.h"
+#include "sweep/sampled_recorder.h"
 
 namespace radar {
 

@@ -7,7 +7,7 @@ namespace radar {
 
 /// Of a search that is done; where only a decision is asked, no more pairs than it takes are decided. Adds the pairs it
 /// had to decide on the CPU to `cpuPairs`. Throws Error with VK_ERROR_UNKNOWN if the search met something that is not
-/// among its contenders.
-Result decodeContact(const Search& search, const Query& query, const Scene::Impl& scene, uint64_t& cpuPairs);
+/// among what it lists.
+Result decodeContact(const Search& search, const Query& query, uint64_t& cpuPairs);
 
 }  // namespace radar

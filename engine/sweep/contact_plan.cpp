@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact/contact.h"
 #include "sweep/cluster_walk.h"
 
 namespace radar {
@@ -58,9 +59,10 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), plan.target.pose);
   const Vector direction = scaledDirection(query.direction);
   std::copy(direction.begin(), direction.end(), plan.target.direction);
-  plan.target.directionLength = lengthOf(direction);
+  plan.target.directionLength = exact::length(direction);
   plan.target.distance = query.distance;
   plan.target.mesh = query.mesh;
+  plan.target.decides = query.decide ? 1 : 0;
   plan.target.enough = query.decide ? downward(query.distance) : 0;
   plan.target.maskCost = gpu::kNoMask;
   plan.hi = upward(query.distance);

@@ -1,38 +1,19 @@
-// The recipe of the contact tier: bounds, pairs of clusters, search. Owns its pipelines and buffers.
+// The contact tier on a queue of the engine's: what outgrows its room, or takes longer than a dispatch may, goes again.
 #pragma once
 
 #include <functional>
 #include <span>
 
-#include "gpu/pipeline.h"
 #include "gpu/submission.h"
-#include "sweep/contact_plan.h"
-#include "sweep/mask_recorder.h"
-#include "sweep/resident_scene.h"
+#include "sweep/contact_pass.h"
 
 namespace radar {
 
 /// What the device says of one plan: valid until the next call.
 struct Search {
   gpu::State state;
-  std::span<const gpu::Contender> contenders;
-};
-
-/// How a search goes about what its clusters' boxes leave. The answers have the same bits.
-enum class ContactWay {
-  cheaper,  ///< direct, until what is left would cost more than the mask; then by the mask
-  direct,   ///< pair by pair, whatever it costs
-  masked    ///< by the mask at once
-};
-
-/// Room for the lists of one plan at first, how many cluster pairs a search orders at a time, and how it goes: tests
-/// make them small.
-struct ContactRoom {
-  uint64_t pairs = 4096;
-  uint64_t pairsPerCluster = 32;  ///< where that is more: meshes over each other share columns of clusters
-  uint32_t contenders = 256;
-  uint32_t run = 4096;
-  ContactWay way = ContactWay::cheaper;
+  Result result;                                    ///< undecided where something is open
+  std::span<const gpu::OpenContender* const> open;  ///< what may be first, for `exact` to decide
 };
 
 class ContactRecorder {
@@ -57,36 +38,21 @@ class ContactRecorder {
     float hi;  ///< first contact is no later, world units
   };
 
-  gpu::Pipeline searchPipeline(const char* name, uint32_t masked) const;
   std::vector<Room> nextGroup();
   void submitGroup(std::span<const ContactPlan* const> plans, const Scene::Impl& scene);
-  void stage(std::span<const ContactPlan* const> plans, std::span<const Room> rooms, const Scene::Impl& scene);
-  void bind();
-  void dispatch(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
-  void recordPairs(const gpu::Commands& commands);
-  void recordSearch(const gpu::Commands& commands, const gpu::Pipeline& pipeline);
   void recordReadback(const gpu::Commands& commands);
-  /// Stages the masks of the searches that ask for one, which begin anew.
-  bool stageMasks();
-  /// Submits until no search is unfinished.
+  /// Submits until no search is unfinished, and all that is open is listed.
   void finish(std::vector<StageTime>& stages);
+  void submitAgain(std::vector<StageTime>& stages, const ContactPass::Again& again);
+  const gpu::State* states() const;
+  const Result* results() const;
 
   const Device::Impl* device_;
   ResidentScene& resident_;
   ContactRoom room_;
-  gpu::Upload upload_;
   gpu::Submission submission_;
-  gpu::Bindings bindings_;
-  gpu::Pipeline bounds_, pairs_, direct_, masked_;
-  MaskRecorder mask_;
-  gpu::Buffer targets_, placements_, refs_, boxes_, items_, clusterPairs_, states_, contenders_, readback_;
-  std::vector<gpu::Target> targetList_;
-  std::vector<gpu::Placement> placementList_;
-  std::vector<gpu::ClusterRef> refList_;
-  std::vector<gpu::PairItem> itemList_;
-  std::vector<gpu::State> stateList_;
-  std::vector<MaskRecorder::Sides> sides_;  ///< of each target
-  uint64_t contenderTotal_ = 0;
+  ContactPass pass_;
+  gpu::Buffer readback_;               ///< states, then results
   std::vector<Room> waiting_, group_;  ///< to be searched, and with the device
   std::vector<size_t> refused_;
 };

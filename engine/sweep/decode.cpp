@@ -59,11 +59,12 @@ Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, co
   result.status = Status::undecided;
   if (answer.object != kNone) setFound(result, answer, query, scene);
   // An open pair can improve on that only if it may meet before.
-  ExactPairs exact(query, scene);
+  ExactPairs exact(query);
   for (const gpu::OpenPair& pair : open.first(answer.openPairs)) {
     if (answer.object != kNone && pair.low >= answer.hi) continue;
     if (query.decide && (answer.object != kNone || exact.found())) break;
-    exact.consider({pair.object, pair.triB, pair.triA});
+    const PairName name{pair.object, pair.triB, pair.triA};
+    exact.consider(name, placedPair(name, query, scene));
     ++cpuPairs;
   }
   Result decided;

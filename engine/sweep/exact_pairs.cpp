@@ -25,6 +25,19 @@ PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Imp
           corners(scene.meshes[object.mesh], object.worldFromMesh, name.triB)};
 }
 
+PlacedPair placedPair(const gpu::OpenContender& open, const Query& query) {
+  Pose pose;
+  std::copy(std::begin(open.pose), std::end(open.pose), pose.m.begin());
+  PlacedPair pair;
+  for (int i = 0; i < 3; ++i) {
+    pair.a[i] = place(query.worldFromMesh, open.a[i]);
+    pair.b[i] = place(pose, open.b[i]);
+  }
+  std::sort(pair.a.begin(), pair.a.end());
+  std::sort(pair.b.begin(), pair.b.end());
+  return pair;
+}
+
 void setBracket(Result& result, double t, double slack, double distance) {
   result.t = std::min(t, distance);
   result.lo = std::min(std::max(t - slack, 0.0), result.t);
@@ -38,12 +51,11 @@ bool ExactPairs::earlier(const Decided& p, const Decided& q) {
   return order != 0 ? order < 0 : p.name < q.name;
 }
 
-void ExactPairs::consider(const PairName& name) {
-  const PlacedPair pair = placedPair(name, query_, scene_);
-  const auto interval = exact::contact(pair.a, pair.b, query_.direction);
+void ExactPairs::consider(const PairName& name, const PlacedPair& pair) {
+  const auto interval = exact::contact(pair.a, pair.b, direction_);
   if (!interval || exact::sign(interval->last) < 0) return;
-  const Decided decided{name, interval->first, exact::sign(interval->first) <= 0};
-  if (!decided.overlap && exact::compareToDistance(decided.first, query_.distance) > 0) return;
+  const Decided decided{name, pair, interval->first, exact::sign(interval->first) <= 0};
+  if (!decided.overlap && exact::compareToDistance(decided.first, distance_) > 0) return;
   if (!found_ || earlier(decided, best_)) best_ = decided;
   found_ = true;
 }
@@ -59,17 +71,15 @@ void ExactPairs::tell(Result& result) const {
     result.point = exact::point(best_.first, s);
     result.normal = exact::normal(best_.first);
   } else {
-    const PlacedPair pair = placedPair(best_.name, query_, scene_);
-    result.point = exact::commonPoint(pair.a, pair.b);
+    result.point = exact::commonPoint(best_.pair.a, best_.pair.b);
   }
   if (best_.overlap) {
     result.t = result.lo = result.hi = result.fraction = 0;
-  } else if (exact::compareToDistance(best_.first, query_.distance) == 0) {
-    setBracket(result, query_.distance, 0, query_.distance);
+  } else if (exact::compareToDistance(best_.first, distance_) == 0) {
+    setBracket(result, distance_, 0, distance_);
   } else {
-    const double length = exact::length(query_.direction), t = s * length;
-    setBracket(result, t, 8 * kDoubleUnit * t + (length + 2) * std::numeric_limits<double>::denorm_min(),
-               query_.distance);
+    const double length = exact::length(direction_), t = s * length;
+    setBracket(result, t, 8 * kDoubleUnit * t + (length + 2) * std::numeric_limits<double>::denorm_min(), distance_);
   }
 }
 

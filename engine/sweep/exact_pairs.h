@@ -5,6 +5,8 @@
 
 #include "exact/contact.h"
 #include "scene/scene.h"
+#include "shaders/interop.h"
+#include "sweep/frame.h"
 
 namespace radar {
 
@@ -23,16 +25,17 @@ struct PlacedPair {
   exact::Triangle a, b;
 };
 PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Impl& scene);
+PlacedPair placedPair(const gpu::OpenContender& open, const Query& query);
 
 /// Sets t and its bracket t -+ slack, cut to [0, D], and the fraction.
 void setBracket(Result& result, double t, double slack, double distance);
 
-/// Finds the first contact among the pairs it is shown; `query` and `scene` must outlive it.
+/// Finds the first contact among the pairs it is shown.
 class ExactPairs {
  public:
-  ExactPairs(const Query& query, const Scene::Impl& scene) : query_(query), scene_(scene) {}
+  explicit ExactPairs(const Query& query) : direction_(scaledDirection(query.direction)), distance_(query.distance) {}
 
-  void consider(const PairName& name);
+  void consider(const PairName& name, const PlacedPair& pair);
   bool found() const { return found_; }
   /// Sets everything but the tier, from the first contact found.
   void tell(Result& result) const;
@@ -40,13 +43,14 @@ class ExactPairs {
  private:
   struct Decided {
     PairName name;
+    PlacedPair pair;
     exact::Event first;
     bool overlap;  // at or before the start
   };
   static bool earlier(const Decided& p, const Decided& q);
 
-  const Query& query_;
-  const Scene::Impl& scene_;
+  Vector direction_;
+  double distance_;
   bool found_ = false;
   Decided best_{};
 };

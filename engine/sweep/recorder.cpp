@@ -1,229 +1,202 @@
-#include "sweep/recorder.h"
+#include "radar/recorder.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "gpu/barrier.h"
-#include "spirv/depth_vert.h"
-#include "spirv/identify_comp.h"
-#include "spirv/reduce_comp.h"
-#include "spirv/solve_comp.h"
-#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+#include "sweep/contact_decode.h"
+#include "sweep/contact_pass.h"
+#include "sweep/decode.h"
+#include "sweep/sweeper.h"
 
-// pass       reads                                     writes                     barrier behind it
-// ---------- ----------------------------------------- -------------------------- ------------------------------
-// upload     staging                                   scene, views, draws, items uploadToRead
-// range      draws, positions, indices                 R                          the render pass's own
-// mask       draws, positions, indices                 M                          the render pass's own
-// reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
-// identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
-// solve      scene, views, draws, items, candidates    answers, open pairs        computeWriteToCopy
-// readback   answers, open pairs (R, M for pictures)   readback                   copyToHost
+// pass     reads   writes   barrier behind it
+// -------- ------- -------- -----------------
+// (contact_pass.cpp)        computeWriteToCopy
+// readback results readback writtenToHost
 
 namespace radar {
 
-using gpu::bytesOf;
-using gpu::Residence;
-using gpu::Upload;
-
 namespace {
 
-constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-
-struct IdentifyPush {
-  uint32_t items, groupsX;
-};
-
-std::vector<gpu::Binding> bindingList() {
-  std::vector<gpu::Binding> list;
-  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
-    const bool image = i == gpu::kBindRange || i == gpu::kBindMask;
-    list.push_back({i, image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
-  }
-  return list;
+ContactRoom roomFor(const Capacity& capacity) {
+  return {.contenders = capacity.contenders, .openContenders = capacity.openPairs, .way = ContactWay::direct};
 }
+
+Result refused(uint32_t flags) {
+  Result result;
+  result.tier = Tier::contact;
+  result.flags = flags;
+  return result;
+}
+
+// Cuts queries to what there is room for.
+class Room {
+ public:
+  explicit Room(const Capacity& capacity) : capacity_(capacity) {}
+
+  /// Returns the flag of what is too small, or 0 and sets the search's room.
+  uint32_t give(ContactPass::Search& search, const ContactRoom& first) {
+    const ContactPlan& plan = *search.plan;
+    const uint64_t clusters = plan.sensor.size() + plan.scene.size();
+    if (clusters_ + clusters > capacity_.clusters) return kFlagClusters;
+    search.pairs = std::min(firstPairs(plan, first), capacity_.clusterPairs - pairs_);
+    if (search.pairs == 0) return kFlagClusterPairs;
+    search.contenders = capacity_.contenders;
+    clusters_ += clusters;
+    pairs_ += search.pairs;
+    return 0;
+  }
+
+ private:
+  Capacity capacity_;
+  uint64_t clusters_ = 0, pairs_ = 0;
+};
 
 }  // namespace
 
-std::span<const uint32_t> solveShader(const Device::Impl& device) {
-  if (device.doubles) return k_solve_comp;
-  return k_solve_comp_RADAR_NO_DOUBLES;
+struct Recorder::Impl {
+  Impl(const Device::Impl& openDevice, const Scene& ownScene, const Capacity& given)
+      : device(openDevice),
+        scene(ownScene),
+        capacity(given),
+        copy(openDevice),
+        pass(openDevice, copy.resident, roomFor(given)),
+        readback(openDevice, "recorded results", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+    refuseTooLarge();
+    pass.reserve(capacity);
+    readback.reserve(capacity.queries * sizeof(Result));
+  }
+
+  void refuseTooLarge();
+  void refuseWrong(std::span<const Query> queries) const;
+  void plan(std::span<const Query> queries);
+
+  const Device::Impl& device;
+  const Scene& scene;
+  Capacity capacity;
+  SceneCopy copy;
+  ContactPass pass;
+  gpu::Buffer readback;
+  std::vector<Query> asked;  ///< in the last record()
+  std::vector<ContactPlan> plans;
+  std::vector<Result> known;
+  std::vector<ContactPass::Search> searches;
+};
+
+void Recorder::Impl::refuseTooLarge() {
+  const uint64_t limit = device.properties.limits.maxStorageBufferRange;
+  const auto refuse = [](const char* what, uint64_t got, uint64_t most) {
+    if (got <= most) return;
+    throw Error(std::string("Capacity::") + what + ": this device allows " + std::to_string(most) + ", got " +
+                std::to_string(got));
+  };
+  refuse("contenders", capacity.contenders, pass.tell().mostOfOne());
+  refuse("contenders for all queries", uint64_t{capacity.queries} * capacity.contenders,
+         limit / sizeof(gpu::Contender));
+  refuse("clusters", capacity.clusters, limit / sizeof(gpu::Placement));
+  refuse("clusterPairs", capacity.clusterPairs, limit / sizeof(gpu::ClusterPair));
+  refuse("openPairs", capacity.openPairs, pass.tell().mostContenders());
 }
 
-Recorder::Recorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps)
-    : device_(&device),
-      pictureBytes_(pictureBytes),
-      resident_(resident),
-      upload_(device),
-      submission_(device, timestamps),
-      bindings_(device, bindingList(), sizeof(IdentifyPush)),
-      renderPass_(gpu::depthRenderPass(device)),
-      sampler_(gpu::texelSampler(device)),
-      depth_(gpu::depthPipeline(device, bindings_.layout(), renderPass_.get(), k_depth_vert, "depth")),
-      reduce_(gpu::computePipeline(device, bindings_.layout(), k_reduce_comp, "reduce")),
-      identify_(gpu::computePipeline(device, bindings_.layout(), k_identify_comp, "identify")),
-      solve_(gpu::computePipeline(device, bindings_.layout(), solveShader(device), "solve")),
-      views_(device, "views", Residence::device, kUploaded),
-      draws_(device, "draws", Residence::device, kUploaded),
-      items_(device, "items", Residence::device, kUploaded),
-      candidates_(device, "candidates", Residence::device, kComputed),
-      ranks_(device, "ranks", Residence::device, kComputed),
-      answers_(device, "answers", Residence::device, kComputed),
-      openPairs_(device, "open pairs", Residence::device, kComputed),
-      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
-
-void Recorder::sync(const Scene::Impl& scene) {
-  const VkDeviceSize bytes = resident_.prepare(scene);
-  if (bytes == 0) return;
-  upload_.begin(bytes);
-  resident_.upload(scene, upload_);
-  const gpu::Commands commands = submission_.begin();
-  submission_.stage("upload");
-  upload_.record(commands);
-  gpu::uploadToRead(commands);
-  submission_.submitAndWait();
-  resident_.confirm(scene);
-}
-
-Recorder::Pictures& Recorder::picturesFor(const Batch& batch) {
-  const auto found = pictures_.find(batch.resolution);
-  if (found != pictures_.end() && found->second.range.layers() >= batch.layers) return found->second;
-  if (found != pictures_.end()) pictures_.erase(found);  // before its successor is allocated
-  const auto bytes = [](uint64_t side, uint64_t layers) { return 2 * side * side * layers * sizeof(float); };
-  uint64_t kept = bytes(batch.resolution, batch.layers);
-  for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
-  if (kept > 2 * pictureBytes_) pictures_.clear();
-  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
-  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
-  return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
-}
-
-void Recorder::stage(const Batch& batch, const Scene::Impl& scene) {
-  views_.reserve(bytesOf(batch.views));
-  draws_.reserve(bytesOf(batch.draws));
-  items_.reserve(bytesOf(batch.items));
-  const VkDeviceSize cells = batch.views.size() * gpu::kCells;
-  candidates_.reserve(cells * sizeof(gpu::Candidate));
-  ranks_.reserve(cells * sizeof(uint32_t));
-  answers_.reserve(batch.views.size() * sizeof(gpu::Answer));
-  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs * sizeof(gpu::OpenPair));
-  upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
-                Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
-  resident_.upload(scene, upload_);
-  upload_.add(batch.views.data(), bytesOf(batch.views), views_);
-  upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
-  upload_.add(batch.items.data(), bytesOf(batch.items), items_);
-}
-
-void Recorder::bind(const Pictures& pictures) {
-  resident_.bindTo(bindings_);
-  bindings_.setBuffer(gpu::kBindTriangleIds, resident_.buffers().triangleIds);
-  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
-      {gpu::kBindViews, &views_},           {gpu::kBindDraws, &draws_}, {gpu::kBindItems, &items_},
-      {gpu::kBindCandidates, &candidates_}, {gpu::kBindRanks, &ranks_}, {gpu::kBindAnswers, &answers_},
-      {gpu::kBindOpenPairs, &openPairs_}};
-  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
-  bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
-  bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
-}
-
-void Recorder::drawScopes(const gpu::Commands& commands, const Batch& batch, const std::vector<DepthPass>& passes,
-                          gpu::DepthArray& target) const {
-  for (const DepthPass& pass : passes) {
-    target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
-    for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
-      const DrawCall& call = batch.calls[i];
-      const gpu::MeshRecord& record = resident_.record(call.mesh);
-      commands->CmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
-                               static_cast<int32_t>(record.firstVertex), call.firstDraw);
-    }
-    commands->CmdEndRenderPass(commands);
+void Recorder::Impl::refuseWrong(std::span<const Query> queries) const {
+  if (queries.size() > capacity.queries) {
+    throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
+                std::to_string(queries.size()));
+  }
+  for (size_t i = 0; i < queries.size(); ++i) {
+    std::string wrong = whatIsWrong(queries[i], scene);
+    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
+    if (wrong.empty() && queries[i].tolerance != 0) wrong = "tolerance: expected 0";
+    if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
 }
 
-// Where the parts of the readback lie.
-Recorder::Readback Recorder::readbackOf(const Batch& batch, bool scopes) {
-  const VkDeviceSize views = batch.views.size();
-  return {views * sizeof(gpu::Answer), views * gpu::kOpenPairs * sizeof(gpu::OpenPair),
-          scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
+void Recorder::Impl::plan(std::span<const Query> queries) {
+  copy.hierarchy.update(scene.impl());
+  plans.clear();
+  for (const Query& query : queries) plans.push_back(planContact(query, scene.impl(), copy.hierarchy));
 }
 
-void Recorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes) {
-  Pictures& pictures = picturesFor(batch);
-  stage(batch, scene);
-  bind(pictures);
-  const auto views = static_cast<uint32_t>(batch.views.size());
-  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes);
-  const VkDeviceSize listBytes = answerBytes + openBytes;
-  readback_.reserve(listBytes + 2 * pictureBytes);
+Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity)
+    : impl_(std::make_unique<Impl>(device.impl(), scene, capacity)) {}
+Recorder::~Recorder() = default;
+Recorder::Recorder(Recorder&&) noexcept = default;
+Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-  const gpu::Commands commands = submission_.begin();
-  submission_.stage("upload");
-  upload_.record(commands);
-  pictures.range.recordFirstUse(commands);
-  pictures.mask.recordFirstUse(commands);
-  gpu::uploadToRead(commands);
+Capacity Recorder::need(std::span<const Query> queries) {
+  impl_->plan(queries);
+  Capacity need;
+  uint64_t clusters = 0, pairs = 0;
+  for (const ContactPlan& plan : impl_->plans) {
+    clusters += plan.sensor.size() + plan.scene.size();
+    pairs += allPairs(plan);
+  }
+  need.queries = static_cast<uint32_t>(queries.size());
+  need.clusters = static_cast<uint32_t>(std::min<uint64_t>(clusters, UINT32_MAX));
+  need.clusterPairs = static_cast<uint32_t>(std::min<uint64_t>(pairs, UINT32_MAX));
+  return need;
+}
 
-  const VkDescriptorSet set = bindings_.set();
-  const VkBuffer positions = resident_.buffers().positions.get();
-  const VkDeviceSize zero = 0;
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0,
-                                  nullptr);
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
-  commands->CmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
-  commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
-  submission_.stage("range");
-  drawScopes(commands, batch, batch.rangePasses, pictures.range);
-  submission_.stage("mask");
-  drawScopes(commands, batch, batch.maskPasses, pictures.mask);
+void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries) {
+  Impl& self = *impl_;
+  self.refuseWrong(queries);
+  self.plan(queries);
+  self.asked.assign(queries.begin(), queries.end());
+  self.known.assign(queries.size(), decodeClear());
+  self.searches.clear();
+  Room room(self.capacity);
+  for (uint32_t i = 0; i < queries.size(); ++i) {
+    const ContactPlan& plan = self.plans[i];
+    if (plan.scene.empty()) continue;
+    ContactPass::Search search{&plan, 0, 0, plan.hi, i};
+    const uint32_t flag = room.give(search, roomFor(self.capacity));
+    self.known[i] = refused(flag);
+    if (flag == 0) self.searches.push_back(search);
+  }
+  self.pass.stage(self.searches, self.known, self.scene.impl());
 
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
-  submission_.stage("reduce");
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
-  commands->CmdDispatch(commands, views, 1, 1);
-  gpu::computeWriteToComputeReadWrite(commands);
-
-  submission_.stage("identify");
-  const auto items = static_cast<uint32_t>(batch.items.size());
-  const IdentifyPush push{items, std::min(items, 65535u)};
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
-  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  commands->CmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
-  gpu::computeWriteToComputeReadWrite(commands);
-
-  submission_.stage("solve");
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
-  commands->CmdDispatch(commands, views, 1, 1);
+  const gpu::Commands commands{&self.device.vk, commandBuffer};
+  const char* open = nullptr;
+  const auto stage = [&](const char* name) {
+    if (open != nullptr) self.device.endLabel(commands);
+    self.device.beginLabel(commands, name);
+    open = name;
+  };
+  self.pass.record(commands, stage, self.capacity.dispatches);
   gpu::computeWriteToCopy(commands);
-
-  submission_.stage("readback");
-  const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
-  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
-  if (scopes) {
-    const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
-    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
-    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), listBytes + pictureBytes);
+  stage("readback");
+  const VkBufferCopy region{0, 0, queries.size() * sizeof(Result)};
+  if (region.size != 0) {
+    commands->CmdCopyBuffer(commands, self.pass.tell().results().get(), self.readback.get(), 1, &region);
   }
-  gpu::copyToHost(commands);
-  submission_.submit();
+  gpu::writtenToHost(commands);
+  self.device.endLabel(commands);
+  self.copy.resident.confirm(self.scene.impl());
 }
 
-Answers Recorder::collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                          StoredScopes* scopes) {
-  submission_.wait();
-  resident_.confirm(scene);
-  submission_.addTimes(stages);
-  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes != nullptr);
-  if (scopes != nullptr) {
-    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes + openBytes);
-    scopes->range.assign(at, at + pictureBytes / sizeof(float));
-    scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
+void Recorder::reset() {
+  impl_->copy.resident.forget();
+}
+
+VkBuffer Recorder::results() const {
+  return impl_->pass.tell().results().get();
+}
+
+std::vector<Result> Recorder::read() {
+  Impl& self = *impl_;
+  std::vector<Result> results(self.asked.size());
+  std::copy_n(reinterpret_cast<const Result*>(self.readback.mapped()), results.size(), results.begin());
+  if (self.searches.empty() || !self.pass.tell().allListed()) return results;
+  const auto& open = self.pass.tell().open();
+  auto next = open.begin();
+  for (uint32_t i = 0; i < self.searches.size(); ++i) {
+    const auto first = next;
+    while (next != open.end() && (*next)->target == i) ++next;
+    if (first == next) continue;
+    const uint32_t query = self.searches[i].result;
+    uint64_t cpuPairs = 0;
+    results[query] = decodeContact({{}, results[query], {first, next}}, self.asked[query], cpuPairs);
   }
-  const size_t views = batch.views.size();
-  return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
-          {reinterpret_cast<const gpu::OpenPair*>(readback_.mapped() + answerBytes), views * gpu::kOpenPairs}};
+  return results;
 }
 
 }  // namespace radar

@@ -23,6 +23,9 @@ class ResidentScene {
   /// What was staged has arrived: until then a failed submission leaves it to be staged again.
   void confirm(const Scene::Impl& scene);
 
+  /// Nothing that was staged has arrived for certain: all of it is staged again.
+  void forget() { seenScene_ = seenMeshes_ = seenPoses_ = 0; }
+
   /// Binds what every set has at the same numbers: all but triangle ids and nodes.
   void bindTo(gpu::Bindings& bindings) const;
   const Buffers& buffers() const { return buffers_; }

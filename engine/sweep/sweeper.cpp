@@ -199,7 +199,7 @@ void Sweeper::Impl::landContact() {
     const Clock::time_point start = Clock::now();
     const size_t query = flying[i];
     try {
-      answers[query] = decodeContact(found, asked[query], scene.impl(), stats.cpuPairs);
+      answers[query] = decodeContact(found, asked[query], stats.cpuPairs);
     } catch (const Error& error) {
       giveUp(query, error);
     }

@@ -8,7 +8,7 @@
 #include "scene/hierarchy.h"
 #include "sweep/bounded_tier.h"
 #include "sweep/contact_recorder.h"
-#include "sweep/recorder.h"
+#include "sweep/sampled_recorder.h"
 
 namespace radar {
 
@@ -70,7 +70,7 @@ struct Sweeper::Impl {
   const Scene& scene;
   SweeperOptions options;
   std::shared_ptr<SceneCopy> copy;
-  Recorder recorder;
+  SampledRecorder recorder;
   BoundedTier& bounded();
   std::optional<BoundedTier> boundedTier;  ///< made when first needed: pipelines take a while
   ContactRecorder contactRecorder;

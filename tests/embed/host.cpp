@@ -43,6 +43,7 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSub
 VKAPI_ATTR VkResult VKAPI_CALL waitFor(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
                                        uint64_t timeout) {
   const std::lock_guard lock(mutex);
+  ++counted.waits;
   return waitForFences(device, count, fences, all, timeout);
 }
 

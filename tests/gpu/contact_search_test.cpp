@@ -63,7 +63,7 @@ class Searching {
       solved += found.state.solved;
       most = std::max(most, found.state.pairCount);
       uint64_t cpuPairs = 0;
-      results[which[i]] = decodeContact(found, queries[which[i]], scene_.impl(), cpuPairs);
+      results[which[i]] = decodeContact(found, queries[which[i]], cpuPairs);
     });
     CHECK(refused.empty());
     return results;

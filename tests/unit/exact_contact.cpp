@@ -16,12 +16,13 @@ Rational rational(const Fraction& f) {
   return Rational(f.num, f.den);
 }
 
-/// Whether `rounded` is the double nearest to `exact`.
+/// Whether `rounded` is the double nearest to some number within 2^-60 of `exact`.
 bool isNearest(double rounded, const Rational& exact) {
   if (!std::isfinite(rounded)) return abs(exact) > Rational(std::numeric_limits<double>::max());
   const Rational below = (Rational(std::nextafter(rounded, -INFINITY)) + Rational(rounded)) / 2;
   const Rational above = (Rational(std::nextafter(rounded, INFINITY)) + Rational(rounded)) / 2;
-  return below <= exact && exact <= above;
+  const Rational slack = abs(exact) * Rational(0x1p-60);
+  return below - slack <= exact && exact <= above + slack;
 }
 
 void check(const Triangle& a, const Triangle& b, const Vec& direction) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "radar/radar.h"
 #include "shaders/interop.h"
 #include "spirv/bounds_comp.h"
 #include "spirv/contact_comp.h"
@@ -23,6 +24,8 @@
 #include "spirv/reduce_comp.h"
 #include "spirv/solve_comp.h"
 #include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/tell_comp.h"
+#include "spirv/tell_comp_RADAR_NO_DOUBLES.h"
 
 namespace {
 
@@ -73,6 +76,8 @@ const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
     {"outer_reduce.comp", k_outer_reduce_comp},
     {"outer_identify.comp", k_outer_identify_comp},
     {"contact.comp without doubles", k_contact_comp_RADAR_NO_DOUBLES},
+    {"tell.comp", k_tell_comp},
+    {"tell.comp without doubles", k_tell_comp_RADAR_NO_DOUBLES},
 };
 
 struct Expected {
@@ -136,7 +141,18 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        {MEMBER(Target, pose), MEMBER(Target, direction), MEMBER(Target, directionLength), MEMBER(Target, distance),
         MEMBER(Target, mesh), MEMBER(Target, firstPair), MEMBER(Target, pairCapacity), MEMBER(Target, firstContender),
         MEMBER(Target, contenderCapacity), MEMBER(Target, enough), MEMBER(Target, corner),
-        MEMBER(Target, pixelsPerUnit), MEMBER(Target, maskCost)}},
+        MEMBER(Target, pixelsPerUnit), MEMBER(Target, maskCost), MEMBER(Target, decides), MEMBER(Target, result)}},
+      {"OpenContender",
+       sizeof(OpenContender),
+       {MEMBER(OpenContender, target), MEMBER(OpenContender, object), MEMBER(OpenContender, triB),
+        MEMBER(OpenContender, triA), MEMBER(OpenContender, a), MEMBER(OpenContender, b), MEMBER(OpenContender, pose)}},
+      {"RadarResult",
+       sizeof(radar::Result),
+       {MEMBER(radar::Result, status), MEMBER(radar::Result, tier), MEMBER(radar::Result, detected),
+        MEMBER(radar::Result, resolution), MEMBER(radar::Result, t), MEMBER(radar::Result, lo),
+        MEMBER(radar::Result, hi), MEMBER(radar::Result, fraction), MEMBER(radar::Result, object),
+        MEMBER(radar::Result, triB), MEMBER(radar::Result, triA), MEMBER(radar::Result, flags),
+        MEMBER(radar::Result, point), MEMBER(radar::Result, normal), MEMBER(radar::Result, paperMinL)}},
       {"Placement",
        sizeof(Placement),
        {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),
@@ -183,7 +199,7 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
   for (const Expected& one : expected) CHECK(seen.count(one.structure) == 1);
 }
 
-TEST_CASE("without doubles, only the two solvers' other variants use any") {
+TEST_CASE("without doubles, only the solvers' other variants use any") {
   constexpr uint32_t kOpTypeFloat = 22;
   for (const auto& [shader, spirv] : kShaders) {
     CAPTURE(shader);
@@ -192,6 +208,6 @@ TEST_CASE("without doubles, only the two solvers' other variants use any") {
       doubles = doubles || ((spirv[at] & 0xffff) == kOpTypeFloat && spirv[at + 2] == 64);
     }
     const std::string name = shader;
-    CHECK(doubles == (name == "solve.comp" || name == "contact.comp"));
+    CHECK(doubles == (name == "solve.comp" || name == "contact.comp" || name == "tell.comp"));
   }
 }

@@ -1,8 +1,8 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// The whole public interface. Units: any one unit of length, used throughout; angles never appear. Coordinates are
-// left- or right-handed; meshes are two-sided triangle soups, winding is ignored, nothing has to be closed or
-// connected.
+// The public interface, with pool.h for several devices and recorder.h for a host's own command buffers. Units: any one
+// unit of length, used throughout; angles never appear. Coordinates are left- or right-handed; meshes are two-sided
+// triangle soups, winding is ignored, nothing has to be closed or connected.
 //
 // Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
 // a Sweeper reads its Scene during run() and scopes().
@@ -167,6 +167,13 @@ enum class Detected : uint32_t {
   notLooked  ///< the question did not come up
 };
 
+/// Why a Recorder (radar/recorder.h) has left a query without an answer: bits of Result::flags.
+inline constexpr uint32_t kFlagOpen = 1;      ///< pairs of triangles too close for the device: Recorder::read() decides
+inline constexpr uint32_t kFlagClusters = 2;  ///< Capacity::clusters was too small
+inline constexpr uint32_t kFlagClusterPairs = 4;  ///< Capacity::clusterPairs was
+inline constexpr uint32_t kFlagContenders = 8;    ///< Capacity::contenders was
+inline constexpr uint32_t kFlagDispatches = 16;   ///< Capacity::dispatches was
+
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
 ///
 /// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
@@ -175,14 +182,14 @@ struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
-  uint32_t resolution = 0;  ///< pixels of the window's longer side; 0 where no picture was drawn
-  double t;                 ///< best estimate of t*, world units; tiers sampled and bounded: hi
-  double lo, hi;            ///< the certified bracket, world units
-  double fraction;          ///< t / D (0 where D is 0)
-  ObjectId object = kNone;  ///< what is touched
-  uint32_t triB = kNone;    ///< its triangle
-  uint32_t triA = kNone;    ///< the sensor's triangle
-  uint32_t reserved = 0;
+  uint32_t resolution = 0;       ///< pixels of the window's longer side; 0 where no picture was drawn
+  double t;                      ///< best estimate of t*, world units; tiers sampled and bounded: hi
+  double lo, hi;                 ///< the certified bracket, world units
+  double fraction;               ///< t / D (0 where D is 0)
+  ObjectId object = kNone;       ///< what is touched
+  uint32_t triB = kNone;         ///< its triangle
+  uint32_t triA = kNone;         ///< the sensor's triangle
+  uint32_t flags = 0;            ///< kFlag*: why a Recorder has left the query open; else 0
   std::array<double, 3> point;   ///< world position of the contact at the moment of contact
   std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
   double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late

@@ -26,10 +26,10 @@ struct StoredScopes {
 /// Solves nominated pairs, with doubles where the device has them.
 std::span<const uint32_t> solveShader(const Device::Impl& device);
 
-class Recorder {
+class SampledRecorder {
  public:
   /// `resident`: the scene's copy, shared with other recorders of the device.
-  Recorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps);
+  SampledRecorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// Uploads what changed in the scene, and nothing else.
   void sync(const Scene::Impl& scene);

@@ -1,0 +1,69 @@
+// What a radar::Recorder leaves in its buffer, as shaders read it: radar::Result, to the bit. radar/radar.h says what each
+// member means; a number that does not exist is NaN, an id RADAR_NONE.
+//
+//     #extension GL_EXT_scalar_block_layout : require
+//     #extension GL_GOOGLE_include_directive : require
+//     #include "radar/result.glsl"
+//     layout(scalar, binding = 0) readonly buffer Results { RadarResult results[]; };
+//
+// Where a shader has no doubles, define RADAR_NO_DOUBLES before: they are then their bits, for radarFloat().
+#ifndef RADAR_RESULT_GLSL
+#define RADAR_RESULT_GLSL
+
+#ifdef RADAR_NO_DOUBLES
+#define RADAR_DOUBLE uvec2
+#else
+#define RADAR_DOUBLE double
+#endif
+
+struct RadarResult {
+  uint status;      // RADAR_HIT ...
+  uint tier;        // RADAR_TIER_*
+  uint detected;    // RADAR_NOT_DETECTED ...
+  uint resolution;  // pixels
+  RADAR_DOUBLE t;
+  RADAR_DOUBLE lo;
+  RADAR_DOUBLE hi;
+  RADAR_DOUBLE fraction;
+  uint object;
+  uint triB;
+  uint triA;
+  uint flags;       // RADAR_OPEN ...: why there is no answer, else 0
+  RADAR_DOUBLE point[3];
+  RADAR_DOUBLE normal[3];
+  RADAR_DOUBLE paperMinL;
+};
+
+const uint RADAR_HIT = 0;
+const uint RADAR_CLEAR = 1;
+const uint RADAR_OVERLAP = 2;
+const uint RADAR_UNDECIDED = 3;
+const uint RADAR_INVALID = 4;
+
+const uint RADAR_TIER_SELECT = 0;
+const uint RADAR_TIER_CONTACT = 3;
+
+const uint RADAR_NOT_DETECTED = 0;
+const uint RADAR_DETECTED = 1;
+const uint RADAR_NOT_LOOKED = 2;
+
+const uint RADAR_NONE = 0xffffffffu;
+
+const uint RADAR_OPEN = 1;
+const uint RADAR_TOO_MANY_CLUSTERS = 2;
+const uint RADAR_TOO_MANY_CLUSTER_PAIRS = 4;
+const uint RADAR_TOO_MANY_CONTENDERS = 8;
+const uint RADAR_TOO_LONG = 16;
+
+// The float next to a double, towards 0; of its bits, low word first.
+float radarFloat(uvec2 bits) {
+  const uint exponent = bits.y >> 20 & 0x7ffu;
+  const uint sign = bits.y & 0x80000000u;
+  const uint significand = (bits.y & 0xfffffu) << 3 | bits.x >> 29;
+  if (exponent == 0x7ffu) return uintBitsToFloat(sign | 0x7f800000u | significand | (bits.x != 0 ? 1u : 0u));
+  if (exponent > 1150u) return uintBitsToFloat(sign | 0x7f7fffffu);
+  if (exponent < 897u) return uintBitsToFloat(sign);
+  return uintBitsToFloat(sign | (exponent - 896u) << 23 | significand);
+}
+
+#endif

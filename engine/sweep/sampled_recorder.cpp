@@ -1,0 +1,230 @@
+#include "sweep/sampled_recorder.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "gpu/barrier.h"
+#include "spirv/depth_vert.h"
+#include "spirv/identify_comp.h"
+#include "spirv/reduce_comp.h"
+#include "spirv/solve_comp.h"
+#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+
+// pass       reads                                     writes                     barrier behind it
+// ---------- ----------------------------------------- -------------------------- ------------------------------
+// upload     staging                                   scene, views, draws, items uploadToRead
+// range      draws, positions, indices                 R                          the render pass's own
+// mask       draws, positions, indices                 M                          the render pass's own
+// reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
+// identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
+// solve      scene, views, draws, items, candidates    answers, open pairs        computeWriteToCopy
+// readback   answers, open pairs (R, M for pictures)   readback                   copyToHost
+
+namespace radar {
+
+using gpu::bytesOf;
+using gpu::Residence;
+using gpu::Upload;
+
+namespace {
+
+constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+
+struct IdentifyPush {
+  uint32_t items, groupsX;
+};
+
+std::vector<gpu::Binding> bindingList() {
+  std::vector<gpu::Binding> list;
+  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
+    const bool image = i == gpu::kBindRange || i == gpu::kBindMask;
+    list.push_back({i, image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::span<const uint32_t> solveShader(const Device::Impl& device) {
+  if (device.doubles) return k_solve_comp;
+  return k_solve_comp_RADAR_NO_DOUBLES;
+}
+
+SampledRecorder::SampledRecorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes,
+                                 bool timestamps)
+    : device_(&device),
+      pictureBytes_(pictureBytes),
+      resident_(resident),
+      upload_(device),
+      submission_(device, timestamps),
+      bindings_(device, bindingList(), sizeof(IdentifyPush)),
+      renderPass_(gpu::depthRenderPass(device)),
+      sampler_(gpu::texelSampler(device)),
+      depth_(gpu::depthPipeline(device, bindings_.layout(), renderPass_.get(), k_depth_vert, "depth")),
+      reduce_(gpu::computePipeline(device, bindings_.layout(), k_reduce_comp, "reduce")),
+      identify_(gpu::computePipeline(device, bindings_.layout(), k_identify_comp, "identify")),
+      solve_(gpu::computePipeline(device, bindings_.layout(), solveShader(device), "solve")),
+      views_(device, "views", Residence::device, kUploaded),
+      draws_(device, "draws", Residence::device, kUploaded),
+      items_(device, "items", Residence::device, kUploaded),
+      candidates_(device, "candidates", Residence::device, kComputed),
+      ranks_(device, "ranks", Residence::device, kComputed),
+      answers_(device, "answers", Residence::device, kComputed),
+      openPairs_(device, "open pairs", Residence::device, kComputed),
+      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+void SampledRecorder::sync(const Scene::Impl& scene) {
+  const VkDeviceSize bytes = resident_.prepare(scene);
+  if (bytes == 0) return;
+  upload_.begin(bytes);
+  resident_.upload(scene, upload_);
+  const gpu::Commands commands = submission_.begin();
+  submission_.stage("upload");
+  upload_.record(commands);
+  gpu::uploadToRead(commands);
+  submission_.submitAndWait();
+  resident_.confirm(scene);
+}
+
+SampledRecorder::Pictures& SampledRecorder::picturesFor(const Batch& batch) {
+  const auto found = pictures_.find(batch.resolution);
+  if (found != pictures_.end() && found->second.range.layers() >= batch.layers) return found->second;
+  if (found != pictures_.end()) pictures_.erase(found);  // before its successor is allocated
+  const auto bytes = [](uint64_t side, uint64_t layers) { return 2 * side * side * layers * sizeof(float); };
+  uint64_t kept = bytes(batch.resolution, batch.layers);
+  for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
+  if (kept > 2 * pictureBytes_) pictures_.clear();
+  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
+  return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
+}
+
+void SampledRecorder::stage(const Batch& batch, const Scene::Impl& scene) {
+  views_.reserve(bytesOf(batch.views));
+  draws_.reserve(bytesOf(batch.draws));
+  items_.reserve(bytesOf(batch.items));
+  const VkDeviceSize cells = batch.views.size() * gpu::kCells;
+  candidates_.reserve(cells * sizeof(gpu::Candidate));
+  ranks_.reserve(cells * sizeof(uint32_t));
+  answers_.reserve(batch.views.size() * sizeof(gpu::Answer));
+  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs * sizeof(gpu::OpenPair));
+  upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
+                Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
+  resident_.upload(scene, upload_);
+  upload_.add(batch.views.data(), bytesOf(batch.views), views_);
+  upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
+  upload_.add(batch.items.data(), bytesOf(batch.items), items_);
+}
+
+void SampledRecorder::bind(const Pictures& pictures) {
+  resident_.bindTo(bindings_);
+  bindings_.setBuffer(gpu::kBindTriangleIds, resident_.buffers().triangleIds);
+  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
+      {gpu::kBindViews, &views_},           {gpu::kBindDraws, &draws_}, {gpu::kBindItems, &items_},
+      {gpu::kBindCandidates, &candidates_}, {gpu::kBindRanks, &ranks_}, {gpu::kBindAnswers, &answers_},
+      {gpu::kBindOpenPairs, &openPairs_}};
+  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
+  bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
+  bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
+}
+
+void SampledRecorder::drawScopes(const gpu::Commands& commands, const Batch& batch,
+                                 const std::vector<DepthPass>& passes, gpu::DepthArray& target) const {
+  for (const DepthPass& pass : passes) {
+    target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
+    for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
+      const DrawCall& call = batch.calls[i];
+      const gpu::MeshRecord& record = resident_.record(call.mesh);
+      commands->CmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
+                               static_cast<int32_t>(record.firstVertex), call.firstDraw);
+    }
+    commands->CmdEndRenderPass(commands);
+  }
+}
+
+// Where the parts of the readback lie.
+SampledRecorder::Readback SampledRecorder::readbackOf(const Batch& batch, bool scopes) {
+  const VkDeviceSize views = batch.views.size();
+  return {views * sizeof(gpu::Answer), views * gpu::kOpenPairs * sizeof(gpu::OpenPair),
+          scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
+}
+
+void SampledRecorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes) {
+  Pictures& pictures = picturesFor(batch);
+  stage(batch, scene);
+  bind(pictures);
+  const auto views = static_cast<uint32_t>(batch.views.size());
+  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes);
+  const VkDeviceSize listBytes = answerBytes + openBytes;
+  readback_.reserve(listBytes + 2 * pictureBytes);
+
+  const gpu::Commands commands = submission_.begin();
+  submission_.stage("upload");
+  upload_.record(commands);
+  pictures.range.recordFirstUse(commands);
+  pictures.mask.recordFirstUse(commands);
+  gpu::uploadToRead(commands);
+
+  const VkDescriptorSet set = bindings_.set();
+  const VkBuffer positions = resident_.buffers().positions.get();
+  const VkDeviceSize zero = 0;
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0,
+                                  nullptr);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
+  commands->CmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
+  commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  submission_.stage("range");
+  drawScopes(commands, batch, batch.rangePasses, pictures.range);
+  submission_.stage("mask");
+  drawScopes(commands, batch, batch.maskPasses, pictures.mask);
+
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  submission_.stage("reduce");
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
+  gpu::computeWriteToComputeReadWrite(commands);
+
+  submission_.stage("identify");
+  const auto items = static_cast<uint32_t>(batch.items.size());
+  const IdentifyPush push{items, std::min(items, 65535u)};
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+  commands->CmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
+  gpu::computeWriteToComputeReadWrite(commands);
+
+  submission_.stage("solve");
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
+  commands->CmdDispatch(commands, views, 1, 1);
+  gpu::computeWriteToCopy(commands);
+
+  submission_.stage("readback");
+  const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
+  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
+  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
+  if (scopes) {
+    const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
+    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
+    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), listBytes + pictureBytes);
+  }
+  gpu::copyToHost(commands);
+  submission_.submit();
+}
+
+Answers SampledRecorder::collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                                 StoredScopes* scopes) {
+  submission_.wait();
+  resident_.confirm(scene);
+  submission_.addTimes(stages);
+  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes != nullptr);
+  if (scopes != nullptr) {
+    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes + openBytes);
+    scopes->range.assign(at, at + pictureBytes / sizeof(float));
+    scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
+  }
+  const size_t views = batch.views.size();
+  return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
+          {reinterpret_cast<const gpu::OpenPair*>(readback_.mapped() + answerBytes), views * gpu::kOpenPairs}};
+}
+
+}  // namespace radar

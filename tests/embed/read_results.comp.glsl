@@ -1,0 +1,28 @@
+// A host's shader that reads recorded answers, with no doubles of its own.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "radar/result.glsl"
+
+layout(local_size_x = 64) in;
+
+struct Seen {
+  uint status;
+  uint object;
+  uint flags;
+  float t;
+  float normal[3];
+};
+
+layout(scalar, binding = 0) readonly buffer Results { RadarResult results[]; };
+layout(scalar, binding = 1) writeonly buffer Sight { Seen seen[]; };
+layout(push_constant) uniform Push { uint count; } push;
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= push.count) return;
+  const RadarResult r = results[i];
+  seen[i] = Seen(r.status, r.object, r.flags, radarFloat(r.t),
+                 float[3](radarFloat(r.normal[0]), radarFloat(r.normal[1]), radarFloat(r.normal[2])));
+}

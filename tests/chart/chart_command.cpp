@@ -56,3 +56,14 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   refused("chart --out c --device 99", "99");
   refused("chart --out c --extent huge", "--extent");
 }
+
+TEST_CASE("without gnuplot nothing is measured and nothing left, and what to install is told with status 2") {
+  const ScratchFolder folder;
+  for (const char* arguments : {"chart --extent least --out c --docs d", "scale --sensors 2 --out c"}) {
+    const Run run = runProgram(folder, arguments, "PATH=/nowhere");
+    CHECK(run.status == 2);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Contains("gnuplot") && Contains("apt install gnuplot-nox"));
+    CHECK(folder.list().empty());
+  }
+}

@@ -5,8 +5,7 @@
 #include "chart/report.h"
 #include "chart/tables.h"
 #include "report/chart.h"
-#include "report/picture.h"
-#include "report/print.h"
+#include "report/markup.h"
 
 namespace radar::tools {
 
@@ -37,7 +36,7 @@ std::string figureOf(const Record& record, const Drawing& drawing) {
   std::vector<std::string> notes = drawing.notes;
   notes.push_back(record.command + "; " + record.machine + "; " + record.device + "; commit " + record.commit + "; " +
                   record.date);
-  return figure(drawing.caption, drawing.svg, notes);
+  return figure(inlineSvg(drawing.chart, drawing.name), notes);
 }
 
 std::string frontsOf(const Record& record) {
@@ -76,7 +75,10 @@ std::string pageOf(const Record& record) {
 
 void writeReport(const std::filesystem::path& folder, const Record& record) {
   writeWhole(folder / "chart.html", pageOf(record));
-  for (const Drawing& drawing : drawingsOf(record)) writePicture(folder, drawing.name, drawing.svg);
+  for (const Drawing& drawing : drawingsOf(record)) {
+    writeWhole(folder / (drawing.name + ".svg"), svgFile(drawing.chart));
+    writeWhole(folder / (drawing.name + ".png"), pngFile(drawing.chart));
+  }
 }
 
 }  // namespace radar::tools

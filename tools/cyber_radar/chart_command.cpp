@@ -10,6 +10,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
 #include "import/mesh_import.h"
+#include "report/gnuplot.h"
 
 namespace radar::tools {
 
@@ -93,6 +94,7 @@ Record measure(const Options& options) {
 }
 
 void chart(Options options) {
+  requireGnuplot();
   if (options.quick) options.extent = "quick";
   requireFolder("--out", options.out);
   if (!options.docs.empty()) requireFolder("--docs", options.docs);

@@ -176,7 +176,7 @@ class Script {
     const std::string ink = font(kSize, false) + " center textcolor " + hex("ink");
     label(0.5 * (kLeft + chart_.width - right_), chart_.height - 14, chart_.xName, ink);
     label(14, 0.5 * (top_ + band_ + bottom()), chart_.yName, ink + " rotate by 90");
-    if (!chart_.floorName.empty()) {
+    if (chart_.floor > 0) {
       const double y = yOf({.y = chart_.floor}), right = chart_.width - right_;
       text_ += print("set arrow from graph 0, first %.9g to graph 1, first %.9g nohead dt 2 lw 1.5 lc %s back\n",
                      valueAt(y), valueAt(y), hex("soft").c_str());

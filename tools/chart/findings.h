@@ -31,6 +31,14 @@ std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
 /// Whether the method looks at pixels, rays or steps only, and so sees samples of the shapes or of the motion.
 bool isSampling(const Cell& cell);
 
+/// One family (mode bounded, or contact) beside the methods that sample, not beside other certain ones.
+struct BesideSampling {
+  std::vector<const Cell*> onFront;  ///< its members on the front of both, by rising size
+  const Cell* nearest = nullptr;     ///< if none is: the member that loses least time
+  const Cell* better = nullptr;      ///< to this method, the fastest of those that are as right
+};
+BesideSampling besideSampling(std::span<const Cell* const> cells, const std::string& family);
+
 struct Point {
   double x = 0, y = 0;
 };

@@ -19,7 +19,7 @@ TEST_CASE("chart leaves numbers, charts, a page and documents, and takes up what
   REQUIRE(first.status == 0);
   CHECK_THAT(first.out, Contains("interlocking") && Contains("Queries of own/queries.json"));
   const std::string csv = folder.read("c/chart.csv");
-  for (const char* workload : {"figure7", "interlocking", "thin", "meshes", "queries", "boxes", "triangles"}) {
+  for (const char* workload : {"figure7", "interlocking", "thin", "grazing", "meshes", "queries", "boxes", "triangles"}) {
     CHECK_THAT(csv, Contains(std::string(",") + workload + ",") || Contains(std::string("growth,") + workload));
   }
   CHECK_THAT(folder.read("c/chart.html"), Contains("<svg") && !Contains("<script") && !Contains("http"));

@@ -68,7 +68,7 @@ std::string standingOf(const std::vector<const Cell*>& cells, const std::string&
   const Cell &nearest = *beside.nearest, &better = *beside.better;
   return "mode " + family + " is not: " + nearest.method + ", which comes nearest, takes " + timeOf(nearest.us) +
          print(", %.3g times as long as ", nearest.us / better.us) + better.method +
-         print(", with a worst error of %.2g against %.2g (there %.1f%% are wrong, and nothing is certified)",
+         print(", with a worst error of %.2g against %.2g (%.2g%% of those are wrong, none is certified)",
                nearest.errorWorst, better.errorWorst, 100 * wrongShare(better));
 }
 

@@ -123,7 +123,10 @@ TEST_CASE("axes reach around their values, with tics that read well") {
   CHECK(log.valueAt(log.share(500)) == Approx(500));
   CHECK(linearAxis(23).tics == std::vector<double>{0, 5, 10, 15, 20, 25});
   CHECK(inTic(0.05) == "0.05");
+  CHECK(inTic(0) == "0");
   CHECK(inTic(1e-7) == "1e-7");
+  CHECK(inTic(0.0005) == "0.0005");
+  CHECK(inTic(2.5e9) == "2.5e+09");
   CHECK(inTic(1'234'567) == "1,234,567");
 }
 

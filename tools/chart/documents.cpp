@@ -122,8 +122,7 @@ std::string accuracyDocument(const Record& record, const std::string& charts) {
   std::string text = "# Accuracy\n\nHow right each method is, on the same queries, against the exact answers. " +
                      originOf(record) + "The numbers: [CSV](" + charts + "/chart.csv), [JSON](" + charts +
                      "/chart.json); all charts on one page: [chart.html](" + charts +
-                     "/chart.html). This file is made from them:\n\n    cyber-radar chart --render --out docs/chart "
-                     "--docs docs\n\n";
+                     "/chart.html). This file is made from them, anew by the same command with `--render`.\n\n";
   text +=
       "Lengths are in sizes of the sensor, the greatest extent of its box. An answer is *missed* if there is a contact "
       "and the method tells none, or sees none; a *false hit* if it tells one where there is none; *only bounded* if "

@@ -63,7 +63,8 @@ std::string tipOf(const Cell& cell) {
 ChartPoint pointOf(const Cell& cell) {
   ChartPoint point;
   point.x = cell.us;
-  point.y = std::isnan(cell.errorWorst) ? 0 : cell.errorWorst;
+  constexpr double kMost = 1e200;  // that an axis can hold
+  point.y = std::isnan(cell.errorWorst) ? 0 : std::min(cell.errorWorst, kMost);
   point.missed = wrongShare(cell);
   if (cell.size > 0) point.label = std::to_string(cell.size);
   point.tip = tipOf(cell);
@@ -190,7 +191,9 @@ std::vector<Drawing> growthDrawings(const Record& record) {
     for (const Drawing& drawing : resolutionDrawings(record, record.workloads.front())) drawings.push_back(drawing);
   }
   for (Drawing& drawing : drawings) {
-    drawing.notes.push_back("In brackets: the exponent p of time ~ x^p, fitted by least squares of logarithms.");
+    drawing.chart.about.emplace_back(
+        "filled: Cyber Radar; hollow: other libraries; in brackets: time grows as this power, by least squares of "
+        "logarithms");
   }
   return drawings;
 }

@@ -66,10 +66,11 @@ std::string standingOf(const std::vector<const Cell*>& cells, const std::string&
   }
   if (beside.nearest == nullptr) return "mode " + family + " was not measured";
   const Cell &nearest = *beside.nearest, &better = *beside.better;
+  const auto errorOf = [](const Cell& cell) { return std::isnan(cell.errorWorst) ? 0 : cell.errorWorst; };
   return "mode " + family + " is not: " + nearest.method + ", which comes nearest, takes " + timeOf(nearest.us) +
          print(", %.3g times as long as ", nearest.us / better.us) + better.method +
          print(", with a worst error of %.2g against %.2g (%.2g%% of those are wrong, none is certified)",
-               nearest.errorWorst, better.errorWorst, 100 * wrongShare(better));
+               errorOf(nearest), errorOf(better), 100 * wrongShare(better));
 }
 
 // The fastest member of each family that is faster, by how much, and how many of its answers are wrong.

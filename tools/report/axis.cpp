@@ -36,7 +36,7 @@ Axis logAxis(double least, double most) {
   const double room = std::max(1.1, std::pow(most / least, 0.03));
   Axis axis{least / room, most * room, true, {}};
   const double decades = std::log10(axis.high / axis.low);
-  const int every = decades > 8 ? 3 : 1;
+  const int every = decades > 8 ? static_cast<int>(std::ceil(decades / 6)) : 1;
   for (int exponent = static_cast<int>(std::floor(std::log10(axis.low))); exponent <= std::log10(axis.high);
        exponent += 1) {
     if (exponent % every != 0 && decades > 8) continue;
@@ -50,8 +50,11 @@ Axis logAxis(double least, double most) {
 }
 
 std::string inTic(double value) {
-  if (value != 0 && (value < 0.001 || value >= 1e7)) return print("1e%.0f", std::log10(value));
+  const double exponent = std::round(std::log10(value));
+  const bool isPower = value > 0 && std::abs(value / std::pow(10, exponent) - 1) < 1e-9;
+  if (isPower && (exponent < -3 || exponent > 6)) return print("1e%.0f", exponent);
   std::string text = print("%.7g", value);
+  if (text.find('e') != std::string::npos) return text;
   const size_t whole = std::min(text.find('.'), text.size());
   for (size_t at = whole; at > 3; at -= 3) text.insert(at - 3, ",");
   return text;

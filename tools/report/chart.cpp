@@ -95,7 +95,7 @@ class Script {
       y_ = linearAxis(most);
     } else {
       x_ = points > 0 ? logAxis(leastX, mostX) : logAxis(1, 10);
-      y_ = most > 0 ? logAxis(least, std::max(most, 2 * least)) : logAxis(0.1, 1);
+      y_ = most > 0 ? logAxis(least, std::max(most, (chart_.floor > 0 ? 1e4 : 2) * least)) : logAxis(0.1, 1);
     }
     const double share = points > 0 ? static_cast<double>(wrong) / static_cast<double>(points) : 0;
     band_ = chart_.missedName.empty() ? 0 : 90 + 130 * share;
@@ -202,6 +202,10 @@ class Script {
         if (i + 1 < line.points.size()) places_.takeLine(at, spotOf(line.points[i + 1]));
       }
     }
+    if (chart_.floor > 0) {
+      const double y = yOf({.y = chart_.floor});
+      places_.takeLine({kLeft, y}, {chart_.width - right_, y});
+    }
     if (chart_.front.empty()) return;
     Spot at{xOf(chart_.front[0]), top_};
     for (const ChartPoint& point : chart_.front) {
@@ -250,13 +254,10 @@ class Script {
     if (!point.label.empty()) placeLabel({point}, point.label, kSmall, false, hex(line.colour), kSmallOverlap);
   }
   void nameFront() {
-    if (!chart_.front.empty()) placeLabel(frontSpots(), chart_.frontName, kSmall, false, hex("soft"), INFINITY);
-  }
-  std::vector<ChartPoint> frontSpots() const {
-    std::vector<ChartPoint> spots = chart_.front;
-    spots.push_back(chart_.front.back());
-    spots.back().x = x_.valueAt(0.6);
-    return spots;
+    if (chart_.front.empty()) return;
+    ChartPoint along = chart_.front.back();
+    along.x = x_.valueAt(0.6);
+    placeLabel({along}, chart_.frontName, kSmall, false, hex("soft"), INFINITY);
   }
 
   void add(const std::string& style, const std::string& data) {

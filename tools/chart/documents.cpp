@@ -89,12 +89,11 @@ std::vector<std::string> adviceOf(const Record& record) {
                    print("; worst error over all workloads %.2g of the sensor's size. Use it for time of impact, "
                          "placement, clearance.",
                          spreadOf(record, "contact", worst).most));
-  advice.push_back(
-      "**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
-      print(
-          "; worst error %.2g of the sensor's size or less, always on the safe side. Use it where a bracket suffices, "
-          "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
-          spreadOf(record, "bounded 64", worst).most));
+  advice.push_back("**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
+                   print("; worst error %.2g of the sensor's size or less, and the bracket always holds. Use it where "
+                         "a bracket suffices, "
+                         "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
+                         spreadOf(record, "bounded 64", worst).most));
   advice.push_back(
       "**The paper's method: mode `sampled`**. At 64 pixels " + timesOf(record, "sampled 64") +
       print(
@@ -126,10 +125,10 @@ std::string accuracyDocument(const Record& record, const std::string& charts) {
   text +=
       "Lengths are in sizes of the sensor, the greatest extent of its box. An answer is *missed* if there is a contact "
       "and the method tells none, or sees none; a *false hit* if it tells one where there is none; *only bounded* if "
-      "mode bounded tells a certain lower bound and no more, which then counts as its answer. The *front* holds what "
-      "nothing beats: fewer wrong answers count for more than any error, then the lesser worst error counts. Modes "
-      "bounded and contact are each also held against the methods that sample alone. Running the command "
-      "again gives the same columns to the last digit, on the same driver.\n\n## Which mode for what\n\n" +
+      "mode bounded tells a certain lower bound and no more, which then counts as its answer. " +
+      std::string(kFrontInWords) +
+      " Running the command again gives the same columns to the last digit, on the same driver.\n\n## Which mode for "
+      "what\n\n" +
       listOf(adviceOf(record));
   for (const WorkloadNote& workload : record.workloads) {
     text += "## " + workload.name + "\n\n" + workload.about + ".\n\n" +

@@ -24,6 +24,14 @@ std::vector<const Cell*> shownCells(const Record& record, const std::string& sec
 /// Those that have none.
 std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload);
 
+/// What frontOf and besideSampling do, for readers.
+inline constexpr const char* kFrontInWords =
+    "The front holds the methods to which no other is both as fast and as right. A wrong answer is an error that no "
+    "smaller one makes up for: fewer of them are better, whatever the errors; of equal shares, the lesser worst error. "
+    "Modes bounded and contact, which certify what they say, are each also held against the methods that sample "
+    "pixels, "
+    "rays or steps of the motion, without each other.";
+
 /// Those to which no other is both as fast and as right, by rising time. Fewer wrong answers are better; of equal
 /// shares, a lesser worst error, down to kErrorFloor.
 std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);

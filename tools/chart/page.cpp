@@ -57,7 +57,9 @@ std::string pageOf(const Record& record) {
   std::string html = openPage("Cyber Radar: accuracy against speed", "Accuracy against speed");
   html +=
       "<p>How far can a shape move before it first touches anything: every method answers the same queries, and is "
-      "held against the exact answers. Lengths are in sizes of the sensor, the greatest extent of its box.</p>\n"
+      "held against the exact answers. Lengths are in sizes of the sensor, the greatest extent of its box. " +
+      std::string(kFrontInWords) +
+      "</p>\n"
       "<p class=\"soft\">" +
       escaped(record.date) + ", commit " + escaped(record.commit) + "; " + escaped(record.machine) + "; " +
       escaped(record.device) + "</p>\n<p class=\"soft\"><code>" + escaped(record.command) + "</code></p>\n";

@@ -42,9 +42,9 @@ std::string closePage() {
 }
 
 std::string figure(const std::string& svg, const std::vector<std::string>& notes) {
-  std::string text = "<figure><figcaption>";
+  std::string text = notes.empty() ? "<figure>" : "<figure><figcaption>";
   for (const std::string& note : notes) text += "<p>" + escaped(note) + "</p>";
-  return text + "</figcaption>\n" + svg + "</figure>\n";
+  return text + (notes.empty() ? "\n" : "</figcaption>\n") + svg + "</figure>\n";
 }
 
 std::string openTable() {

@@ -87,6 +87,7 @@ std::vector<std::string> fasterThan(const std::vector<const Cell*>& cells, const
     }
   }
   std::vector<std::string> names;
+  names.reserve(best.size());
   for (const Cell* cell : best) {
     names.push_back(cell->method + print(" (%.3g times", contact.us / cell->us) +
                     (wrongShare(*cell) > 0 ? print(", %.1f%% wrong)", 100 * wrongShare(*cell)) : ")"));

@@ -224,6 +224,7 @@ class Script {
   bool placeLabel(const std::vector<ChartPoint>& points, const std::string& content, double size, bool bold,
                   const std::string& colour, double most) {
     std::vector<Spot> spots;
+    spots.reserve(points.size());
     for (const ChartPoint& point : points) spots.push_back(spotOf(point));
     const auto place = places_.placeBeside(spots, widthOf(content, size, bold), size + 3, most);
     if (!place) return false;

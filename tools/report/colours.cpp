@@ -48,12 +48,12 @@ std::string colourVariables() {
 std::string darkChartRules() {
   std::string rules = "@media(prefers-color-scheme:dark){\n";
   for (const Colour& colour : kColours) {
-    for (const std::string property : {"fill", "stroke", "color"}) {
+    for (const char* property : {"fill", "stroke", "color"}) {
       std::string selectors;
       for (const std::string& form : formsOf(colour.light)) {
-        selectors += (selectors.empty() ? "svg [" : ",svg [") + property + "=\"" + form + "\"]";
+        selectors += print("%ssvg [%s=\"%s\"]", selectors.empty() ? "" : ",", property, form.c_str());
       }
-      rules += selectors + "{" + property + ":" + std::string(colour.dark) + "}\n";
+      rules += selectors + print("{%s:%s}\n", property, std::string(colour.dark).c_str());
     }
   }
   return rules + "}\n";

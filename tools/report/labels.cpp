@@ -29,6 +29,7 @@ std::vector<Box> boxesBeside(const Spot& spot, double width, double height, doub
                                       {kNear, -0.5 * height - reach},
                                       {kNear, -0.5 * height + reach}}};
   std::vector<Box> boxes;
+  boxes.reserve(corners.size());
   for (const auto& [x, y] : corners) {
     boxes.push_back({spot.x + x, spot.y + y, spot.x + x + width, spot.y + y + height});
   }

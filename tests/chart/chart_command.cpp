@@ -12,16 +12,24 @@ using radar::test::ScratchFolder;
 TEST_CASE("chart leaves numbers, charts, a page and documents, and takes up what it has measured") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload table1 --boxes 200 --sensors 4 --out own").status == 0);
+  std::filesystem::copy(folder.path() / "own/queries.json", folder.path() / "own/It's thin.json");
   folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
-  const std::string command = "chart --extent least --out c own/queries.json --mesh tetrahedron.obj";
+  const std::string command =
+      "chart --extent least --out c own/queries.json \"own/It's thin.json\" own/queries.json --mesh tetrahedron.obj";
   const Run first = runProgram(folder, command);
   INFO(first.err);
   REQUIRE(first.status == 0);
   CHECK_THAT(first.out, Contains("interlocking") && Contains("Queries of own/queries.json"));
   const std::string csv = folder.read("c/chart.csv");
-  for (const char* workload : {"figure7", "interlocking", "thin", "meshes", "queries", "boxes", "triangles"}) {
+  for (const char* workload :
+       {"figure7", "interlocking", "thin", "grazing", "meshes", "queries", "boxes", "triangles"}) {
     CHECK_THAT(csv, Contains(std::string(",") + workload + ",") || Contains(std::string("growth,") + workload));
   }
+  // Names of files for charts and links, and none twice.
+  for (const char* file : {"c/front-queries.svg", "c/front-queries-2.svg", "c/front-it-s-thin.svg"}) {
+    CHECK_THAT(folder.read(file), Contains("</svg>"));
+  }
+  CHECK_THAT(folder.read("c/front-it-s-thin.svg"), Contains("Queries of own/It's thin.json"));
   CHECK_THAT(folder.read("c/chart.html"), Contains("<svg") && !Contains("<script") && !Contains("http"));
   CHECK_THAT(folder.read("c/front-interlocking.svg"), Contains("xmlns") && Contains("prefers-color-scheme"));
   CHECK_THAT(folder.read("c/table1.png"), Catch::StartsWith("\x89PNG"));
@@ -55,4 +63,15 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   refused("chart --out c --mesh missing.ply", "missing.ply");
   refused("chart --out c --device 99", "99");
   refused("chart --out c --extent huge", "--extent");
+}
+
+TEST_CASE("without gnuplot nothing is measured and nothing left, and what to install is told with status 2") {
+  const ScratchFolder folder;
+  for (const char* arguments : {"chart --extent least --out c --docs d", "scale --sensors 2 --out c"}) {
+    const Run run = runProgram(folder, arguments, "PATH=/nowhere");
+    CHECK(run.status == 2);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Contains("gnuplot") && Contains("apt install gnuplot-nox"));
+    CHECK(folder.list().empty());
+  }
 }

@@ -92,6 +92,28 @@ TEST_CASE("the front holds what nothing beats in both speed and accuracy, and a 
   CHECK(namesOn({}).empty());
 }
 
+TEST_CASE("a mode is held against what samples, not against another certain mode, and the least loss is told") {
+  std::vector<Cell> cells{madeUp("contact", 1, 0),          madeUp("bounded 16", 4, 0.5), madeUp("bounded 64", 9, 0.1),
+                          madeUp("bounded 256", 20, 0.1),   madeUp("sampled", 2, 0, 1),   madeUp("Embree rays", 5, 0.2),
+                          madeUp("ODE/OPCODE steps", 12, 0)};
+  for (size_t i : {1, 2, 3}) cells[i].family = "bounded";
+  const auto pointers = [&] {
+    std::vector<const Cell*> all;
+    for (const Cell& cell : cells) all.push_back(&cell);
+    return all;
+  };
+  const BesideSampling on = besideSampling(pointers(), "bounded");
+  CHECK(on.onFront == std::vector<const Cell*>{&cells[1], &cells[2]});
+  CHECK(besideSampling(pointers(), "contact").onFront == std::vector<const Cell*>{&cells[0]});
+  cells[5] = madeUp("Embree rays", 2, 0.2);
+  cells[6].us = 6;
+  const BesideSampling off = besideSampling(pointers(), "bounded");
+  CHECK(off.onFront.empty());
+  REQUIRE(off.nearest == &cells[2]);
+  CHECK(off.better == &cells[6]);
+  CHECK(besideSampling(pointers(), "neither").nearest == nullptr);
+}
+
 TEST_CASE("of one method's rows the fastest number of threads is shown, and what failed apart") {
   Record record;
   record.cells = {madeUp("m", 4, 0), madeUp("m", 3, 0), madeUp("broken", NAN, NAN)};

@@ -27,7 +27,9 @@ QuerySpec sweepOf(uint32_t mesh, const Pose& pose, double distance) {
 
 }  // namespace
 
-TEST_CASE("every library finds two boxes 3 apart, in turned and scaled poses, and leaves out what is excluded") {
+TEST_CASE(
+    "every library finds two boxes 3 apart, in turned and scaled poses, leaves out what is excluded, and nothing in an "
+    "empty scene") {
   Workload workload;
   workload.meshes = {makeBox({1, 1, 1}), makeBox({2, 2, 2})};
   Pose wide = poseAt(0, 0, 5);  // from z = 4 up
@@ -38,6 +40,8 @@ TEST_CASE("every library finds two boxes 3 apart, in turned and scaled poses, an
   for (const PeerRow& row : peerRows()) {
     CAPTURE(row.family);
     const std::unique_ptr<Peer> peer = row.make(workload, row.sizes.back());
+    peer->show({});
+    CHECK_FALSE(peer->cast(sweepOf(0, turned, 10)).has_value());
     peer->show(objects);
     const std::optional<double> t = peer->cast(sweepOf(0, turned, 10));
     REQUIRE(t.has_value());

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "report/chart.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "support/test_device.h"
@@ -96,9 +95,4 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
   const std::string html = htmlOf(report, {"cyber-radar scale", "c", "2026-01-01", "<teapots>", "mode contact"});
   CHECK_THAT(html, Contains("Figure 7") && Contains("&lt;teapots>") && Contains("prefers-color-scheme:dark"));
   CHECK_THAT(html, !Contains("http"));  // nothing is loaded from elsewhere
-}
-
-TEST_CASE("a chart survives flat lines, one point and zero") {
-  CHECK_THAT(lineChart("t", "x", "y", {5}, {{"a", {0}}, {"b", {0}}}), Contains("</svg>") && !Contains("nan"));
-  CHECK_THAT(lineChart("t", "x", "y", {5, 10}, {{"a", {3, 3}}}), Contains("</svg>") && !Contains("inf"));
 }

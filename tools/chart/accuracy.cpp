@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace radar::tools {
 
@@ -28,6 +29,15 @@ double quantile(std::span<const double> values, double share) {
   return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
 }
 
+namespace {
+
+// Finite, so that it is not taken for an error that is not known.
+double inSizes(double length, double size) {
+  return std::min(std::abs(length) / size, std::numeric_limits<double>::max());
+}
+
+}  // namespace
+
 void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth, std::span<const double> sizes) {
   std::vector<double> errors, widths;
   for (size_t i = 0; i < told.size(); ++i) {
@@ -41,8 +51,8 @@ void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth
           break;
         }
         ++cell.found;
-        errors.push_back(std::abs(told[i].t - truth[i].t) / sizes[i]);
-        if (cell.certified) widths.push_back((told[i].hi - told[i].lo) / sizes[i]);
+        errors.push_back(inSizes(told[i].t - truth[i].t, sizes[i]));
+        if (cell.certified) widths.push_back(inSizes(told[i].hi - told[i].lo, sizes[i]));
         cell.violations += told[i].lo > truth[i].hi || told[i].hi < truth[i].lo;
         break;
       case Told::Kind::none:
@@ -55,7 +65,7 @@ void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth
       case Told::Kind::bounded:
         if (!contact) break;
         ++cell.undecided;
-        errors.push_back(std::abs(truth[i].t - told[i].lo) / sizes[i]);
+        errors.push_back(inSizes(truth[i].t - told[i].lo, sizes[i]));
         cell.violations += told[i].lo > truth[i].hi;
         break;
     }

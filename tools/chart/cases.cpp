@@ -4,6 +4,7 @@
 
 #include "workloads/families.h"
 #include "workloads/generate.h"
+#include "workloads/stability.h"
 
 namespace radar::tools {
 
@@ -40,6 +41,19 @@ Workload familyScenes(std::initializer_list<Family> families, Extent extent) {
   return workload;
 }
 
+// Cases of the stability families in which little is to be seen, or little is missed: a scene of each family, the
+// values of its parameter in turn.
+Workload grazingScenes(Extent extent) {
+  Workload workload;
+  for (const StabilityFamily& family : stabilityFamilies()) {
+    if (family.name != "thin" && family.name != "edge-on" && family.name != "slope" && family.name != "near") continue;
+    std::vector<StabilityCase> cases;
+    for (uint32_t i = 0; i < of(extent, kCasesPerScene, 16, 4); ++i) cases.push_back(stabilityCase(family, i, 1));
+    append(workload, workloadOf(cases));
+  }
+  return workload;
+}
+
 std::vector<uint32_t> resolutions(Extent extent) {
   if (extent == Extent::full) return {16, 32, 64, 128, 256, 512, 1024};
   if (extent == Extent::quick) return {16, 64, 256};
@@ -66,8 +80,10 @@ std::vector<Case> frontCases(Extent extent) {
       familyScenes({Family::nonConvex}, extent));
   add("interlocking", "Interlocking shapes: ring on peg, hook behind bar, key in keyhole",
       familyScenes({Family::interlocking}, extent));
-  add("thin", "Thin and grazing: sheets, open cylinders, plates and rods along and just off the axes",
+  add("thin", "Thin and open shapes: sheets, open cylinders, plates and rods along and just off the axes",
       familyScenes({Family::open, Family::directions}, extent));
+  add("grazing", "Grazing: needles, plates edge-on, faces along the motion, near misses and near hits",
+      grazingScenes(extent));
   return cases;
 }
 

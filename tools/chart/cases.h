@@ -19,7 +19,7 @@ struct Case {
   Workload workload;
 };
 
-/// Section front: the paper's Table 1 and Figure 7, convex, non-convex, interlocking, thin and grazing shapes.
+/// Section front: the paper's Table 1 and Figure 7, convex, non-convex, interlocking, thin, grazing shapes.
 std::vector<Case> frontCases(Extent extent);
 /// Meshes in random poses; not empty.
 Case meshesCase(Extent extent, std::vector<MeshData> meshes);

@@ -26,7 +26,8 @@ struct Cell {
   double cpuUs = NAN;                          ///< processor time of all threads, in the mean
   double sceneUs = NAN;                        ///< beside it: changing from scene to scene, divided alike
 
-  // How right. Held against the exact answers; lengths in sizes of the sensor (the greatest extent of its box).
+  // How right. Held against the exact answers; lengths in sizes of the sensor (the greatest extent of its box), of a
+  // point in the unit of its coordinates.
   uint32_t contacts = 0;    ///< queries with a contact within D, in truth
   uint32_t found = 0;       ///< contacts for which a distance was told
   uint32_t misses = 0;      ///< contacts told as none, or not seen

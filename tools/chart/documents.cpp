@@ -68,6 +68,18 @@ std::string timesOf(const Record& record, const std::string& method) {
   return inWords(us.least) + " to " + inWords(us.most) + " us a query";
 }
 
+// On how many workloads the mode is on the front beside methods that sample, and on which.
+std::string frontsOf(const Record& record, const std::string& family) {
+  std::string on;
+  int number = 0;
+  for (const WorkloadNote& workload : record.workloads) {
+    if (besideSampling(shownCells(record, "front", workload.name), family).onFront.empty()) continue;
+    ++number;
+    on += (on.empty() ? "" : ", ") + workload.name;
+  }
+  return print("%d of %zu workloads", number, record.workloads.size()) + (number > 0 ? " (" + on + ")" : "");
+}
+
 // Mode by mode, with the run's numbers: of what it measured.
 std::vector<std::string> adviceOf(const Record& record) {
   const auto worst = [](const Cell& cell) { return cell.errorWorst; };
@@ -77,12 +89,11 @@ std::vector<std::string> adviceOf(const Record& record) {
                    print("; worst error over all workloads %.2g of the sensor's size. Use it for time of impact, "
                          "placement, clearance.",
                          spreadOf(record, "contact", worst).most));
-  advice.push_back(
-      "**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
-      print(
-          "; worst error %.2g of the sensor's size or less, always on the safe side. Use it where a bracket suffices, "
-          "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
-          spreadOf(record, "bounded 64", worst).most));
+  advice.push_back("**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
+                   print("; worst error %.2g of the sensor's size or less, and the bracket always holds. Use it where "
+                         "a bracket suffices, "
+                         "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
+                         spreadOf(record, "bounded 64", worst).most));
   advice.push_back(
       "**The paper's method: mode `sampled`**. At 64 pixels " + timesOf(record, "sampled 64") +
       print(
@@ -93,6 +104,14 @@ std::vector<std::string> adviceOf(const Record& record) {
                    timesOf(record, "reference") +
                    ", exact, from trees on the CPU. Where it is faster than mode "
                    "`contact` the sentences under each chart say by how much.");
+  advice.push_back(
+      "**Beside methods that sample** (pixels of mode sampled, rays of Embree, steps of FCL and ODE), mode `contact` "
+      "is "
+      "on the front on " +
+      frontsOf(record, "contact") + ", mode `bounded` on " + frontsOf(record, "bounded") +
+      ". Elsewhere bounds, a pixel or more wide, cost more than rays or steps through trees on the CPU, which happen "
+      "to "
+      "answer these queries without a miss and certify none of them; by how much stands under each chart.");
   return advice;
 }
 
@@ -102,13 +121,14 @@ std::string accuracyDocument(const Record& record, const std::string& charts) {
   std::string text = "# Accuracy\n\nHow right each method is, on the same queries, against the exact answers. " +
                      originOf(record) + "The numbers: [CSV](" + charts + "/chart.csv), [JSON](" + charts +
                      "/chart.json); all charts on one page: [chart.html](" + charts +
-                     "/chart.html). This file is made from them:\n\n    cyber-radar chart --render --out docs/chart "
-                     "--docs docs\n\n";
+                     "/chart.html). This file is made from them, anew by the same command with `--render`.\n\n";
   text +=
       "Lengths are in sizes of the sensor, the greatest extent of its box. An answer is *missed* if there is a contact "
       "and the method tells none, or sees none; a *false hit* if it tells one where there is none; *only bounded* if "
-      "mode bounded tells a certain lower bound and no more, which then counts as its answer. Running the command "
-      "again gives the same columns to the last digit, on the same driver.\n\n## Which mode for what\n\n" +
+      "mode bounded tells a certain lower bound and no more, which then counts as its answer. " +
+      std::string(kFrontInWords) +
+      " Running the command again gives the same columns to the last digit, on the same driver.\n\n## Which mode for "
+      "what\n\n" +
       listOf(adviceOf(record));
   for (const WorkloadNote& workload : record.workloads) {
     text += "## " + workload.name + "\n\n" + workload.about + ".\n\n" +

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "chart/findings.h"
-#include "report/log_chart.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -14,20 +13,41 @@ namespace {
 struct Look {
   const char* family;  ///< how its name starts
   int colour;
+  Mark mark;
   bool ours;
 };
-constexpr std::array kLooks{Look{"sampled", 0, true}, Look{"drawing all", 0, true}, Look{"bounded", 2, true},
-                            Look{"contact", 1, true}, Look{"reference", 6, true},   Look{"Embree", 3, false},
-                            Look{"FCL", 4, false},    Look{"Bullet", 5, false},     Look{"ODE", 7, false}};
+constexpr std::array kLooks{Look{"sampled", 0, Mark::circle, true},
+                            Look{"drawing all", 0, Mark::square, true},
+                            Look{"bounded", 2, Mark::square, true},
+                            Look{"contact", 1, Mark::diamond, true},
+                            Look{"reference", 6, Mark::triangle, true},
+                            Look{"Embree rays", 3, Mark::circle, false},
+                            Look{"Embree vertex rays", 3, Mark::diamond, false},
+                            Look{"FCL", 4, Mark::square, false},
+                            Look{"Bullet hull", 5, Mark::circle, false},
+                            Look{"Bullet triangles", 5, Mark::triangle, false},
+                            Look{"ODE", 7, Mark::diamond, false}};
+
+constexpr const char* kKey =
+    "filled: Cyber Radar; hollow: other libraries; crosses: some answers are wrong; numbers: pixels, rays or steps";
+
+// What stands before the colon is the title, the rest a line below it.
+void setTitle(Chart& chart, const std::string& caption) {
+  const size_t colon = caption.find(": ");
+  chart.title = caption.substr(0, colon);
+  if (colon != std::string::npos) chart.about.push_back(caption.substr(colon + 2));
+}
 
 // Ours are filled, others hollow.
-LogLine lineFor(const std::string& family, const std::string& name) {
-  LogLine line;
+ChartLine lineFor(const std::string& family, const std::string& name) {
+  ChartLine line;
   line.name = name;
   const auto look =
       std::find_if(kLooks.begin(), kLooks.end(), [&](const Look& known) { return family.starts_with(known.family); });
-  line.colour = look == kLooks.end() ? kLooks.back().colour : look->colour;
   line.hollow = look == kLooks.end() || !look->ours;
+  if (look == kLooks.end()) return line;
+  line.colour = look->colour;
+  line.mark = look->mark;
   return line;
 }
 
@@ -40,10 +60,11 @@ std::string tipOf(const Cell& cell) {
   return text;
 }
 
-LogPoint pointOf(const Cell& cell) {
-  LogPoint point;
+ChartPoint pointOf(const Cell& cell) {
+  ChartPoint point;
   point.x = cell.us;
-  point.y = std::isnan(cell.errorWorst) ? 0 : cell.errorWorst;
+  constexpr double kMost = 1e200;  // that an axis can hold
+  point.y = std::isnan(cell.errorWorst) ? 0 : std::min(cell.errorWorst, kMost);
   point.missed = wrongShare(cell);
   if (cell.size > 0) point.label = std::to_string(cell.size);
   point.tip = tipOf(cell);
@@ -51,10 +72,11 @@ LogPoint pointOf(const Cell& cell) {
 }
 
 // A line for each family, in the order of appearance.
-std::vector<LogLine> linesOf(const std::vector<const Cell*>& cells) {
-  std::vector<LogLine> lines;
+std::vector<ChartLine> linesOf(const std::vector<const Cell*>& cells) {
+  std::vector<ChartLine> lines;
   for (const Cell* cell : cells) {
-    auto line = std::find_if(lines.begin(), lines.end(), [&](const LogLine& one) { return one.name == cell->family; });
+    auto line =
+        std::find_if(lines.begin(), lines.end(), [&](const ChartLine& one) { return one.name == cell->family; });
     if (line == lines.end()) line = lines.insert(line, lineFor(cell->family, cell->family));
     line->points.push_back(pointOf(*cell));
   }
@@ -62,63 +84,65 @@ std::vector<LogLine> linesOf(const std::vector<const Cell*>& cells) {
 }
 
 // The times of each method of a section over x, the fitted slope in its name.
-std::vector<LogLine> timeLines(const Record& record, const std::string& section, const std::string& workload,
-                               bool withSlopes) {
-  std::vector<LogLine> lines;
+std::vector<ChartLine> timeLines(const Record& record, const std::string& section, const std::string& workload,
+                                 bool withSlopes) {
+  std::vector<ChartLine> lines;
   for (const Cell* cell : shownCells(record, section, workload)) {
-    auto line = std::find_if(lines.begin(), lines.end(), [&](const LogLine& one) { return one.name == cell->method; });
+    auto line =
+        std::find_if(lines.begin(), lines.end(), [&](const ChartLine& one) { return one.name == cell->method; });
     if (line == lines.end()) line = lines.insert(line, lineFor(cell->family, cell->method));
     line->points.push_back({cell->x, cell->us, 0, "", tipOf(*cell)});
   }
   if (!withSlopes) return lines;
-  for (LogLine& line : lines) {
+  for (ChartLine& line : lines) {
     std::vector<Point> points;
-    for (const LogPoint& point : line.points) points.push_back({point.x, point.y});
+    for (const ChartPoint& point : line.points) points.push_back({point.x, point.y});
     if (points.size() > 1) line.name += print(" (^%.2f)", slopeOf(points));
   }
   return lines;
 }
 
 std::vector<Drawing> resolutionDrawings(const Record& record, const WorkloadNote& workload) {
-  LogChart chart;
-  chart.title = "Time against resolution: " + workload.about;
+  Chart chart;
+  const std::string caption = "Time against resolution: " + workload.about;
+  setTitle(chart, caption);
   chart.xName = "pixels, or rays, of the longer side";
   chart.yName = "microseconds a query";
   for (const Cell* cell : shownCells(record, "front", workload.name)) {
     const bool hasPixels = cell->family == "sampled" || cell->family == "bounded" || cell->family == "Embree rays";
     if (!hasPixels || cell->size == 0) continue;
     auto line = std::find_if(chart.lines.begin(), chart.lines.end(),
-                             [&](const LogLine& one) { return one.name == cell->family; });
+                             [&](const ChartLine& one) { return one.name == cell->family; });
     if (line == chart.lines.end()) line = chart.lines.insert(line, lineFor(cell->family, cell->family));
     line->points.push_back({static_cast<double>(cell->size), cell->us, 0, "", tipOf(*cell)});
   }
-  for (LogLine& line : chart.lines) {
+  for (ChartLine& line : chart.lines) {
     std::vector<Point> points;
-    for (const LogPoint& point : line.points) points.push_back({point.x, point.y});
+    for (const ChartPoint& point : line.points) points.push_back({point.x, point.y});
     if (points.size() > 1) line.name += print(" (^%.2f)", slopeOf(points));
   }
   if (chart.lines.empty()) return {};
-  return {{"growth-resolution", chart.title, {}, logChart(chart)}};
+  return {{"growth-resolution", caption, {}, chart}};
 }
 
 }  // namespace
 
 Drawing frontDrawing(const Record& record, const WorkloadNote& workload) {
   const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
-  LogChart chart;
-  chart.title = workload.about;
+  Chart chart;
+  setTitle(chart, workload.about);
+  chart.about.push_back(kKey);
   chart.xName = "microseconds a query, in as many threads as suit the method (left is faster)";
   chart.yName = "worst error, sensor sizes (lower is better)";
   chart.floor = kErrorFloor;
   chart.floorName = print("%g or less, zero too", kErrorFloor);
-  chart.missedName = "Wrong answers: contacts missed or invented, share of queries";
+  chart.missedName = "Some answers are wrong: contacts missed or invented, share of queries";
+  chart.frontName = "the front: nothing is both faster and more right";
   chart.lines = linesOf(cells);
   for (const Cell* cell : frontOf(cells)) chart.front.push_back(pointOf(*cell));
-  Drawing drawing{"front-" + workload.name, workload.about, {}, logChart(chart)};
-  drawing.notes.push_back(print(
-      "%u queries, %u with a contact. Filled: Cyber Radar; hollow: others; numbers: pixels, rays or steps; crossed: "
-      "some answers are wrong. The broad line is the front: nothing is both faster and more right.",
-      cells.empty() ? 0 : cells[0]->queries, cells.empty() ? 0 : cells[0]->contacts));
+  Drawing drawing{"front-" + workload.name, workload.about, {}, chart};
+  drawing.notes.push_back(print("%u queries, %u with a contact.", cells.empty() ? 0 : cells[0]->queries,
+                                cells.empty() ? 0 : cells[0]->contacts));
   for (const Cell* cell : failedCells(record, "front", workload.name)) {
     drawing.notes.push_back("Not drawn: " + cell->method + " " + cell->failed + ".");
   }
@@ -126,22 +150,24 @@ Drawing frontDrawing(const Record& record, const WorkloadNote& workload) {
 }
 
 Drawing table1Drawing(const Record& record) {
-  LogChart chart;
-  chart.title = "The paper's Table 1: teapots among 10,000 to 30,000 boxes";
+  Chart chart;
+  const std::string caption = "The paper's Table 1: teapots among 10,000 to 30,000 boxes";
+  setTitle(chart, caption);
+  chart.about.push_back(
+      "filled: Cyber Radar; hollow: other libraries; dashed: what the paper measured, on its machine");
   chart.xName = "boxes";
   chart.yName = "microseconds a query";
   chart.lines = timeLines(record, "table1", "boxes", false);
-  LogLine radar{"the paper's Cyber Radar", 6, false, true, {}}, opcode{"the paper's OPCODE", 6, false, true, {}};
+  ChartLine radar{.name = "the paper's Cyber Radar", .colour = 6, .dashed = true, .points = {}};
+  ChartLine opcode{.name = "the paper's OPCODE", .colour = 6, .dashed = true, .points = {}};
   for (const PaperRow& row : paperTable1()) {
     radar.points.push_back({row.boxes, 1000 * row.cyberRadar, 0, "", ""});
     opcode.points.push_back({row.boxes, 1000 * row.opcode, 0, "", ""});
   }
   chart.lines.push_back(radar);
   chart.lines.push_back(opcode);
-  return {"table1",
-          chart.title,
-          {"Dashed: what the paper measured on its machine, the first and last of its rows."},
-          logChart(chart)};
+  return {
+      "table1", caption, {"Dashed: what the paper measured on its machine, the first and last of its rows."}, chart};
 }
 
 std::vector<Drawing> growthDrawings(const Record& record) {
@@ -153,19 +179,21 @@ std::vector<Drawing> growthDrawings(const Record& record) {
                              Axis{"triangles", "Finer meshes: rings among 200 rings", "triangles of each mesh"}};
   std::vector<Drawing> drawings;
   for (const Axis& axis : kAxes) {
-    LogChart chart;
-    chart.title = axis.title;
+    Chart chart;
+    setTitle(chart, axis.title);
     chart.xName = axis.xName;
     chart.yName = "microseconds a query";
     chart.lines = timeLines(record, "growth", axis.name, true);
     if (chart.lines.empty()) continue;
-    drawings.push_back({std::string("growth-") + axis.name, axis.title, {}, logChart(chart)});
+    drawings.push_back({std::string("growth-") + axis.name, axis.title, {}, chart});
   }
   if (!record.workloads.empty()) {
     for (const Drawing& drawing : resolutionDrawings(record, record.workloads.front())) drawings.push_back(drawing);
   }
   for (Drawing& drawing : drawings) {
-    drawing.notes.push_back("In brackets: the exponent p of time ~ x^p, fitted by least squares of logarithms.");
+    drawing.chart.about.emplace_back(
+        "filled: Cyber Radar; hollow: other libraries; in brackets: time grows as this power, by least squares of "
+        "logarithms");
   }
   return drawings;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "chart/record.h"
+#include "report/chart.h"
 
 namespace radar::tools {
 
@@ -9,7 +10,7 @@ struct Drawing {
   std::string name;     ///< of its file
   std::string caption;  ///< what it shows, in one line
   std::vector<std::string> notes;
-  std::string svg;
+  Chart chart;
 };
 
 /// Time against worst error on one workload, misses in a band of their own, the front drawn.

@@ -51,14 +51,26 @@ const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& m
   return found == cells.end() ? nullptr : *found;
 }
 
-// Whether a member of the family is on the front of itself and the sampling methods.
-bool isOnFrontBesideSampling(const std::vector<const Cell*>& cells, const std::string& family) {
-  std::vector<const Cell*> beside;
-  for (const Cell* cell : cells) {
-    if (isSampling(*cell) || cell->family == family) beside.push_back(cell);
+std::string sizesOf(const std::vector<const Cell*>& cells) {
+  std::string text;
+  for (const Cell* cell : cells) text += print(text.empty() ? "%u" : "/%u", cell->size);
+  return text;
+}
+
+// "mode bounded is, at 16/64 pixels", or what keeps it off the front.
+std::string standingOf(const std::vector<const Cell*>& cells, const std::string& family) {
+  const BesideSampling beside = besideSampling(cells, family);
+  if (!beside.onFront.empty()) {
+    const bool one = beside.onFront[0]->size == 0;
+    return "mode " + family + " is" + (one ? "" : ", at " + sizesOf(beside.onFront) + " pixels");
   }
-  const std::vector<const Cell*> front = frontOf(beside);
-  return std::any_of(front.begin(), front.end(), [&](const Cell* cell) { return cell->family == family; });
+  if (beside.nearest == nullptr) return "mode " + family + " was not measured";
+  const Cell &nearest = *beside.nearest, &better = *beside.better;
+  const auto errorOf = [](const Cell& cell) { return std::isnan(cell.errorWorst) ? 0 : cell.errorWorst; };
+  return "mode " + family + " is not: " + nearest.method + ", which comes nearest, takes " + timeOf(nearest.us) +
+         print(", %.3g times as long as ", nearest.us / better.us) + better.method +
+         print(", with a worst error of %.2g against %.2g (%.2g%% of those are wrong, none is certified)",
+               errorOf(nearest), errorOf(better), 100 * wrongShare(better));
 }
 
 // The fastest member of each family that is faster, by how much, and how many of its answers are wrong.
@@ -75,6 +87,7 @@ std::vector<std::string> fasterThan(const std::vector<const Cell*>& cells, const
     }
   }
   std::vector<std::string> names;
+  names.reserve(best.size());
   for (const Cell* cell : best) {
     names.push_back(cell->method + print(" (%.3g times", contact.us / cell->us) +
                     (wrongShare(*cell) > 0 ? print(", %.1f%% wrong)", 100 * wrongShare(*cell)) : ")"));
@@ -140,6 +153,34 @@ bool isSampling(const Cell& cell) {
   return cell.family == "sampled" || cell.family.starts_with("Embree") || cell.family.ends_with("steps");
 }
 
+BesideSampling besideSampling(std::span<const Cell* const> cells, const std::string& family) {
+  std::vector<const Cell*> sampling, members;
+  for (const Cell* cell : cells) {
+    if (isSampling(*cell)) sampling.push_back(cell);
+    if (cell->family == family) members.push_back(cell);
+  }
+  std::vector<const Cell*> both = sampling;
+  both.insert(both.end(), members.begin(), members.end());
+  BesideSampling beside;
+  for (const Cell* cell : frontOf(both)) {
+    if (cell->family == family) beside.onFront.push_back(cell);
+  }
+  std::sort(beside.onFront.begin(), beside.onFront.end(),
+            [](const Cell* a, const Cell* b) { return a->size < b->size; });
+  if (!beside.onFront.empty()) return beside;
+  for (const Cell* member : members) {
+    const Cell* better = nullptr;
+    for (const Cell* cell : sampling) {
+      const bool asRight = rankOf(*cell) <= rankOf(*member);
+      if (asRight && (better == nullptr || cell->us < better->us)) better = cell;
+    }
+    if (beside.nearest != nullptr && member->us / better->us >= beside.nearest->us / beside.better->us) continue;
+    beside.nearest = member;
+    beside.better = better;
+  }
+  return beside;
+}
+
 double slopeOf(std::span<const Point> points) {
   double x = 0, y = 0, xx = 0, xy = 0;
   for (const Point& point : points) {
@@ -183,9 +224,8 @@ std::vector<std::string> frontFindings(const Record& record, const std::string& 
   findings.push_back("Neither a miss nor a false hit: " + listOf(namesOf(right)) +
                      ". With a certificate: " + listOf(namesOf(certain)) + ".");
   findings.push_back("On the front: " + listOf(namesOf(frontOf(cells))) + ".");
-  findings.push_back(std::string("Beside methods that look at pixels, rays or steps, mode bounded is ") +
-                     (isOnFrontBesideSampling(cells, "bounded") ? "" : "not ") + "on the front, and mode contact is " +
-                     (isOnFrontBesideSampling(cells, "contact") ? "" : "not ") + "on it.");
+  findings.push_back("On the front beside methods that sample pixels, rays or steps: " + standingOf(cells, "contact") +
+                     "; " + standingOf(cells, "bounded") + ".");
   const Cell* contact = methodIn(cells, "contact");
   if (contact == nullptr) return findings;
   const auto fastest =

@@ -24,12 +24,28 @@ std::vector<const Cell*> shownCells(const Record& record, const std::string& sec
 /// Those that have none.
 std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload);
 
+/// What frontOf and besideSampling do, for readers.
+inline constexpr const char* kFrontInWords =
+    "The front holds the methods to which no other is both as fast and as right. A wrong answer is an error that no "
+    "smaller one makes up for: fewer of them are better, whatever the errors; of equal shares, the lesser worst error. "
+    "Modes bounded and contact, which certify what they say, are each also held against the methods that sample "
+    "pixels, "
+    "rays or steps of the motion, without each other.";
+
 /// Those to which no other is both as fast and as right, by rising time. Fewer wrong answers are better; of equal
 /// shares, a lesser worst error, down to kErrorFloor.
 std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
 
 /// Whether the method looks at pixels, rays or steps only, and so sees samples of the shapes or of the motion.
 bool isSampling(const Cell& cell);
+
+/// One family (mode bounded, or contact) beside the methods that sample, not beside other certain ones.
+struct BesideSampling {
+  std::vector<const Cell*> onFront;  ///< its members on the front of both, by rising size
+  const Cell* nearest = nullptr;     ///< if none is: the member that loses least time
+  const Cell* better = nullptr;      ///< to this method, the fastest of those that are as right
+};
+BesideSampling besideSampling(std::span<const Cell* const> cells, const std::string& family);
 
 struct Point {
   double x = 0, y = 0;

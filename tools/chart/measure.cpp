@@ -177,7 +177,8 @@ Truth truthOf(const Workload& workload) {
     for (const uint32_t i : batch.queries) {
       const Query query = asked(workload.queries[i], Mode::contact, 0);
       truth.results[i] = exact.answer(query);
-      truth.sizes[i] = sensorSize(player.scene(), query);
+      const double size = sensorSize(player.scene(), query);
+      truth.sizes[i] = size > 0 ? size : 1;
     }
   }
   return truth;

@@ -5,8 +5,7 @@
 #include "chart/report.h"
 #include "chart/tables.h"
 #include "report/chart.h"
-#include "report/picture.h"
-#include "report/print.h"
+#include "report/markup.h"
 
 namespace radar::tools {
 
@@ -37,7 +36,7 @@ std::string figureOf(const Record& record, const Drawing& drawing) {
   std::vector<std::string> notes = drawing.notes;
   notes.push_back(record.command + "; " + record.machine + "; " + record.device + "; commit " + record.commit + "; " +
                   record.date);
-  return figure(drawing.caption, drawing.svg, notes);
+  return figure(inlineSvg(drawing.chart, drawing.name), notes);
 }
 
 std::string frontsOf(const Record& record) {
@@ -58,7 +57,9 @@ std::string pageOf(const Record& record) {
   std::string html = openPage("Cyber Radar: accuracy against speed", "Accuracy against speed");
   html +=
       "<p>How far can a shape move before it first touches anything: every method answers the same queries, and is "
-      "held against the exact answers. Lengths are in sizes of the sensor, the greatest extent of its box.</p>\n"
+      "held against the exact answers. Lengths are in sizes of the sensor, the greatest extent of its box. " +
+      std::string(kFrontInWords) +
+      "</p>\n"
       "<p class=\"soft\">" +
       escaped(record.date) + ", commit " + escaped(record.commit) + "; " + escaped(record.machine) + "; " +
       escaped(record.device) + "</p>\n<p class=\"soft\"><code>" + escaped(record.command) + "</code></p>\n";
@@ -76,7 +77,10 @@ std::string pageOf(const Record& record) {
 
 void writeReport(const std::filesystem::path& folder, const Record& record) {
   writeWhole(folder / "chart.html", pageOf(record));
-  for (const Drawing& drawing : drawingsOf(record)) writePicture(folder, drawing.name, drawing.svg);
+  for (const Drawing& drawing : drawingsOf(record)) {
+    writeWhole(folder / (drawing.name + ".svg"), svgFile(drawing.chart));
+    writeWhole(folder / (drawing.name + ".png"), pngFile(drawing.chart));
+  }
 }
 
 }  // namespace radar::tools

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <thread>
@@ -10,6 +13,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
 #include "import/mesh_import.h"
+#include "report/gnuplot.h"
 
 namespace radar::tools {
 
@@ -38,6 +42,30 @@ void requireFolder(const char* option, const std::string& folder) {
   if (!std::filesystem::is_directory(folder)) throw InputError(option, folder, "expected a folder, or a place for one");
 }
 
+// What a file and a link can be named after, and no case is yet.
+std::string nameFor(const std::string& file, const std::vector<Case>& cases) {
+  std::string stem = std::filesystem::path(file).stem().string();
+  for (char& c : stem) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    c = plain ? static_cast<char>(std::tolower(c)) : '-';
+  }
+  std::string name = stem;
+  const auto isTaken = [&](const Case& one) { return one.name == name; };
+  for (int i = 2; std::any_of(cases.begin(), cases.end(), isTaken); ++i) name = stem + "-" + std::to_string(i);
+  return name;
+}
+
+// For a shell.
+std::string asArgument(const std::string& text) {
+  const auto isPlain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._-+,=:@%", c);
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain)) return text;
+  std::string argument = "'";
+  for (const char c : text) argument += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return argument + "'";
+}
+
 std::vector<Case> casesOf(const Options& options, Extent extent) {
   std::vector<Case> cases = frontCases(extent);
   std::vector<std::string> warnings;
@@ -47,8 +75,7 @@ std::vector<Case> casesOf(const Options& options, Extent extent) {
   for (const std::string& file : options.files) {
     Workload workload = readQueryFile(file, warnings);
     if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
-    cases.push_back(
-        {"front", std::filesystem::path(file).stem().string(), "Queries of " + file, 0, std::move(workload)});
+    cases.push_back({"front", nameFor(file, cases), "Queries of " + file, 0, std::move(workload)});
   }
   printWarnings(warnings);
   for (auto* more : {table1Cases, growthCases}) {
@@ -58,12 +85,12 @@ std::vector<Case> casesOf(const Options& options, Extent extent) {
 }
 
 std::string commandOf(const Options& options) {
-  std::string command = "cyber-radar chart --out " + options.out;
+  std::string command = "cyber-radar chart --out " + asArgument(options.out);
   if (options.extent != "full") command += " --extent " + options.extent;
   if (!options.device.empty()) command += " --device " + options.device;
-  if (!options.docs.empty()) command += " --docs " + options.docs;
-  for (const std::string& mesh : options.meshes) command += " --mesh " + mesh;
-  for (const std::string& file : options.files) command += " " + file;
+  if (!options.docs.empty()) command += " --docs " + asArgument(options.docs);
+  for (const std::string& mesh : options.meshes) command += " --mesh " + asArgument(mesh);
+  for (const std::string& file : options.files) command += " " + asArgument(file);
   return command;
 }
 
@@ -93,6 +120,7 @@ Record measure(const Options& options) {
 }
 
 void chart(Options options) {
+  requireGnuplot();
   if (options.quick) options.extent = "quick";
   requireFolder("--out", options.out);
   if (!options.docs.empty()) requireFolder("--docs", options.docs);

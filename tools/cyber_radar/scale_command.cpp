@@ -7,6 +7,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
+#include "report/gnuplot.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
@@ -113,6 +114,7 @@ int scale(Options options) {
   settings.resolution = options.engine.checked().resolution;
   const std::vector<uint32_t> asked = devicesFrom(options.device);
   if (!options.out.empty()) {
+    requireGnuplot();
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     if (!std::filesystem::is_directory(options.out)) {

@@ -107,7 +107,7 @@ class Embree : public Peer {
   }
 
   void show(std::span<const Instance> objects) override {
-    const bool anew = objects.size() != shown_.size();
+    const bool anew = !top_ || objects.size() != shown_.size();
     if (anew) {
       top_ = newScene();
       boxes_.resize(objects.size());

@@ -59,7 +59,7 @@ class Fcl : public Peer {
   Fcl(const Workload& workload, uint32_t steps) : shapes_(workload, modelOf), steps_(steps) {}
 
   void show(std::span<const Instance> objects) override {
-    if (objects.size() != shown_.size()) {
+    if (!manager_ || objects.size() != shown_.size()) {
       objects_.clear();
       manager_ = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
       std::vector<fcl::CollisionObjectd*> all;

@@ -1,7 +1,10 @@
 #include "report/colours.h"
 
+#include <algorithm>
 #include <array>
-#include <string_view>
+#include <string>
+
+#include "report/print.h"
 
 namespace radar::tools {
 
@@ -13,39 +16,23 @@ struct Colour {
 
 // Okabe and Ito's colours, which the colour-blind tell apart; the dark page takes their lighter ones first.
 constexpr std::array kColours{
-    Colour{"page", "#fff", "#14171b"},    Colour{"ink", "#1b1f24", "#e8eaed"},   Colour{"soft", "#5b6470", "#a2aab4"},
+    Colour{"page", "#ffffff", "#14171b"}, Colour{"ink", "#1b1f24", "#e8eaed"},   Colour{"soft", "#5b6470", "#a2aab4"},
     Colour{"grid", "#e3e6ea", "#2c323a"}, Colour{"panel", "#f6f7f9", "#1c2026"}, Colour{"c0", "#0072b2", "#56b4e9"},
     Colour{"c1", "#d55e00", "#e69f00"},   Colour{"c2", "#009e73", "#2bc59a"},    Colour{"c3", "#cc79a7", "#cc79a7"},
     Colour{"c4", "#8a6d00", "#f0e442"},   Colour{"c5", "#56b4e9", "#7f9cff"},    Colour{"c6", "#1b1f24", "#e8eaed"},
     Colour{"c7", "#c98500", "#ff8a5c"}};
-constexpr int kLineColours = 8;
-
-std::string withColours(std::string rules, std::string_view Colour::*scheme) {
-  for (const Colour& colour : kColours) {
-    const std::string name = "var(--" + std::string(colour.name) + ")";
-    for (size_t at = rules.find(name); at != std::string::npos; at = rules.find(name, at)) {
-      rules.replace(at, name.size(), colour.*scheme);
-    }
-  }
-  return rules;
+// The ways in which gnuplot writes a colour.
+std::array<std::string, 3> formsOf(std::string_view colour) {
+  const unsigned long all = std::stoul(std::string(colour.substr(1)), nullptr, 16);
+  const unsigned long red = all >> 16, green = all >> 8 & 255, blue = all & 255;
+  return {std::string(colour), print("rgb(%lu,%lu,%lu)", red, green, blue),
+          print("rgb(%3lu, %3lu, %3lu)", red, green, blue)};
 }
 
 }  // namespace
 
-std::string chartRules() {
-  std::string rules = R"(svg{font:13px system-ui,"DejaVu Sans",sans-serif}
-svg text{fill:var(--ink)}.middle{text-anchor:middle}.end{text-anchor:end}.bold{font-weight:600}.small{font-size:11px}
-.grid{stroke:var(--grid);fill:none}.line{fill:none;stroke-width:2.5}.thin{stroke-width:1.5}
-.ideal{fill:none;stroke:var(--soft);stroke-dasharray:6 5}svg .soft{fill:var(--soft)}
-.front{fill:none;stroke:var(--soft);stroke-width:7;stroke-opacity:.28;stroke-linejoin:round}
-.band{fill:var(--c1);fill-opacity:.1}.hollow{fill:var(--panel);stroke-width:2}.cross{fill:none;stroke-width:1.5}
-.bar{stroke:var(--panel);stroke-width:.6}
-)";
-  for (int i = 0; i < kLineColours; ++i) {
-    const std::string c = "c" + std::to_string(i), t = "t" + std::to_string(i), value = "var(--" + c + ")";
-    rules += "." + c + "{stroke:" + value + "}.mark." + c + ",.bar." + c + ",svg ." + t + "{fill:" + value + "}\n";
-  }
-  return rules;
+std::string_view lightColour(std::string_view name) {
+  return std::find_if(kColours.begin(), kColours.end(), [&](const Colour& one) { return one.name == name; })->light;
 }
 
 std::string colourVariables() {
@@ -58,10 +45,18 @@ std::string colourVariables() {
   return light + "}\n" + dark + "}}\n";
 }
 
-std::string standaloneRules() {
-  const std::string rules = chartRules() + ".paper{fill:var(--panel)}\n";
-  return withColours(rules, &Colour::light) + "@media(prefers-color-scheme:dark){\n" +
-         withColours(rules, &Colour::dark) + "}\n";
+std::string darkChartRules() {
+  std::string rules = "@media(prefers-color-scheme:dark){\n";
+  for (const Colour& colour : kColours) {
+    for (const char* property : {"fill", "stroke", "color"}) {
+      std::string selectors;
+      for (const std::string& form : formsOf(colour.light)) {
+        selectors += print("%ssvg [%s=\"%s\"]", selectors.empty() ? "" : ",", property, form.c_str());
+      }
+      rules += selectors + print("{%s:%s}\n", property, std::string(colour.dark).c_str());
+    }
+  }
+  return rules + "}\n";
 }
 
 }  // namespace radar::tools

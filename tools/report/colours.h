@@ -1,15 +1,18 @@
-// Colours, and the rules by which charts use them.
+// The colours of pages and charts, which have the same names: page, ink, soft, grid, panel, and c0 to c7 of lines.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace radar::tools {
 
-/// The rules of inline charts. Colours are written var(--name).
-std::string chartRules();
-/// Gives the names their colours, light or dark as the reader's screen is.
+/// "#0072b2", on a light page.
+std::string_view lightColour(std::string_view name);
+
+/// CSS that gives each var(--name) its colour, light or dark as the reader's screen is.
 std::string colourVariables();
-/// The rules with the colours put in, for a chart outside a page.
-std::string standaloneRules();
+
+/// CSS that turns charts, which gnuplot draws in the light colours, dark where the reader's screen is.
+std::string darkChartRules();
 
 }  // namespace radar::tools

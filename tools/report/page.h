@@ -10,8 +10,8 @@ namespace radar::tools {
 std::string openPage(const std::string& title, const std::string& heading);
 std::string closePage();
 
-/// A picture under its caption and what else is to be said of it. `svg` is markup, the others are text.
-std::string figure(const std::string& caption, const std::string& svg, const std::vector<std::string>& notes = {});
+/// A chart under what is to be said of it. `svg` is markup, the others are text.
+std::string figure(const std::string& svg, const std::vector<std::string>& notes = {});
 
 /// A table that scrolls by itself where it is too wide: openTable(), rows, closeTable(). Cells are markup.
 std::string openTable();

@@ -1,8 +1,10 @@
 #include <algorithm>
 
 #include "report/chart.h"
+#include "report/markup.h"
 #include "report/page.h"
 #include "report/print.h"
+#include "report/timeline.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 
@@ -22,40 +24,62 @@ std::string setName(const ScaleReport& report, const ScaleRun& run) {
   return text;
 }
 
-// The value of each count of devices, over the points.
+// Over sensors, from 0 up.
+Chart chartOf(const std::string& title, const std::string& yName) {
+  Chart chart;
+  chart.title = title;
+  chart.xName = "sensors";
+  chart.yName = yName;
+  chart.width = 560;
+  chart.height = 430;
+  chart.logarithmic = false;
+  return chart;
+}
+
 template <class Value>
-std::vector<Series> seriesOf(const ScaleReport& report, size_t from, Value value) {
-  std::vector<Series> series;
+ChartLine lineOf(const ScaleReport& report, const std::string& name, Value value) {
+  ChartLine line;
+  line.name = name;
+  for (size_t p = 0; p < report.sensors.size(); ++p) line.points.push_back({report.sensors[p], value(p), 0, "", ""});
+  return line;
+}
+
+// The value of each count of devices.
+template <class Value>
+void addLines(Chart& chart, const ScaleReport& report, size_t from, Value value) {
   for (size_t count = from; count <= report.devices.size(); ++count) {
-    Series& line = series.emplace_back(Series{countName(count), {}});
-    for (size_t p = 0; p < report.sensors.size(); ++p) line.values.push_back(value(report.run(p, count)));
+    ChartLine line = lineOf(report, countName(count), [&](size_t p) { return value(report.run(p, count)); });
+    line.colour = static_cast<int>(count - 1) % 6;
+    line.mark = static_cast<Mark>((count - 1) % 4);
+    chart.lines.push_back(line);
   }
-  return series;
+}
+
+template <class Value>
+void addIdeal(Chart& chart, const ScaleReport& report, const std::string& name, Value value) {
+  chart.lines.push_back(lineOf(report, name, value));
+  chart.lines.back().dashed = true;
+  chart.lines.back().colour = 6;
 }
 
 std::string charts(const ScaleReport& report) {
   const auto perBatch = [&](const ScaleRun& run) { return run.ms / static_cast<double>(report.batches[run.point]); };
-  std::vector<Series> times = seriesOf(report, 1, perBatch);
   const size_t count = report.devices.size();
-  std::string text = "<div class=\"charts\">\n";
+  Chart times = chartOf("Time of a batch (the paper's Figure 7)", "ms a batch");
+  addLines(times, report, 1, perBatch);
   if (count > 1) {
-    Series ideal{"half of 1", {}, true};
-    if (count > 2) ideal.name = "1 / " + std::to_string(count);
-    for (const double ms : times[0].values) ideal.values.push_back(ms / static_cast<double>(count));
-    times.push_back(ideal);
+    addIdeal(times, report, count > 2 ? "1 / " + std::to_string(count) : "half of 1",
+             [&](size_t p) { return perBatch(report.run(p, 1)) / static_cast<double>(count); });
   }
-  text += figure("Time of a batch against sensors (the paper's Figure 7)",
-                 lineChart("Time of a batch against sensors", "sensors", "ms a batch", report.sensors, times));
+  std::string text = "<div class=\"charts\">\n" + figure(inlineSvg(times, "times"));
   if (count > 1) {
-    std::vector<Series> speedUps = seriesOf(report, 2, [&](const ScaleRun& run) { return report.speedUp(run); });
-    speedUps.push_back({"ideal", std::vector<double>(report.sensors.size(), static_cast<double>(count)), true});
-    text += figure("Speed-up against the first device alone",
-                   lineChart("Speed-up", "sensors", "times as fast", report.sensors, speedUps));
-    std::vector<Series> efficiencies =
-        seriesOf(report, 2, [&](const ScaleRun& run) { return 100 * report.efficiency(run); });
-    efficiencies.push_back({"ideal", std::vector<double>(report.sensors.size(), 100), true});
-    text += figure("Efficiency: share of what the devices can do together",
-                   lineChart("Efficiency", "sensors", "%", report.sensors, efficiencies));
+    Chart speedUps = chartOf("Speed-up against the first device alone", "times as fast");
+    addLines(speedUps, report, 2, [&](const ScaleRun& run) { return report.speedUp(run); });
+    addIdeal(speedUps, report, "ideal", [&](size_t) { return static_cast<double>(count); });
+    Chart efficiencies = chartOf("Efficiency: share of what the devices can do together", "%");
+    addLines(efficiencies, report, 2, [&](const ScaleRun& run) { return 100 * report.efficiency(run); });
+    addIdeal(efficiencies, report, "ideal", [](size_t) { return 100.0; });
+    text += figure(inlineSvg(speedUps, "speed-ups")) + figure(inlineSvg(efficiencies, "efficiencies"));
   }
   return text + "</div>\n";
 }

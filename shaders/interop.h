@@ -226,6 +226,7 @@ INTEROP_CONST kBandPixels = 2048;
 struct ClusterRecord {
   Point centre;  // of recentred vertices
   Point halfExtent;
+  Point edge;    // the longest of its triangles'; only of a cluster
   uint first;    // triangle slot
   uint count;    // triangles; 0: not a cluster
 };
@@ -266,6 +267,7 @@ struct ClusterRef {
 struct RefBox {
   Point lo;
   Point hi;
+  Point edge;  // the cluster's longest
 };
 
 struct PairItem {

@@ -1,7 +1,7 @@
 // The search for a sensor's first contact: one subgroup per sensor goes through its cluster pairs, nearest first, in rounds
 // of 16, 64, 256, ... until the next is farther than what is known to be touched. Within a pair of clusters both sides are
-// trimmed against the other's box, triangle pairs pass a box test and separating axes, and what is left is solved in float;
-// what may then still be first is solved in double precision. With RADAR_NO_DOUBLES, on a device without, that is left to
+// trimmed against the other's box, triangles' boxes are tested along axes of the pair's own, and what is left is solved in
+// float; what may then still be first is solved in double precision. With RADAR_NO_DOUBLES, on a device without, that is left to
 // the host.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -43,13 +43,13 @@ const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps o
 layout(constant_id = 1) const uint kRun = 4096;
 // Whether only triangles count that the mask leaves.
 layout(constant_id = 2) const uint kMasked = 0;
-// What things cost, in box tests, and how many times the mask's cost must be left for it to pay, since what it leaves
+// What things cost, in triangles trimmed, and how many times the mask's cost must be left for it to pay, since what it leaves
 // costs, too: as measured on lavapipe (docs/method.md, "The mask").
 const uint kTrimCost = 1;
 const uint kEstimateCost = 1;
 const uint kSolveCost = 24;
 const float kMaskPays = 6.0;
-// Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
+// Triangle pairs solved in float at a time, and room for what may be first until it is solved in double precision.
 const uint kTested = 128;
 const uint kQueue = 256;
 // Cluster pairs looked through at a time for those of the round.
@@ -63,9 +63,9 @@ shared uint countA, countB;             // triangles left after trimming, and wh
 shared uint slotsA[kCluster], slotsB[kCluster];
 shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
 shared uvec2 tilesA[kCluster], tilesB[kCluster];  // where they are alive
-shared vec3 lowA[kCluster], highA[kCluster];  // their boxes along the axes of the pair of clusters
+shared vec3 lowA[kCluster], highA[kCluster];  // boxes along the axes of the pair of clusters
 shared uvec2 meetsB[kCluster];          // which of A the box of one of B meets
-shared uint anyMeets;
+shared uint anyMeets;                   // of those, or of what is left of them
 shared uint listed;                     // triangles to look at
 shared uint list[kCluster];
 shared uint passed;                     // pairs whose boxes meet: one of A, one of B << 8
@@ -82,12 +82,12 @@ double hi;       // as hiFloat, not rounded
 float hiFloat;   // no contact is sought beyond, world units: D, or a certain contact
 uint v, work, boxPairs, solved, spent, met, firstTiles;
 
-// The axes of a pair of clusters: along its longest edge as seen along the motion, across that, and along the motion less
-// what the edge climbs. A difference of depths at one place is the same in those as in the frame.
+// The axes of a pair of clusters: along its longest edge as seen along the motion, across that, and depth less what that edge
+// climbs (docs/method.md, "Axes of a pair of clusters").
 vec2 along;
 float climb;
-vec3 margin;                 // of a pair of triangles along those axes
-float pairError;             // and in the frame
+vec3 margin;       // of a pair of boxes along those axes
+float pairError;   // and of a pair of triangles in the frame
 uint placementB;
 
 vec3 turned(vec3 c) {
@@ -130,6 +130,10 @@ bool reaches(vec3 low, vec3 high, float error, vec3 boxLow, vec3 boxHigh, bool i
 
 // The tiles of a cluster's triangle, or of any where `triangle` is kCluster.
 uvec2 tilesOf(uint ref, uint triangle) { return tiles[kTilesPerCluster * (ref + firstTiles) + triangle]; }
+
+bool sharesTiles(ClusterPair pair) {
+  return kMasked == 0 || (tilesOf(pair.a, kCluster) & tilesOf(pair.b, kCluster)) != uvec2(0);
+}
 
 // Lists the triangles of cluster `ref` that are alive where something of the other is; returns how many.
 uint listAlive(uint ref, uint triangles_, uint other) {
@@ -448,7 +452,7 @@ void meetNearest(uint first, uint count, float limit, uint pause) {
       while (i < found && work < kWorkPerDispatch && spent < pause && !sensorLeft) {
         pair = pairs[chosen[i]];
         if (pair.gap <= hiFloat) {
-          sensorLeft = trimSensor(pair);
+          sensorLeft = sharesTiles(pair) && trimSensor(pair);
           if (gl_LocalInvocationID.x == 0) pairs[chosen[i]].gap = -1.0;
         }
         ++i;

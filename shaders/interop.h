@@ -246,7 +246,7 @@ struct Target {
                             // not" is asked; else 0
   float corner[2];          // of the mask's pixels, in the frame
   float pixelsPerUnit;      // of the mask
-  uint maskCost;            // what the mask costs, in box tests; or kNoMask
+  uint maskCost;            // what the mask costs, in triangles trimmed; or kNoMask
 };
 INTEROP_CONST kNoMask = 0xffffffffu;
 
@@ -312,7 +312,7 @@ struct State {
   uint solved;          // triangle pairs solved
   uint round;
   uint cursor;          // cluster pairs before this one are dealt with
-  uint spent;           // cost of what was done, in box tests
+  uint spent;           // cost of what was done, in triangles trimmed
   uint met;             // cluster pairs that this was for
   uint tiles;           // where its clusters' tiles begin, less its first ClusterRef; only if kSearchMasked
 };

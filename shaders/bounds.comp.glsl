@@ -30,5 +30,6 @@ void main() {
     reach += p.error;
     boxes[i].lo[row] = middle - reach;
     boxes[i].hi[row] = middle + reach;
+    boxes[i].edge[row] = dot(p.frameFromMesh[row].xyz, node.edge);
   }
 }

@@ -1,7 +1,7 @@
 // The search for a sensor's first contact: one subgroup per sensor goes through its cluster pairs, nearest first, in rounds
 // of 16, 64, 256, ... until the next is farther than what is known to be touched. Within a pair of clusters both sides are
-// trimmed against the other's box, triangle pairs pass a box test and separating axes, and what is left is solved in float;
-// what may then still be first is solved in double precision. With RADAR_NO_DOUBLES, on a device without, that is left to
+// trimmed against the other's box, triangles' boxes are tested along axes of the pair's own, and what is left is solved in
+// float; what may then still be first is solved in double precision. With RADAR_NO_DOUBLES, on a device without, that is left to
 // the host.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
@@ -45,15 +45,15 @@ const uint kSolveWork = 40;  // two triangles: 3 corners, 3 rows each, 3 steps o
 layout(constant_id = 1) const uint kRun = 4096;
 // Whether only triangles count that the mask leaves.
 layout(constant_id = 2) const uint kMasked = 0;
-// What things cost, in box tests, and how many times the mask's cost must be left for it to pay, since what it leaves
+// What things cost, in triangles trimmed, and how many times the mask's cost must be left for it to pay, since what it leaves
 // costs, too: as measured on lavapipe (docs/method.md, "The mask").
 const uint kTrimCost = 1;
 const uint kEstimateCost = 1;
 const uint kSolveCost = 24;
-const float kMaskPays = 1.5;
-// Triangle pairs tested at a time, and room for what has passed until it is solved in double precision.
+const float kMaskPays = 3.0;
+// Triangle pairs solved in float at a time, and room for what may be first until it is solved in double precision.
 const uint kTested = 128;
-const uint kQueue = 384;
+const uint kQueue = 256;
 // Cluster pairs looked through at a time for those of the round.
 const uint kChosen = 256;
 
@@ -65,9 +65,12 @@ shared uint countA, countB;             // triangles left after trimming, and wh
 shared uint slotsA[kCluster], slotsB[kCluster];
 shared vec3 cornersA[3 * kCluster], cornersB[3 * kCluster];
 shared uvec2 tilesA[kCluster], tilesB[kCluster];  // where they are alive
+shared vec3 lowA[kCluster], highA[kCluster];  // boxes along the axes of the pair of clusters
+shared uvec2 meetsB[kCluster];          // which of A the box of one of B meets
+shared uint anyMeets;                   // of those, or of what is left of them
 shared uint listed;                     // triangles to look at
 shared uint list[kCluster];
-shared uint passed;                     // pairs of those that passed the tests: one of A, one of B << 8
+shared uint passed;                     // pairs whose boxes meet: one of A, one of B << 8
 shared uint passing[kTested];
 shared uint touched;                    // bits of the least distance of a certain contact
 shared uint queued;
@@ -80,6 +83,37 @@ double hi;       // as hiFloat, not rounded
 
 float hiFloat;   // no contact is sought beyond, world units: D, or a certain contact
 uint v, work, boxPairs, solved, spent, met, firstTiles;
+
+// The axes of a pair of clusters: along its longest edge as seen along the motion, across that, and depth less what that edge
+// climbs (docs/method.md, "Axes of a pair of clusters").
+vec2 along;
+float climb;
+vec3 margin;       // of a pair of boxes along those axes
+float pairError;   // and of a pair of triangles in the frame
+uint placementB;
+
+vec3 turned(vec3 c) {
+  const float u = dot(along, c.xy);
+  return vec3(u, along.x * c.y - along.y * c.x, c.z - climb * u);
+}
+
+// Whether boxes along those axes let a triangle or more of B meet some of A.
+bool meets(vec3 lowOfA, vec3 highOfA, vec3 lowOfB, vec3 highOfB) {
+  const vec3 first = vec3(lowOfB.xy - margin.xy, lowOfB.z - margin.z - hiFloat), last = highOfB + margin;
+  return !(any(greaterThan(first, highOfA)) || any(greaterThan(lowOfA, last)));
+}
+
+void chooseAxes(ClusterPair pair) {
+  const vec3 a = boxes[pair.a].edge, b = boxes[pair.b].edge;
+  const vec3 edge = dot(a.xy, a.xy) > dot(b.xy, b.xy) ? a : b;
+  const float across = length(edge.xy);
+  const bool usable = across > 1e-15 && across < 1e15;
+  along = usable ? edge.xy / across : vec2(1.0, 0.0);
+  climb = usable && abs(edge.z) < 16.0 * across ? edge.z / across : 0.0;
+  placementB = refs[pair.b].placement;
+  pairError = 2.0 * (placements[refs[pair.a].placement].error + placements[placementB].error);
+  margin = (pairError + 1e-36) * vec3(1.5, 1.5, 2.0 + 2.0 * abs(climb));
+}
 
 vec3 framed(Rows frameFromMesh, vec3 q) {
   const vec4 p = vec4(q, 1.0);
@@ -98,6 +132,10 @@ bool reaches(vec3 low, vec3 high, float error, vec3 boxLow, vec3 boxHigh, bool i
 
 // The tiles of a cluster's triangle, or of any where `triangle` is kCluster.
 uvec2 tilesOf(uint ref, uint triangle) { return tiles[kTilesPerCluster * (ref + firstTiles) + triangle]; }
+
+bool sharesTiles(ClusterPair pair) {
+  return kMasked == 0 || (tilesOf(pair.a, kCluster) & tilesOf(pair.b, kCluster)) != uvec2(0);
+}
 
 // Lists the triangles of cluster `ref` that are alive where something of the other is; returns how many.
 uint listAlive(uint ref, uint triangles_, uint other) {
@@ -146,35 +184,6 @@ void trim(uint ref, uint other, bool isSensor) {
   }
   work += (node.count / kLanes + 1) * kTrimWork;
   spent += node.count * kTrimCost;
-}
-
-// Whether an edge of p separates the projections of p and q by more than `error`.
-bool separates(vec2 p0, vec2 p1, vec2 p2, vec2 q0, vec2 q1, vec2 q2, float error) {
-  const vec2 normal = vec2(p1.y - p0.y, p0.x - p1.x);
-  const float inner = dot(normal, p2 - p0);
-  const float s = inner < 0.0 ? 1.0 : -1.0;  // q lies outside where s * dot(normal, q - p0) > 0
-  const float outside = min(min(s * dot(normal, q0 - p0), s * dot(normal, q1 - p0)), s * dot(normal, q2 - p0));
-  const vec2 far = max(max(abs(q0 - p0), abs(q1 - p0)), max(abs(q2 - p0), abs(p2 - p0)));
-  // Corners off by `error` each turn the edge and move the points; products round.
-  const float slack = 4.0 * error * (abs(normal.x) + abs(normal.y) + far.x + far.y) +
-                      1e-6 * (abs(normal.x) * far.x + abs(normal.y) * far.y);
-  // The third corner must be on the inner side for certain, or p is nothing but its edge.
-  return outside > slack && abs(inner) > slack;
-}
-
-bool mayMeet(uint i, uint j, float error) {
-  const bool alive = kMasked == 0 || (tilesA[i] & tilesB[j]) != uvec2(0);
-  const vec3 a0 = cornersA[3 * i], a1 = cornersA[3 * i + 1], a2 = cornersA[3 * i + 2];
-  const vec3 b0 = cornersB[3 * j], b1 = cornersB[3 * j + 1], b2 = cornersB[3 * j + 2];
-  const vec3 loA = min(min(a0, a1), a2), hiA = max(max(a0, a1), a2), loB = min(min(b0, b1), b2), hiB = max(max(b0, b1), b2);
-  const bool box = all(lessThanEqual(loA.xy, hiB.xy + error)) && all(lessThanEqual(loB.xy, hiA.xy + error)) &&
-                   hiB.z + error >= loA.z && loB.z - hiA.z - error <= hiFloat;
-  return alive && box && !separates(a0.xy, a1.xy, a2.xy, b0.xy, b1.xy, b2.xy, error) &&
-         !separates(a1.xy, a2.xy, a0.xy, b0.xy, b1.xy, b2.xy, error) &&
-         !separates(a2.xy, a0.xy, a1.xy, b0.xy, b1.xy, b2.xy, error) &&
-         !separates(b0.xy, b1.xy, b2.xy, a0.xy, a1.xy, a2.xy, error) &&
-         !separates(b1.xy, b2.xy, b0.xy, a0.xy, a1.xy, a2.xy, error) &&
-         !separates(b2.xy, b0.xy, b1.xy, a0.xy, a1.xy, a2.xy, error);
 }
 
 // Solves a pair that passed the tests in float: queues it if it may be first.
@@ -268,39 +277,119 @@ void flush() {
   barrier();
 }
 
-// All triangle pairs of one pair of clusters.
-void meetClusters(ClusterPair pair) {
-  if (kMasked != 0 && (tilesOf(pair.a, kCluster) & tilesOf(pair.b, kCluster)) == uvec2(0)) return;
+// Chooses a pair of clusters' axes and trims the sensor's; returns whether something is left of it.
+bool trimSensor(ClusterPair pair) {
+  chooseAxes(pair);
   barrier();
-  if (gl_LocalInvocationID.x == 0) countA = countB = 0;
+  if (gl_LocalInvocationID.x == 0) countA = 0;
   barrier();
   trim(pair.a, pair.b, true);
-  trim(pair.b, pair.a, false);
+  ++met;
   barrier();
-  const uint placement = refs[pair.b].placement;
-  const float error = 2.0 * (placements[refs[pair.a].placement].error + placements[placement].error);
-  const uint all_ = countA * countB;
-  const float perRow = 1.0 / float(max(countB, 1));  // dividing integers costs lavapipe more than the test
-  for (uint first = 0; first < all_; first += kTested) {
-    const uint end = min(first + kTested, all_);
-    for (uint p = first + gl_LocalInvocationID.x; p < end; p += kLanes) {
-      const uint i = uint((float(p) + 0.5) * perRow), j = p - i * countB;
-      if (mayMeet(i, j, error)) passing[atomicAdd(passed, 1)] = i | j << 8;
+  return countA != 0;
+}
+
+// Takes the first of a set of triangles.
+uint takeFirst(inout uvec2 set) {
+  const bool lower = set.x != 0;
+  const uint i = lower ? findLSB(set.x) : 32 + findLSB(set.y);
+  set = lower ? uvec2(set.x & (set.x - 1), set.y) : uvec2(0, set.y & (set.y - 1));
+  return i;
+}
+
+// The box of a triangle of B along the axes.
+void boxOfB(uint j, out vec3 low, out vec3 high) {
+  const vec3 c0 = turned(cornersB[3 * j]), c1 = turned(cornersB[3 * j + 1]), c2 = turned(cornersB[3 * j + 2]);
+  low = min(min(c0, c1), c2);
+  high = max(max(c0, c1), c2);
+}
+
+// Finds which triangles' boxes meet: an invocation takes a few neighbours of B, first the box around them.
+void meetBoxes() {
+  const uint few = (countB + kLanes - 1) / kLanes;
+  const uint begin = min(gl_LocalInvocationID.x * few, countB), end = min(begin + few, countB);
+  vec3 low = vec3(3.0e38), high = vec3(-3.0e38);
+  for (uint j = begin; j < end; ++j) {
+    vec3 lowB, highB;
+    boxOfB(j, lowB, highB);
+    low = min(low, lowB);
+    high = max(high, highB);
+    meetsB[j] = uvec2(0);
+  }
+  uvec2 near = uvec2(0);
+  for (uint i = 0; i < countA; ++i) {
+    const uint bit = meets(lowA[i], highA[i], low, high) ? 1u << (i & 31) : 0;
+    near |= i < 32 ? uvec2(bit, 0) : uvec2(0, bit);
+  }
+  if (begin == end) near = uvec2(0);
+  if (few == 1 && near != uvec2(0)) meetsB[begin] = near;
+  bool found = few == 1 && near != uvec2(0);
+  for (uint j = begin; j < end && few > 1 && near != uvec2(0); ++j) {
+    vec3 lowB, highB;
+    boxOfB(j, lowB, highB);
+    uvec2 left = near, bits = uvec2(0);
+    while (left != uvec2(0)) {
+      const uint i = takeFirst(left);
+      const uint bit = meets(lowA[i], highA[i], lowB, highB) ? 1u << (i & 31) : 0;
+      bits |= i < 32 ? uvec2(bit, 0) : uvec2(0, bit);
     }
-    barrier();
-    const uint count = passed;
-    for (uint p = gl_LocalInvocationID.x; p < count; p += kLanes) estimate(passing[p], error, placement);
+    meetsB[j] = bits;
+    found = found || bits != uvec2(0);
+  }
+  if (found) anyMeets = 1;
+  spent += countA;
+  work += countA * (few + 1) + 2 * few;
+}
+
+// Trims the scene's triangles of a pair of clusters and finds which boxes meet; returns whether any do.
+bool trimScene(ClusterPair pair) {
+  if (gl_LocalInvocationID.x == 0) countB = anyMeets = 0;
+  barrier();
+  trim(pair.b, pair.a, false);
+  for (uint i = gl_LocalInvocationID.x; i < countA; i += kLanes) {
+    const vec3 c0 = turned(cornersA[3 * i]), c1 = turned(cornersA[3 * i + 1]), c2 = turned(cornersA[3 * i + 2]);
+    lowA[i] = min(min(c0, c1), c2);
+    highA[i] = max(max(c0, c1), c2);
+  }
+  barrier();
+  meetBoxes();
+  barrier();
+  boxPairs += countA * countB;
+  return anyMeets != 0;
+}
+
+// Solves the triangle pairs whose boxes meet, as many at a time as there is room for.
+void meetTriangles() {
+  barrier();
+  uint first = 0;
+  while (first < countB) {
+    uint count = 0;
+    while (first < countB && count + kLanes <= kTested) {
+      const uint j = first + gl_LocalInvocationID.x;
+      uvec2 bits = j < countB ? meetsB[j] : uvec2(0);
+      if (gl_LocalInvocationID.x == 0) anyMeets = 0;
+      barrier();
+      for (uint step = 0; step < (kTested - count) / kLanes && bits != uvec2(0); ++step) {
+        const uint i = takeFirst(bits);
+        if (kMasked == 0 || (tilesA[i] & tilesB[j]) != uvec2(0)) passing[atomicAdd(passed, 1)] = i | j << 8;
+      }
+      if (j < countB) meetsB[j] = bits;
+      if (bits != uvec2(0)) anyMeets = 1;
+      barrier();
+      count = passed;
+      if (anyMeets == 0) first += kLanes;
+      work += kTested / kLanes + 1;
+      barrier();
+    }
+    for (uint p = gl_LocalInvocationID.x; p < count; p += kLanes) estimate(passing[p], pairError, placementB);
     barrier();
     hiFloat = min(hiFloat, uintBitsToFloat(touched));
     if (gl_LocalInvocationID.x == 0) passed = 0;
-    work += (end - first + count) / kLanes + 2;
+    work += count / kLanes + 1;
     spent += count * kEstimateCost;
     barrier();
     if (queued > kQueue - kTested) flush();
   }
-  boxPairs += all_;
-  spent += all_;
-  ++met;
 }
 
 bool goesOn() { return work < kWorkPerDispatch && !overflows() && !decided(); }
@@ -326,11 +415,23 @@ void meetNearest(uint first, uint count, float limit, uint pause) {
   barrier();
   const uint found = chosenCount;
   work += count / kLanes + found + 1;
-  for (uint i = 0; i < found && goesOn() && spent < pause; ++i) {
-    const ClusterPair pair = pairs[chosen[i]];
-    if (pair.gap > hiFloat) continue;
-    meetClusters(pair);
-    if (gl_LocalInvocationID.x == 0) pairs[chosen[i]].gap = -1.0;
+  for (uint i = 0; i < found && goesOn() && spent < pause;) {
+    // Pairs are trimmed until one has something to solve: lavapipe runs both sides of an `if`, but leaves a loop.
+    bool meeting = false;
+    while (i < found && work < kWorkPerDispatch && spent < pause && !meeting) {
+      bool sensorLeft = false;
+      ClusterPair pair;
+      while (i < found && work < kWorkPerDispatch && spent < pause && !sensorLeft) {
+        pair = pairs[chosen[i]];
+        if (pair.gap <= hiFloat) {
+          sensorLeft = sharesTiles(pair) && trimSensor(pair);
+          if (gl_LocalInvocationID.x == 0) pairs[chosen[i]].gap = -1.0;
+        }
+        ++i;
+      }
+      if (sensorLeft) meeting = trimScene(pair);
+    }
+    if (meeting) meetTriangles();
   }
   barrier();
   if (gl_LocalInvocationID.x == 0) chosenCount = 0;

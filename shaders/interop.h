@@ -231,6 +231,7 @@ INTEROP_CONST kBandPixels = 2048;
 struct ClusterRecord {
   Point centre;  // of recentred vertices
   Point halfExtent;
+  Point edge;    // the longest of its triangles'; only of a cluster
   uint first;    // triangle slot
   uint count;    // triangles; 0: not a cluster
 };
@@ -250,7 +251,7 @@ struct Target {
                             // not" is asked; else 0
   float corner[2];          // of the mask's pixels, in the frame
   float pixelsPerUnit;      // of the mask
-  uint maskCost;            // what the mask costs, in box tests; or kNoMask
+  uint maskCost;            // what the mask costs, in triangles trimmed; or kNoMask
   uint decides;             // only "within D or not" is asked
   uint result;              // where its answer goes
 };
@@ -273,6 +274,7 @@ struct ClusterRef {
 struct RefBox {
   Point lo;
   Point hi;
+  Point edge;  // the cluster's longest
 };
 
 struct PairItem {
@@ -334,7 +336,7 @@ struct State {
   uint solved;          // triangle pairs solved
   uint round;
   uint cursor;          // cluster pairs before this one are dealt with
-  uint spent;           // cost of what was done, in box tests
+  uint spent;           // cost of what was done, in triangles trimmed
   uint met;             // cluster pairs that this was for
   uint tiles;           // where its clusters' tiles begin, less its first ClusterRef; only if kSearchMasked
 };

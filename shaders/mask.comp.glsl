@@ -74,7 +74,7 @@ bool idle(uint at) {
 }
 
 // Where a cluster has no triangle that can be first.
-const RefBox kNowhere = RefBox(vec3(3.0e38), vec3(-3.0e38));
+const RefBox kNowhere = RefBox(vec3(3.0e38), vec3(-3.0e38), vec3(0.0));
 
 // Whether the box of cluster `ref` lets it meet one of the other side's within `farthest`.
 bool canMeet(uint ref, uint first, uint end, bool isSensor, float farthest) {
@@ -166,5 +166,6 @@ void main() {
     low = min(low, lowest[i]);
     high = max(high, highest[i]);
   }
-  boxes[item.ref] = RefBox(low, high);
+  boxes[item.ref].lo = low;
+  boxes[item.ref].hi = high;
 }

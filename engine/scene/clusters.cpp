@@ -45,6 +45,23 @@ struct Builder {
     }
   }
 
+  std::array<float, 3> longestEdge(const uint32_t* triangles, uint32_t count) const {
+    std::array<float, 3> longest{};
+    float best = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      for (int corner = 0; corner < 3; ++corner) {
+        std::array<float, 3> edge;
+        for (int k = 0; k < 3; ++k) edge[k] = at(triangles[i], (corner + 1) % 3, k) - at(triangles[i], corner, k);
+        const float squared = edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2];
+        if (squared > best) {
+          best = squared;
+          longest = edge;
+        }
+      }
+    }
+    return longest;
+  }
+
   int widest(const uint32_t* triangles, uint32_t count) const {
     int axis = 0;
     float best = -1;
@@ -85,6 +102,7 @@ Clusters clustersOf(const Mesh& mesh) {
       std::sort(triangles, triangles + range.count);
       node.first = range.first;
       node.count = range.count;
+      node.edge = builder.longestEdge(triangles, range.count);
       ++out.leaves;
     } else {
       const int axis = builder.widest(triangles, range.count);

@@ -15,6 +15,7 @@ inline constexpr uint32_t kClusterTriangles = 64;
 /// the nodes `first` and `first` + 1. The box is of recentred vertices, centre and half extents, mesh units.
 struct ClusterNode {
   std::array<float, 3> centre{}, half{};
+  std::array<float, 3> edge{};  ///< the longest of its triangles'; only of a cluster
   uint32_t first = 0, count = 0;
 };
 

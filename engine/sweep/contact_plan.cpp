@@ -10,8 +10,8 @@ namespace radar {
 
 namespace {
 
-// What the mask costs, and for each triangle more, in box tests of the search: as measured on lavapipe (docs/method.md,
-// "The mask").
+// What the mask costs, and for each triangle more, in triangles trimmed by the search: as measured on lavapipe
+// (docs/method.md, "The mask").
 constexpr uint64_t kMaskCost = 3000, kMaskTriangleCost = 4;
 // Vertices that may be off by more than this, pixels, make a mask worthless; and float could not tell its pixels apart.
 constexpr double kMostError = 1;

@@ -98,9 +98,10 @@ void ResidentScene::upload(const Scene::Impl& scene, Upload& upload) {
       upload.add(clusters.order.data(), 4 * clusters.order.size(), buffers_.triangleIds, 4 * firstIndex / 3);
       records.clear();
       for (const ClusterNode& node : clusters.nodes) {
-        gpu::ClusterRecord record{{}, {}, node.first, node.count};
+        gpu::ClusterRecord record{{}, {}, {}, node.first, node.count};
         std::copy(node.centre.begin(), node.centre.end(), record.centre);
         std::copy(node.half.begin(), node.half.end(), record.halfExtent);
+        std::copy(node.edge.begin(), node.edge.end(), record.edge);
         records.push_back(record);
       }
       upload.add(records.data(), sizeof(gpu::ClusterRecord) * records.size(), buffers_.nodes,

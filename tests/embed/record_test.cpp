@@ -12,6 +12,8 @@
 #include "workloads/families.h"
 #include "workloads/shapes.h"
 
+void recordQueries(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries);
+
 namespace {
 
 using namespace radar;
@@ -45,15 +47,11 @@ class Renderer {
   /// Records the queries, and behind the barrier that radar/recorder.h asks for the host's own pass.
   void record(Recorder& recorder, std::span<const Query> queries, bool withBarrier = true) {
     const gpu::Commands commands = submission_.begin();
-    recorder.record(commands, queries);
-    const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                   .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                   .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT};
-    const VkDependencyInfo info{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
-    if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
+    if (withBarrier) {
+      recordQueries(commands, recorder, queries);
+    } else {
+      recorder.record(commands, queries);
+    }
     const VkDescriptorBufferInfo results{recorder.results(), 0, VK_WHOLE_SIZE};
     const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                      .dstSet = bindings_.set(),

@@ -94,8 +94,10 @@ TEST_CASE("interlocking shapes take the switch, which leaves fewer pairs and the
     std::vector<Query> queries = queriesOf(workload);
     const std::vector<Result> expected = direct.run(queries);
     checkSame(cheaper.run(queries), expected);
-    CHECK(cheaper.stats().clusterPairs < direct.stats().clusterPairs);
-    CHECK(cheaper.stats().pairs < direct.stats().pairs);
+    // Two combs are settled along the axes of their clusters before the mask would pay.
+    const bool switches = kind != tools::Interlocking::combInComb;
+    CHECK((cheaper.stats().clusterPairs < direct.stats().clusterPairs) == switches);
+    CHECK((cheaper.stats().pairs < direct.stats().pairs) == switches);
     for (Query& query : queries) query.decide = true;
     const std::vector<Result> decided = cheaper.run(queries);
     for (size_t i = 0; i < queries.size(); ++i) {

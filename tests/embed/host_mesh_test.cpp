@@ -1,0 +1,126 @@
+// Meshes out of a host's buffers, in the formats that renderers use.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "gpu/barrier.h"
+#include "gpu/buffer.h"
+#include "gpu/submission.h"
+#include "radar/host_mesh.h"
+#include "support/test_device.h"
+
+namespace {
+
+using namespace radar;
+
+/// Bytes in a buffer on the device, as a renderer has its vertices.
+class OnDevice {
+ public:
+  explicit OnDevice(const std::vector<std::byte>& bytes)
+      : buffer_(test::device().impl(), "host's", gpu::Residence::device,
+                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {
+    const Device::Impl& device = test::device().impl();
+    gpu::Upload upload(device);
+    buffer_.reserve(bytes.size());
+    upload.begin(bytes.size());
+    upload.add(bytes.data(), bytes.size(), buffer_);
+    gpu::Submission submission(device, false);
+    upload.record(submission.begin());
+    submission.submitAndWait();
+  }
+  VkBuffer get() const { return buffer_.get(); }
+
+ private:
+  gpu::Buffer buffer_;
+};
+
+template <class T>
+void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
+  for (const T value : values) {
+    bytes.resize(bytes.size() + sizeof(T));
+    std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
+  }
+}
+
+std::vector<float> positionsOf(const Scene& scene, MeshId mesh) {
+  const auto positions = scene.mesh(mesh).positions;
+  return {positions.begin(), positions.end()};
+}
+
+std::vector<uint32_t> indicesOf(const Scene& scene, MeshId mesh) {
+  const auto indices = scene.mesh(mesh).indices;
+  return {indices.begin(), indices.end()};
+}
+
+}  // namespace
+
+TEST_CASE("interleaved float vertices with 16-bit and 32-bit indices, at offsets, are read as they lie there") {
+  std::vector<std::byte> vertices(20), small(6), large(4);  // what comes before
+  append<float>(vertices, {1, 2, 3, /* a normal */ 9, 9, 4, 5, 6, 9, 9, 7, 8, 9.5f, 9, 9, -1, -2, -3});
+  append<uint16_t>(small, {2, 1, 0, 3, 2, 1});
+  append<uint32_t>(large, {2, 1, 0, 3, 2, 1});
+  const OnDevice positions(vertices), indices16(small), indices32(large);
+  HostMesh mesh{.positions = positions.get(),
+                .firstPosition = 20,
+                .stride = 20,
+                .vertexCount = 4,
+                .indices = indices16.get(),
+                .firstIndex = 6,
+                .indexType = VK_INDEX_TYPE_UINT16,
+                .indexCount = 6};
+  Scene scene;
+  const MeshId first = addMesh(scene, test::device(), mesh);
+  CHECK(positionsOf(scene, first) == std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9.5f, -1, -2, -3});
+  CHECK(indicesOf(scene, first) == std::vector<uint32_t>{2, 1, 0, 3, 2, 1});
+  mesh.indices = indices32.get();
+  mesh.firstIndex = 4;
+  mesh.indexType = VK_INDEX_TYPE_UINT32;
+  CHECK(indicesOf(scene, addMesh(scene, test::device(), mesh)) == std::vector<uint32_t>{2, 1, 0, 3, 2, 1});
+  // Without indices, each three vertices are a triangle.
+  mesh.indices = VK_NULL_HANDLE;
+  mesh.vertexCount = 3;
+  CHECK(indicesOf(scene, addMesh(scene, test::device(), mesh)) == std::vector<uint32_t>{0, 1, 2});
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("16-bit positions are what a vertex shader would see") {
+  std::vector<std::byte> half, snorm, unorm;
+  // 1, -2, 65504; the least normal and subnormal; 1/3 in half; each with a fourth component.
+  append<uint16_t>(half, {0x3c00, 0xc000, 0x7bff, 0, 0x0400, 0x0001, 0x3555, 0, 0x8000, 0x0000, 0x4248, 0});
+  append<int16_t>(snorm, {32767, -32767, -32768, 0, 1, -1, 0, 0, 16384, 0, 5, 0});
+  append<uint16_t>(unorm, {65535, 0, 32768, 1, 2, 3, 4, 5, 6});
+  const OnDevice a(half), b(snorm), c(unorm);
+  Scene scene;
+  const auto read = [&](const OnDevice& buffer, VkFormat format, VkDeviceSize stride) {
+    return positionsOf(scene,
+                       addMesh(scene, test::device(),
+                               {.positions = buffer.get(), .stride = stride, .format = format, .vertexCount = 3}));
+  };
+  CHECK(read(a, VK_FORMAT_R16G16B16A16_SFLOAT, 8) ==
+        std::vector<float>{1, -2, 65504, 0x1p-14f, 0x1p-24f, 0x1.554p-2f, -0.0f, 0, 3.140625f});
+  CHECK(read(b, VK_FORMAT_R16G16B16A16_SNORM, 8) ==
+        std::vector<float>{1, -1, -1, 1 / 32767.0f, -1 / 32767.0f, 0, 16384 / 32767.0f, 0, 5 / 32767.0f});
+  CHECK(read(c, VK_FORMAT_R16G16B16_UNORM, 6) == std::vector<float>{1, 0, 32768 / 65535.0f, 1 / 65535.0f, 2 / 65535.0f,
+                                                                    3 / 65535.0f, 4 / 65535.0f, 5 / 65535.0f,
+                                                                    6 / 65535.0f});
+}
+
+TEST_CASE("a mesh of the host's that cannot be read is refused by the member that is wrong") {
+  std::vector<std::byte> bytes;
+  append<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, NAN});
+  append<uint32_t>(bytes, {0, 1, 3});
+  const OnDevice buffer(bytes);
+  Scene scene;
+  const auto refused = [&](HostMesh mesh, const char* why) {
+    mesh.positions = buffer.get();
+    CHECK_THROWS_WITH(addMesh(scene, test::device(), mesh), Catch::Contains(why));
+  };
+  refused({.format = VK_FORMAT_R8G8B8_UNORM, .vertexCount = 3}, "HostMesh::format: expected");
+  refused({.stride = 8, .vertexCount = 3}, "HostMesh::stride: expected at least 12 bytes, got 8");
+  refused({.vertexCount = 0}, "at least one triangle");
+  refused({.vertexCount = 3, .indices = buffer.get(), .indexType = VK_INDEX_TYPE_UINT8_EXT, .indexCount = 3},
+          "HostMesh::indexType: expected 16 or 32 bits");
+  refused({.vertexCount = 3}, "finite");
+  refused({.vertexCount = 2, .indices = buffer.get(), .firstIndex = 36, .indexCount = 3}, "names vertex 3 of 2");
+  CHECK(scene.meshLimit() == 0);
+}

@@ -70,8 +70,7 @@ bool doublesAreRight(const Device::Impl& device) {
   submission.stage("doubles");
   upload.record(commands);
   uploadToRead(commands);
-  const VkDescriptorSet set = bindings.set();
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  bindings.bind(commands);
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
   commands->CmdDispatch(commands, 1, 1, 1);
   computeWriteToCopy(commands);

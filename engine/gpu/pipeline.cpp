@@ -100,6 +100,11 @@ void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
   device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
 }
 
+void Bindings::bind(const Commands& commands) const {
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelineLayout_.get(), 0, 1, &set_, 0,
+                                  nullptr);
+}
+
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants) {
   const ShaderModule module = shaderModule(device, spirv, name);

@@ -23,6 +23,8 @@ class Bindings {
   /// What lies beyond the device's maxStorageBufferRange is not bound.
   void setBuffer(uint32_t number, const Buffer& buffer);
   void setImage(uint32_t number, VkImageView view, VkSampler sampler);
+  /// Binds the set for compute shaders.
+  void bind(const Commands& commands) const;
   VkPipelineLayout layout() const { return pipelineLayout_.get(); }
   VkDescriptorSet set() const { return set_; }
 

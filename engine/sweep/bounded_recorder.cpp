@@ -241,8 +241,7 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   gpu::uploadToRead(commands);
   gpu::fillToComputeReadWrite(commands);
 
-  const VkDescriptorSet set = bindings_.set();
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  bindings_.bind(commands);
   submission_.stage("outer scene");
   draw(commands, drawFarthest_, scene_);
   submission_.stage("outer sensor");

@@ -18,12 +18,12 @@ void tellDecision(Result& result, double distance) {
 
 }  // namespace
 
-Result decodeContact(const Search& search, const Query& query, uint64_t& cpuPairs) {
+Result decodeContact(const Found& found, const Query& query, uint64_t& cpuPairs) {
   const Error lost("the contact search lost what it met", VK_ERROR_UNKNOWN);
-  if (search.result.status == Status::invalid) throw lost;
-  if ((search.result.flags & kFlagOpen) == 0) return search.result;
+  if (found.result.status == Status::invalid) throw lost;
+  if ((found.result.flags & kFlagOpen) == 0) return found.result;
   ExactPairs exact(query);
-  for (const gpu::OpenContender* open : search.open) {
+  for (const gpu::OpenContender* open : found.open) {
     exact.consider({open->object, open->triB, open->triA}, placedPair(*open, query));
     ++cpuPairs;
     if (query.decide && exact.found()) break;
@@ -32,7 +32,7 @@ Result decodeContact(const Search& search, const Query& query, uint64_t& cpuPair
   result.tier = Tier::contact;
   result.status = Status::clear;
   if (!exact.found()) {
-    if (search.result.detected == Detected::yes) throw lost;
+    if (found.result.detected == Detected::yes) throw lost;
   } else if (query.decide) {
     tellDecision(result, query.distance);
   } else {

@@ -8,6 +8,6 @@ namespace radar {
 /// Of a search that is done; where only a decision is asked, no more pairs than it takes are decided. Adds the pairs it
 /// had to decide on the CPU to `cpuPairs`. Throws Error with VK_ERROR_UNKNOWN if the search met something that is not
 /// among what it lists.
-Result decodeContact(const Search& search, const Query& query, uint64_t& cpuPairs);
+Result decodeContact(const Found& found, const Query& query, uint64_t& cpuPairs);
 
 }  // namespace radar

@@ -223,11 +223,6 @@ bool ContactPass::stageMasks(const gpu::State* states) {
   return true;
 }
 
-void ContactPass::bindSet(const gpu::Commands& commands) const {
-  const VkDescriptorSet set = bindings_.set();
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
-}
-
 void ContactPass::recordPairs(const gpu::Commands& commands, const OpenStage& stage) {
   stage("pairs");
   const auto items = static_cast<uint32_t>(itemList_.size());
@@ -252,7 +247,7 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   upload_.record(commands);
   gpu::uploadToRead(commands);
   if (targetList_.empty()) return;
-  bindSet(commands);
+  bindings_.bind(commands);
   stage("bounds");
   const auto refs = static_cast<uint32_t>(refList_.size());
   dispatch(commands, bounds_, (refs + 63) / 64, refs);
@@ -274,7 +269,7 @@ void ContactPass::recordAgain(const gpu::Commands& commands, const OpenStage& st
     stage("mask");
     mask_.record(commands, {targets_, placements_, refs_, boxes_, states_});
   }
-  bindSet(commands);
+  bindings_.bind(commands);
   if (again.masks) recordPairs(commands, stage);
   stage("contact");
   if (again.direct) recordSearch(commands, direct_, dispatches);

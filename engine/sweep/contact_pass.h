@@ -75,7 +75,6 @@ class ContactPass {
  private:
   gpu::Pipeline searchPipeline(const char* name, uint32_t masked) const;
   void bind();
-  void bindSet(const gpu::Commands& commands) const;
   void dispatch(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t groups, uint32_t count) const;
   void recordPairs(const gpu::Commands& commands, const OpenStage& stage);
   void recordSearch(const gpu::Commands& commands, const gpu::Pipeline& pipeline, uint32_t dispatches);

@@ -121,7 +121,7 @@ void ContactRecorder::submit(std::span<const ContactPlan* const> plans, const Sc
 
 std::vector<size_t> ContactRecorder::collect(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
                                              std::vector<StageTime>& stages,
-                                             const std::function<void(size_t, const Search&)>& found) {
+                                             const std::function<void(size_t, const Found&)>& found) {
   for (; !group_.empty(); submitGroup(plans, scene)) {
     submission_.wait();
     resident_.confirm(scene);

@@ -10,7 +10,7 @@
 namespace radar {
 
 /// What the device says of one plan: valid until the next call.
-struct Search {
+struct Found {
   gpu::State state;
   Result result;                                    ///< undecided where something is open
   std::span<const gpu::OpenContender* const> open;  ///< what may be first, for `exact` to decide
@@ -27,7 +27,7 @@ class ContactRecorder {
   /// dispatch may be. `found` is called once for every plan, in no order.
   /// Returns the plans whose lists are longer than a buffer of the device may be: for those `found` is not called.
   std::vector<size_t> collect(std::span<const ContactPlan* const> plans, const Scene::Impl& scene,
-                              std::vector<StageTime>& stages, const std::function<void(size_t, const Search&)>& found);
+                              std::vector<StageTime>& stages, const std::function<void(size_t, const Found&)>& found);
 
  private:
   /// Room for the lists of one plan.

@@ -117,8 +117,7 @@ void MaskRecorder::record(const gpu::Commands& commands, const Lent& lent) {
                                                              {gpu::kBindMaskScopes, &scopes_},
                                                              {gpu::kBindTiles, &tiles_}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
-  const VkDescriptorSet set = bindings_.set();
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  bindings_.bind(commands);
   const auto sensorItems = static_cast<uint32_t>(itemList_.size()) - sceneItems_;
   dispatch(commands, drawFarthest_, 0, sceneItems_);
   dispatch(commands, drawSensor_, sceneItems_, sensorItems);

@@ -179,7 +179,7 @@ void SampledRecorder::submit(const Batch& batch, const Scene::Impl& scene, bool 
   submission_.stage("mask");
   drawScopes(commands, batch, batch.maskPasses, pictures.mask);
 
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  bindings_.bind(commands);
   submission_.stage("reduce");
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
   commands->CmdDispatch(commands, views, 1, 1);

@@ -195,7 +195,7 @@ void Sweeper::Impl::search(std::vector<size_t>& which, std::vector<ContactPlan>&
 
 void Sweeper::Impl::landContact() {
   Clock::duration decoding{};
-  const auto decodeOne = [&](size_t i, const Search& found) {
+  const auto decodeOne = [&](size_t i, const Found& found) {
     const Clock::time_point start = Clock::now();
     const size_t query = flying[i];
     try {

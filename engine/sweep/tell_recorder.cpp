@@ -87,8 +87,7 @@ void TellRecorder::record(const gpu::Commands& commands, const Lent& lent, uint3
       {gpu::kBindStates, &lent.states},        {gpu::kBindContenders, &lent.contenders},
       {gpu::kBindResults, &results_},          {gpu::kBindOpenContenders, &open_}};
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
-  const VkDescriptorSet set = bindings_.set();
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0, nullptr);
+  bindings_.bind(commands);
   const TellPush push{targets, std::min(targets, 65535u), capacity()};
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
   commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);

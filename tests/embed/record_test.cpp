@@ -60,11 +60,9 @@ class Renderer {
                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                      .pBufferInfo = &results};
     device_.vk.UpdateDescriptorSets(device_.device(), 1, &write, 0, nullptr);
-    const VkDescriptorSet set = bindings_.set();
     const auto count = static_cast<uint32_t>(queries.size());
     commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-    commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings_.layout(), 0, 1, &set, 0,
-                                    nullptr);
+    bindings_.bind(commands);
     commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(count), &count);
     commands->CmdDispatch(commands, (count + 63) / 64, 1, 1);
   }

@@ -59,7 +59,7 @@ class Searching {
     }
     std::vector<StageTime> stages;
     recorder_.submit(asked, scene_.impl());
-    const auto refused = recorder_.collect(asked, scene_.impl(), stages, [&](size_t i, const Search& found) {
+    const auto refused = recorder_.collect(asked, scene_.impl(), stages, [&](size_t i, const Found& found) {
       solved += found.state.solved;
       most = std::max(most, found.state.pairCount);
       uint64_t cpuPairs = 0;

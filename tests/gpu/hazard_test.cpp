@@ -38,9 +38,8 @@ std::vector<std::string> messagesOf(bool withBarrier) {
   upload.add(&nothing, sizeof(nothing), buffers.at(gpu::kBindViews));
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();
-  const VkDescriptorSet set = bindings.set();
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve.get());
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bindings.layout(), 0, 1, &set, 0, nullptr);
+  bindings.bind(commands);
   upload.record(commands);
   if (withBarrier) gpu::uploadToRead(commands);
   commands->CmdDispatch(commands, 1, 1, 1);

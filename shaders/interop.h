@@ -81,6 +81,11 @@ INTEROP_CONST kBindOpenContenders = 9; // OpenCount, then OpenContender
 INTEROP_CONST kBindMaskScopes = 10;   // uint: keys of depth (outer.glsl), the four planes kScope*
 INTEROP_CONST kBindMaskItems = 11;    // MaskItem
 
+// So has a host's geometry: the scene's buffers, nodes, placements and results at the numbers above, and these.
+INTEROP_CONST kBindWords = 9;         // uint: what was copied from the host's buffers
+INTEROP_CONST kBindMoved = 10;        // Moved
+INTEROP_CONST kBindStrays = 11;       // uint: vertices and objects out of their bounds
+
 // The bounded tier has the sampled tier's set, but for the depth images.
 INTEROP_CONST kBindScopes = 11;       // uint: keys of depth (outer.glsl), the four planes kScope*
 INTEROP_CONST kBindBands = 12;        // Band
@@ -94,6 +99,8 @@ INTEROP_CONST kPairItemA = 16;
 INTEROP_CONST kPairItemB = 4096;
 
 struct MeshRecord {
+  Point centre;      // recentred vertices are relative to it
+  Point halfExtent;  // of recentred vertices, at most
   uint firstVertex;
   uint firstIndex;
   uint firstNode;
@@ -263,7 +270,8 @@ struct Placement {
   float error;              // how far a vertex placed by it may be off, world units
   uint mesh;
   uint object;              // kNobody: the sensor
-  uint pad;
+  uint moved;               // where a host moves it: Moved, and until then frameFromMesh is frame from world, about its
+                            // anchor, and error what double precision loses; else kNobody
 };
 
 struct ClusterRef {
@@ -371,6 +379,23 @@ struct MaskItem {
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the
 // sensor's face; 6 + 3*i + j: edge i of the sensor's triangle and edge j of the scene's, edges being (0,1), (1,2), (0,2).
 INTEROP_CONST kFeatureEdges = 6;
+
+// ---- a host's geometry -------------------------------------------------------------------------------------------------
+
+// What three of are a position.
+INTEROP_CONST kFloat32 = 0;
+INTEROP_CONST kFloat16 = 1;
+INTEROP_CONST kSnorm16 = 2;
+INTEROP_CONST kUnorm16 = 3;
+
+// An object that a host moves.
+struct Moved {
+  uint object;
+  uint mesh;
+  uint firstByte;    // of its transform: 12 floats
+  Point anchor;      // of its bounds' middle, world
+  Point halfExtent;  // of its bounds about the anchor
+};
 
 // ---- the self-test of doubles ------------------------------------------------------------------------------------------
 

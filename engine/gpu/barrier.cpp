@@ -45,7 +45,7 @@ void uploadToRead(const Commands& commands) {
       VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 }
 
-void fillToComputeReadWrite(const Commands& commands) {
+void transferToComputeReadWrite(const Commands& commands) {
   // A clear by the specification, a copy by validation layer 1.3.239.
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,

@@ -7,8 +7,8 @@ namespace radar::gpu {
 
 /// A batch's upload is read by depth passes (vertices, indices, draws) and by compute shaders.
 void uploadToRead(const Commands& commands);
-/// What vkCmdFillBuffer wrote is read and written by compute shaders.
-void fillToComputeReadWrite(const Commands& commands);
+/// What was copied, or filled, is read and written by compute shaders.
+void transferToComputeReadWrite(const Commands& commands);
 /// A compute shader's buffers are read, or written again, by the next one.
 void computeWriteToComputeReadWrite(const Commands& commands);
 /// A compute shader's buffers are copied.

@@ -77,6 +77,7 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
 }
 
 void Bindings::setBuffer(uint32_t number, const Buffer& buffer) {
+  if (buffer.capacity() == 0) return;
   const VkDeviceSize range =
       std::min<VkDeviceSize>(buffer.capacity(), device_->properties.limits.maxStorageBufferRange);
   const VkDescriptorBufferInfo info{buffer.get(), 0, range};

@@ -20,7 +20,7 @@ class Bindings {
  public:
   Bindings(const Device::Impl& device, std::span<const Binding> bindings, uint32_t pushBytes);
 
-  /// What lies beyond the device's maxStorageBufferRange is not bound.
+  /// What lies beyond the device's maxStorageBufferRange is not bound, nor is a buffer that has no room yet.
   void setBuffer(uint32_t number, const Buffer& buffer);
   void setImage(uint32_t number, VkImageView view, VkSampler sampler);
   /// Binds the set for compute shaders.

@@ -60,6 +60,7 @@ void Hierarchy::update(const Scene::Impl& scene) {
     if (!scene.objects[i].used || scene.changedAt[i] <= seenPose_) continue;
     const Object& object = scene.objects[i].object;
     boxes_[i] = boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
+    if (const Box* bounds = scene.boundsOf(static_cast<ObjectId>(i))) boxes_[i].merge(*bounds);
   }
   const bool sameObjects = seenStructure_ == scene.structureVersion;
   if (sameObjects) refit();

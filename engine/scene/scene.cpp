@@ -9,6 +9,9 @@ namespace radar {
 namespace {
 
 constexpr double kFloatUlp = 0x1p-24;
+// Of the largest coordinate: so that a transform within its bounds stays there in float arithmetic.
+constexpr double kBoundsRoom = 0x1p-18;
+constexpr double kMostBound = 0x1p120;
 
 std::string idText(const char* kind, uint32_t id) {
   return std::string(kind) + " " + std::to_string(id);
@@ -28,21 +31,32 @@ double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
   return std::sqrt(sum);
 }
 
-void derive(Mesh& mesh) {
+// Throws where the bounds are none.
+Box boxOf(const char* call, const Bounds& bounds) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(bounds.lo[k] <= bounds.hi[k] && bounds.lo[k] >= -kMostBound && bounds.hi[k] <= kMostBound)) {
+      throw Error(std::string(call) + ": bounds: expected lo <= hi, of at most 2^120, got " +
+                  std::to_string(bounds.lo[k]) + " and " + std::to_string(bounds.hi[k]));
+    }
+  }
+  return {bounds.lo, bounds.hi};
+}
+
+// `box`: what a host may make of the mesh; empty: nothing else.
+void derive(Mesh& mesh, Box box) {
   // Vertices that no triangle uses must not widen the window.
-  Box box;
   for (uint32_t vertex : mesh.indices) {
     box.add({mesh.positions[3 * vertex], mesh.positions[3 * vertex + 1], mesh.positions[3 * vertex + 2]});
   }
   for (int k = 0; k < 3; ++k) {
-    mesh.centre[k] = 0.5 * (box.lo[k] + box.hi[k]);
+    mesh.centre[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
     mesh.recentred[k].assign(mesh.vertexCount(), 0.0f);
+    mesh.halfExtent[k] =
+        static_cast<float>(std::max(std::abs(box.lo[k] - mesh.centre[k]), std::abs(box.hi[k] - mesh.centre[k])));
   }
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
-      const float value = static_cast<float>(mesh.positions[3 * vertex + k] - mesh.centre[k]);
-      mesh.recentred[k][vertex] = value;
-      mesh.halfExtent[k] = std::max(mesh.halfExtent[k], std::abs(value));
+      mesh.recentred[k][vertex] = static_cast<float>(mesh.positions[3 * vertex + k] - mesh.centre[k]);
     }
   }
   double sum = 0;
@@ -141,7 +155,8 @@ Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
-MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices) {
+MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
+                      const std::optional<Bounds>& bounds) {
   if (positions.size() % 3 != 0)
     throw Error("addMesh: positions: expected 3 floats per vertex, got " + std::to_string(positions.size()));
   if (indices.size() % 3 != 0)
@@ -161,8 +176,9 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   mesh.positions.assign(positions.begin(), positions.end());
   mesh.indices.assign(indices.begin(), indices.end());
   mesh.used = true;
+  mesh.deforms = bounds.has_value();
   mesh.version = nextVersion();
-  derive(mesh);
+  derive(mesh, bounds ? boxOf("addMesh", *bounds) : Box{});
   const MeshId id = takeSlot(impl_->meshes, impl_->freeMeshes);
   impl_->meshes[id] = std::move(mesh);
   impl_->meshVersion = nextVersion();
@@ -198,8 +214,22 @@ void Scene::setPose(ObjectId object, const Pose& worldFromMesh) {
   impl_->poseVersion = impl_->changedAt[object] = nextVersion();
 }
 
+void Scene::setBounds(ObjectId object, const Bounds& world) {
+  if (!hasObject(object)) throw Error("setBounds: " + idText("object", object) + " does not exist");
+  Box box = boxOf("setBounds", world);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= kBoundsRoom * largest;
+    box.hi[k] += kBoundsRoom * largest;
+  }
+  impl_->bounds[object] = box;
+  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+}
+
 void Scene::removeObject(ObjectId object) {
   if (!hasObject(object)) throw Error("removeObject: " + idText("object", object) + " does not exist");
+  impl_->bounds.erase(object);
   --impl_->meshes[impl_->objects[object].object.mesh].objects;
   impl_->objects[object] = {};
   impl_->freeObjects.push(object);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <queue>
 #include <vector>
 
@@ -23,15 +24,16 @@ struct Mesh {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   bool used = false;
+  bool deforms = false;  ///< a host may move its vertices, within halfExtent of the centre
   uint32_t objects = 0;  ///< how many place it
   uint64_t version = 0;  ///< unique over all meshes of all scenes: what a device copy is compared with
 
   /// Derived. Vertices are recentred for pictures and boxes, so that a part modelled far from its origin keeps its
-  /// float precision: recentred[i] = float(positions[i] - centre). One array per axis, so that loops over vertices
-  /// vectorise.
+  /// float precision: recentred[i] = float(positions[i] - centre). The centre is of floats, for shaders that do the
+  /// same. One array per axis, so that loops over vertices vectorise.
   std::array<double, 3> centre{};
   std::array<std::vector<float>, 3> recentred;
-  std::array<float, 3> halfExtent{};  ///< of the recentred vertices' box, which is centred at 0 up to rounding
+  std::array<float, 3> halfExtent{};  ///< of the recentred vertices' box, or of what a host may make of it
   double meanEdge = 0;                ///< mean length of the triangles' edges
 
   Clusters clusters;
@@ -59,6 +61,13 @@ struct Scene::Impl {
   uint64_t poseVersion = 0;       ///< any object changed
   /// For each object, the poseVersion at which it last changed.
   std::vector<uint64_t> changedAt;
+  std::map<ObjectId, Box> bounds;  ///< where a host may move them, with some room; world
+
+  /// Null: nowhere.
+  const Box* boundsOf(ObjectId object) const {
+    const auto found = bounds.find(object);
+    return found == bounds.end() ? nullptr : &found->second;
+  }
 };
 
 /// Whether two boxes, one of them widened by `slack`, have a point in common.

@@ -16,7 +16,7 @@
 // pass          reads                                     writes                       barrier behind it
 // ------------- ----------------------------------------- ---------------------------- ------------------------------
 // upload        staging                                   scene, views, draws, items,  uploadToRead,
-//                                                         bands, strips, scopes        fillToComputeReadWrite
+//                                                         bands, strips, scopes        transferToComputeReadWrite
 //                                                         (emptied)
 // outer scene   scene, bands, strips                      F                            computeWriteToComputeReadWrite
 // outer sensor  the same, F                               S, M                         computeWriteToComputeReadWrite
@@ -239,7 +239,7 @@ Answers BoundedRecorder::submit(std::span<const BoundedPlan* const> plans, const
   commands->CmdFillBuffer(commands, scopes_.get(), 0, 2 * planeBytes, gpu::kNobody);
   commands->CmdFillBuffer(commands, scopes_.get(), 2 * planeBytes, 2 * planeBytes, 0);
   gpu::uploadToRead(commands);
-  gpu::fillToComputeReadWrite(commands);
+  gpu::transferToComputeReadWrite(commands);
 
   bindings_.bind(commands);
   submission_.stage("outer scene");

@@ -23,7 +23,7 @@
 // Where a search is not finished, once more; where it asks for the mask, with its passes first:
 //
 // upload     staging                                 items, states, mask items,  uploadToRead,
-//                                                    mask scopes (emptied)       fillToComputeReadWrite
+//                                                    mask scopes (emptied)       transferToComputeReadWrite
 // mask       (mask_recorder.cpp)                     tiles, boxes
 // pairs      as above
 // masked     as contact, tiles                       as contact                  computeWriteToComputeReadWrite
@@ -84,8 +84,6 @@ ContactPass::ContactPass(const Device::Impl& device, ResidentScene& resident, co
       bounds_(gpu::computePipeline(device, bindings_.layout(), k_bounds_comp, "bounds")),
       pairs_(gpu::computePipeline(device, bindings_.layout(), k_pairs_comp, "pairs")),
       direct_(searchPipeline("contact", 0)),
-      masked_(searchPipeline("contact masked", 1)),
-      mask_(device, resident),
       tell_(device, resident, room.openContenders),
       targets_(device, "targets", Residence::device, kUploaded),
       placements_(device, "placements", Residence::device, kUploaded),
@@ -94,7 +92,11 @@ ContactPass::ContactPass(const Device::Impl& device, ResidentScene& resident, co
       items_(device, "pair items", Residence::device, kUploaded),
       clusterPairs_(device, "cluster pairs", Residence::device, kComputed),
       states_(device, "search states", Residence::device, kComputed),
-      contenders_(device, "contenders", Residence::device, kComputed) {}
+      contenders_(device, "contenders", Residence::device, kComputed) {
+  if (room.way != ContactWay::direct) {
+    masked_.emplace(Masked{MaskRecorder(device, resident), searchPipeline("contact masked", 1)});
+  }
+}
 
 gpu::Pipeline ContactPass::searchPipeline(const char* name, uint32_t masked) const {
   return gpu::computePipeline(*device_, bindings_.layout(), searchShader(*device_), name,
@@ -185,7 +187,7 @@ void ContactPass::bind() {
   const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
       {gpu::kBindTargets, &targets_}, {gpu::kBindPlacements, &placements_}, {gpu::kBindRefs, &refs_},
       {gpu::kBindBoxes, &boxes_},     {gpu::kBindPairItems, &items_},       {gpu::kBindClusterPairs, &clusterPairs_},
-      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}, {gpu::kBindTiles, &mask_.tiles()}};
+      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}, {gpu::kBindTiles, masked_ ? &masked_->mask.tiles() : &states_}};  // which the direct search does not read
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
 }
 
@@ -215,8 +217,8 @@ bool ContactPass::stageMasks(const gpu::State* states) {
     addItems(itemList_, sides_[i]);
   }
   if (asking.empty()) return false;
-  upload_.begin(mask_.prepare(asking) + Upload::aligned(bytesOf(itemList_)) + Upload::aligned(bytesOf(stateList_)));
-  mask_.upload(upload_);
+  upload_.begin(masked_->mask.prepare(asking) + Upload::aligned(bytesOf(itemList_)) + Upload::aligned(bytesOf(stateList_)));
+  masked_->mask.upload(upload_);
   upload_.add(itemList_.data(), bytesOf(itemList_), items_);
   upload_.add(stateList_.data(), bytesOf(stateList_), states_);
   bind();
@@ -242,10 +244,13 @@ void ContactPass::recordAnswers(const gpu::Commands& commands, const OpenStage& 
   tell_.record(commands, {targets_, states_, contenders_}, searches());
 }
 
-void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t dispatches) {
+void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& stage) {
   stage("upload");
   upload_.record(commands);
   gpu::uploadToRead(commands);
+}
+
+void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t dispatches) {
   if (targetList_.empty()) return;
   bindings_.bind(commands);
   stage("bounds");
@@ -263,18 +268,18 @@ void ContactPass::recordAgain(const gpu::Commands& commands, const OpenStage& st
   if (again.masks) {
     stage("upload");
     upload_.record(commands);
-    mask_.clear(commands);
+    masked_->mask.clear(commands);
     gpu::uploadToRead(commands);
-    gpu::fillToComputeReadWrite(commands);
+    gpu::transferToComputeReadWrite(commands);
     stage("mask");
-    mask_.record(commands, {targets_, placements_, refs_, boxes_, states_});
+    masked_->mask.record(commands, {targets_, placements_, refs_, boxes_, states_});
   }
   bindings_.bind(commands);
   if (again.masks) recordPairs(commands, stage);
   stage("contact");
   if (again.direct) recordSearch(commands, direct_, dispatches);
   stage("contact masked");
-  if (again.masked) recordSearch(commands, masked_, dispatches);
+  if (again.masked) recordSearch(commands, masked_->search, dispatches);
   recordAnswers(commands, stage);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "radar/recorder.h"
@@ -55,8 +56,10 @@ class ContactPass {
   /// Fills the lists, in host memory that the device is done with. `known` are answers that need no search, with those
   /// that come from one left out.
   void stage(std::span<const Search> searches, std::span<const Result> known, const Scene::Impl& scene);
-  /// From the upload to the answers; a barrier from compute shaders to what reads them comes next. A search goes on
-  /// over so many dispatches at most; one that has ended costs a dispatch next to nothing.
+  /// What was staged comes to the device, ready for every shader.
+  void recordUpload(const gpu::Commands& commands, const OpenStage& stage);
+  /// Behind the upload, up to the answers; a barrier from compute shaders to what reads them comes next. A search goes
+  /// on over so many dispatches at most; one that has ended costs a dispatch next to nothing.
   void record(const gpu::Commands& commands, const OpenStage& stage, uint32_t dispatches);
 
   /// Where searches that have ended so far left off. Stages the masks of those that ask for one, which begin anew;
@@ -69,7 +72,9 @@ class ContactPass {
   void recordAgain(const gpu::Commands& commands, const OpenStage& stage, const Again& again, uint32_t dispatches);
 
   uint32_t searches() const { return static_cast<uint32_t>(targetList_.size()); }
-  const gpu::Buffer& states() const { return states_; }  ///< State, one for each search
+  const gpu::Buffer& states() const { return states_; }          ///< State, one for each search
+  const gpu::Buffer& placements() const { return placements_; }  ///< Placement, of all searches
+  uint32_t placementCount() const { return static_cast<uint32_t>(placementList_.size()); }
   TellRecorder& tell() { return tell_; }
 
  private:
@@ -85,8 +90,12 @@ class ContactPass {
   ContactRoom room_;
   gpu::Upload upload_;
   gpu::Bindings bindings_;
-  gpu::Pipeline bounds_, pairs_, direct_, masked_;
-  MaskRecorder mask_;
+  gpu::Pipeline bounds_, pairs_, direct_;
+  struct Masked {
+    MaskRecorder mask;
+    gpu::Pipeline search;
+  };
+  std::optional<Masked> masked_;  ///< unless all goes direct
   TellRecorder tell_;
   gpu::Buffer targets_, placements_, refs_, boxes_, items_, clusterPairs_, states_, contenders_;
   VkDeviceSize reserved_ = 0;  ///< of staging, for the lists

@@ -15,6 +15,7 @@ namespace {
 constexpr uint64_t kMaskCost = 3000, kMaskTriangleCost = 4;
 // Vertices that may be off by more than this, pixels, make a mask worthless; and float could not tell its pixels apart.
 constexpr double kMostError = 1;
+constexpr Box kEverywhere{{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
 
 // Appends the clusters of a placed mesh whose boxes meet `within`; returns the box around them.
 Box collect(const Clusters& clusters, const Affine& frameFromMesh, double error, const Box& within, uint32_t placement,
@@ -36,6 +37,7 @@ gpu::Placement placementOf(const Affine& frameFromMesh, double error, MeshId mes
   p.error = upward(error);
   p.mesh = mesh;
   p.object = object;
+  p.moved = kNone;
   return p;
 }
 
@@ -68,6 +70,8 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
   plan.hi = upward(query.distance);
   if (reach.objects.empty()) return plan;
 
+  plan.axes = window.axes;
+  plan.origin = window.origin;
   plan.placements.push_back(placementOf(window.frameFromMesh, window.error, query.mesh, kNone));
   Box around;
   uint64_t triangles = 0;
@@ -75,15 +79,17 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
     const MeshId mesh = scene.objects[r.object].object.mesh;
     const auto placement = static_cast<uint32_t>(plan.placements.size());
     const size_t before = plan.scene.size();
-    around.merge(collect(scene.meshes[mesh].clusters, r.frameFromMesh, r.error, reach.prism.box, placement, plan.scene,
-                         triangles));
+    around.merge(collect(scene.meshes[mesh].clusters, r.frameFromMesh, r.error, r.loose ? kEverywhere : reach.prism.box,
+                         placement, plan.scene, triangles));
+    if (r.loose) around.merge(r.box);
     if (plan.scene.size() != before) plan.placements.push_back(placementOf(r.frameFromMesh, r.error, mesh, r.object));
   }
   if (plan.scene.empty()) return plan;
   // Only what of the sensor passes over something counts: its box, swept forward, meets theirs.
   Box behind = around;
   behind.lo[2] = -1e300;
-  collect(sensor.clusters, window.frameFromMesh, window.error, behind, 0, plan.sensor, triangles);
+  collect(sensor.clusters, window.frameFromMesh, window.error, sensor.deforms ? kEverywhere : behind, 0, plan.sensor,
+          triangles);
   if (plan.sensor.empty()) plan.scene.clear();
   planMask(plan.target, window, std::max(window.error, reach.error), kMaskCost + kMaskTriangleCost * triangles);
   return plan;

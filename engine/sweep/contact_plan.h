@@ -9,6 +9,8 @@
 namespace radar {
 
 struct ContactPlan {
+  std::array<Vector, 3> axes{};            ///< of the sensor's frame, world; only where something is in reach
+  Vector origin{};                         ///< of the frame, world
   gpu::Target target{};                    ///< all but where its pairs and contenders go
   std::vector<gpu::Placement> placements;  ///< the sensor's first
   std::vector<gpu::ClusterRef> sensor;     ///< placement: into `placements`

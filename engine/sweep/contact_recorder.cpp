@@ -104,8 +104,9 @@ void ContactRecorder::submitGroup(std::span<const ContactPlan* const> plans, con
   pass_.stage(searches, {}, scene);
   readback_.reserve(gpu::Upload::aligned(searches.size() * sizeof(gpu::State)) + searches.size() * sizeof(Result));
   const gpu::Commands commands = submission_.begin();
-  pass_.record(
-      commands, [this](const char* name) { submission_.stage(name); }, kSearchDispatches);
+  const auto stage = [this](const char* name) { submission_.stage(name); };
+  pass_.recordUpload(commands, stage);
+  pass_.record(commands, stage, kSearchDispatches);
   recordReadback(commands);
   submission_.submit();
 }

@@ -24,6 +24,24 @@ double doubleError(const Mesh& mesh, const Pose& pose, const Vector& origin) {
   return 0x1p-47 * (worst + largest(origin));
 }
 
+// Around a box of the world.
+Box turnedBox(const Box& world, const std::array<Vector, 3>& axes, const Vector& origin) {
+  Vector centre, half;
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = 0.5 * (world.lo[k] + world.hi[k]) - origin[k];
+    half[k] = 0.5 * (world.hi[k] - world.lo[k]);
+  }
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const double middle = dot(axes[row], centre);
+    double reach = doubleErrorWithin(world, origin);
+    for (int k = 0; k < 3; ++k) reach += std::abs(axes[row][k]) * half[k];
+    box.lo[row] = middle - reach;
+    box.hi[row] = middle + reach;
+  }
+  return box;
+}
+
 // The turned vertices' own box: tighter than the turned box, and M fills the window. Padded by its rounding.
 Box tightBox(const Mesh& mesh, const Affine& m) {
   Box box;
@@ -56,11 +74,18 @@ std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene
     if (isExcluded(query, object, id)) continue;
     const Mesh& mesh = scene.meshes[object.mesh];
     const Affine m = frameFromRecentred(prism.axes, prism.origin, object.worldFromMesh, mesh.centre);
-    const Box box = boxOfRecentred(mesh, m);
+    Box box = boxOfRecentred(mesh, m);
+    const Box* bounds = scene.boundsOf(id);
+    if (bounds != nullptr) box.merge(turnedBox(*bounds, prism.axes, prism.origin));
     const double error = doubleError(mesh, object.worldFromMesh, prism.origin);
     if (!overlap(box, prism.box, error)) continue;
     farthest = std::max(farthest, box.hi[2]);
-    reached.push_back({id, m, error + placementError(mesh, m)});
+    const double total = error + placementError(mesh, m);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] -= total;
+      box.hi[k] += total;
+    }
+    reached.push_back({id, m, total, box, mesh.deforms || bounds != nullptr});
   }
   return reached;
 }
@@ -88,6 +113,10 @@ double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
   return 8 * kFloatUnit * worst + 0x1p-120;  // the floor: what float loses below its normal range
 }
 
+double doubleErrorWithin(const Box& box, const Vector& origin) {
+  return 0x1p-47 * (std::max(largest(box.lo), largest(box.hi)) + largest(origin));
+}
+
 bool isExcluded(const Query& query, const Object& object, ObjectId id) {
   return (object.mask & query.mask) == 0 ||
          std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end();
@@ -99,7 +128,7 @@ SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
   w.origin = transform(query.worldFromMesh, sensor.centre);
   w.frameFromMesh = frameFromRecentred(w.axes, w.origin, query.worldFromMesh, sensor.centre);
   w.error = placementError(sensor, w.frameFromMesh) + doubleError(sensor, query.worldFromMesh, w.origin);
-  w.box = tightBox(sensor, w.frameFromMesh);
+  w.box = sensor.deforms ? boxOfRecentred(sensor, w.frameFromMesh) : tightBox(sensor, w.frameFromMesh);
   w.length = w.box.hi[2] - w.box.lo[2];
   w.size = 0;
   for (int k = 0; k < 3; ++k) w.size = std::max(w.size, w.box.hi[k] - w.box.lo[k]);

@@ -34,6 +34,8 @@ struct Reached {
   ObjectId object;
   Affine frameFromMesh;  ///< from recentred vertices
   double error;          ///< how far a vertex that a shader places may be off
+  Box box;               ///< around it, and around all that a host may make of it
+  bool loose;            ///< a host may: it need not be where its clusters are
 };
 
 struct Reach {
@@ -44,6 +46,9 @@ struct Reach {
 };
 
 Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, const SensorWindow& window);
+
+/// What double precision may lose of a point within `box`, placed in the world and seen from `origin`, world units.
+double doubleErrorWithin(const Box& box, const Vector& origin);
 
 /// Whether the query leaves the object out, by its mask or by name.
 bool isExcluded(const Query& query, const Object& object, ObjectId id);

@@ -6,11 +6,13 @@
 #include "sweep/contact_decode.h"
 #include "sweep/contact_pass.h"
 #include "sweep/decode.h"
+#include "sweep/host_geometry.h"
 #include "sweep/sweeper.h"
 
 // pass     reads   writes   barrier behind it
 // -------- ------- -------- -----------------
-// (contact_pass.cpp)        computeWriteToCopy
+// (contact_pass.cpp, between them host_geometry.cpp)
+//                           computeWriteToCopy
 // readback results readback writtenToHost
 
 namespace radar {
@@ -59,6 +61,7 @@ struct Recorder::Impl {
         scene(ownScene),
         capacity(given),
         copy(openDevice),
+        geometry(openDevice, copy.resident),
         pass(openDevice, copy.resident, roomFor(given)),
         readback(openDevice, "recorded results", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     refuseTooLarge();
@@ -67,13 +70,14 @@ struct Recorder::Impl {
   }
 
   void refuseTooLarge();
-  void refuseWrong(std::span<const Query> queries) const;
+  void refuseWrong(std::span<const Query> queries, const HostGeometry& given) const;
   void plan(std::span<const Query> queries);
 
   const Device::Impl& device;
   const Scene& scene;
   Capacity capacity;
   SceneCopy copy;
+  HostGeometryPass geometry;
   ContactPass pass;
   gpu::Buffer readback;
   std::vector<Query> asked;  ///< in the last record()
@@ -97,7 +101,7 @@ void Recorder::Impl::refuseTooLarge() {
   refuse("openPairs", capacity.openPairs, pass.tell().mostContenders());
 }
 
-void Recorder::Impl::refuseWrong(std::span<const Query> queries) const {
+void Recorder::Impl::refuseWrong(std::span<const Query> queries, const HostGeometry& given) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
@@ -108,6 +112,7 @@ void Recorder::Impl::refuseWrong(std::span<const Query> queries) const {
     if (wrong.empty() && queries[i].tolerance != 0) wrong = "tolerance: expected 0";
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
+  if (std::string wrong = whatIsWrong(given, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
 }
 
 void Recorder::Impl::plan(std::span<const Query> queries) {
@@ -136,10 +141,14 @@ Capacity Recorder::need(std::span<const Query> queries) {
   return need;
 }
 
-void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries) {
+void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries, const HostGeometry& geometry) {
   Impl& self = *impl_;
-  self.refuseWrong(queries);
+  self.refuseWrong(queries, geometry);
+  self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
+  if (!self.geometry.empty()) {
+    for (ContactPlan& plan : self.plans) self.geometry.prepare(plan);
+  }
   self.asked.assign(queries.begin(), queries.end());
   self.known.assign(queries.size(), decodeClear());
   self.searches.clear();
@@ -152,6 +161,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
     self.known[i] = refused(flag);
     if (flag == 0) self.searches.push_back(search);
   }
+  self.copy.resident.willOverwrite(self.geometry.overwritten());
   self.pass.stage(self.searches, self.known, self.scene.impl());
 
   const gpu::Commands commands{&self.device.vk, commandBuffer};
@@ -161,7 +171,13 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
     self.device.beginLabel(commands, name);
     open = name;
   };
+  self.pass.recordUpload(commands, stage);
+  if (!self.geometry.empty()) {
+    stage("geometry");
+    self.geometry.record(commands, self.pass.placements(), self.pass.placementCount(), self.pass.tell().results());
+  }
   self.pass.record(commands, stage, self.capacity.dispatches);
+  if (!self.geometry.empty()) self.geometry.recordRefusal(commands, static_cast<uint32_t>(queries.size()));
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy region{0, 0, queries.size() * sizeof(Result)};
@@ -191,8 +207,8 @@ std::vector<Result> Recorder::read() {
   for (uint32_t i = 0; i < self.searches.size(); ++i) {
     const auto first = next;
     while (next != open.end() && (*next)->target == i) ++next;
-    if (first == next) continue;
     const uint32_t query = self.searches[i].result;
+    if (results[query].flags != kFlagOpen) continue;
     uint64_t cpuPairs = 0;
     results[query] = decodeContact({{}, results[query], {first, next}}, self.asked[query], cpuPairs);
   }

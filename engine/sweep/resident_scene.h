@@ -16,6 +16,14 @@ class ResidentScene {
     gpu::Buffer positions, originals, indices, triangleIds, nodes, meshes, objects;
   };
 
+  /// Meshes and objects that commands behind the next upload overwrite. What those behind the last one have
+  /// overwritten, and these do not, is staged as the scene has it.
+  struct Overwritten {
+    std::vector<MeshId> meshes;
+    std::vector<ObjectId> objects;
+  };
+  void willOverwrite(Overwritten next);
+
   /// Works out what changed and makes room for it; returns the bytes that `upload` will stage.
   VkDeviceSize prepare(const Scene::Impl& scene);
   /// Stages the changes found by the last `prepare`.
@@ -24,7 +32,7 @@ class ResidentScene {
   void confirm(const Scene::Impl& scene);
 
   /// Nothing that was staged has arrived for certain: all of it is staged again.
-  void forget() { seenScene_ = seenMeshes_ = seenPoses_ = 0; }
+  void forget();
 
   /// Binds what every set has at the same numbers: all but triangle ids and nodes.
   void bindTo(gpu::Bindings& bindings) const;
@@ -33,13 +41,18 @@ class ResidentScene {
 
  private:
   void refuseAbove(const char* what, uint64_t bytes) const;
+  VkDeviceSize prepareMeshes(const Scene::Impl& scene);
+  VkDeviceSize prepareObjects(const Scene::Impl& scene);
+  void uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload) const;
 
   const Device::Impl* device_;
   Buffers buffers_;
   std::vector<gpu::MeshRecord> records_;
   uint64_t seenScene_ = 0, seenMeshes_ = 0, seenPoses_ = 0;
-  bool meshesChanged_ = false;
+  bool recordsChanged_ = false;
+  std::vector<MeshId> changedMeshes_;
   std::vector<ObjectId> changedObjects_;
+  Overwritten overwritten_, next_;  ///< ascending
 };
 
 }  // namespace radar

@@ -11,7 +11,7 @@
 
 // pass   reads                              writes         barrier behind it
 // ------ ---------------------------------- -------------- -----------------------
-// empty                                     open's count   fillToComputeReadWrite
+// empty                                     open's count   transferToComputeReadWrite
 // tell   scene, targets, states, contenders results, open  (the caller's)
 
 namespace radar {
@@ -78,7 +78,7 @@ uint32_t TellRecorder::capacity() const {
 
 void TellRecorder::record(const gpu::Commands& commands, const Lent& lent, uint32_t targets) {
   commands->CmdFillBuffer(commands, open_.get(), 0, sizeof(gpu::OpenCount), 0);
-  gpu::fillToComputeReadWrite(commands);
+  gpu::transferToComputeReadWrite(commands);
   const ResidentScene::Buffers& scene = resident_.buffers();
   const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
       {gpu::kBindOriginals, &scene.originals}, {gpu::kBindIndices, &scene.indices},

@@ -1,46 +1,16 @@
 // Meshes out of a host's buffers, in the formats that renderers use.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
-#include "gpu/barrier.h"
-#include "gpu/buffer.h"
-#include "gpu/submission.h"
-#include "radar/host_mesh.h"
+#include "embed/on_device.h"
+#include "radar/host_geometry.h"
 #include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
-
-/// Bytes in a buffer on the device, as a renderer has its vertices.
-class OnDevice {
- public:
-  explicit OnDevice(const std::vector<std::byte>& bytes)
-      : buffer_(test::device().impl(), "host's", gpu::Residence::device,
-                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {
-    const Device::Impl& device = test::device().impl();
-    gpu::Upload upload(device);
-    buffer_.reserve(bytes.size());
-    upload.begin(bytes.size());
-    upload.add(bytes.data(), bytes.size(), buffer_);
-    gpu::Submission submission(device, false);
-    upload.record(submission.begin());
-    submission.submitAndWait();
-  }
-  VkBuffer get() const { return buffer_.get(); }
-
- private:
-  gpu::Buffer buffer_;
-};
-
-template <class T>
-void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
-  for (const T value : values) {
-    bytes.resize(bytes.size() + sizeof(T));
-    std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
-  }
-}
+using test::append;
+using test::OnDevice;
 
 std::vector<float> positionsOf(const Scene& scene, MeshId mesh) {
   const auto positions = scene.mesh(mesh).positions;
@@ -60,9 +30,7 @@ TEST_CASE("interleaved float vertices with 16-bit and 32-bit indices, at offsets
   append<uint16_t>(small, {2, 1, 0, 3, 2, 1});
   append<uint32_t>(large, {2, 1, 0, 3, 2, 1});
   const OnDevice positions(vertices), indices16(small), indices32(large);
-  HostMesh mesh{.positions = positions.get(),
-                .firstPosition = 20,
-                .stride = 20,
+  HostMesh mesh{.positions = {.buffer = positions.get(), .first = 20, .stride = 20},
                 .vertexCount = 4,
                 .indices = indices16.get(),
                 .firstIndex = 6,
@@ -92,9 +60,9 @@ TEST_CASE("16-bit positions are what a vertex shader would see") {
   const OnDevice a(half), b(snorm), c(unorm);
   Scene scene;
   const auto read = [&](const OnDevice& buffer, VkFormat format, VkDeviceSize stride) {
-    return positionsOf(scene,
-                       addMesh(scene, test::device(),
-                               {.positions = buffer.get(), .stride = stride, .format = format, .vertexCount = 3}));
+    return positionsOf(
+        scene, addMesh(scene, test::device(),
+                       {.positions = {.buffer = buffer.get(), .stride = stride, .format = format}, .vertexCount = 3}));
   };
   CHECK(read(a, VK_FORMAT_R16G16B16A16_SFLOAT, 8) ==
         std::vector<float>{1, -2, 65504, 0x1p-14f, 0x1p-24f, 0x1.554p-2f, -0.0f, 0, 3.140625f});
@@ -112,14 +80,14 @@ TEST_CASE("a mesh of the host's that cannot be read is refused by the member tha
   const OnDevice buffer(bytes);
   Scene scene;
   const auto refused = [&](HostMesh mesh, const char* why) {
-    mesh.positions = buffer.get();
+    mesh.positions.buffer = buffer.get();
     CHECK_THROWS_WITH(addMesh(scene, test::device(), mesh), Catch::Contains(why));
   };
-  refused({.format = VK_FORMAT_R8G8B8_UNORM, .vertexCount = 3}, "HostMesh::format: expected");
-  refused({.stride = 8, .vertexCount = 3}, "HostMesh::stride: expected at least 12 bytes, got 8");
+  refused({.positions = {.format = VK_FORMAT_R8G8B8_UNORM}, .vertexCount = 3}, "addMesh: positions: format: expected");
+  refused({.positions = {.stride = 8}, .vertexCount = 3}, "positions: stride: expected at least 12 bytes, got 8");
   refused({.vertexCount = 0}, "at least one triangle");
   refused({.vertexCount = 3, .indices = buffer.get(), .indexType = VK_INDEX_TYPE_UINT8_EXT, .indexCount = 3},
-          "HostMesh::indexType: expected 16 or 32 bits");
+          "addMesh: indexType: expected 16 or 32 bits");
   refused({.vertexCount = 3}, "finite");
   refused({.vertexCount = 2, .indices = buffer.get(), .firstIndex = 36, .indexCount = 3}, "names vertex 3 of 2");
   CHECK(scene.meshLimit() == 0);

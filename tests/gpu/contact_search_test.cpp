@@ -24,7 +24,7 @@ ContactPlan everything(const Query& query, const Scene::Impl& scene, const Hiera
   plan.scene.clear();
   const auto add = [&](MeshId mesh, ObjectId object, std::vector<gpu::ClusterRef>& refs) {
     const auto placement = static_cast<uint32_t>(plan.placements.size());
-    plan.placements.push_back({.frameFromMesh = {}, .error = 1e15f, .mesh = mesh, .object = object, .pad = 0});
+    plan.placements.push_back({.frameFromMesh = {}, .error = 1e15f, .mesh = mesh, .object = object, .moved = kNone});
     const std::vector<ClusterNode>& nodes = scene.meshes[mesh].clusters.nodes;
     for (uint32_t i = 0; i < nodes.size(); ++i) {
       if (nodes[i].count != 0) refs.push_back({placement, i});

@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 # Holds the order of the floors: cmake -DROOT=... -P floors.cmake. Each folder may include itself and what is listed.
 set(scene_may radar)
 set(gpu_may radar shaders spirv)
-set(exact_may Eigen)
+set(exact_may)
 set(sweep_may radar gpu scene exact shaders spirv)
 set(pool_may radar gpu scene sweep)
 set(reference_may radar exact Eigen)

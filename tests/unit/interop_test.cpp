@@ -1,6 +1,7 @@
 // The structs that C++ and GLSL share have the same layout: offsetof against the SPIR-V's own decorations.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <map>
@@ -13,17 +14,22 @@
 #include "spirv/bounds_comp.h"
 #include "spirv/contact_comp.h"
 #include "spirv/contact_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/deform_comp.h"
 #include "spirv/depth_vert.h"
 #include "spirv/identify_comp.h"
 #include "spirv/mask_comp.h"
+#include "spirv/move_comp.h"
+#include "spirv/move_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/outer_draw_comp.h"
 #include "spirv/outer_fill_comp.h"
 #include "spirv/outer_identify_comp.h"
 #include "spirv/outer_reduce_comp.h"
 #include "spirv/pairs_comp.h"
 #include "spirv/reduce_comp.h"
+#include "spirv/refit_comp.h"
 #include "spirv/solve_comp.h"
 #include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/stray_comp.h"
 #include "spirv/tell_comp.h"
 #include "spirv/tell_comp_RADAR_NO_DOUBLES.h"
 
@@ -78,6 +84,11 @@ const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
     {"contact.comp without doubles", k_contact_comp_RADAR_NO_DOUBLES},
     {"tell.comp", k_tell_comp},
     {"tell.comp without doubles", k_tell_comp_RADAR_NO_DOUBLES},
+    {"deform.comp", k_deform_comp},
+    {"refit.comp", k_refit_comp},
+    {"move.comp", k_move_comp},
+    {"move.comp without doubles", k_move_comp_RADAR_NO_DOUBLES},
+    {"stray.comp", k_stray_comp},
 };
 
 struct Expected {
@@ -95,7 +106,8 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
   const Expected expected[] = {
       {"MeshRecord",
        sizeof(MeshRecord),
-       {MEMBER(MeshRecord, firstVertex), MEMBER(MeshRecord, firstIndex), MEMBER(MeshRecord, firstNode)}},
+       {MEMBER(MeshRecord, centre), MEMBER(MeshRecord, halfExtent), MEMBER(MeshRecord, firstVertex),
+        MEMBER(MeshRecord, firstIndex), MEMBER(MeshRecord, firstNode)}},
       {"ObjectRecord",
        sizeof(ObjectRecord),
        {MEMBER(ObjectRecord, pose), MEMBER(ObjectRecord, mesh), MEMBER(ObjectRecord, pad)}},
@@ -156,7 +168,11 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       {"Placement",
        sizeof(Placement),
        {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),
-        MEMBER(Placement, pad)}},
+        MEMBER(Placement, moved)}},
+      {"Moved",
+       sizeof(Moved),
+       {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, firstByte), MEMBER(Moved, anchor),
+        MEMBER(Moved, halfExtent)}},
       {"ClusterRef", sizeof(ClusterRef), {MEMBER(ClusterRef, placement), MEMBER(ClusterRef, node)}},
       {"RefBox", sizeof(RefBox), {MEMBER(RefBox, lo), MEMBER(RefBox, hi), MEMBER(RefBox, edge)}},
       {"PairItem",
@@ -199,7 +215,7 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
   for (const Expected& one : expected) CHECK(seen.count(one.structure) == 1);
 }
 
-TEST_CASE("without doubles, only the solvers' other variants use any") {
+TEST_CASE("what uses doubles has a variant without") {
   constexpr uint32_t kOpTypeFloat = 22;
   for (const auto& [shader, spirv] : kShaders) {
     CAPTURE(shader);
@@ -207,7 +223,9 @@ TEST_CASE("without doubles, only the solvers' other variants use any") {
     for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
       doubles = doubles || ((spirv[at] & 0xffff) == kOpTypeFloat && spirv[at + 2] == 64);
     }
-    const std::string name = shader;
-    CHECK(doubles == (name == "solve.comp" || name == "contact.comp" || name == "tell.comp"));
+    const bool hasVariant = std::any_of(std::begin(kShaders), std::end(kShaders), [name = std::string(shader)](auto& s) {
+      return s.first == name + " without doubles";
+    });
+    CHECK(doubles == hasVariant);
   }
 }

@@ -81,9 +81,9 @@ TEST_CASE("the teapot has 6,320 triangles, none of them degenerate") {
   const MeshData teapot = makeTeapot();
   CHECK(teapot.triangleCount() == 6320);
   CHECK_FALSE(hasDegenerateTriangle(teapot));
-  const Bounds bounds = boundsOf(teapot);
-  CHECK(bounds.longest == Approx(6.434).epsilon(1e-3));
-  CHECK(bounds.middle[1] == 0);
+  const MeshExtent extent = extentOf(teapot);
+  CHECK(extent.longest == Approx(6.434).epsilon(1e-3));
+  CHECK(extent.middle[1] == 0);
 }
 
 TEST_CASE("turned shapes and boxes are closed and have no degenerate triangle") {

@@ -67,13 +67,13 @@ void drawSurfaces(const Canvas& canvas, const Scopes& all, const Scopes& moving)
 }
 
 void drawFlight(const Canvas& canvas, const Scopes& view, const Workload& workload, const Flight& flight) {
-  const Bounds bounds = boundsOf(workload.meshes[flight.query.sensor.mesh]);
+  const MeshExtent extent = extentOf(workload.meshes[flight.query.sensor.mesh]);
   const Vec3& direction = flight.query.direction;
   const double part = flight.distance / std::sqrt(dot(direction, direction));
   std::array<Vec3, 2> ends;
   for (int k = 0; k < 3; ++k) {
     const double* row = &flight.query.sensor.worldFromMesh.m[4 * k];
-    ends[0][k] = row[0] * bounds.middle[0] + row[1] * bounds.middle[1] + row[2] * bounds.middle[2] + row[3];
+    ends[0][k] = row[0] * extent.middle[0] + row[1] * extent.middle[1] + row[2] * extent.middle[2] + row[3];
     ends[1][k] = ends[0][k] + part * direction[k];
   }
   std::array<std::pair<double, double>, 2> points;

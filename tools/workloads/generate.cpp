@@ -27,19 +27,19 @@ Vec3 negated(const Vec3& v) {
 }
 
 /// The pose that turns a mesh, scales it alike in all directions and puts the middle of its box at `at`.
-Pose poseAround(const Bounds& bounds, const std::array<double, 9>& rotation, double scale, const Vec3& at) {
+Pose poseAround(const MeshExtent& extent, const std::array<double, 9>& rotation, double scale, const Vec3& at) {
   Pose pose = makePose(rotation, {scale, scale, scale}, at);
   for (int row = 0; row < 3; ++row) {
     double* r = &pose.m[4 * row];
-    r[3] -= r[0] * bounds.middle[0] + r[1] * bounds.middle[1] + r[2] * bounds.middle[2];
+    r[3] -= r[0] * extent.middle[0] + r[1] * extent.middle[1] + r[2] * extent.middle[2];
   }
   return pose;
 }
 
 /// Shrinks or grows a mesh to a random size; a mesh that is one point stays.
-double randomScale(Random& random, const Bounds& bounds) {
+double randomScale(Random& random, const MeshExtent& extent) {
   const double longest = random.uniform(1, 3);
-  return bounds.longest == 0 ? 1 : longest / bounds.longest;
+  return extent.longest == 0 ? 1 : longest / extent.longest;
 }
 
 /// A place in the cube where a sphere is free, if kTries find one.
@@ -70,7 +70,7 @@ std::vector<Instance> randomBoxes(Random& random, uint32_t count, double side, d
 /// Table 1's sensors: unit box, mesh 0, or teapot, mesh 1. `placeFor` finds a place for a sphere of the radius given.
 template <class PlaceFor>
 void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, const PlaceFor& placeFor) {
-  const Bounds teapot = boundsOf(workload.meshes[1]);
+  const MeshExtent teapot = extentOf(workload.meshes[1]);
   for (uint32_t i = 0; i < count; ++i) {
     QuerySpec query;
     query.id = "sensor/" + std::to_string(i);
@@ -164,7 +164,7 @@ Workload makeWorkload(const Scale& options) {
 Workload makeWorkload(const Figure7& options) {
   Workload workload;
   workload.meshes = {makeBox({1, 1, 1}), makeTeapot()};
-  const Bounds teapot = boundsOf(workload.meshes[1]);
+  const MeshExtent teapot = extentOf(workload.meshes[1]);
   const double scale = kTeapotWidth / teapot.longest, radius = scale * teapot.radius;
   Random random(options.seed);
   Clearance clearance(8);
@@ -254,14 +254,14 @@ Workload makeWorkload(const RandomPoses& options) {
   Workload workload;
   workload.meshes = options.meshes;
   Random random(options.seed);
-  std::vector<Bounds> bounds;
-  for (const MeshData& mesh : workload.meshes) bounds.push_back(boundsOf(mesh));
+  std::vector<MeshExtent> bounds;
+  for (const MeshData& mesh : workload.meshes) bounds.push_back(extentOf(mesh));
   const double side = std::round(64 * std::cbrt(kVolumePerMesh * options.objects)) / 64;
   const uint32_t kinds = static_cast<uint32_t>(bounds.size());
   Clearance clearance(4);
   SceneSpec scene{"meshes", {}, {}, {}};
   for (uint32_t i = 0; i < options.objects; ++i) {
-    const Bounds& mesh = bounds[i % kinds];
+    const MeshExtent& mesh = bounds[i % kinds];
     const double scale = randomScale(random, mesh);
     const auto rotation = random.rotation();
     const Vec3 at = random.inBox(negated(cubeCorner(side)), cubeCorner(side));
@@ -270,7 +270,7 @@ Workload makeWorkload(const RandomPoses& options) {
   }
   workload.scenes.push_back(std::move(scene));
   for (uint32_t i = 0; i < options.sensors; ++i) {
-    const Bounds& mesh = bounds[i % kinds];
+    const MeshExtent& mesh = bounds[i % kinds];
     const double scale = randomScale(random, mesh);
     QuerySpec query;
     query.id = "sensor/" + std::to_string(i);

@@ -193,7 +193,7 @@ void append(MeshData& mesh, const MeshData& part, const Vec3& offset) {
   for (uint32_t index : part.indices) mesh.indices.push_back(first + index);
 }
 
-Bounds boundsOf(const MeshData& mesh) {
+MeshExtent extentOf(const MeshData& mesh) {
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
@@ -201,20 +201,20 @@ Bounds boundsOf(const MeshData& mesh) {
       high[k] = std::max(high[k], double(mesh.positions[3 * vertex + k]));
     }
   }
-  Bounds bounds;
+  MeshExtent extent;
   for (int k = 0; k < 3; ++k) {
-    bounds.middle[k] = 0.5 * (low[k] + high[k]);
-    bounds.longest = std::max(bounds.longest, high[k] - low[k]);
+    extent.middle[k] = 0.5 * (low[k] + high[k]);
+    extent.longest = std::max(extent.longest, high[k] - low[k]);
   }
   for (uint32_t vertex : mesh.indices) {
     double square = 0;
     for (int k = 0; k < 3; ++k) {
-      const double offset = mesh.positions[3 * vertex + k] - bounds.middle[k];
+      const double offset = mesh.positions[3 * vertex + k] - extent.middle[k];
       square += offset * offset;
     }
-    bounds.radius = std::max(bounds.radius, std::sqrt(square));
+    extent.radius = std::max(extent.radius, std::sqrt(square));
   }
-  return bounds;
+  return extent;
 }
 
 }  // namespace radar::tools

@@ -62,11 +62,11 @@ MeshData makeSoup(Soup soup, uint32_t triangles, Random& random);
 void append(MeshData& mesh, const MeshData& part, const Vec3& offset);
 
 /// The radius of the sphere around the box's middle that holds the mesh, and that middle; and the box's longest edge.
-struct Bounds {
+struct MeshExtent {
   Vec3 middle{};
   double radius = 0;
   double longest = 0;
 };
-Bounds boundsOf(const MeshData& mesh);
+MeshExtent extentOf(const MeshData& mesh);
 
 }  // namespace radar::tools

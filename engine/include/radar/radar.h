@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -68,6 +69,11 @@ RADAR_API std::array<double, 3> place(const Pose& pose, const float* p);
 using MeshId = uint32_t;
 using ObjectId = uint32_t;
 
+/// An axis-aligned box, ends included.
+struct Bounds {
+  std::array<double, 3> lo{}, hi{};
+};
+
 /// A triangle mesh as it was given.
 struct MeshView {
   std::span<const float> positions;   ///< 3 floats per vertex
@@ -92,14 +98,20 @@ class RADAR_API Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
-  /// not a multiple of 3, a number is not finite or an index is out of range.
-  MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices);
+  /// not a multiple of 3, a number is not finite, an index is out of range or a bound is above its other.
+  ///
+  /// `bounds`, mesh units: the host will deform the mesh on its device (radar/host_geometry.h), within them. The closer
+  /// `positions` are to what it will be (its rest pose), the faster the search; elsewhere they are the mesh.
+  MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
+                 const std::optional<Bounds>& bounds = std::nullopt);
   /// Throws while an object uses the mesh.
   void removeMesh(MeshId mesh);
 
   /// Throws if the mesh does not exist, or the pose is singular or not finite.
   ObjectId addObject(const Object& object);
   void setPose(ObjectId object, const Pose& worldFromMesh);
+  /// The host will move the object on its device (radar/host_geometry.h), within `world`, whose size is what it costs.
+  void setBounds(ObjectId object, const Bounds& world);
   void removeObject(ObjectId object);
 
   bool hasMesh(MeshId mesh) const;
@@ -173,6 +185,7 @@ inline constexpr uint32_t kFlagClusters = 2;  ///< Capacity::clusters was too sm
 inline constexpr uint32_t kFlagClusterPairs = 4;  ///< Capacity::clusterPairs was
 inline constexpr uint32_t kFlagContenders = 8;    ///< Capacity::contenders was
 inline constexpr uint32_t kFlagDispatches = 16;   ///< Capacity::dispatches was
+inline constexpr uint32_t kFlagBounds = 32;  ///< a vertex or an object of HostGeometry has left its declared bounds
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
 ///

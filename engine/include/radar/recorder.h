@@ -3,7 +3,7 @@
 // The engine submits nothing and waits for nothing here. radar/result.glsl is the answers' layout for shaders.
 #pragma once
 
-#include "radar/radar.h"
+#include "radar/host_geometry.h"
 
 namespace radar {
 
@@ -11,7 +11,8 @@ namespace radar {
 /// Status::invalid with the flag named, and no other.
 struct Capacity {
   uint32_t queries = 64;  ///< more make record() throw
-  /// Clusters, of at most 64 triangles, of sensors and of what is in their reach, in all: kFlagClusters.
+  /// Clusters, of at most 64 triangles, of sensors and of what is in their reach, in all: kFlagClusters. What a host
+  /// deforms or moves counts whole where its bounds are in reach.
   uint32_t clusters = 1u << 14;
   /// Pairs of a sensor's cluster and a scene's whose boxes can meet, in all: kFlagClusterPairs.
   uint32_t clusterPairs = 1u << 18;
@@ -38,20 +39,27 @@ class RADAR_API Recorder {
   Capacity need(std::span<const Query> queries);
 
   /// Records the search into `commands`, a primary or secondary command buffer of HostDevice::queueFamily in the
-  /// recording state, outside a render pass. Reads `scene` and `queries` here and not later. Query i's answer goes to
-  /// results(), i * sizeof(Result) bytes from its start: to the bit that of Sweeper::run, except where the flag
-  /// kFlagOpen says that pairs are too close for the device: then the status is undecided, `hi` does not exist, and
-  /// nothing meets before `lo`.
+  /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` here and not later, the host's
+  /// buffers that `geometry` names when the commands are executed. Query i's answer goes to results(),
+  /// i * sizeof(Result) bytes from its start: to the bit that of Sweeper::run, except where the flag kFlagOpen says
+  /// that pairs are too close for the device: then the status is undecided, `hi` does not exist, and nothing meets
+  /// before `lo`.
   ///
-  /// - Before: nothing needs to be made visible. What this object recorded before has been executed and waited for.
+  /// Where something in the host's buffers is out of its bounds, or not finite, every answer is Status::invalid with
+  /// kFlagBounds.
+  ///
+  /// - Before: what this object recorded before has been executed and waited for. What wrote the buffers of `geometry`
+  ///   is visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; whatever writes them next waits for
+  ///   that stage. Without them nothing needs to be made visible.
   /// - Afterwards: the commands are submitted once or never; if never, reset() comes before the next record(). Whoever
   ///   reads the answers waits for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
-  /// - Allocates device memory only where scene or capacity have grown since the last call.
+  /// - Allocates device memory only where scene or geometry have grown since the last call.
   ///
   /// Throws before it records anything if a query breaks its contract, is not of mode contact, or has a tolerance; if
-  /// there are more than Capacity::queries; and if the scene does not fit the device.
-  void record(VkCommandBuffer commands, std::span<const Query> queries);
+  /// there are more than Capacity::queries; if `geometry` breaks its contract; and if something does not fit the
+  /// device.
+  void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// What was recorded last has not been executed and will not be.
   void reset();
 

@@ -54,6 +54,7 @@ const uint RADAR_TOO_MANY_CLUSTERS = 2;
 const uint RADAR_TOO_MANY_CLUSTER_PAIRS = 4;
 const uint RADAR_TOO_MANY_CONTENDERS = 8;
 const uint RADAR_TOO_LONG = 16;
+const uint RADAR_OUT_OF_BOUNDS = 32;
 
 // The float next to a double, towards 0; of its bits, low word first.
 float radarFloat(uvec2 bits) {

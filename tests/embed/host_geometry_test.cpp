@@ -1,0 +1,511 @@
+// Meshes that a host deforms, and objects that it moves, on its device: the answers are those of a scene that has them
+// so.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <random>
+
+#include <vulkan/vulkan.h>
+
+#include "embed/host.h"
+#include "embed/on_device.h"
+#include "gpu/barrier.h"
+#include "gpu/pipeline.h"
+#include "radar/recorder.h"
+#include "spirv/copy_words_comp.h"
+#include "spirv/skin_comp.h"
+#include "sweep/host_format.h"
+#include "sweep/host_geometry.h"
+#include "workloads/families.h"
+#include "workloads/shapes.h"
+
+void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
+                  const radar::HostGeometry& geometry);
+
+namespace {
+
+using namespace radar;
+using test::append;
+using test::OnDevice;
+
+bool sameBits(const Result& p, const Result& q) {
+  return std::memcmp(&p, &q, sizeof(Result)) == 0;
+}
+
+/// A box with room around the vertices.
+Bounds around(std::span<const float> positions) {
+  Bounds bounds{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  for (size_t i = 0; i < positions.size(); ++i) {
+    bounds.lo[i % 3] = std::min(bounds.lo[i % 3], double{positions[i]});
+    bounds.hi[i % 3] = std::max(bounds.hi[i % 3], double{positions[i]});
+  }
+  return bounds;
+}
+
+/// The box of a box, placed.
+Bounds placed(const Bounds& box, const Pose& pose) {
+  Bounds out;
+  for (int k = 0; k < 3; ++k) {
+    const double* r = &pose.m[4 * static_cast<size_t>(k)];
+    double middle = r[3], half = 0;
+    for (size_t j = 0; j < 3; ++j) {
+      middle += r[j] * 0.5 * (box.lo[j] + box.hi[j]);
+      half += std::abs(r[j]) * 0.5 * (box.hi[j] - box.lo[j]);
+    }
+    out.lo[static_cast<size_t>(k)] = middle - half;
+    out.hi[static_cast<size_t>(k)] = middle + half;
+  }
+  return out;
+}
+
+/// A workload as a host has it: the scene knows rest poses and bounds, the host's buffers what is true.
+class Hosted {
+ public:
+  /// The truth's poses become what floats can say. Two meshes of three and every other object are the host's.
+  Hosted(tools::Workload& truth, uint32_t seed, Scene& to) : scene(to), random_(seed) {
+    tools::replaceBy({.scenes = {{}}}, 0, scene);
+    for (const tools::MeshData& mesh : truth.meshes) addMesh(mesh);
+    for (tools::Instance& instance : truth.scenes[0].instances) {
+      for (double& value : instance.worldFromMesh.m) value = static_cast<float>(value);
+      addObject(instance);
+    }
+    transforms_.emplace_back(transformBytes_);
+    moved_.push_back({.transforms = transforms_[0].get(), .first = 16, .stride = 64, .objects = movedIds_});
+  }
+  HostGeometry geometry() const {
+    if (movedIds_.empty()) return {.meshes = deformed_};
+    return {.meshes = deformed_, .objects = moved_};
+  }
+
+  Scene& scene;
+
+ private:
+  double uniform(double lo, double hi) { return lo + (hi - lo) * static_cast<double>(random_() >> 8) * 0x1p-24; }
+
+  void addMesh(const tools::MeshData& mesh) {
+    if (random_() % 3 == 0) {
+      scene.addMesh(mesh.positions, mesh.indices);
+      return;
+    }
+    const Bounds bounds = around(mesh.positions);
+    std::vector<float> rest = mesh.positions;
+    const bool near = random_() % 2 == 0;
+    for (size_t i = 0; i < rest.size(); ++i) {
+      const double lo = bounds.lo[i % 3], hi = bounds.hi[i % 3];
+      const double value = near ? rest[i] + 0.05 * uniform(lo - hi, hi - lo) : uniform(lo, hi);
+      rest[i] = static_cast<float>(std::clamp(value, lo, hi));
+    }
+    const MeshId id = scene.addMesh(rest, mesh.indices, bounds);
+    const size_t first = random_() % 8, stride = 12 + random_() % 9;
+    std::vector<std::byte> bytes(first + stride * mesh.vertexCount() + 12);
+    for (size_t v = 0; v < mesh.vertexCount(); ++v) {
+      std::memcpy(&bytes[first + stride * v], &mesh.positions[3 * v], 12);
+    }
+    vertices_.emplace_back(bytes);
+    deformed_.push_back({id, {.buffer = vertices_.back().get(), .first = first, .stride = stride}});
+  }
+
+  void addObject(const tools::Instance& instance) {
+    const bool moves = random_() % 2 == 0;
+    Object object{instance.mesh, instance.worldFromMesh, ~0u};
+    if (moves) object.worldFromMesh.m[3] += 1;
+    const ObjectId id = scene.addObject(object);
+    if (!moves) return;
+    const Mesh& mesh = scene.impl().meshes[instance.mesh];
+    Bounds box;
+    for (size_t k = 0; k < 3; ++k) {
+      box.lo[k] = mesh.centre[k] - mesh.halfExtent[k];
+      box.hi[k] = mesh.centre[k] + mesh.halfExtent[k];
+    }
+    Bounds bounds = placed(box, instance.worldFromMesh);
+    // What float arithmetic loses of a mesh far from its origin.
+    double magnitude = 0;
+    for (size_t i = 0; i < 12; ++i) {
+      const double column = i % 4 == 3 ? 1 : std::abs(box.lo[i % 4]) + std::abs(box.hi[i % 4]);
+      magnitude = std::max(magnitude, std::abs(instance.worldFromMesh.m[i]) * column);
+    }
+    const double room = 1e-5 * magnitude + (random_() % 2 == 0 ? 0 : 0.5 * (bounds.hi[0] - bounds.lo[0]));
+    for (size_t k = 0; k < 3; ++k) {
+      bounds.lo[k] -= room;
+      bounds.hi[k] += room;
+    }
+    scene.setBounds(id, bounds);
+    if (movedIds_.empty()) transformBytes_.resize(16);
+    transformBytes_.resize(16 + 64 * movedIds_.size());
+    for (const double value : instance.worldFromMesh.m) append<float>(transformBytes_, {static_cast<float>(value)});
+    movedIds_.push_back(id);
+  }
+
+  std::mt19937 random_;
+  std::deque<OnDevice> vertices_, transforms_;
+  std::vector<std::byte> transformBytes_ = std::vector<std::byte>(16);
+  std::vector<ObjectId> movedIds_;
+  std::vector<DeformedMesh> deformed_;
+  std::vector<MovedObjects> moved_;
+};
+
+constexpr Capacity kRoom{.queries = 48,
+                         .clusters = 1u << 17,
+                         .clusterPairs = 1u << 22,
+                         .contenders = 1u << 15,
+                         .dispatches = 40,
+                         .openPairs = 1u << 17};
+
+std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries, const HostGeometry& geometry = {}) {
+  gpu::Submission submission(test::device().impl(), false);
+  recorder.record(submission.begin(), queries, geometry);
+  submission.submitAndWait();
+  return recorder.read();
+}
+
+/// The words of a storage buffer.
+std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count) {
+  const Device::Impl& device = test::device().impl();
+  gpu::Bindings bindings(
+      device,
+      std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}}, 4);
+  const gpu::Pipeline pipeline = gpu::computePipeline(device, bindings.layout(), k_copy_words_comp, "copy words");
+  gpu::Buffer out(device, "words", gpu::Residence::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  out.reserve(4 * count);
+  bindings.setBuffer(0, buffer);
+  bindings.setBuffer(1, out);
+  gpu::Submission submission(device, false);
+  const gpu::Commands commands = submission.begin();
+  bindings.bind(commands);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
+  commands->CmdDispatch(commands, static_cast<uint32_t>((count + 63) / 64), 1, 1);
+  gpu::writtenToHost(commands);
+  submission.submitAndWait();
+  std::vector<uint32_t> words(count);
+  std::memcpy(words.data(), out.mapped(), 4 * count);
+  return words;
+}
+
+/// A wall at z = 5 that a host has, and a sensor that moves towards it.
+struct Wall {
+  Wall() {
+    const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const uint32_t triangle[] = {0, 1, 2};
+    sensor = scene.addMesh(corners, triangle);
+    mesh = scene.addMesh(corners, triangle, Bounds{{-2, -2, -2}, {2, 2, 2}});
+    wall = scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}}});
+    scene.setBounds(wall, {{-4, -4, 0}, {4, 4, 10}});
+    far = scene.addObject({.mesh = sensor, .worldFromMesh = {{1, 0, 0, 50, 0, 1, 0, 0, 0, 0, 1, 5}}});
+    queries = {{.mesh = sensor, .direction = {0, 0, 1}, .distance = 20},
+               {.mesh = sensor,
+                .worldFromMesh = {{1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0}},
+                .direction = {0, 0, 1},
+                .distance = 20}};
+  }
+  Scene scene;
+  MeshId sensor, mesh;
+  ObjectId wall, far;
+  std::vector<Query> queries;
+};
+
+std::vector<std::byte> floats(std::initializer_list<float> values) {
+  std::vector<std::byte> bytes;
+  append<float>(bytes, values);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit") {
+  Scene truth, scene;
+  Sweeper sweeper(test::device(), truth);
+  Recorder recorder(test::device(), scene, kRoom);
+  size_t hits = 0;
+  uint32_t seed = 30;
+  for (const tools::Family family : tools::kFamilies) {
+    tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = ++seed});
+    const Hosted hosted(workload, seed, scene);
+    tools::replaceBy(workload, 0, truth);
+    std::vector<Query> queries;
+    for (const auto& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
+    for (size_t i = 0; i < queries.size(); i += 7) queries[i].decide = true;
+    const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, hosted.geometry());
+    for (size_t i = 0; i < queries.size(); ++i) {
+      CAPTURE(tools::nameOf(family), seed, i, got[i].flags, got[i].t, expected[i].t);
+      if (queries[i].decide) {
+        CHECK(got[i].status == expected[i].status);
+        CHECK_FALSE(expected[i].lo > got[i].hi);
+      } else if (expected[i].tier == Tier::select || got[i].tier == Tier::select) {
+        CHECK(got[i].status == expected[i].status);
+      } else {
+        CHECK(sameBits(got[i], expected[i]));
+      }
+      hits += got[i].status == Status::hit;
+    }
+  }
+  CHECK(hits > 100);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE(
+    "every 16-bit position comes to the device as it is read while loading, and every cluster holds its vertices") {
+  const VkFormat format = GENERATE(VK_FORMAT_R16G16B16_SFLOAT, VK_FORMAT_R16G16B16A16_SNORM, VK_FORMAT_R16G16B16_UNORM);
+  const uint32_t vertices = 21846;
+  const HostPositions positions{
+      .first = 3, .stride = format == VK_FORMAT_R16G16B16A16_SNORM ? 8u : 6u, .format = format};
+  std::vector<std::byte> bytes(positions.first + positions.stride * vertices);
+  std::vector<float> expected;
+  for (uint32_t v = 0; v < vertices; ++v) {
+    std::byte* at = &bytes[positions.first + positions.stride * v];
+    for (uint32_t k = 0; k < 3; ++k) {
+      auto bits = static_cast<uint16_t>(std::min(3 * v + k, 0xffffu));
+      if (format == VK_FORMAT_R16G16B16_SFLOAT && (bits & 0x7c00) == 0x7c00)
+        bits &= 0x83ff;  // neither infinite nor NaN
+      std::memcpy(at + 2 * k, &bits, 2);
+      expected.push_back(HostFormat(format).load(at, static_cast<int>(k)));
+    }
+  }
+  Scene scene;
+  std::vector<uint32_t> indices(3 * (vertices / 3));
+  for (uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
+  const MeshId mesh = scene.addMesh(std::vector<float>(expected.size()), indices, around(expected));
+
+  ResidentScene resident(test::device().impl());
+  HostGeometryPass pass(test::device().impl(), resident);
+  const OnDevice buffer(bytes);
+  HostPositions there = positions;
+  there.buffer = buffer.get();
+  const DeformedMesh deformed{mesh, there};
+  const HostGeometry geometry{.meshes = {&deformed, 1}};
+  CHECK(whatIsWrong(geometry, scene).empty());
+  gpu::Upload upload(test::device().impl());
+  upload.begin(resident.prepare(scene.impl()));
+  resident.upload(scene.impl(), upload);
+  pass.stage(geometry, scene.impl());
+  gpu::Submission submission(test::device().impl(), false);
+  const gpu::Commands commands = submission.begin();
+  upload.record(commands);
+  pass.record(commands, resident.buffers().meshes, 0, resident.buffers().meshes);
+  submission.submitAndWait();
+
+  const std::vector<uint32_t> originals = wordsOf(resident.buffers().originals, expected.size());
+  CHECK(std::memcmp(originals.data(), expected.data(), 4 * expected.size()) == 0);
+  const std::vector<uint32_t> words = wordsOf(resident.buffers().positions, expected.size());
+  std::vector<float> recentred(words.size());
+  std::memcpy(recentred.data(), words.data(), 4 * words.size());
+  const Mesh& inner = scene.impl().meshes[mesh];
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const double exact = expected[i] - inner.centre[i % 3];
+    if (std::abs(recentred[i] - exact) > 0x1p-23 * std::abs(exact) + 0x1p-126) FAIL("vertex " << i / 3);
+  }
+  const std::vector<uint32_t> nodeWords =
+      wordsOf(resident.buffers().nodes, inner.clusters.nodes.size() * sizeof(gpu::ClusterRecord) / 4);
+  size_t leaves = 0;
+  for (size_t n = 0; n < inner.clusters.nodes.size(); ++n) {
+    gpu::ClusterRecord node;
+    std::memcpy(&node, &nodeWords[n * sizeof(node) / 4], sizeof(node));
+    for (size_t slot = node.first; slot < node.first + node.count; ++slot) {
+      for (size_t i = 0; i < 9; ++i) {
+        const size_t vertex = indices[3 * size_t{inner.clusters.order[slot]} + i / 3], k = i % 3;
+        if (std::abs(double{recentred[3 * vertex + k]} - node.centre[k]) > node.halfExtent[k]) FAIL("cluster " << n);
+      }
+    }
+    leaves += node.count != 0;
+  }
+  CHECK(leaves == inner.clusters.leaves);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("where something has left its bounds no answer counts, until it is back") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice inside(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})), beyond(floats({-1, -1, 1, 1, -1, 2.001f, 0, 1, 1})),
+      infinite(floats({-1, -1, 1, 1, -1, 1, 0, -INFINITY, 1})), none(floats({-1, -1, 1, 1, NAN, 1, 0, 1, 1}));
+  const OnDevice at(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7})), away(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9})),
+      huge(floats({1, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 1, 7})), lost(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, NAN, 7}));
+  const auto look = [&](const OnDevice& vertices, const OnDevice& transform) {
+    const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
+    return execute(recorder, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+  };
+  const auto expectRefused = [&](const std::vector<Result>& results) {
+    for (const Result& result : results) {
+      CHECK(result.status == Status::invalid);
+      CHECK(result.flags == kFlagBounds);
+      CHECK(std::isnan(result.lo));
+    }
+  };
+  const auto expectSeen = [&](const std::vector<Result>& results) {
+    CHECK(results[0].status == Status::hit);
+    CHECK(results[0].t == Approx(8));
+    CHECK(results[0].flags == 0);
+    CHECK(results[1].status == Status::clear);
+  };
+  expectSeen(look(inside, at));
+  expectRefused(look(beyond, at));
+  expectRefused(look(infinite, at));
+  expectRefused(look(none, at));
+  expectSeen(look(inside, at));
+  expectRefused(look(inside, away));
+  expectRefused(look(inside, huge));
+  expectRefused(look(inside, lost));
+  expectSeen(look(inside, at));
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("what a host no longer names is as the scene has it") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice vertices(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})),
+      transform(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7}));
+  const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
+  const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
+  const auto look = [&](const HostGeometry& geometry) { return execute(recorder, wall.queries, geometry)[0].t; };
+  CHECK(look({}) == Approx(5));
+  CHECK(look({.meshes = {&deformed, 1}, .objects = {&moved, 1}}) == Approx(8));
+  CHECK(look({.meshes = {&deformed, 1}}) == Approx(6));
+  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
+  CHECK(look({}) == Approx(5));
+  // Recorded, but not executed.
+  gpu::Submission submission(test::device().impl(), false);
+  recorder.record(submission.begin(), wall.queries, {.objects = {&moved, 1}});
+  recorder.reset();
+  CHECK(look({}) == Approx(5));
+  recorder.record(submission.begin(), wall.queries);
+  recorder.reset();
+  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
+  // What changes in the scene meanwhile counts, too.
+  wall.scene.setPose(wall.wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}});
+  CHECK(look({.meshes = {&deformed, 1}}) == Approx(5));
+  wall.scene.removeObject(wall.wall);
+  CHECK(std::isnan(look({})));
+}
+
+TEST_CASE("a scene without objects is recorded, too") {
+  Wall wall;
+  wall.scene.removeObject(wall.wall);
+  wall.scene.removeObject(wall.far);
+  Scene empty;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  const MeshId mesh = empty.addMesh(corners, triangle, Bounds{{-1, -1, 0}, {1, 1, 0}});
+  Recorder recorder(test::device(), empty);
+  const OnDevice vertices(floats({-1, -1, 0, 1, -1, 0, 0, 1, 0}));
+  const DeformedMesh deformed{mesh, {.buffer = vertices.get()}};
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 20};
+  CHECK(execute(recorder, {&query, 1}, {.meshes = {&deformed, 1}})[0].status == Status::clear);
+  CHECK(execute(recorder, {}, {.meshes = {&deformed, 1}}).empty());
+  CHECK(execute(recorder, {&query, 1})[0].status == Status::clear);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with it") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice buffer(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1, 0, 0, 0}));
+  gpu::Submission submission(test::device().impl(), false);
+  const gpu::Commands commands = submission.begin();
+  const auto refused = [&](const HostGeometry& geometry, const char* why) {
+    CHECK_THROWS_WITH(recorder.record(commands, wall.queries, geometry), Catch::Contains(why));
+  };
+  const auto mesh = [&](DeformedMesh deformed, const char* why) { refused({.meshes = {&deformed, 1}}, why); };
+  mesh({7, {.buffer = buffer.get()}}, "record: geometry: mesh 7 does not exist");
+  mesh({wall.sensor, {.buffer = buffer.get()}}, "mesh 0 was added without bounds");
+  mesh({wall.mesh, {}}, "mesh 1: expected a buffer of positions");
+  mesh({wall.mesh, {.buffer = buffer.get(), .stride = 11}}, "mesh 1: stride: expected at least 12 bytes, got 11");
+  mesh({wall.mesh, {.buffer = buffer.get(), .format = VK_FORMAT_R8_UNORM}}, "mesh 1: format: expected");
+  const DeformedMesh good{wall.mesh, {.buffer = buffer.get()}}, twice[] = {good, good};
+  refused({.meshes = twice}, "meshes: expected each at most once");
+  const auto objects = [&](MovedObjects moved, const char* why) { refused({.objects = {&moved, 1}}, why); };
+  const ObjectId missing = 9, same[] = {wall.wall, wall.wall};
+  objects({.transforms = buffer.get(), .objects = {&missing, 1}}, "object 9 does not exist");
+  objects({.transforms = buffer.get(), .objects = {&wall.far, 1}}, "object 1 has no bounds");
+  objects({.transforms = buffer.get(), .objects = same}, "objects: expected each at most once");
+  objects({.transforms = buffer.get(), .stride = 44, .objects = {&wall.wall, 1}}, "at least 48 bytes, got 44");
+  objects({.objects = {&wall.wall, 1}}, "expected a buffer of transforms");
+  mesh({wall.mesh, {.buffer = buffer.get(), .stride = VkDeviceSize{1} << 40}}, "bytes that this device allows");
+
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  CHECK_THROWS_WITH(wall.scene.addMesh(corners, triangle, Bounds{{0, 1, 0}, {1, 0, 1}}),
+                    Catch::Contains("addMesh: bounds: expected lo <= hi"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(wall.wall, {{0, 0, 0}, {1, NAN, 1}}), Catch::Contains("setBounds: bounds"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(9, {}), Catch::Contains("object 9 does not exist"));
+  // The recorder is as before.
+  CHECK(execute(recorder, wall.queries)[0].t == Approx(5));
+}
+
+TEST_CASE("a host that deforms and moves in the same command buffer needs the documented barrier") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const float vertices[] = {-1, -1, 1, 1, -1, 1, 0, 1, 1}, transform[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7};
+  const OnDevice buffer(std::vector<std::byte>(sizeof(vertices) + sizeof(transform)));
+  const DeformedMesh deformed{wall.mesh, {.buffer = buffer.get()}};
+  const MovedObjects moved{.transforms = buffer.get(), .first = sizeof(vertices), .objects = {&wall.wall, 1}};
+  gpu::Submission submission(test::device().impl(), false);
+  for (const bool withBarrier : {true, false, true}) {
+    const gpu::Commands commands = submission.begin();
+    vkCmdUpdateBuffer(commands, buffer.get(), 0, sizeof(vertices), vertices);
+    vkCmdUpdateBuffer(commands, buffer.get(), sizeof(vertices), sizeof(transform), transform);
+    const VkMemoryBarrier2 writtenToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                         .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                         .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                         .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT};
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &writtenToCopy};
+    if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
+    recorder.record(commands, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+    submission.submitAndWait();
+    CHECK(recorder.read()[0].t == Approx(8));
+    const std::vector<std::string> messages = test::takeValidationMessages();
+    CHECK(messages.empty() == withBarrier);
+    if (!messages.empty()) CHECK(messages[0].find("SYNC-HAZARD-READ-AFTER-WRITE") != std::string::npos);
+  }
+}
+
+TEST_CASE("frames in which a host skins and moves on its device allocate nothing, submit nothing and wait for nothing") {
+  test::Host host;
+  const Device hosts = Device::adopt(host.handles);
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  host.handles.allocator = test::countingAllocator();
+  test::forget();
+  {
+    const Device device = Device::adopt(host.handles);
+    Wall wall;
+    Recorder recorder(device, wall.scene);
+    const std::vector<float> rest{-1, -1, 0, 1, -1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4};
+    gpu::Bindings bindings(hosts.impl(),
+                           std::array<gpu::Binding, 2>{
+                               {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
+                           4);
+    const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
+    gpu::Buffer atRest(hosts.impl(), "at rest", gpu::Residence::upload, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+        there(hosts.impl(), "skinned", gpu::Residence::device,
+              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    atRest.reserve(gpu::bytesOf(rest));
+    there.reserve(gpu::bytesOf(rest));
+    std::memcpy(atRest.mapped(), rest.data(), gpu::bytesOf(rest));
+    bindings.setBuffer(0, atRest);
+    bindings.setBuffer(1, there);
+    const DeformedMesh deformed{wall.mesh, {.buffer = there.get()}};
+    const MovedObjects moved{.transforms = there.get(), .first = 36, .objects = {&wall.wall, 1}};
+    gpu::Submission submission(hosts.impl(), false);
+    const test::Counts before = test::counts();
+    int64_t allocations = 0;
+    for (uint32_t frame = 0; frame < 100; ++frame) {
+      if (frame == 4) allocations = test::counts().allocations;
+      const float lift = static_cast<float>(frame) / 64;
+      const gpu::Commands commands = submission.begin();
+      bindings.bind(commands);
+      commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, skin.get());
+      commands->CmdPushConstants(commands, bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(lift), &lift);
+      commands->CmdDispatch(commands, 1, 1, 1);
+      recordMoving(commands, recorder, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+      submission.submitAndWait();
+      CHECK(recorder.read()[0].t == 4 + 2 * double{lift});
+    }
+    const test::Counts after = test::counts();
+    CHECK(after.allocations == allocations);
+    CHECK(after.submissions == before.submissions);
+    CHECK(after.waits == before.waits);
+  }
+  CHECK(test::counts().live == 0);
+  CHECK(test::takeValidationMessages().empty());
+}

@@ -1,0 +1,43 @@
+// What a renderer has in its buffers.
+#pragma once
+
+#include <cstring>
+#include <initializer_list>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/submission.h"
+#include "support/test_device.h"
+
+namespace radar::test {
+
+/// Bytes in a buffer on the device.
+class OnDevice {
+ public:
+  explicit OnDevice(const std::vector<std::byte>& bytes)
+      : buffer_(test::device().impl(), "host's", gpu::Residence::device,
+                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {
+    const Device::Impl& device = test::device().impl();
+    gpu::Upload upload(device);
+    buffer_.reserve(bytes.size());
+    upload.begin(bytes.size());
+    upload.add(bytes.data(), bytes.size(), buffer_);
+    gpu::Submission submission(device, false);
+    upload.record(submission.begin());
+    submission.submitAndWait();
+  }
+  VkBuffer get() const { return buffer_.get(); }
+
+ private:
+  gpu::Buffer buffer_;
+};
+
+template <class T>
+void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
+  for (const T value : values) {
+    bytes.resize(bytes.size() + sizeof(T));
+    std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
+  }
+}
+
+}  // namespace radar::test

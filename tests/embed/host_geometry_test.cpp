@@ -210,37 +210,56 @@ std::vector<std::byte> floats(std::initializer_list<float> values) {
   return bytes;
 }
 
-}  // namespace
-
-TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit") {
+/// Asks `rounds` scenes of each family.
+void meetHosted(uint32_t rounds) {
   Scene truth, scene;
   Sweeper sweeper(test::device(), truth);
   Recorder recorder(test::device(), scene, kRoom);
-  size_t hits = 0;
-  uint32_t seed = 30;
-  for (const tools::Family family : tools::kFamilies) {
-    tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = ++seed});
+  size_t hits = 0, answers = 0, refused = 0;
+  for (uint32_t i = 0; i < rounds * tools::kFamilies.size(); ++i) {
+    const tools::Family family = tools::kFamilies[i % tools::kFamilies.size()];
+    const uint32_t seed = 31 + i;
+    tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = seed});
     const Hosted hosted(workload, seed, scene);
     tools::replaceBy(workload, 0, truth);
     std::vector<Query> queries;
     for (const auto& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
-    for (size_t i = 0; i < queries.size(); i += 7) queries[i].decide = true;
+    for (size_t q = 0; q < queries.size(); q += 7) queries[q].decide = true;
     const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, hosted.geometry());
-    for (size_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(tools::nameOf(family), seed, i, got[i].flags, got[i].t, expected[i].t);
-      if (queries[i].decide) {
-        CHECK(got[i].status == expected[i].status);
-        CHECK_FALSE(expected[i].lo > got[i].hi);
-      } else if (expected[i].tier == Tier::select || got[i].tier == Tier::select) {
-        CHECK(got[i].status == expected[i].status);
+    for (size_t q = 0; q < queries.size(); ++q) {
+      CAPTURE(tools::nameOf(family), seed, q, got[q].flags, got[q].t, expected[q].t);
+      ++answers;
+      if (got[q].flags != 0) {
+        // Rest poses at random make every cluster as large as the mesh: room may run out, and nothing else.
+        CHECK((got[q].flags & (kFlagOpen | kFlagClusterPairs | kFlagContenders | kFlagDispatches)) != 0);
+        CHECK(got[q].status == (got[q].flags == kFlagOpen ? Status::undecided : Status::invalid));
+        if (got[q].flags == kFlagOpen && expected[q].status != Status::clear) CHECK_FALSE(got[q].lo > expected[q].hi);
+        ++refused;
+      } else if (queries[q].decide) {
+        CHECK(got[q].status == expected[q].status);
+        CHECK_FALSE(expected[q].lo > got[q].hi);
+      } else if (expected[q].tier == Tier::select || got[q].tier == Tier::select) {
+        // Bounds reach farther than what is within them: the search may have to find that nothing is there.
+        CHECK(got[q].status == expected[q].status);
       } else {
-        CHECK(sameBits(got[i], expected[i]));
+        CHECK(sameBits(got[q], expected[q]));
       }
-      hits += got[i].status == Status::hit;
+      hits += got[q].status == Status::hit;
     }
   }
-  CHECK(hits > 100);
+  CHECK(hits > answers / 8);
+  CHECK(refused < answers / 20);
   CHECK(test::takeValidationMessages().empty());
+}
+
+}  // namespace
+
+TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit") {
+  meetHosted(1);
+}
+
+TEST_CASE("what a host deforms and moves is met as in a scene that has it so, in many scenes", "[.][many]") {
+  meetHosted(60);
 }
 
 TEST_CASE(
@@ -460,7 +479,8 @@ TEST_CASE("a host that deforms and moves in the same command buffer needs the do
   }
 }
 
-TEST_CASE("frames in which a host skins and moves on its device allocate nothing, submit nothing and wait for nothing") {
+TEST_CASE(
+    "frames in which a host skins and moves on its device allocate nothing, submit nothing and wait for nothing") {
   test::Host host;
   const Device hosts = Device::adopt(host.handles);
   host.handles.getInstanceProcAddr = test::countingLoader();
@@ -471,10 +491,10 @@ TEST_CASE("frames in which a host skins and moves on its device allocate nothing
     Wall wall;
     Recorder recorder(device, wall.scene);
     const std::vector<float> rest{-1, -1, 0, 1, -1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4};
-    gpu::Bindings bindings(hosts.impl(),
-                           std::array<gpu::Binding, 2>{
-                               {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
-                           4);
+    gpu::Bindings bindings(
+        hosts.impl(),
+        std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
+        4);
     const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
     gpu::Buffer atRest(hosts.impl(), "at rest", gpu::Residence::upload, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
         there(hosts.impl(), "skinned", gpu::Residence::device,

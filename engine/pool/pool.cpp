@@ -50,6 +50,7 @@ struct Pool::Impl {
     if (devices.empty()) throw Error("Pool: expected at least one device, got none");
     std::vector<PoolDevice> reports;
     for (size_t i = 0; i < devices.size(); ++i) {
+      devices[i].impl().requireQueue("a Pool");
       for (size_t k = 0; k < i; ++k) {
         if (devices[i].handles().queue != devices[k].handles().queue) continue;
         throw Error("Pool: devices " + std::to_string(k) + " and " + std::to_string(i) + " have one queue");

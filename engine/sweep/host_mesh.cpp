@@ -96,6 +96,7 @@ std::vector<std::byte> download(const Device::Impl& device, const std::vector<Ra
 }  // namespace
 
 MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
+  device.impl().requireQueue("addMesh of a HostMesh");
   const auto component = componentOf(mesh.format);
   if (!component) {
     throw Error(

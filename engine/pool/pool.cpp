@@ -26,6 +26,7 @@ std::vector<Device> openDevices(std::span<const uint32_t> indices,
     if (wanted.empty()) throw Error("no usable Vulkan device", VK_SUCCESS, lines);
   }
   std::vector<Device> devices;
+  devices.reserve(wanted.size());
   for (const uint32_t index : wanted) {
     devices.push_back(Device::open({.index = index, .onValidation = onValidation}));
   }

@@ -35,6 +35,8 @@ struct Device::Impl {
   bool doubles = false;  ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
+  /// Throws, in the name of `who`, where the host gave no queue to submit to.
+  void requireQueue(const char* who) const;
   /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
   /// vkWaitForFences, with that name; an error stands for the call's own. Empty otherwise.
   std::function<VkResult(std::string_view call)> fault;

@@ -1,6 +1,8 @@
 #include "gpu/doubles.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -42,6 +44,8 @@ SumResult expected(const Sum& s) {
   return {s.x + s.y, s.x * s.y, s.x / s.y, place(pose, s.p)[0], static_cast<float>(s.x)};
 }
 
+using Bits = std::array<uint64_t, sizeof(SumResult) / sizeof(uint64_t)>;
+
 }  // namespace
 
 bool doublesAreRight(const Device::Impl& device) {
@@ -78,8 +82,9 @@ bool doublesAreRight(const Device::Impl& device) {
   copyToHost(commands);
   submission.submitAndWait();
   for (size_t i = 0; i < sums.size(); ++i) {
-    const SumResult right = expected(sums[i]);
-    if (std::memcmp(readback.mapped() + i * sizeof(SumResult), &right, sizeof(SumResult)) != 0) return false;
+    Bits bits;
+    std::memcpy(bits.data(), readback.mapped() + i * sizeof(SumResult), sizeof(bits));
+    if (bits != std::bit_cast<Bits>(expected(sums[i]))) return false;
   }
   return true;
 }

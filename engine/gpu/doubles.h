@@ -6,7 +6,7 @@
 namespace radar::gpu {
 
 /// Adds, multiplies, divides and places (Pose's formula) with fixed numbers on the device, whose feature shaderFloat64
-/// is enabled, and compares with the host, bit for bit. Submits to the device's queue and waits.
+/// is enabled, and compares with the host, bit for bit. Submits to the device's queue, which it has, and waits.
 bool doublesAreRight(const Device::Impl& device);
 
 }  // namespace radar::gpu

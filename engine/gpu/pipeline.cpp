@@ -60,6 +60,7 @@ Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings
   pipelineLayout_ = {device, layout};
 
   std::vector<VkDescriptorPoolSize> sizes;
+  sizes.reserve(counts.size());
   for (const auto& [type, count] : counts) sizes.push_back({type, count});
   const VkDescriptorPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                             .maxSets = 1,

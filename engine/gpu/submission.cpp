@@ -10,6 +10,7 @@ namespace radar::gpu {
 
 Submission::Submission(const Device::Impl& device, bool timestamps)
     : device_(&device), timestamps_(timestamps && device.properties.limits.timestampComputeAndGraphics) {
+  assert(device.host.queue != VK_NULL_HANDLE);
   const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
                                          .queueFamilyIndex = device.host.queueFamily};

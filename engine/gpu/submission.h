@@ -14,6 +14,7 @@ void addStageTime(std::vector<StageTime>& stages, const std::string& name, doubl
 
 class Submission {
  public:
+  /// `device` has a queue.
   Submission(const Device::Impl& device, bool timestamps);
 
   Commands begin();

@@ -26,6 +26,7 @@ std::vector<Device> openDevices(std::span<const uint32_t> indices,
     if (wanted.empty()) throw Error("no usable Vulkan device", VK_SUCCESS, lines);
   }
   std::vector<Device> devices;
+  devices.reserve(wanted.size());
   for (const uint32_t index : wanted) {
     devices.push_back(Device::open({.index = index, .onValidation = onValidation}));
   }
@@ -50,6 +51,7 @@ struct Pool::Impl {
     if (devices.empty()) throw Error("Pool: expected at least one device, got none");
     std::vector<PoolDevice> reports;
     for (size_t i = 0; i < devices.size(); ++i) {
+      devices[i].impl().requireQueue("a Pool");
       for (size_t k = 0; k < i; ++k) {
         if (devices[i].handles().queue != devices[k].handles().queue) continue;
         throw Error("Pool: devices " + std::to_string(k) + " and " + std::to_string(i) + " have one queue");

@@ -94,6 +94,7 @@ void BoundedTier::submit(std::span<const Query> queries, std::vector<Pending>& s
                          const Out& out) {
   if (slice.empty()) return;
   std::vector<const BoundedPlan*> plans;
+  plans.reserve(slice.size());
   for (const Pending& pending : slice) plans.push_back(&pending.plan);
   try {
     const Answers found = recorder_.submit(plans, scene, out.stats.stages);

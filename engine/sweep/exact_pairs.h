@@ -17,6 +17,7 @@ inline constexpr double kDoubleUnit = 0x1p-53;
 struct PairName {
   ObjectId object;
   uint32_t triB, triA;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero compared with for a pointer
   friend auto operator<=>(const PairName&, const PairName&) = default;
 };
 

@@ -294,8 +294,10 @@ void Sweeper::Impl::finish() {
   land();
 }
 
-Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options)
-    : impl_(std::make_unique<Impl>(device, scene, options, std::make_shared<SceneCopy>(device.impl()))) {}
+Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options) {
+  device.impl().requireQueue("a Sweeper");
+  impl_ = std::make_unique<Impl>(device, scene, options, std::make_shared<SceneCopy>(device.impl()));
+}
 Sweeper::~Sweeper() = default;
 Sweeper::Sweeper(Sweeper&&) noexcept = default;
 Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;

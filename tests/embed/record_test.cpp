@@ -6,6 +6,8 @@
 #include "embed/host.h"
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
+#include "radar/host_geometry.h"
+#include "radar/pool.h"
 #include "radar/recorder.h"
 #include "spirv/read_results_comp.h"
 #include "support/test_device.h"
@@ -314,4 +316,32 @@ TEST_CASE("a thousand frames of thirty sensors allocate nothing, submit nothing 
     CHECK(after.waits == before.waits);
   }
   CHECK(test::counts().live == 0);
+}
+
+TEST_CASE("an engine without a queue records, submits nothing, and refuses by name what would have to") {
+  test::Host host;
+  const Device hosts = Device::adopt(host.handles);  // whose queue stands for the host's
+  host.handles.queue = VK_NULL_HANDLE;
+  host.handles.doubles = hosts.doubles();
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  test::forget();
+  const Device device = Device::adopt(host.handles);
+  CHECK(device.doubles() == hosts.doubles());
+  Row row(30);
+  Recorder recorder(device, row.scene);
+  Renderer renderer(hosts);
+  renderer.record(recorder, row.queries);
+  renderer.submitAndWait();
+  const std::vector<Result> read = recorder.read(), expected = Sweeper(hosts, row.scene).run(row.queries);
+  for (size_t i = 0; i < read.size(); ++i) {
+    CAPTURE(i);
+    CHECK(sameBits(read[i], expected[i]));
+    isSeen(renderer.seen(i), expected[i]);
+  }
+  CHECK_THROWS_WITH(Sweeper(device, row.scene), "HostDevice::queue: a Sweeper submits, and there is none");
+  CHECK_THROWS_WITH(Pool({&device, 1}, row.scene), "HostDevice::queue: a Pool submits, and there is none");
+  CHECK_THROWS_WITH(addMesh(row.scene, device, HostMesh{}),
+                    "HostDevice::queue: addMesh of a HostMesh submits, and there is none");
+  CHECK(test::counts().submissions == 0);
+  CHECK(test::counts().waits == 0);
 }

@@ -33,8 +33,8 @@ struct HostMesh {
 };
 
 /// Adds a copy of the mesh, read from the device once: submits to HostDevice::queue and waits, so call it while
-/// loading. Throws as Scene::addMesh does, for a format or an index type that is not listed, for a stride shorter than
-/// a position, and where a Vulkan call fails.
+/// loading. Throws as Scene::addMesh does, where there is no queue, for a format or an index type that is not listed,
+/// for a stride shorter than a position, and where a Vulkan call fails.
 RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);
 
 /// A mesh whose vertices are elsewhere now: as many as it has, each within the bounds it was added with.

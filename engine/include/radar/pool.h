@@ -59,8 +59,8 @@ struct PoolDevice {
 class RADAR_API Pool {
  public:
   /// A thread for each device, which makes its pipelines; nothing is awaited. `devices` and `scene` must outlive the
-  /// pool, and nothing else uses the devices' queues meanwhile. Throws if there is no device, or two have one queue.
-  /// `options` hold for each device and each of its two chunks.
+  /// pool, and nothing else uses the devices' queues meanwhile. Throws if there is no device, or one has no queue, or
+  /// two have the same. `options` hold for each device and each of its two chunks.
   Pool(std::span<const Device> devices, const Scene& scene, const SweeperOptions& options = {});
   /// Answers what is not begun with Status::invalid ("the pool was closed"), finishes what is with a device, ends the
   /// threads. Every future gets its answers. No other function may be running.

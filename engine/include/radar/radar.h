@@ -231,6 +231,11 @@ RADAR_API std::vector<DeviceReport> listDevices();
 
 /// Vulkan handles of a host that owns them, all of which outlive the Device made from them. `device` has enabled what
 /// requirements() lists. `queue` belongs to family `queueFamily`, which does graphics and compute.
+///
+/// `queue` may be null where every submission is to be the host's own: the engine then never submits. A Recorder works
+/// in full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Nor can the device's doubles be compared with
+/// the CPU's: `doubles` is taken at its word, and answers may be wrong where they differ. Who is not sure says false,
+/// or what Device::doubles() says where the same device and driver were adopted with a queue.
 struct HostDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -277,8 +282,8 @@ class RADAR_API Device {
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
   /// Throws with reasons if the physical device lacks something. While this and a Sweeper of this device run, the host
-  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Any number of Devices may be
-  /// made of one VkDevice.
+  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Submits once, to test the
+  /// doubles, where `host` has a queue and doubles. Any number of Devices may be made of one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -288,7 +293,7 @@ class RADAR_API Device {
   const std::string& driver() const;
   /// Whether pairs are solved in double precision on the device: it has doubles, and a test at opening found them to
   /// be those of the CPU, bit for bit. Else they are solved in float, with error bounds, and what that leaves open is
-  /// decided on the CPU: the answers are the same.
+  /// decided on the CPU: the answers are the same. Adopted without a queue: HostDevice::doubles, untested.
   bool doubles() const;
   const HostDevice& handles() const;
 
@@ -359,7 +364,7 @@ struct OuterScopes {
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
-  /// Creates the pipelines. `device` and `scene` must outlive the sweeper.
+  /// Creates the pipelines. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;

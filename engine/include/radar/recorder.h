@@ -1,6 +1,7 @@
 // Searches recorded into a host's own command buffers, whose answers stay on the device.
 //
-// The engine submits nothing and waits for nothing here. radar/result.glsl is the answers' layout for shaders.
+// The engine submits nothing and waits for nothing here: HostDevice::queue may be null. radar/result.glsl is the
+// answers' layout for shaders.
 #pragma once
 
 #include "radar/host_geometry.h"

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "agreement/random_queries.h"
+#include "commit/commit.h"
 #include "gpu/device.h"
 
 namespace {
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});
   if (!outer.empty()) device.impl().outerByPixel = outer == "by-pixel";
   std::printf("device %s, driver %s, commit %s, seed %llu, %s doubles\n", device.name().c_str(),
-              device.driver().c_str(), RADAR_COMMIT, static_cast<unsigned long long>(seed),
+              device.driver().c_str(), radar::tools::commit(), static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without");
   printHeader();
   RandomQueries asking(device, way == "direct"   ? radar::ContactWay::direct

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "commit/commit.h"
 #include "gpu/device.h"
 #include "radar/radar.h"
 #include "workloads/generate.h"
@@ -77,7 +78,7 @@ size_t measure(const Device& device, const tools::Workload& workload, std::span<
 
 int main() {
   const Device device = Device::open();
-  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), RADAR_COMMIT);
+  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), tools::commit());
   const std::pair<const char*, tools::Workload> workloads[] = {
       {"Table 1, 30000 boxes, 64 box sensors",
        tools::makeWorkload(tools::Table1{.boxes = 30'000, .shape = tools::SensorShape::box})},

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string_view>
 
+#include "commit/commit.h"
 #include "radar/radar.h"
 #include "reference/reference.h"
 #include "workloads/generate.h"
@@ -147,7 +148,7 @@ void growMesh(const Device& device, tools::SensorShape shape) {
 int main(int argc, char** argv) {
   const std::string_view only = argc > 1 ? argv[1] : "";
   const Device device = Device::open();
-  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), RADAR_COMMIT);
+  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), tools::commit());
   for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
     const char* sensors = shape == tools::SensorShape::box ? "box" : "teapot";
     if (only != "mesh") {

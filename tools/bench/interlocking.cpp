@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 
+#include "commit/commit.h"
 #include "import/mesh_import.h"
 #include "reference/reference.h"
 #include "sweep/sweeper.h"
@@ -88,7 +89,7 @@ void measure(const Device& device, const std::string& name, const tools::Workloa
 // radar_bench_interlocking [mesh files]: those in random poses, too.
 int main(int argc, char** argv) {
   const Device device = Device::open();
-  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), RADAR_COMMIT);
+  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), tools::commit());
   for (const tools::Interlocking kind : tools::kInterlocking) {
     measure(device, nameOf(kind), tools::makeWorkload(tools::InterlockingPairs{.kind = kind}));
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "commit/commit.h"
 #include "gpu/device.h"
 #include "radar/pool.h"
 #include "workloads/generate.h"
@@ -93,7 +94,7 @@ void unequal(std::span<const Device> devices, const Scene& scene, const std::vec
 int main() {
   const std::vector<Device> devices = openDevices();
   std::printf("%zu devices, %s, driver %s, commit %s\n", devices.size(), devices[0].name().c_str(),
-              devices[0].driver().c_str(), RADAR_COMMIT);
+              devices[0].driver().c_str(), tools::commit());
   const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 1});
   tools::ScenePlayer player(workload);
   player.show(workload.queries[0].scene);

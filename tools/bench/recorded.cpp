@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "commit/commit.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
@@ -90,7 +91,7 @@ struct Flight {
 
 int main() {
   const Device device = Device::open();
-  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), RADAR_COMMIT);
+  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), tools::commit());
   Flight flight;
   // What the host has on its device: the vertices and the transforms as they are, so that the answers are the same.
   const tools::MeshData& mesh = flight.workload.meshes[flight.teapot];

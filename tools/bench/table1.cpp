@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "commit/commit.h"
 #include "radar/radar.h"
 #include "reference/reference.h"
 #include "workloads/generate.h"
@@ -62,7 +63,7 @@ void print(const char* label, const Timed& timed, size_t sensors) {
 
 int main() {
   const Device device = Device::open();
-  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), RADAR_COMMIT);
+  std::printf("device %s, driver %s, commit %s\n", device.name().c_str(), device.driver().c_str(), tools::commit());
   for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
     std::printf("%s sensors, batch of 64 at 256^2\n", shape == tools::SensorShape::box ? "box" : "teapot");
     double culled[2], naive = 0, contact = 0, referenceMs = 0;

@@ -9,6 +9,7 @@
 #include "chart/findings.h"
 #include "chart/report.h"
 #include "chart/run.h"
+#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
@@ -107,7 +108,7 @@ Record measure(const Options& options) {
   record.command = commandOf(options);
   record.machine = processorInWords();
   record.device = device.name() + ", " + device.driver();
-  record.commit = RADAR_COMMIT;
+  record.commit = commit();
   record.date = today();
   const std::vector<PeerRow> rows = peerRows();
   for (const PeerRow& row : rows) record.notes.push_back(row.family + " (" + row.product + "): " + row.limits);

@@ -6,6 +6,7 @@
 #include "batch/answer_file.h"
 #include "batch/query_file.h"
 #include "batch/whole_file.h"
+#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
@@ -55,7 +56,7 @@ std::string statsOf(const Workload& workload, const Answering& answering, const 
     stats["devices"].push_back(
         {{"name", device.name}, {"driver", device.driver}, {"queries", device.queries}, {"chunks", device.chunks}});
   }
-  stats["commit"] = RADAR_COMMIT;
+  stats["commit"] = commit();
   return stats.dump(2) + "\n";
 }
 

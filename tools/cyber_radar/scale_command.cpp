@@ -4,6 +4,7 @@
 
 #include "batch/query_file.h"
 #include "batch/whole_file.h"
+#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
@@ -91,7 +92,7 @@ void writeFiles(const Options& options, const ScaleReport& report, const std::st
     command += " --boxes " + std::to_string(options.boxes) + " --steps " + std::to_string(options.steps);
   }
   command += " --repeat " + std::to_string(options.repeats) + " --resolution " + options.engine.resolution;
-  const ScaleOrigin origin{command, RADAR_COMMIT, today(), scene, "mode " + options.mode};
+  const ScaleOrigin origin{command, commit(), today(), scene, "mode " + options.mode};
   writeWhole(folder / "scale.csv", csvOf(report));
   writeWhole(folder / "trace.json", traceOf(report));
   writeWhole(folder / "report.html", htmlOf(report, origin));

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "batch/whole_file.h"
+#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/failure_pictures.h"
 #include "cyber_radar/origin.h"
@@ -72,7 +73,7 @@ void writeFiles(const Options& options, const Device& device, StabilityFindings&
   findings.pictures = drawFailures(device, findings.report, options.settings.seed, folder);
   writeWhole(folder / "stability" / "table.csv", csvOf(findings.report.rows));
   writeWhole(folder / "stability.md",
-             pageOf(findings, {command + " --out DIR", RADAR_COMMIT, today(), device.name(), device.driver()}));
+             pageOf(findings, {command + " --out DIR", commit(), today(), device.name(), device.driver()}));
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": stability.md, stability/\n";
 }
 

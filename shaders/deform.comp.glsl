@@ -52,7 +52,7 @@ void main() {
   const MeshRecord mesh = meshes[push.mesh];
   const vec3 p = uintBitsToFloat(bits) - mesh.centre;
   const bool strays = any(equal(bits >> 23 & 0xffu, uvec3(0xffu))) || !all(lessThanEqual(abs(p), mesh.halfExtent));
-  if (strays) atomicAdd(strayed, 1);
+  if (strays && atomicCompSwap(stray.mesh, kNobody, push.mesh) == kNobody) atomicExchange(stray.vertex, i);
   // What strays counts no more, but must not send the search astray.
   positions[mesh.firstVertex + i] = strays ? vec3(0.0) : p;
   originals[mesh.firstVertex + i] = strays ? floatBitsToUint(mesh.centre) : bits;

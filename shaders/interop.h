@@ -84,7 +84,7 @@ INTEROP_CONST kBindMaskItems = 11;    // MaskItem
 // So has a host's geometry: the scene's buffers, nodes, placements and results at the numbers above, and these.
 INTEROP_CONST kBindWords = 9;         // uint: what was copied from the host's buffers
 INTEROP_CONST kBindMoved = 10;        // Moved
-INTEROP_CONST kBindStrays = 11;       // uint: vertices and objects out of their bounds
+INTEROP_CONST kBindStrays = 11;       // Stray
 
 // The bounded tier has the sampled tier's set, but for the depth images.
 INTEROP_CONST kBindScopes = 11;       // uint: keys of depth (outer.glsl), the four planes kScope*
@@ -387,6 +387,13 @@ INTEROP_CONST kFloat32 = 0;
 INTEROP_CONST kFloat16 = 1;
 INTEROP_CONST kSnorm16 = 2;
 INTEROP_CONST kUnorm16 = 3;
+
+// What is out of its bounds, or not finite: one vertex, if any, and one object. kNobody: none.
+struct Stray {
+  uint mesh;
+  uint vertex;
+  uint object;
+};
 
 // An object that a host moves.
 struct Moved {

@@ -90,7 +90,7 @@ void tellPose(Moved moved) {
   middleOf(t, moved, meshes[moved.mesh], middle, reach, sum);
   const vec3 lost = 16.0 * kUnit * (sum + reach);
   if (!t.isFinite || !all(lessThanEqual(abs(middle) + reach + lost, moved.halfExtent))) {
-    atomicAdd(strayed, 1);
+    atomicMin(stray.object, moved.object);
     return;
   }
   for (uint row = 0; row < 3; ++row) {

@@ -1,7 +1,7 @@
 // What was copied from a host's buffers, and what is wrong with it.
 
 layout(scalar, binding = kBindWords) readonly restrict buffer Words { uint words[]; };
-layout(scalar, binding = kBindStrays) restrict buffer Strays { uint strayed; };
+layout(scalar, binding = kBindStrays) restrict buffer Strays { Stray stray; };
 
 // Four bytes from anywhere; the buffer ends a word later.
 uint wordAt(uint byte) {

@@ -7,21 +7,21 @@
 #include "spirv/move_comp.h"
 #include "spirv/move_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/refit_comp.h"
-#include "spirv/stray_comp.h"
+#include "spirv/refuse_comp.h"
 #include "sweep/host_format.h"
 
 // pass    reads                              writes                     barrier behind it
 // ------- ---------------------------------- -------------------------- -------------------------------
-// copy    staging, the host's buffers        moved, words, strays (0)   transferToComputeReadWrite
+// copy    staging, the host's buffers        moved, words, stray        transferToComputeReadWrite
 // deform  words, meshes                      positions, originals,
-//                                            strays
+//                                            stray
 // move    words, moved, meshes, placements   placements, objects,       computeWriteToComputeReadWrite
-//                                            strays
+//                                            stray
 // refit   positions, indices, meshes, nodes  nodes                      computeWriteToComputeReadWrite
 //
 // Behind the answers:
 //
-// stray   strays                             results                    before: computeWriteTo-
+// refuse  stray                              results                    before: computeWriteTo-
 //                                                                       ComputeReadWrite; the caller's
 
 namespace radar {
@@ -31,7 +31,7 @@ using gpu::Residence;
 namespace {
 
 constexpr VkDeviceSize kTransformBytes = 48;
-constexpr uint32_t kGroup = 64;  ///< invocations in a workgroup of deform, move and stray
+constexpr uint32_t kGroup = 64;  ///< invocations in a workgroup of deform, move and refuse
 
 struct Push {
   uint32_t count, groupsX;
@@ -109,15 +109,15 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const ResidentSce
       deform_(gpu::computePipeline(device, bindings_.layout(), k_deform_comp, "deform")),
       refit_(gpu::computePipeline(device, bindings_.layout(), k_refit_comp, "refit")),
       move_(gpu::computePipeline(device, bindings_.layout(), moveShader(device), "move")),
-      stray_(gpu::computePipeline(device, bindings_.layout(), k_stray_comp, "stray")),
+      refuse_(gpu::computePipeline(device, bindings_.layout(), k_refuse_comp, "refuse")),
       upload_(device),
       words_(device, "words of the host's", Residence::device,
              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       movedBuffer_(device, "moved objects", Residence::device,
                    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      strays_(device, "strays", Residence::device,
-              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-  strays_.reserve(sizeof(uint32_t));
+      stray_(device, "stray", Residence::readback,
+             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+  stray_.reserve(sizeof(gpu::Stray));
 }
 
 // Returns where in `words_` the bytes will be.
@@ -203,7 +203,7 @@ void HostGeometryPass::record(const gpu::Commands& commands, const gpu::Buffer& 
   for (const Source& source : sources_) {
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
   }
-  commands->CmdFillBuffer(commands, strays_.get(), 0, sizeof(uint32_t), 0);
+  commands->CmdFillBuffer(commands, stray_.get(), 0, sizeof(gpu::Stray), kNone);
   gpu::transferToComputeReadWrite(commands);
   resident_.bindTo(bindings_);
   bindings_.setBuffer(gpu::kBindNodes, resident_.buffers().nodes);
@@ -211,7 +211,7 @@ void HostGeometryPass::record(const gpu::Commands& commands, const gpu::Buffer& 
   bindings_.setBuffer(gpu::kBindResults, results);
   bindings_.setBuffer(gpu::kBindWords, words_);
   bindings_.setBuffer(gpu::kBindMoved, movedBuffer_);
-  bindings_.setBuffer(gpu::kBindStrays, strays_);
+  bindings_.setBuffer(gpu::kBindStrays, stray_);
   bindings_.bind(commands);
   for (const Deformed& d : meshes_) {
     dispatch(commands, bindings_, deform_, groupsFor(d.vertices),
@@ -229,7 +229,19 @@ void HostGeometryPass::record(const gpu::Commands& commands, const gpu::Buffer& 
 void HostGeometryPass::recordRefusal(const gpu::Commands& commands, uint32_t count) {
   gpu::computeWriteToComputeReadWrite(commands);
   bindings_.bind(commands);
-  dispatch(commands, bindings_, stray_, groupsFor(count), {count, 0});
+  dispatch(commands, bindings_, refuse_, groupsFor(count), {count, 0});
+}
+
+std::string HostGeometryPass::stray() const {
+  if (empty()) return {};
+  const auto& stray = *reinterpret_cast<const gpu::Stray*>(stray_.mapped());
+  if (stray.mesh != kNone) {
+    return "mesh " + std::to_string(stray.mesh) + ": vertex " + std::to_string(stray.vertex) +
+           " is out of its bounds, or not finite";
+  }
+  if (stray.object == kNone) return {};
+  return "object " + std::to_string(stray.object) +
+         ": its mesh's box is out of its bounds, or its transform not finite";
 }
 
 }  // namespace radar

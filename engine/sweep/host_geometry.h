@@ -31,6 +31,8 @@ class HostGeometryPass {
   /// Behind the answers: refuses them where something has strayed. A barrier from compute shaders to what reads them
   /// comes next.
   void recordRefusal(const gpu::Commands& commands, uint32_t count);
+  /// Something that has strayed, in words, once the device is done; empty: nothing.
+  std::string stray() const;
 
  private:
   struct Deformed {
@@ -47,9 +49,10 @@ class HostGeometryPass {
   const Device::Impl* device_;
   const ResidentScene& resident_;
   gpu::Bindings bindings_;
-  gpu::Pipeline deform_, refit_, move_, stray_;
+  gpu::Pipeline deform_, refit_, move_, refuse_;
   gpu::Upload upload_;
-  gpu::Buffer words_, movedBuffer_, strays_;
+  gpu::Buffer words_, movedBuffer_;
+  gpu::Buffer stray_;  ///< on the host: hardly ever is there any
   std::vector<Source> sources_;
   VkDeviceSize copied_ = 0;  ///< bytes, of all sources
   std::vector<Deformed> meshes_;

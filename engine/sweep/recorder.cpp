@@ -215,4 +215,8 @@ std::vector<Result> Recorder::read() {
   return results;
 }
 
+std::string Recorder::stray() const {
+  return impl_->geometry.stray();
+}
+
 }  // namespace radar

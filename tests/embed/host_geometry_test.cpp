@@ -357,11 +357,15 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
     CHECK(results[1].status == Status::clear);
   };
   expectSeen(look(inside, at));
+  CHECK(recorder.stray().empty());
   expectRefused(look(beyond, at));
+  CHECK(recorder.stray() == "mesh 1: vertex 1 is out of its bounds, or not finite");
   expectRefused(look(infinite, at));
   expectRefused(look(none, at));
   expectSeen(look(inside, at));
+  CHECK(recorder.stray().empty());
   expectRefused(look(inside, away));
+  CHECK(recorder.stray() == "object 0: its mesh's box is out of its bounds, or its transform not finite");
   expectRefused(look(inside, huge));
   expectRefused(look(inside, lost));
   expectSeen(look(inside, at));

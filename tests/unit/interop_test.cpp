@@ -27,9 +27,9 @@
 #include "spirv/pairs_comp.h"
 #include "spirv/reduce_comp.h"
 #include "spirv/refit_comp.h"
+#include "spirv/refuse_comp.h"
 #include "spirv/solve_comp.h"
 #include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/stray_comp.h"
 #include "spirv/tell_comp.h"
 #include "spirv/tell_comp_RADAR_NO_DOUBLES.h"
 
@@ -88,7 +88,7 @@ const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
     {"refit.comp", k_refit_comp},
     {"move.comp", k_move_comp},
     {"move.comp without doubles", k_move_comp_RADAR_NO_DOUBLES},
-    {"stray.comp", k_stray_comp},
+    {"refuse.comp", k_refuse_comp},
 };
 
 struct Expected {
@@ -223,9 +223,9 @@ TEST_CASE("what uses doubles has a variant without") {
     for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
       doubles = doubles || ((spirv[at] & 0xffff) == kOpTypeFloat && spirv[at + 2] == 64);
     }
-    const bool hasVariant = std::any_of(std::begin(kShaders), std::end(kShaders), [name = std::string(shader)](auto& s) {
-      return s.first == name + " without doubles";
-    });
+    const bool hasVariant =
+        std::any_of(std::begin(kShaders), std::end(kShaders),
+                    [name = std::string(shader)](auto& s) { return s.first == name + " without doubles"; });
     CHECK(doubles == hasVariant);
   }
 }

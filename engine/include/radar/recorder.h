@@ -71,6 +71,8 @@ class RADAR_API Recorder {
   /// (by a fence, or a semaphore's wait on the host): does not wait itself. As many as queries were recorded. May come
   /// late: what has changed in the scene since does not matter.
   std::vector<Result> read();
+  /// Where kFlagBounds is set: something that has left its bounds, in words; else empty. When read() may be called.
+  std::string stray() const;
 
   struct Impl;
 

@@ -15,7 +15,7 @@ layout(push_constant) uniform Push { uint count; uint groupsX; } push;
 
 void main() {
   const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX) * 64 + gl_LocalInvocationID.x;
-  if (i >= push.count || strayed == 0) return;
+  if (i >= push.count || (stray.mesh == kNobody && stray.object == kNobody)) return;
   const uvec2 n = uvec2(0, 0x7ff80000u);
   results[i] = RadarResult(RADAR_INVALID, RADAR_TIER_SELECT, RADAR_NOT_LOOKED, 0, n, n, n, n, kNobody, kNobody, kNobody,
                            RADAR_OUT_OF_BOUNDS, uvec2[3](n, n, n), uvec2[3](n, n, n), n);

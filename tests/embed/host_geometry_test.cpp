@@ -438,7 +438,12 @@ TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with
   objects({.transforms = buffer.get(), .objects = same}, "objects: expected each at most once");
   objects({.transforms = buffer.get(), .stride = 44, .objects = {&wall.wall, 1}}, "at least 48 bytes, got 44");
   objects({.objects = {&wall.wall, 1}}, "expected a buffer of transforms");
-  mesh({wall.mesh, {.buffer = buffer.get(), .stride = VkDeviceSize{1} << 40}}, "bytes that this device allows");
+  for (const VkDeviceSize stride : {VkDeviceSize{1} << 40, VkDeviceSize{1} << 63, ~VkDeviceSize{0}}) {
+    mesh({wall.mesh, {.buffer = buffer.get(), .stride = stride}}, "bytes that this device allows");
+    wall.scene.setBounds(wall.far, {{-9, -9, -9}, {99, 9, 9}});
+    const ObjectId both[] = {wall.wall, wall.far};
+    objects({.transforms = buffer.get(), .stride = stride, .objects = both}, "bytes that this device allows");
+  }
 
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};

@@ -368,6 +368,49 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("what float cannot place in a sensor's frame is met, or has left its bounds") {
+  Scene truth, scene;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  std::vector<float> apart;  // two clusters
+  std::vector<uint32_t> indices;
+  for (uint32_t i = 0; i < 3 * 128; ++i) {
+    const float side = i < 3 * 64 ? -5e37f : 5e37f;
+    apart.insert(apart.end(), {side + 1e36f * corners[3 * (i % 3)], 1e36f * corners[3 * (i % 3) + 1], 0});
+    indices.push_back(i);
+  }
+  for (Scene* one : {&truth, &scene}) {
+    const MeshId mesh = one->addMesh(corners, triangle);
+    one->addMesh(apart, indices);
+    one->addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0.5, 0, 0, 1, 0.5, 0, 0, 0, 1, 0}}});
+  }
+  const ObjectId object = 0;
+  scene.setBounds(object, {{-2, -2, -2}, {2, 2, 2}});
+  std::vector<Query> queries{{.mesh = 1, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = 0, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = 0, .direction = {1, 1, 1}, .distance = 20}};
+  queries[0].worldFromMesh.m[3] = 5e37;
+  queries[0].worldFromMesh.m[11] = -1e37;
+  queries[1].worldFromMesh.m[11] = -1e38;
+  for (const size_t k : {3, 7, 11}) queries[2].worldFromMesh.m[k] = -5;
+  Sweeper sweeper(test::device(), truth);
+  Recorder recorder(test::device(), scene, kRoom);
+  // A flat mesh has no use for the third column.
+  const OnDevice there(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 0})),
+      none(floats({3e38f, -3e38f, 0, 0, 3e38f, -3e38f, 0, 0, 0, 0, 1, 0}));
+  MovedObjects moved{.transforms = there.get(), .objects = {&object, 1}};
+  const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, {.objects = {&moved, 1}});
+  for (size_t q = 0; q < queries.size(); ++q) {
+    CAPTURE(q);
+    CHECK(expected[q].status == Status::hit);
+    CHECK(got[q].status == Status::hit);
+    CHECK(got[q].t == Approx(expected[q].t));
+  }
+  moved.transforms = none.get();
+  for (const Result& result : execute(recorder, queries, {.objects = {&moved, 1}})) CHECK(result.flags == kFlagBounds);
+  CHECK(test::takeValidationMessages().empty());
+}
+
 TEST_CASE("what a host no longer names is as the scene has it") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);

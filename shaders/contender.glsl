@@ -25,9 +25,11 @@ void placedCorners(PreciseRows pose, uint mesh, uint slot, out dvec3 p[3]) {
   }
 }
 #else
-// The bits of x >= 0 as a double.
+#include "double_bits.glsl"
+
+// Of x, or of 0 where that is less.
 uvec2 doubleBits(float x) {
-  const uint bits = floatBitsToUint(x);
-  return x > 0.0 ? uvec2(bits << 29, (bits >> 3) + (896u << 20)) : uvec2(0);
+  const int bits = floatBitsToInt(x);
+  return bits > 0 ? doubleBits(uint(bits)) : uvec2(0);
 }
 #endif

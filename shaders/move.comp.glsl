@@ -12,6 +12,7 @@ layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshReco
 layout(scalar, binding = kBindObjects) restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kBindPlacements) restrict buffer Placements { Placement placements[]; };
 layout(scalar, binding = kBindMoved) readonly restrict buffer MovedObjects { Moved movedObjects[]; };
+#include "double_bits.glsl"
 #include "words.glsl"
 
 layout(push_constant) uniform Push { uint count; uint groupsX; uint placements; } push;
@@ -21,6 +22,7 @@ const float kUnit = 5.9604645e-8;  // 2^-24
 struct Transform {
   uvec4 bits[3];
   bool isFinite;
+  bvec3 flushes;  // a row has an entry that a device may take for 0
 };
 
 Transform transformOf(Moved moved) {
@@ -29,6 +31,7 @@ Transform transformOf(Moved moved) {
   for (uint row = 0; row < 3; ++row) {
     for (uint k = 0; k < 4; ++k) t.bits[row][k] = wordAt(moved.firstByte + 16 * row + 4 * k);
     t.isFinite = t.isFinite && all(notEqual(t.bits[row] >> 23 & 0xffu, uvec4(0xffu)));
+    t.flushes[row] = any(lessThan((t.bits[row].xyz & 0x7fffffffu) - 1u, uvec3(0x7fffffu)));
   }
   return t;
 }
@@ -50,6 +53,15 @@ void middleOf(Transform t, Moved moved, MeshRecord mesh, out vec3 middle, out ve
   }
 }
 
+// Whether it may be out of its bounds. What overflows may be no number in `middle`, but is infinite in `sum` or `reach`.
+bool strays(Transform t, Moved moved, MeshRecord mesh, vec3 middle, vec3 reach, vec3 sum) {
+  const vec3 coordinates = abs(mesh.centre) + mesh.halfExtent;
+  const vec3 flushed = vec3(t.flushes) * (1.2e-38 * (coordinates.x + coordinates.y + coordinates.z));
+  const vec3 lost = 16.0 * kUnit * (sum + reach) + flushed;
+  return !t.isFinite || any(greaterThan(sum + reach, vec3(1e37))) ||
+         !all(lessThanEqual(abs(middle) + reach + lost, moved.halfExtent));
+}
+
 void place(uint i) {
   const Moved moved = movedObjects[placements[i].moved];
   const MeshRecord mesh = meshes[moved.mesh];
@@ -57,7 +69,7 @@ void place(uint i) {
   vec3 middle, reach, sum;
   middleOf(t, moved, mesh, middle, reach, sum);
   Rows frameFromMesh;
-  float most = 0.0;
+  float most = 0.0, entries = 0.0;
   for (int row = 0; row < 3; ++row) {
     const vec4 axis = placements[i].frameFromMesh[row];
     for (int k = 0; k < 3; ++k) {
@@ -65,31 +77,26 @@ void place(uint i) {
     }
     frameFromMesh[row].w = dot(axis.xyz, middle) + axis.w;
     most = max(most, abs(axis.w) + dot(abs(axis.xyz), sum + reach));
+    entries = max(entries, dot(abs(frameFromMesh[row].xyz), vec3(1.0)));
   }
-  // What has strayed counts no more, but must not send the search astray.
-  if (!t.isFinite || !(most < 1e37)) frameFromMesh = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
-  placements[i].frameFromMesh = frameFromMesh;
   const vec3 coordinates = abs(mesh.centre) + mesh.halfExtent;
-  const float lost = 48.0 * kUnit * most + 1e-36 + 1e-37 * (coordinates.x + coordinates.y + coordinates.z);
-  placements[i].error += min(lost, 1e36);
-}
-
-// Of the double with the value of a float, which arithmetic may lose where that is small.
-uvec2 doubleBits(uint bits) {
-  const uint sign = bits & 0x80000000u, magnitude = bits & 0x7fffffffu;
-  if (magnitude == 0) return uvec2(0, sign);
-  if (magnitude >= 0x800000u) return uvec2(bits << 29, sign | ((magnitude >> 3) + (896u << 20)));
-  const int leading = findMSB(magnitude);
-  const uint fraction = magnitude << (23 - leading) & 0x7fffffu;
-  return uvec2(fraction << 29, sign | uint(leading + 874) << 20 | fraction >> 3);
+  float lost = 48.0 * kUnit * most + 1e-36 + 1e-37 * (coordinates.x + coordinates.y + coordinates.z + entries);
+  const bool astray = strays(t, moved, mesh, middle, reach, sum);
+  if (astray || !(most < 1e37 && entries < 1e37)) {
+    // What has strayed counts no more, but must not send the search astray. What else float cannot place is solved in
+    // double precision.
+    frameFromMesh = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
+    lost = astray ? 1e36 : uintBitsToFloat(0x7f800000u);
+  }
+  placements[i].frameFromMesh = frameFromMesh;
+  placements[i].error += lost;
 }
 
 void tellPose(Moved moved) {
   const Transform t = transformOf(moved);
   vec3 middle, reach, sum;
   middleOf(t, moved, meshes[moved.mesh], middle, reach, sum);
-  const vec3 lost = 16.0 * kUnit * (sum + reach);
-  if (!t.isFinite || !all(lessThanEqual(abs(middle) + reach + lost, moved.halfExtent))) {
+  if (strays(t, moved, meshes[moved.mesh], middle, reach, sum)) {
     atomicMin(stray.object, moved.object);
     return;
   }

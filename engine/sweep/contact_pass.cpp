@@ -185,9 +185,15 @@ void ContactPass::bind() {
   resident_.bindTo(bindings_);
   bindings_.setBuffer(gpu::kBindNodes, resident_.buffers().nodes);
   const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
-      {gpu::kBindTargets, &targets_}, {gpu::kBindPlacements, &placements_}, {gpu::kBindRefs, &refs_},
-      {gpu::kBindBoxes, &boxes_},     {gpu::kBindPairItems, &items_},       {gpu::kBindClusterPairs, &clusterPairs_},
-      {gpu::kBindStates, &states_},   {gpu::kBindContenders, &contenders_}, {gpu::kBindTiles, masked_ ? &masked_->mask.tiles() : &states_}};  // which the direct search does not read
+      {gpu::kBindTargets, &targets_},
+      {gpu::kBindPlacements, &placements_},
+      {gpu::kBindRefs, &refs_},
+      {gpu::kBindBoxes, &boxes_},
+      {gpu::kBindPairItems, &items_},
+      {gpu::kBindClusterPairs, &clusterPairs_},
+      {gpu::kBindStates, &states_},
+      {gpu::kBindContenders, &contenders_},
+      {gpu::kBindTiles, masked_ ? &masked_->mask.tiles() : &states_}};  // which the direct search does not read
   for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
 }
 
@@ -217,7 +223,8 @@ bool ContactPass::stageMasks(const gpu::State* states) {
     addItems(itemList_, sides_[i]);
   }
   if (asking.empty()) return false;
-  upload_.begin(masked_->mask.prepare(asking) + Upload::aligned(bytesOf(itemList_)) + Upload::aligned(bytesOf(stateList_)));
+  upload_.begin(masked_->mask.prepare(asking) + Upload::aligned(bytesOf(itemList_)) +
+                Upload::aligned(bytesOf(stateList_)));
   masked_->mask.upload(upload_);
   upload_.add(itemList_.data(), bytesOf(itemList_), items_);
   upload_.add(stateList_.data(), bytesOf(stateList_), states_);

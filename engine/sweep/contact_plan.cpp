@@ -31,9 +31,14 @@ Box collect(const Clusters& clusters, const Affine& frameFromMesh, double error,
   return around;
 }
 
+// Of a mesh that float cannot place; its triangles are solved in double precision.
+double errorOf(const Mesh& mesh, const Affine& frameFromMesh, double error) {
+  return fitsFloats(mesh, frameFromMesh) ? error : INFINITY;
+}
+
 gpu::Placement placementOf(const Affine& frameFromMesh, double error, MeshId mesh, ObjectId object) {
   gpu::Placement p{};
-  for (int i = 0; i < 12; ++i) p.frameFromMesh[i] = static_cast<float>(frameFromMesh[i]);
+  for (int i = 0; i < 12 && error < INFINITY; ++i) p.frameFromMesh[i] = static_cast<float>(frameFromMesh[i]);
   p.error = upward(error);
   p.mesh = mesh;
   p.object = object;
@@ -72,26 +77,30 @@ ContactPlan planContact(const Query& query, const Scene::Impl& scene, const Hier
 
   plan.axes = window.axes;
   plan.origin = window.origin;
-  plan.placements.push_back(placementOf(window.frameFromMesh, window.error, query.mesh, kNone));
+  const double sensorError = errorOf(sensor, window.frameFromMesh, window.error);
+  double worst = sensorError;
+  plan.placements.push_back(placementOf(window.frameFromMesh, sensorError, query.mesh, kNone));
   Box around;
   uint64_t triangles = 0;
   for (const Reached& r : reach.objects) {
     const MeshId mesh = scene.objects[r.object].object.mesh;
     const auto placement = static_cast<uint32_t>(plan.placements.size());
     const size_t before = plan.scene.size();
-    around.merge(collect(scene.meshes[mesh].clusters, r.frameFromMesh, r.error, r.loose ? kEverywhere : reach.prism.box,
+    const double error = errorOf(scene.meshes[mesh], r.frameFromMesh, r.error);
+    around.merge(collect(scene.meshes[mesh].clusters, r.frameFromMesh, error, r.loose ? kEverywhere : reach.prism.box,
                          placement, plan.scene, triangles));
     if (r.loose) around.merge(r.box);
-    if (plan.scene.size() != before) plan.placements.push_back(placementOf(r.frameFromMesh, r.error, mesh, r.object));
+    if (plan.scene.size() != before) plan.placements.push_back(placementOf(r.frameFromMesh, error, mesh, r.object));
+    worst = std::max(worst, error);
   }
   if (plan.scene.empty()) return plan;
   // Only what of the sensor passes over something counts: its box, swept forward, meets theirs.
   Box behind = around;
   behind.lo[2] = -1e300;
-  collect(sensor.clusters, window.frameFromMesh, window.error, sensor.deforms ? kEverywhere : behind, 0, plan.sensor,
+  collect(sensor.clusters, window.frameFromMesh, sensorError, sensor.deforms ? kEverywhere : behind, 0, plan.sensor,
           triangles);
   if (plan.sensor.empty()) plan.scene.clear();
-  planMask(plan.target, window, std::max(window.error, reach.error), kMaskCost + kMaskTriangleCost * triangles);
+  planMask(plan.target, window, worst, kMaskCost + kMaskTriangleCost * triangles);
   return plan;
 }
 

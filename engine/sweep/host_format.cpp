@@ -46,8 +46,14 @@ std::string whatIsWrong(const HostPositions& positions) {
   return "stride: expected at least " + std::to_string(least) + " bytes, got " + std::to_string(positions.stride);
 }
 
+VkDeviceSize spanOf(VkDeviceSize stride, uint64_t count, VkDeviceSize bytes) {
+  constexpr VkDeviceSize kMost = VkDeviceSize{1} << 62;
+  if (count > 1 && stride > (kMost - bytes) / (count - 1)) return kMost;
+  return stride * (count - 1) + bytes;
+}
+
 VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount) {
-  return positions.stride * (vertexCount - 1) + 3 * HostFormat(positions.format).bytes();
+  return spanOf(positions.stride, vertexCount, 3 * HostFormat(positions.format).bytes());
 }
 
 HostFormat::HostFormat(VkFormat format) : component_(componentOf(format)) {}

@@ -19,7 +19,8 @@ T loadAs(const std::byte* at) {
 
 /// Format and stride; empty if nothing is.
 std::string whatIsWrong(const HostPositions& positions);
-/// Bytes from the first vertex to the end of the last.
+/// Bytes from the first of `count` elements to the end of the last; 2^62 where there are more.
+VkDeviceSize spanOf(VkDeviceSize stride, uint64_t count, VkDeviceSize bytes);
 VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount);
 
 /// A format that is not wrong.

@@ -136,7 +136,7 @@ uint32_t HostGeometryPass::copyFrom(VkBuffer buffer, VkDeviceSize first, VkDevic
 void HostGeometryPass::addMoved(const MovedObjects& objects, const Scene::Impl& scene) {
   if (objects.objects.empty()) return;
   const uint32_t firstByte =
-      copyFrom(objects.transforms, objects.first, objects.stride * (objects.objects.size() - 1) + kTransformBytes);
+      copyFrom(objects.transforms, objects.first, spanOf(objects.stride, objects.objects.size(), kTransformBytes));
   for (size_t i = 0; i < objects.objects.size(); ++i) {
     const ObjectId id = objects.objects[i];
     const Box& box = *scene.boundsOf(id);

@@ -39,6 +39,7 @@ std::vector<std::byte> download(const Device::Impl& device, const std::vector<Ra
 MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   device.impl().requireQueue("addMesh of a HostMesh");
   if (std::string wrong = whatIsWrong(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
+  if (mesh.positions.buffer == VK_NULL_HANDLE) throw Error("addMesh: positions: expected a buffer");
   const HostFormat format(mesh.positions.format);
   const VkDeviceSize indexSize = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
   if (mesh.indexType != VK_INDEX_TYPE_UINT16 && mesh.indexType != VK_INDEX_TYPE_UINT32) {

@@ -102,15 +102,29 @@ float downward(double x) {
   return std::nextafter(static_cast<float>(std::min(x, most)), 0.0f);
 }
 
+bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh) {
+  constexpr double kMost = 0x1p125;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &frameFromMesh[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max(1.0f, mesh.halfExtent[k]);
+    if (!(sum < kMost)) return false;
+  }
+  return true;
+}
+
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
-  double worst = 0;
+  // What float loses below its normal range: of a product, of an entry for each unit of the mesh, of a vertex.
+  const double extent = mesh.halfExtent[0] + double{mesh.halfExtent[1]} + mesh.halfExtent[2];
+  double worst = 0, scale = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &frameFromMesh[4 * row];
     double sum = std::abs(r[3]);
     for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.halfExtent[k];
     worst = std::max(worst, sum);
+    scale = std::max(scale, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
   }
-  return 8 * kFloatUnit * worst + 0x1p-120;  // the floor: what float loses below its normal range
+  return 8 * kFloatUnit * worst + 0x1p-120 * (1 + extent + scale);
 }
 
 double doubleErrorWithin(const Box& box, const Vector& origin) {
@@ -128,7 +142,8 @@ SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
   w.origin = transform(query.worldFromMesh, sensor.centre);
   w.frameFromMesh = frameFromRecentred(w.axes, w.origin, query.worldFromMesh, sensor.centre);
   w.error = placementError(sensor, w.frameFromMesh) + doubleError(sensor, query.worldFromMesh, w.origin);
-  w.box = sensor.deforms ? boxOfRecentred(sensor, w.frameFromMesh) : tightBox(sensor, w.frameFromMesh);
+  const bool tight = !sensor.deforms && fitsFloats(sensor, w.frameFromMesh);
+  w.box = tight ? tightBox(sensor, w.frameFromMesh) : boxOfRecentred(sensor, w.frameFromMesh);
   w.length = w.box.hi[2] - w.box.lo[2];
   w.size = 0;
   for (int k = 0; k < 3; ++k) w.size = std::max(w.size, w.box.hi[k] - w.box.lo[k]);

@@ -53,6 +53,9 @@ double doubleErrorWithin(const Box& box, const Vector& origin);
 /// Whether the query leaves the object out, by its mask or by name.
 bool isExcluded(const Query& query, const Object& object, ObjectId id);
 
+/// Whether no entry of the matrix and no vertex that it places is beyond what a float can say.
+bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh);
+
 /// How far a vertex that a shader places may lie from the true one, world units (docs/method.md, "Placement").
 double placementError(const Mesh& mesh, const Affine& frameFromMesh);
 

@@ -70,7 +70,7 @@ struct Recorder::Impl {
   }
 
   void refuseTooLarge();
-  void refuseWrong(std::span<const Query> queries, const HostGeometry& given) const;
+  void refuseWrong(const char* call, std::span<const Query> queries) const;
   void plan(std::span<const Query> queries);
 
   const Device::Impl& device;
@@ -80,7 +80,7 @@ struct Recorder::Impl {
   HostGeometryPass geometry;
   ContactPass pass;
   gpu::Buffer readback;
-  std::vector<Query> asked;  ///< in the last record()
+  std::vector<Query> asked;  ///< in the last record(); none if it failed
   std::vector<ContactPlan> plans;
   std::vector<Result> known;
   std::vector<ContactPass::Search> searches;
@@ -101,18 +101,13 @@ void Recorder::Impl::refuseTooLarge() {
   refuse("openPairs", capacity.openPairs, pass.tell().mostContenders());
 }
 
-void Recorder::Impl::refuseWrong(std::span<const Query> queries, const HostGeometry& given) const {
-  if (queries.size() > capacity.queries) {
-    throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
-                std::to_string(queries.size()));
-  }
+void Recorder::Impl::refuseWrong(const char* call, std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = whatIsWrong(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
     if (wrong.empty() && queries[i].tolerance != 0) wrong = "tolerance: expected 0";
-    if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
+    if (!wrong.empty()) throw Error(std::string(call) + ": query " + std::to_string(i) + ": " + wrong);
   }
-  if (std::string wrong = whatIsWrong(given, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
 }
 
 void Recorder::Impl::plan(std::span<const Query> queries) {
@@ -128,6 +123,7 @@ Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
 Capacity Recorder::need(std::span<const Query> queries) {
+  impl_->refuseWrong("need", queries);
   impl_->plan(queries);
   Capacity need;
   uint64_t clusters = 0, pairs = 0;
@@ -143,13 +139,18 @@ Capacity Recorder::need(std::span<const Query> queries) {
 
 void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries, const HostGeometry& geometry) {
   Impl& self = *impl_;
-  self.refuseWrong(queries, geometry);
+  if (queries.size() > self.capacity.queries) {
+    throw Error("record: expected at most " + std::to_string(self.capacity.queries) + " queries, got " +
+                std::to_string(queries.size()));
+  }
+  self.refuseWrong("record", queries);
+  if (std::string wrong = whatIsWrong(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  self.asked.clear();  // until all is recorded there is nothing to read
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
   if (!self.geometry.empty()) {
     for (ContactPlan& plan : self.plans) self.geometry.prepare(plan);
   }
-  self.asked.assign(queries.begin(), queries.end());
   self.known.assign(queries.size(), decodeClear());
   self.searches.clear();
   Room room(self.capacity);
@@ -187,6 +188,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   gpu::writtenToHost(commands);
   self.device.endLabel(commands);
   self.copy.resident.confirm(self.scene.impl());
+  self.asked.assign(queries.begin(), queries.end());
 }
 
 void Recorder::reset() {
@@ -201,7 +203,7 @@ std::vector<Result> Recorder::read() {
   Impl& self = *impl_;
   std::vector<Result> results(self.asked.size());
   std::copy_n(reinterpret_cast<const Result*>(self.readback.mapped()), results.size(), results.begin());
-  if (self.searches.empty() || !self.pass.tell().allListed()) return results;
+  if (results.empty() || self.searches.empty() || !self.pass.tell().allListed()) return results;
   const auto& open = self.pass.tell().open();
   auto next = open.begin();
   for (uint32_t i = 0; i < self.searches.size(); ++i) {

@@ -186,6 +186,30 @@ TEST_CASE("plates that fly edge-on meet plates as the reference says") {
   CHECK(tally.overlaps >= 5);
 }
 
+TEST_CASE("meshes in units so small or large that float cannot hold their poses meet as the reference says") {
+  const auto [unit, world] = GENERATE(table<double, double>({{1e-30, 1e12}, {1e25, 1e-18}, {1e20, 1e-21}, {1, 1}}));
+  CAPTURE(unit, world);
+  Random random(7);
+  Scene scene;
+  MeshData ball = tools::makeUvSphere(6, 9);
+  for (float& x : ball.positions) x = static_cast<float>(x * unit);
+  const MeshId mesh = add(scene, ball);
+  const double scale = world / unit;
+  const auto pose = [&, world = world] {
+    const Vec3 place = random.inBox({-4, -4, -4}, {4, 4, 4});
+    return tools::makePose(random.rotation(), {scale, scale, scale},
+                           {world * place[0], world * place[1], world * place[2]});
+  };
+  for (int i = 0; i < 8; ++i) scene.addObject({mesh, pose(), ~0u});
+  std::vector<Query> queries;
+  for (int i = 0; i < 48; ++i) {
+    queries.push_back({.mesh = mesh, .worldFromMesh = pose(), .direction = random.direction(), .distance = 12 * world});
+  }
+  const ContactTally tally = compareContact(scene, queries);
+  CHECK(tally.hits >= 5);
+  CHECK(tally.clear >= 5);
+}
+
 TEST_CASE("a mesh inside a mesh is clear until it meets the wall from within") {
   Scene scene;
   const MeshId ball = add(scene, tools::makeUvSphere(20, 30));

@@ -20,8 +20,15 @@
 #include "workloads/families.h"
 #include "workloads/shapes.h"
 
+struct Moving {
+  radar::MeshId body;
+  VkBuffer skinned, transforms;
+  std::vector<radar::ObjectId> crates;
+};
+void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh restPose, radar::MeshId crate,
+               Moving& moving);
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
-                  const radar::HostGeometry& geometry);
+                  const Moving& moving);
 
 namespace {
 
@@ -372,6 +379,49 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("what float cannot place in a sensor's frame is met, or has left its bounds") {
+  Scene truth, scene;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  std::vector<float> apart;  // two clusters
+  std::vector<uint32_t> indices;
+  for (uint32_t i = 0; i < 3 * 128; ++i) {
+    const float side = i < 3 * 64 ? -5e37f : 5e37f;
+    apart.insert(apart.end(), {side + 1e36f * corners[3 * (i % 3)], 1e36f * corners[3 * (i % 3) + 1], 0});
+    indices.push_back(i);
+  }
+  for (Scene* one : {&truth, &scene}) {
+    const MeshId mesh = one->addMesh(corners, triangle);
+    one->addMesh(apart, indices);
+    one->addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0.5, 0, 0, 1, 0.5, 0, 0, 0, 1, 0}}});
+  }
+  const ObjectId object = 0;
+  scene.setBounds(object, {{-2, -2, -2}, {2, 2, 2}});
+  std::vector<Query> queries{{.mesh = 1, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = 0, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = 0, .direction = {1, 1, 1}, .distance = 20}};
+  queries[0].worldFromMesh.m[3] = 5e37;
+  queries[0].worldFromMesh.m[11] = -1e37;
+  queries[1].worldFromMesh.m[11] = -1e38;
+  for (const size_t k : {3, 7, 11}) queries[2].worldFromMesh.m[k] = -5;
+  Sweeper sweeper(test::device(), truth);
+  Recorder recorder(test::device(), scene, kRoom);
+  // A flat mesh has no use for the third column.
+  const OnDevice there(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 0})),
+      none(floats({3e38f, -3e38f, 0, 0, 3e38f, -3e38f, 0, 0, 0, 0, 1, 0}));
+  MovedObjects moved{.transforms = there.get(), .objects = {&object, 1}};
+  const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, {.objects = {&moved, 1}});
+  for (size_t q = 0; q < queries.size(); ++q) {
+    CAPTURE(q);
+    CHECK(expected[q].status == Status::hit);
+    CHECK(got[q].status == Status::hit);
+    CHECK(got[q].t == Approx(expected[q].t));
+  }
+  moved.transforms = none.get();
+  for (const Result& result : execute(recorder, queries, {.objects = {&moved, 1}})) CHECK(result.flags == kFlagBounds);
+  CHECK(test::takeValidationMessages().empty());
+}
+
 TEST_CASE("what a host no longer names is as the scene has it") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
@@ -442,7 +492,12 @@ TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with
   objects({.transforms = buffer.get(), .objects = same}, "objects: expected each at most once");
   objects({.transforms = buffer.get(), .stride = 44, .objects = {&wall.wall, 1}}, "at least 48 bytes, got 44");
   objects({.objects = {&wall.wall, 1}}, "expected a buffer of transforms");
-  mesh({wall.mesh, {.buffer = buffer.get(), .stride = VkDeviceSize{1} << 40}}, "bytes that this device allows");
+  for (const VkDeviceSize stride : {VkDeviceSize{1} << 40, VkDeviceSize{1} << 63, ~VkDeviceSize{0}}) {
+    mesh({wall.mesh, {.buffer = buffer.get(), .stride = stride}}, "bytes that this device allows");
+    wall.scene.setBounds(wall.far, {{-9, -9, -9}, {99, 9, 9}});
+    const ObjectId both[] = {wall.wall, wall.far};
+    objects({.transforms = buffer.get(), .stride = stride, .objects = both}, "bytes that this device allows");
+  }
 
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
@@ -492,24 +547,38 @@ TEST_CASE(
   test::forget();
   {
     const Device device = Device::adopt(host.handles);
-    Wall wall;
-    Recorder recorder(device, wall.scene);
-    const std::vector<float> rest{-1, -1, 0, 1, -1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4};
-    gpu::Bindings bindings(
-        hosts.impl(),
-        std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
-        4);
-    const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
-    gpu::Buffer atRest(hosts.impl(), "at rest", gpu::Residence::upload, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
-        there(hosts.impl(), "skinned", gpu::Residence::device,
-              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const uint32_t triangle[] = {0, 1, 2};
+    // At rest: three vertices of 8 floats, then 20 transforms, 10 to the side.
+    std::vector<float> rest(24);
+    for (size_t i = 0; i < 9; ++i) rest[8 * (i / 3) + i % 3] = corners[i];
+    for (int i = 0; i < 20; ++i) rest.insert(rest.end(), {1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
+    gpu::Buffer atRest(hosts.impl(), "at rest", gpu::Residence::upload,
+                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    constexpr VkBufferUsageFlags kWritten = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    gpu::Buffer skinned(hosts.impl(), "skinned", gpu::Residence::device, kWritten),
+        transforms(hosts.impl(), "transforms", gpu::Residence::device, kWritten);
     atRest.reserve(gpu::bytesOf(rest));
-    there.reserve(gpu::bytesOf(rest));
+    skinned.reserve(24 * sizeof(float));
+    transforms.reserve(240 * sizeof(float));
     std::memcpy(atRest.mapped(), rest.data(), gpu::bytesOf(rest));
+
+    Scene scene;
+    const MeshId crate = scene.addMesh(corners, triangle);
+    Moving moving{.body = kNone, .skinned = skinned.get(), .transforms = transforms.get(), .crates = {}};
+    addMoving(scene, device, {.positions = {.buffer = atRest.get(), .stride = 32}, .vertexCount = 3}, crate, moving);
+    std::vector<Query> queries(2, {.mesh = crate, .direction = {0, 0, 1}, .distance = 20});
+    for (Query& query : queries) query.worldFromMesh.m[11] = -3;
+    queries[1].worldFromMesh.m[3] = 10;
+
+    std::vector<gpu::Binding> list;
+    for (const uint32_t number : {0u, 1u, 2u}) list.push_back({number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+    gpu::Bindings bindings(hosts.impl(), list, sizeof(float));
+    const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
     bindings.setBuffer(0, atRest);
-    bindings.setBuffer(1, there);
-    const DeformedMesh deformed{wall.mesh, {.buffer = there.get()}};
-    const MovedObjects moved{.transforms = there.get(), .first = 36, .objects = {&wall.wall, 1}};
+    bindings.setBuffer(1, skinned);
+    bindings.setBuffer(2, transforms);
+    Recorder recorder(device, scene);
     gpu::Submission submission(hosts.impl(), false);
     const test::Counts before = test::counts();
     int64_t allocations = 0;
@@ -520,10 +589,10 @@ TEST_CASE(
       bindings.bind(commands);
       commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, skin.get());
       commands->CmdPushConstants(commands, bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(lift), &lift);
-      commands->CmdDispatch(commands, 1, 1, 1);
-      recordMoving(commands, recorder, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+      commands->CmdDispatch(commands, 5, 1, 1);
+      recordMoving(commands, recorder, queries, moving);
       submission.submitAndWait();
-      CHECK(recorder.read()[0].t == 4 + 2 * double{lift});
+      for (const Result& result : recorder.read()) CHECK(result.t == 3 + double{lift});
     }
     const test::Counts after = test::counts();
     CHECK(after.allocations == allocations);

@@ -86,6 +86,8 @@ TEST_CASE("a mesh of the host's that cannot be read is refused by the member tha
   refused({.positions = {.format = VK_FORMAT_R8G8B8_UNORM}, .vertexCount = 3}, "addMesh: positions: format: expected");
   refused({.positions = {.stride = 8}, .vertexCount = 3}, "positions: stride: expected at least 12 bytes, got 8");
   refused({.vertexCount = 0}, "at least one triangle");
+  CHECK_THROWS_WITH(addMesh(scene, test::device(), {.vertexCount = 3}),
+                    Catch::Contains("positions: expected a buffer"));
   refused({.vertexCount = 3, .indices = buffer.get(), .indexType = VK_INDEX_TYPE_UINT8_EXT, .indexCount = 3},
           "addMesh: indexType: expected 16 or 32 bits");
   refused({.vertexCount = 3}, "finite");

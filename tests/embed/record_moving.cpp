@@ -1,12 +1,32 @@
 #include <span>
+#include <vector>
 
 #include <radar/recorder.h>
 #include <vulkan/vulkan.h>
 
-// Once a frame, behind the host's compute shaders that skin and animate: what they wrote into the buffers of `geometry`
-// is what the queries meet.
+// What a renderer's compute shaders move: a character that they skin, and crates that they push about a hall.
+struct Moving {
+  radar::MeshId body;
+  VkBuffer skinned;     // the character's vertices, 32 bytes each, a float3 position first
+  VkBuffer transforms;  // of the crates, a VkTransformMatrixKHR each
+  std::vector<radar::ObjectId> crates;
+};
+
+// While loading: `restPose` holds the character as it was modelled.
+void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh restPose, radar::MeshId crate,
+               Moving& moving) {
+  restPose.bounds = radar::Bounds{{-1.5, -1.5, 0}, {1.5, 1.5, 2.5}};  // whatever it does, about its origin
+  moving.body = radar::addMesh(scene, device, restPose);
+  scene.addObject({.mesh = moving.body});
+  for (int i = 0; i < 20; ++i) {
+    moving.crates.push_back(scene.addObject({.mesh = crate}));
+    scene.setBounds(moving.crates.back(), {{-20, -20, 0}, {20, 20, 4}});  // the hall
+  }
+}
+
+// Once a frame, behind the compute shaders: what they wrote is what the queries meet.
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
-                  const radar::HostGeometry& geometry) {
+                  const Moving& moving) {
   const VkMemoryBarrier2 movedToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                      .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                      .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
@@ -15,5 +35,7 @@ void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span
   const VkDependencyInfo info{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &movedToCopy};
   vkCmdPipelineBarrier2(commands, &info);
-  recorder.record(commands, queries, geometry);
+  const radar::DeformedMesh body{moving.body, {.buffer = moving.skinned, .stride = 32}};
+  const radar::MovedObjects crates{.transforms = moving.transforms, .objects = moving.crates};
+  recorder.record(commands, queries, {.meshes = {&body, 1}, .objects = {&crates, 1}});
 }

@@ -257,6 +257,10 @@ TEST_CASE("what cannot be recorded is refused by the query's number, and nothing
   row.queries[0].direction = {};
   refused("record: query 0: direction");
   row.queries[0].direction = {0, 0, 1};
+  row.queries[1].mesh = 9;
+  refused("record: query 1: sensor: mesh 9 does not exist");
+  CHECK_THROWS_WITH(recorder.need(row.queries), Catch::Contains("need: query 1: sensor: mesh 9 does not exist"));
+  row.queries[1].mesh = row.mesh;
   recorder.record(commands, row.queries);
   submission.submitAndWait();
   CHECK(recorder.read()[2].status == Status::hit);

@@ -1,13 +1,18 @@
-// Stands for a host's skinning and animation: three vertices and a transform, lifted along z.
+// Stands for a host's skinning and animation: three vertices of 8 floats, and transforms, lifted along z.
 #version 460
 
 layout(local_size_x = 64) in;
 
 layout(binding = 0) readonly buffer Rest { float rest[]; };
-layout(binding = 1) writeonly buffer Moved { float moved[]; };
+layout(binding = 1) writeonly buffer Skinned { float skinned[]; };
+layout(binding = 2) writeonly buffer Transforms { float transforms[]; };
 layout(push_constant) uniform Push { float lift; };
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i < 21) moved[i] = rest[i] + ((i < 9 && i % 3 == 2) || i == 20 ? lift : 0.0);
+  if (i < 24) {
+    skinned[i] = rest[i] + (i % 8 == 2 ? lift : 0.0);
+  } else if (i < 264) {
+    transforms[i - 24] = rest[i] + (i % 12 == 11 ? lift : 0.0);
+  }
 }

@@ -37,7 +37,8 @@ struct HostMesh {
 /// for a stride shorter than a position, and where a Vulkan call fails.
 RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);
 
-/// A mesh whose vertices are elsewhere now: as many as it has, each within the bounds it was added with.
+/// A mesh whose vertices are elsewhere now: as many as it has, each within the bounds it was added with, those that no
+/// triangle uses, too.
 struct DeformedMesh {
   MeshId mesh = kNone;
   HostPositions positions;
@@ -45,7 +46,9 @@ struct DeformedMesh {
 
 /// Objects that are elsewhere now: one VkTransformMatrixKHR each (3x4 floats, row-major; also how instances of
 /// acceleration structures begin), in this order. The box of the object's mesh, placed by it in float arithmetic, lies
-/// within Scene::setBounds, or beyond by no more than a millionth of the bounds' largest coordinate.
+/// within Scene::setBounds, or beyond by no more than a millionth of the bounds' largest coordinate. Without
+/// Device::doubles(), a mesh whose middle is farther from its own origin than that, placed, needs room within the
+/// bounds instead: two millionths of that distance.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< bytes to the first transform

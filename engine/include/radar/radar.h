@@ -98,7 +98,8 @@ class RADAR_API Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
-  /// not a multiple of 3, a number is not finite, an index is out of range or a bound is above its other.
+  /// not a multiple of 3, a number is not finite, an index is out of range, or a bound is above its other or beyond
+  /// 2^120.
   ///
   /// `bounds`, mesh units: the host will deform the mesh on its device (radar/host_geometry.h), within them. The closer
   /// `positions` are to what it will be (its rest pose), the faster the search; elsewhere they are the mesh.
@@ -110,7 +111,9 @@ class RADAR_API Scene {
   /// Throws if the mesh does not exist, or the pose is singular or not finite.
   ObjectId addObject(const Object& object);
   void setPose(ObjectId object, const Pose& worldFromMesh);
-  /// The host will move the object on its device (radar/host_geometry.h), within `world`, whose size is what it costs.
+  /// The host will move the object on its device (radar/host_geometry.h), within `world`, whose size is what it costs;
+  /// elsewhere it is at its pose. Replaces earlier bounds; they end with the object. Throws if the object does not
+  /// exist, or a bound is above its other or beyond 2^120.
   void setBounds(ObjectId object, const Bounds& world);
   void removeObject(ObjectId object);
 

@@ -36,7 +36,7 @@ class RADAR_API Recorder {
   Recorder& operator=(Recorder&&) noexcept;
 
   /// What recording `queries` now would take: queries, clusters and clusterPairs (an upper bound) are computed, the
-  /// other members are the defaults.
+  /// other members are the defaults. Throws as record() does if a query cannot be recorded.
   Capacity need(std::span<const Query> queries);
 
   /// Records the search into `commands`, a primary or secondary command buffer of HostDevice::queueFamily in the

@@ -1,0 +1,11 @@
+// The bits of doubles, low word first, for shaders that may have none.
+
+// Of the double with the value of a float, which arithmetic may lose where that is small.
+uvec2 doubleBits(uint bits) {
+  const uint sign = bits & 0x80000000u, magnitude = bits & 0x7fffffffu;
+  if (magnitude == 0) return uvec2(0, sign);
+  if (magnitude >= 0x800000u) return uvec2(bits << 29, sign | ((magnitude >> 3) + (896u << 20)));
+  const int leading = findMSB(magnitude);
+  const uint fraction = magnitude << (23 - leading) & 0x7fffffu;
+  return uvec2(fraction << 29, sign | uint(leading + 874) << 20 | fraction >> 3);
+}

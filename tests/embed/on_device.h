@@ -1,4 +1,4 @@
-// What a renderer has in its buffers.
+// What a renderer has in its buffers, and searches recorded over it.
 #pragma once
 
 #include <cstring>
@@ -7,6 +7,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
+#include "radar/recorder.h"
 #include "support/test_device.h"
 
 namespace radar::test {
@@ -38,6 +39,22 @@ void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
     bytes.resize(bytes.size() + sizeof(T));
     std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
   }
+}
+
+/// For what the tests record.
+inline constexpr Capacity kRoom{.queries = 48,
+                                .clusters = 1u << 17,
+                                .clusterPairs = 1u << 22,
+                                .contenders = 1u << 15,
+                                .dispatches = 40,
+                                .openPairs = 1u << 17};
+
+inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries,
+                                   const HostGeometry& geometry = {}) {
+  gpu::Submission submission(test::device().impl(), false);
+  recorder.record(submission.begin(), queries, geometry);
+  submission.submitAndWait();
+  return recorder.read();
 }
 
 }  // namespace radar::test

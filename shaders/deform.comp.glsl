@@ -7,12 +7,18 @@
 
 layout(local_size_x = 64) in;
 
-layout(scalar, binding = kBindPositions) writeonly restrict buffer Positions { vec3 positions[]; };
-layout(scalar, binding = kBindOriginals) writeonly restrict buffer Originals { uvec3 originals[]; };  // bits: none may be lost
-layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+// Bits, of which none may be lost.
+struct VertexBits {
+  uvec3 position;
+  uint pad;
+};
+layout(scalar, binding = kSlotVertices) writeonly restrict buffer Vertices { VertexBits vertices[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kSlotStray) restrict buffer Strays { Stray stray; };
 #include "words.glsl"
+#include "workgroup.glsl"
 
-layout(push_constant) uniform Push { uint count; uint groupsX; uint mesh; uint firstByte; uint stride; uint format; } push;
+layout(push_constant) uniform Push { uint count; uint mesh; uint firstByte; uint stride; uint format; } push;
 
 // The bits of the float next to c / (2^bits - 1), as of 0 < c < 2^bits: in binary, c again and again.
 uint quotientBits(uint c, int bits) {
@@ -45,15 +51,15 @@ uint component(uint at, uint k) {
 }
 
 void main() {
-  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX) * 64 + gl_LocalInvocationID.x;
+  const uint i = workgroupIndex() * 64 + gl_LocalInvocationID.x;
   if (i >= push.count) return;
   const uint at = push.firstByte + i * push.stride;
   const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
   const MeshRecord mesh = meshes[push.mesh];
-  const vec3 p = uintBitsToFloat(bits) - mesh.centre;
-  const bool strays = any(equal(bits >> 23 & 0xffu, uvec3(0xffu))) || !all(lessThanEqual(abs(p), mesh.halfExtent));
+  const vec3 local = uintBitsToFloat(bits) - mesh.origin;
+  const bool strays = any(equal(bits >> 23 & 0xffu, uvec3(0xffu))) || !all(lessThanEqual(local, mesh.hi)) ||
+                      !all(lessThanEqual(mesh.lo, local));
   if (strays && atomicCompSwap(stray.mesh, kNobody, push.mesh) == kNobody) atomicExchange(stray.vertex, i);
   // What strays counts no more, but must not send the search astray.
-  positions[mesh.firstVertex + i] = strays ? vec3(0.0) : p;
-  originals[mesh.firstVertex + i] = strays ? floatBitsToUint(mesh.centre) : bits;
+  vertices[mesh.firstVertex + i].position = strays ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
 }

@@ -6,8 +6,8 @@
 
 layout(local_size_x = kSums) in;
 
-layout(scalar, binding = kBindSums) readonly restrict buffer Sums { Sum sums[]; };
-layout(scalar, binding = kBindSumResults) writeonly restrict buffer Results { SumResult results[]; };
+layout(scalar, binding = kSlotSums) readonly restrict buffer Sums { Sum sums[]; };
+layout(scalar, binding = kSlotSumResults) writeonly restrict buffer Results { SumResult results[]; };
 
 void main() {
   const uint i = gl_LocalInvocationID.x;

@@ -5,22 +5,23 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #define RADAR_NO_DOUBLES
 #include "interop.h"
+#include "contact/scene.glsl"
+#include "workgroup.glsl"
 
 layout(local_size_x = kItemInvocations) in;
 
-layout(scalar, binding = kBindPositions) readonly restrict buffer Positions { vec3 positions[]; };
-layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uint indices[]; };
-layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-layout(scalar, binding = kBindViews) readonly restrict buffer Views { View views[]; };
-layout(scalar, binding = kBindDraws) readonly restrict buffer Draws { Draw draws[]; };
-layout(scalar, binding = kBindItems) readonly restrict buffer Items { Item items[]; };
-layout(scalar, binding = kBindRanks) readonly restrict buffer Ranks { uint ranks[]; };
-layout(scalar, binding = kBindAnswers) readonly restrict buffer Answers { Answer answers[]; };
-layout(scalar, binding = kBindCandidates) restrict buffer Candidates { Candidate candidates[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kSlotViews) readonly restrict buffer Views { View views[]; };
+layout(scalar, binding = kSlotDraws) readonly restrict buffer Draws { Draw draws[]; };
+layout(scalar, binding = kSlotItems) readonly restrict buffer Items { Item items[]; };
+layout(scalar, binding = kSlotRanks) readonly restrict buffer Ranks { uint ranks[]; };
+layout(scalar, binding = kSlotAnswers) readonly restrict buffer Answers { Answer answers[]; };
+layout(scalar, binding = kSlotCandidates) restrict buffer Candidates { Candidate candidates[]; };
 
-layout(push_constant) uniform Push { uint items; uint groupsX; } push;
+layout(push_constant) uniform Push { uint items; } push;
 
 // The pixel centre that a cell nominates, or one outside every window.
 vec2 centreOf(uint v, uvec2 cell, out uint candidate) {
@@ -56,8 +57,7 @@ void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec2 rise = vec2(p1.z - p0.z, p2.z - p0.z);
   const float area = a.x * b.y - a.y * b.x;
   const float turn = area < 0.0 ? -1.0 : 1.0;
-  // Slivers: the plane's gradient is rounding; the vertices' range of depth stands in for it (2^-10 as for the bounds of
-  // outer scopes).
+  // Slivers: the plane's gradient is rounding; the vertices' range of depth stands in for it.
   const bool sliver = abs(area) <= 0.0009765625 * (abs(a.x * b.y) + abs(a.y * b.x));
   const vec2 gradient =
       sliver ? vec2(0.0) : vec2(rise.x * b.y - rise.y * a.y, rise.y * a.x - rise.x * b.x) / area;
@@ -94,7 +94,7 @@ void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
 }
 
 void main() {
-  const uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX;
+  const uint item = workgroupIndex();
   if (item >= push.items) return;
   const Item work = items[item];
   const Draw draw = draws[work.draw];
@@ -117,11 +117,11 @@ void main() {
   const MeshRecord mesh = meshes[draw.mesh];
   for (uint triangle = work.firstTriangle + gl_LocalInvocationID.x; triangle < work.endTriangle;
        triangle += kItemInvocations) {
-    const uint corner = mesh.firstIndex + 3 * triangle;
+    const uvec4 corner = triangleAt(mesh.firstTriangle + triangle);
     // Pixels across, stored depth along.
-    const vec3 p0 = clipFromMesh * vec4(positions[mesh.firstVertex + indices[corner]], 1.0) * scale + shift;
-    const vec3 p1 = clipFromMesh * vec4(positions[mesh.firstVertex + indices[corner + 1]], 1.0) * scale + shift;
-    const vec3 p2 = clipFromMesh * vec4(positions[mesh.firstVertex + indices[corner + 2]], 1.0) * scale + shift;
+    const vec3 p0 = clipFromMesh * vec4(vertexAt(corner.x) - mesh.origin, 1.0) * scale + shift;
+    const vec3 p1 = clipFromMesh * vec4(vertexAt(corner.y) - mesh.origin, 1.0) * scale + shift;
+    const vec3 p2 = clipFromMesh * vec4(vertexAt(corner.z) - mesh.origin, 1.0) * scale + shift;
     nameAt(surface, p0, p1, p2, kItemTriangles * item + triangle - work.firstTriangle);
   }
 }

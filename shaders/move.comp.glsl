@@ -1,6 +1,5 @@
-// Objects where a host's transforms put them: first their placements, in the frames of the sensors that may reach them, then
-// their poses; an invocation each. What arithmetic loses is added to the placement's error (docs/method.md, "A host's
-// geometry").
+// Objects where a host's transforms put them, an invocation each: their poses, exactly, and their placements, with what
+// arithmetic loses of these (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,14 +7,16 @@
 
 layout(local_size_x = 64) in;
 
-layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-layout(scalar, binding = kBindObjects) restrict buffer Objects { ObjectRecord objects[]; };
-layout(scalar, binding = kBindPlacements) restrict buffer Placements { Placement placements[]; };
-layout(scalar, binding = kBindMoved) readonly restrict buffer MovedObjects { Moved movedObjects[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kSlotObjects) writeonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kSlotPlacements) writeonly restrict buffer Placements { Placement placements[]; };
+layout(scalar, binding = kSlotMoved) readonly restrict buffer MovedObjects { Moved movedObjects[]; };
+layout(scalar, binding = kSlotStray) restrict buffer Strays { Stray stray; };
 #include "double_bits.glsl"
 #include "words.glsl"
+#include "workgroup.glsl"
 
-layout(push_constant) uniform Push { uint count; uint groupsX; uint placements; } push;
+layout(push_constant) uniform Push { uint count; } push;
 
 const float kUnit = 5.9604645e-8;  // 2^-24
 
@@ -36,70 +37,98 @@ Transform transformOf(Moved moved) {
   return t;
 }
 
-// The mesh about the anchor: its middle, and how far it reaches; `sum`: what the middle is the sum of.
-void middleOf(Transform t, Moved moved, MeshRecord mesh, out vec3 middle, out vec3 reach, out vec3 sum) {
+// Where the mesh's origin is, as the sum of two floats, and how far that may be off.
+struct Position {
+  vec3 high, low, error;
+};
+
+Position positionOf(Transform t, vec3 origin) {
+  Position p;
   for (int row = 0; row < 3; ++row) {
     const vec4 m = uintBitsToFloat(t.bits[row]);
-    const float offset = m.w - moved.anchor[row];
-    sum[row] = dot(abs(m.xyz), abs(mesh.centre)) + abs(offset);
+    const float sum = dot(abs(m.xyz), abs(origin));
 #ifdef RADAR_NO_DOUBLES
-    middle[row] = dot(m.xyz, mesh.centre) + offset;
+    // Exact where the origin is 0.
+    p.high[row] = origin == vec3(0.0) ? m.w : dot(m.xyz, origin) + m.w;
+    p.low[row] = 0.0;
+    p.error[row] = origin == vec3(0.0) ? 0.0 : 16.0 * kUnit * (sum + abs(m.w));
 #else
-    // A mesh far from its origin keeps its precision.
-    middle[row] = float(dot(dvec3(m.xyz), dvec3(mesh.centre)) + (double(m.w) - double(moved.anchor[row])));
-    sum[row] = abs(middle[row]) + 1.5e-8 * sum[row];
+    const double at = dot(dvec3(m.xyz), dvec3(origin)) + double(m.w);
+    p.high[row] = float(at);
+    p.low[row] = float(at - double(p.high[row]));
+    p.error[row] = 5.7e-14 * (sum + abs(m.w));  // 2^-44
 #endif
-    reach[row] = dot(abs(m.xyz), mesh.halfExtent);
   }
+  return p;
 }
 
-// Whether it may be out of its bounds. What overflows may be no number in `middle`, but is infinite in `sum` or `reach`.
-bool strays(Transform t, Moved moved, MeshRecord mesh, vec3 middle, vec3 reach, vec3 sum) {
-  const vec3 coordinates = abs(mesh.centre) + mesh.halfExtent;
+// Whether the mesh's box may be out of the object's bounds. What overflows may be no number in the middle, but is infinite
+// in `sum` or `reach`.
+bool strays(Transform t, Moved moved, MeshRecord mesh, Position position) {
+  const vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
+  const vec3 coordinates = abs(mesh.origin) + max(abs(mesh.lo), abs(mesh.hi));
   const vec3 flushed = vec3(t.flushes) * (1.2e-38 * (coordinates.x + coordinates.y + coordinates.z));
+  vec3 at, sum, reach;
+  for (int row = 0; row < 3; ++row) {
+    const vec3 m = uintBitsToFloat(t.bits[row].xyz);
+    const float offset = (position.high[row] - moved.anchor[row]) + position.low[row];
+    at[row] = dot(m, middle) + offset;
+    sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 16.0;
+    reach[row] = dot(abs(m), halfExtent);
+  }
   const vec3 lost = 16.0 * kUnit * (sum + reach) + flushed;
   return !t.isFinite || any(greaterThan(sum + reach, vec3(1e37))) ||
-         !all(lessThanEqual(abs(middle) + reach + lost, moved.halfExtent));
+         !all(lessThanEqual(abs(at) + reach + lost, moved.halfExtent));
 }
 
-void place(uint i) {
-  const Moved moved = movedObjects[placements[i].moved];
-  const MeshRecord mesh = meshes[moved.mesh];
-  const Transform t = transformOf(moved);
-  vec3 middle, reach, sum;
-  middleOf(t, moved, mesh, middle, reach, sum);
-  Rows frameFromMesh;
-  float most = 0.0, entries = 0.0;
+// Rows that are about the inverse's: any will do, since what they are off is measured.
+void inverseRows(vec3 m0, vec3 m1, vec3 m2, out vec3 n[3]) {
+  const vec3 c0 = vec3(m0.x, m1.x, m2.x), c1 = vec3(m0.y, m1.y, m2.y), c2 = vec3(m0.z, m1.z, m2.z);
+  const vec3 r0 = cross(c1, c2), r1 = cross(c2, c0), r2 = cross(c0, c1);
+  const float determinant = dot(c0, r0);
+  const bool usable = abs(determinant) > 1e-37 && abs(determinant) < 1e37;
+  n = vec3[3](r0, r1, r2);
+  for (int k = 0; k < 3; ++k) {
+    const vec3 row = n[k] / (usable ? determinant : 1.0);
+    n[k] = usable && all(lessThan(abs(row), vec3(1e30))) ? row : vec3(0.0);
+  }
+}
+
+void place(Moved moved, MeshRecord mesh, Transform t, Position position) {
+  const float unit = mesh.unit;
+  const vec3 m[3] = vec3[3](uintBitsToFloat(t.bits[0].xyz) * unit, uintBitsToFloat(t.bits[1].xyz) * unit,
+                            uintBitsToFloat(t.bits[2].xyz) * unit);
+  const vec3 reach = max(abs(mesh.lo), abs(mesh.hi)) * mesh.perUnit;
+  vec3 n[3];
+  inverseRows(m[0], m[1], m[2], n);
+  float size = 0.0, most = 0.0, error = 0.0;
   for (int row = 0; row < 3; ++row) {
-    const vec4 axis = placements[i].frameFromMesh[row];
-    for (int k = 0; k < 3; ++k) {
-      frameFromMesh[row][k] = dot(axis.xyz, uintBitsToFloat(uvec3(t.bits[0][k], t.bits[1][k], t.bits[2][k])));
+    const vec3 leading = uintBitsToFloat(floatBitsToUint(m[row]) & 0xffffff00u);
+    placements[moved.object].coarse[row] = vec4(leading, position.high[row]);
+    placements[moved.object].fine[row] = vec4(m[row] - leading, position.low[row]);
+    // n . matrix - unit vector, over the mesh.
+    float off = 0.0;
+    for (int j = 0; j < 3; ++j) {
+      const vec3 column = vec3(m[0][j], m[1][j], m[2][j]);
+      off += (abs(dot(n[row], column) - (j == row ? 1.0 : 0.0)) + 8.0 * kUnit * (dot(abs(n[row]), abs(column)) + 1.0)) * reach[j];
     }
-    frameFromMesh[row].w = dot(axis.xyz, middle) + axis.w;
-    most = max(most, abs(axis.w) + dot(abs(axis.xyz), sum + reach));
-    entries = max(entries, dot(abs(frameFromMesh[row].xyz), vec3(1.0)));
+    placements[moved.object].inverse[row] = vec4(n[row], 1.00001 * off);
+    size += dot(abs(m[row]), reach);
+    most = max(most, max(abs(m[row].x), max(abs(m[row].y), abs(m[row].z))));
+    error = max(error, position.error[row] + 5.7e-14 * abs(position.high[row]));
   }
-  const vec3 coordinates = abs(mesh.centre) + mesh.halfExtent;
-  float lost = 48.0 * kUnit * most + 1e-36 + 1e-37 * (coordinates.x + coordinates.y + coordinates.z + entries);
-  const bool astray = strays(t, moved, mesh, middle, reach, sum);
-  if (astray || !(most < 1e37 && entries < 1e37)) {
-    // What has strayed counts no more, but must not send the search astray. What else float cannot place is solved in
-    // double precision.
-    frameFromMesh = Rows(vec4(0.0), vec4(0.0), vec4(0.0));
-    lost = astray ? 1e36 : uintBitsToFloat(0x7f800000u);
-  }
-  placements[i].frameFromMesh = frameFromMesh;
-  placements[i].error += lost;
+  placements[moved.object].reach = reach;
+  placements[moved.object].root = mesh.firstNode;
+  placements[moved.object].origin = mesh.origin;
+  placements[moved.object].error = 1.00001 * (error + 3e-11 * size);  // 2^-35
+  placements[moved.object].size = 1.00001 * size;
+  placements[moved.object].mesh = moved.mesh;
+  // Squares and cubes are to have room (kMostCoordinate).
+  const bool inRange = most >= 8.3e-25 && most <= 1.2e24 && size <= 1.2e24 && unit >= 8.3e-25 && unit <= 1.2e24;
+  placements[moved.object].perUnit = inRange ? mesh.perUnit : 0.0;
 }
 
-void tellPose(Moved moved) {
-  const Transform t = transformOf(moved);
-  vec3 middle, reach, sum;
-  middleOf(t, moved, meshes[moved.mesh], middle, reach, sum);
-  if (strays(t, moved, meshes[moved.mesh], middle, reach, sum)) {
-    atomicMin(stray.object, moved.object);
-    return;
-  }
+void tellPose(Moved moved, Transform t) {
   for (uint row = 0; row < 3; ++row) {
     const uvec2 x = doubleBits(t.bits[row].x), y = doubleBits(t.bits[row].y), z = doubleBits(t.bits[row].z),
                 w = doubleBits(t.bits[row].w);
@@ -114,11 +143,18 @@ void tellPose(Moved moved) {
 }
 
 void main() {
-  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * push.groupsX) * 64 + gl_LocalInvocationID.x;
+  const uint i = workgroupIndex() * 64 + gl_LocalInvocationID.x;
   if (i >= push.count) return;
-  if (i >= push.placements) {
-    tellPose(movedObjects[i - push.placements]);
-  } else if (placements[i].moved != kNobody) {
-    place(i);
+  const Moved moved = movedObjects[i];
+  const MeshRecord mesh = meshes[moved.mesh];
+  const Transform t = transformOf(moved);
+  const Position position = positionOf(t, mesh.origin);
+  if (strays(t, moved, mesh, position)) {
+    // It counts no more, but must not send the search astray.
+    atomicMin(stray.object, moved.object);
+    placements[moved.object].perUnit = 0.0;
+    return;
   }
+  tellPose(moved, t);
+  place(moved, mesh, t, position);
 }

@@ -8,12 +8,12 @@
 
 layout(local_size_x = kCells) in;
 
-layout(scalar, binding = kBindViews) readonly restrict buffer Views { View views[]; };
-layout(scalar, binding = kBindCandidates) writeonly restrict buffer Candidates { Candidate candidates[]; };
-layout(scalar, binding = kBindRanks) writeonly restrict buffer Ranks { uint ranks[]; };
-layout(scalar, binding = kBindAnswers) writeonly restrict buffer Answers { Answer answers[]; };
-layout(binding = kBindRange) uniform sampler2DArray rangeScope;
-layout(binding = kBindMask) uniform sampler2DArray maskScope;
+layout(scalar, binding = kSlotViews) readonly restrict buffer Views { View views[]; };
+layout(scalar, binding = kSlotCandidates) writeonly restrict buffer Candidates { Candidate candidates[]; };
+layout(scalar, binding = kSlotRanks) writeonly restrict buffer Ranks { uint ranks[]; };
+layout(scalar, binding = kSlotAnswers) writeonly restrict buffer Answers { Answer answers[]; };
+layout(binding = kSlotRange) uniform sampler2DArray rangeScope;
+layout(binding = kSlotMask) uniform sampler2DArray maskScope;
 
 const float kFar = 3.0e38;
 
@@ -109,6 +109,6 @@ void main() {
   if (cell == 0) {
     const float least = unordered(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
-    answers[v] = Answer(double(0), kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0.0);
+    answers[v] = Answer(double(0), kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
   }
 }

@@ -4,22 +4,21 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "interop.h"
 #include "contact.glsl"
+#include "contact/scene.glsl"
 
 layout(local_size_x = kRound) in;
 
-layout(scalar, binding = kBindOriginals) readonly restrict buffer Originals { vec3 originals[]; };
-layout(scalar, binding = kBindIndices) readonly restrict buffer Indices { uint indices[]; };
-layout(scalar, binding = kBindTriangleIds) readonly restrict buffer TriangleIds { uint triangleIds[]; };
-layout(scalar, binding = kBindMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-layout(scalar, binding = kBindObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-layout(scalar, binding = kBindViews) readonly restrict buffer Views { View views[]; };
-layout(scalar, binding = kBindDraws) readonly restrict buffer Draws { Draw draws[]; };
-layout(scalar, binding = kBindItems) readonly restrict buffer Items { Item items[]; };
-layout(scalar, binding = kBindCandidates) readonly restrict buffer Candidates { Candidate candidates[]; };
-layout(scalar, binding = kBindAnswers) restrict buffer Answers { Answer answers[]; };
-layout(scalar, binding = kBindOpenPairs) writeonly restrict buffer OpenPairs { OpenPair openPairs[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kSlotViews) readonly restrict buffer Views { View views[]; };
+layout(scalar, binding = kSlotDraws) readonly restrict buffer Draws { Draw draws[]; };
+layout(scalar, binding = kSlotItems) readonly restrict buffer Items { Item items[]; };
+layout(scalar, binding = kSlotCandidates) readonly restrict buffer Candidates { Candidate candidates[]; };
+layout(scalar, binding = kSlotAnswers) restrict buffer Answers { Answer answers[]; };
+layout(scalar, binding = kSlotOpenPairs) writeonly restrict buffer OpenPairs { OpenPair openPairs[]; };
 
 shared uvec2 named[kRound];     // (itemB, itemA) of the round's candidates
 shared uvec2 pairs[kRound];     // the distinct ones
@@ -35,7 +34,7 @@ shared double pairHi[kRound];
 shared double pairLow[kRound];
 
 dvec3 placed(PreciseRows pose, uint vertex) {
-  const dvec3 p = dvec3(originals[vertex]);
+  const dvec3 p = dvec3(vertexAt(vertex));
   dvec3 world;
   for (int k = 0; k < 3; ++k) {
     precise double sum = ((pose[k].x * p.x + pose[k].y * p.y) + pose[k].z * p.z) + pose[k].w;
@@ -44,9 +43,9 @@ dvec3 placed(PreciseRows pose, uint vertex) {
   return world;
 }
 
-void corners(PreciseRows pose, uint mesh, uint triangle, out dvec3 p[3]) {
-  const MeshRecord record = meshes[mesh];
-  for (uint i = 0; i < 3; ++i) p[i] = placed(pose, record.firstVertex + indices[record.firstIndex + 3 * triangle + i]);
+void corners(PreciseRows pose, uint slot, out dvec3 p[3]) {
+  const uvec4 corner = triangleAt(slot);
+  for (uint i = 0; i < 3; ++i) p[i] = placed(pose, corner[i]);
 }
 
 bool better(uint x, uint y) {
@@ -59,8 +58,8 @@ bool better(uint x, uint y) {
 // Returns the feature that attains `pairHi`, if the pair certainly meets within D, else kNobody.
 uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   dvec3 a[3], b[3];
-  corners(views[v].pose, views[v].mesh, slotA, a);
-  corners(objects[object].pose, objects[object].mesh, slotB, b);
+  corners(views[v].pose, slotA, a);
+  corners(objects[object].pose, slotB, b);
   const dvec3 direction = dvec3(views[v].direction[0], views[v].direction[1], views[v].direction[2]);
   const double length = views[v].directionLength;
   const Meeting meeting = meetingOf(a, b, direction);
@@ -103,12 +102,10 @@ OpenPair openPair(uint i) { return OpenPair(double(0), pairIds[i].x, pairIds[i].
 
 void solvePair(uint v, uint lane) {
   const Item itemB = items[pairs[lane].x / kItemTriangles], itemA = items[pairs[lane].y / kItemTriangles];
-  const uint slotB = itemB.firstTriangle + pairs[lane].x % kItemTriangles;
-  const uint slotA = itemA.firstTriangle + pairs[lane].y % kItemTriangles;
   const uint object = draws[itemB.draw].object;
-  const uint triA = triangleIds[meshes[views[v].mesh].firstIndex / 3 + slotA];
-  const uint triB = triangleIds[meshes[objects[object].mesh].firstIndex / 3 + slotB];
-  pairIds[lane] = uvec4(object, triB, triA, solve(v, lane, object, slotA, slotB));
+  const uint slotB = meshes[objects[object].mesh].firstTriangle + itemB.firstTriangle + pairs[lane].x % kItemTriangles;
+  const uint slotA = meshes[views[v].mesh].firstTriangle + itemA.firstTriangle + pairs[lane].y % kItemTriangles;
+  pairIds[lane] = uvec4(object, triangleAt(slotB).w, triangleAt(slotA).w, solve(v, lane, object, slotA, slotB));
 }
 
 void main() {

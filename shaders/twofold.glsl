@@ -1,7 +1,8 @@
 // Unevaluated sums of two doubles and what is told of a contact with them: engine/exact/twofold.h, determinant.cpp and
 // event.cpp again, operation by operation, so that both give the same bits.
 
-// 3, but compilers do not know: unrolled, these loops take lavapipe ten seconds to compile.
+// 3, but compilers do not know: unrolled, these loops take lavapipe ten seconds to compile. Nor do the loops index arrays,
+// which it keeps in memory: what they take in turn goes round.
 uint three() { return gl_NumWorkGroups.z + 2; }
 
 struct Twofold {
@@ -51,6 +52,48 @@ Twofold times(Twofold p, Twofold q) {
   return quickSum(r.high, low);
 }
 
+// The same for each component.
+struct TwofoldVector {
+  dvec3 high;
+  dvec3 low;
+};
+
+TwofoldVector quickSum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 low = q - (s - p);
+  return TwofoldVector(s, low);
+}
+
+TwofoldVector sum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 qPart = s - p;
+  precise dvec3 low = (p - (s - qPart)) + (q - qPart);
+  return TwofoldVector(s, low);
+}
+
+TwofoldVector minus(TwofoldVector p, TwofoldVector q) {
+  const TwofoldVector s = sum(p.high, -q.high), t = sum(p.low, -q.low);
+  precise dvec3 below = s.low + t.high;
+  const TwofoldVector v = quickSum(s.high, below);
+  precise dvec3 rest = t.low + v.low;
+  return quickSum(v.high, rest);
+}
+
+TwofoldVector times(TwofoldVector p, TwofoldVector q) {
+  const double kSplit = 134217729.0LF;  // 2^27 + 1
+  precise dvec3 pc = kSplit * p.high, qc = kSplit * q.high;
+  precise dvec3 p1 = pc - (pc - p.high), q1 = qc - (qc - q.high);
+  precise dvec3 p2 = p.high - p1, q2 = q.high - q1;
+  precise dvec3 r = p.high * q.high;
+  precise dvec3 rest = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  precise dvec3 low = rest + (p.high * q.low + p.low * q.high);
+  return quickSum(r, low);
+}
+
+TwofoldVector yzx(TwofoldVector v) { return TwofoldVector(v.high.yzx, v.low.yzx); }
+TwofoldVector zxy(TwofoldVector v) { return TwofoldVector(v.high.zxy, v.low.zxy); }
+double sum3(dvec3 v) { return v.x + v.y + v.z; }
+
 struct Fine {
   Twofold value;
   double error;
@@ -62,22 +105,12 @@ struct Differences {
 };
 
 Fine fineDeterminant(Differences d) {
-  Twofold w[3], x[3], y[3];
-  for (uint k = 0; k < three(); ++k) {
-    w[k] = sum(d.w1[k], -d.w0[k]);
-    x[k] = sum(d.x1[k], -d.x0[k]);
-    y[k] = sum(d.y1[k], -d.y0[k]);
-  }
-  Twofold value = Twofold(0.0LF, 0.0LF);
-  double magnitude = 0.0LF, size = 1.0LF;
-  for (uint k = 0; k < three(); ++k) {
-    const uint i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    Twofold factor[2];
-    for (uint side = 0; side < three() - 1; ++side) factor[side] = times(x[side == 0 ? i : j], y[side == 0 ? j : i]);
-    value = plus(value, times(w[k], minus(factor[0], factor[1])));
-    magnitude += abs(w[k].high) * (abs(factor[0].high) + abs(factor[1].high));
-    size += abs(w[k].high);
-  }
+  const TwofoldVector w = sum(d.w1, -d.w0), x = sum(d.x1, -d.x0), y = sum(d.y1, -d.y0);
+  const TwofoldVector over = times(yzx(x), zxy(y)), under = times(zxy(x), yzx(y)), all = times(w, minus(over, under));
+  Twofold value = plus(Twofold(0.0LF, 0.0LF), Twofold(all.high.x, all.low.x));
+  value = plus(value, Twofold(all.high.y, all.low.y));
+  value = plus(value, Twofold(all.high.z, all.low.z));
+  const double magnitude = sum3(abs(w.high) * (abs(over.high) + abs(under.high))), size = 1.0LF + sum3(abs(w.high));
   // 2^-99, 2^-1060 and a little, since this sum is rounded as the device likes.
   return Fine(value, 1.6e-30LF * magnitude + 1.7e-300LF * size);
 }
@@ -88,12 +121,15 @@ struct Event {
   dvec3 x0, x1, y0, y1;
 };
 
+dvec3 picked(dvec3 p[3], uint i) { return i == 0 ? p[0] : (i == 1 ? p[1] : p[2]); }
+
 Event eventOf(uint feature, dvec3 a[3], dvec3 b[3]) {
-  if (feature < 3) return Event(a[feature], b[0], b[0], b[1], b[0], b[2]);
-  if (feature < kFeatureEdges) return Event(a[0], b[feature - 3], a[0], a[1], a[0], a[2]);
+  if (feature < 3) return Event(picked(a, feature), b[0], b[0], b[1], b[0], b[2]);
+  if (feature < kFeatureEdges) return Event(a[0], picked(b, feature - 3), a[0], a[1], a[0], a[2]);
   const uint i = (feature - kFeatureEdges) / 3, j = (feature - kFeatureEdges) % 3;
-  const uint fromA = i == 1 ? 1 : 0, toA = i == 0 ? 1 : 2, fromB = j == 1 ? 1 : 0, toB = j == 0 ? 1 : 2;
-  return Event(a[fromA], b[fromB], a[fromA], a[toA], b[fromB], b[toB]);
+  const dvec3 fromA = i == 1 ? a[1] : a[0], toA = i == 0 ? a[1] : a[2], fromB = j == 1 ? b[1] : b[0],
+              toB = j == 0 ? b[1] : b[2];
+  return Event(fromA, fromB, fromA, toA, fromB, toB);
 }
 
 // What is told of an event.
@@ -107,16 +143,27 @@ struct Told {
 Told tellEvent(uint feature, Event e, dvec3 direction) {
   // The parameter's numerator and denominator; on which side of the moving edge the ends of the resting one lie.
   const dvec3 zero = dvec3(0.0LF);
-  Differences what[4];
-  what[0] = Differences(e.from, e.to, e.x0, e.x1, e.y0, e.y1);
-  what[1] = Differences(zero, direction, e.x0, e.x1, e.y0, e.y1);
-  what[2] = Differences(zero, direction, e.y0, e.x0, e.y0, e.x1);
-  what[3] = Differences(zero, direction, e.y1, e.x0, e.y1, e.x1);
-  Fine fine[4];
-  for (uint i = 0; i < (feature < kFeatureEdges ? three() - 1 : three() + 1); ++i) fine[i] = fineDeterminant(what[i]);
+  Differences what = Differences(e.from, e.to, e.x0, e.x1, e.y0, e.y1);
+  Fine num = Fine(Twofold(0.0LF, 0.0LF), 0.0LF), den = num, side0 = num, side1 = num;
+  for (uint i = 0; i < (feature < kFeatureEdges ? three() - 1 : three() + 1); ++i) {
+    num = den;
+    den = side0;
+    side0 = side1;
+    side1 = fineDeterminant(what);
+    what.w0 = zero;
+    what.w1 = direction;
+    if (i == 1) {
+      what = Differences(zero, direction, e.y0, e.x0, e.y0, e.x1);
+    } else if (i == 2) {
+      what = Differences(zero, direction, e.y1, e.x0, e.y1, e.x1);
+    }
+  }
+  if (feature < kFeatureEdges) {
+    num = side0;
+    den = side1;
+  }
 
   Told told;
-  const Fine num = fine[0], den = fine[1];
   precise double first = num.value.high / den.value.high;
   const Twofold rest = minus(num.value, times(Twofold(first, 0.0LF), den.value));
   precise double second = rest.high / den.value.high;
@@ -133,7 +180,7 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
   dvec3 origin = e.from, way = direction;
   double share = told.s;
   if (feature >= kFeatureEdges) {
-    precise double part = fine[2].value.high / minus(fine[2].value, fine[3].value).high;
+    precise double part = side0.value.high / minus(side0.value, side1.value).high;
     share = isnan(part) || isinf(part) ? 0.0LF : clamp(part, 0.0LF, 1.0LF);
     origin = e.y0;
     way = edge;
@@ -159,23 +206,12 @@ double rootOf(double x) {
 }
 
 bool normalOf(Event e, double turn, out dvec3 normal) {
-  Twofold x[3], y[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = sum(e.x1[k], -e.x0[k]);
-    y[k] = sum(e.y1[k], -e.y0[k]);
-  }
-  const int sizeX = exponentOf(mostOf(x[0].high, x[1].high, x[2].high));
-  const int sizeY = exponentOf(mostOf(y[0].high, y[1].high, y[2].high));
+  TwofoldVector x = sum(e.x1, -e.x0), y = sum(e.y1, -e.y0);
+  const int sizeX = exponentOf(mostOf(x.high.x, x.high.y, x.high.z)), sizeY = exponentOf(mostOf(y.high.x, y.high.y, y.high.z));
   const double scaleX = powerOfTwo(clamp(-sizeX, -1000, 1000)), scaleY = powerOfTwo(clamp(-sizeY, -1000, 1000));
-  for (int k = 0; k < 3; ++k) {
-    x[k] = Twofold(x[k].high * scaleX, x[k].low * scaleX);
-    y[k] = Twofold(y[k].high * scaleY, y[k].low * scaleY);
-  }
-  dvec3 n;
-  for (uint k = 0; k < three(); ++k) {
-    const uint i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    n[k] = minus(times(x[i], y[j]), times(x[j], y[i])).high;
-  }
+  x = TwofoldVector(x.high * scaleX, x.low * scaleX);
+  y = TwofoldVector(y.high * scaleY, y.low * scaleY);
+  dvec3 n = minus(times(yzx(x), zxy(y)), times(zxy(x), yzx(y))).high;
   const int size = exponentOf(mostOf(n.x, n.y, n.z));
   n *= powerOfTwo(clamp(-size, -1000, 1000));
   precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
@@ -187,31 +223,38 @@ bool normalOf(Event e, double turn, out dvec3 normal) {
 
 // Where two triangles that pierce each other do so: engine/exact/common_point.cpp. `inside`: least barycentric coordinate
 // of the best point so far.
-void pierce(dvec3 face[3], dvec3 other[3], inout double inside, inout dvec3 best) {
-  precise dvec3 x = face[1] - face[0], y = face[2] - face[0];
+void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, inout double inside, inout dvec3 best) {
+  precise dvec3 x = face1 - face0, y = face2 - face0;
   precise dvec3 normal = x.yzx * y.zxy - x.zxy * y.yzx;
   precise double square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
   if (square == 0.0LF) return;
   for (uint i = 0; i < three(); ++i) {
-    const dvec3 p = other[i], q = other[i == 2 ? 0 : i + 1];
-    precise dvec3 pGap = p - face[0], qGap = q - face[0];
+    precise dvec3 pGap = p - face0, qGap = q - face0;
     precise double above = (normal.x * pGap.x + normal.y * pGap.y) + normal.z * pGap.z;
     precise double below = (normal.x * qGap.x + normal.y * qGap.y) + normal.z * qGap.z;
-    if ((above > 0.0LF) == (below > 0.0LF) && above != 0.0LF && below != 0.0LF) continue;
-    if (above == below) continue;
+    const bool misses = (above > 0.0LF) == (below > 0.0LF) && above != 0.0LF && below != 0.0LF;
     precise double share = above / (above - below);
     precise dvec3 at = p + share * (q - p);
     double least = 1e300LF;
+    dvec3 from = face0, to = face1, next = face2;
     for (uint k = 0; k < three(); ++k) {
-      precise dvec3 side = face[k == 2 ? 0 : k + 1] - face[k], gap = at - face[k];
+      precise dvec3 side = to - from, gap = at - from;
       precise dvec3 c = side.yzx * gap.zxy - side.zxy * gap.yzx;
       precise double coordinate = ((normal.x * c.x + normal.y * c.y) + normal.z * c.z) / square;
       least = min(least, coordinate);
+      const dvec3 last = from;
+      from = to;
+      to = next;
+      next = last;
     }
-    if (least > inside) {
+    if (!misses && above != below && least > inside) {
       inside = least;
       best = at;
     }
+    const dvec3 last = p;
+    p = q;
+    q = r;
+    r = last;
   }
 }
 
@@ -232,12 +275,9 @@ bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
   double inside = -1e-9LF;
   dvec3 best = dvec3(0.0LF);
   for (uint side = 0; side < three() - 1; ++side) {
-    dvec3 face[3], other[3];
-    for (uint i = 0; i < 3; ++i) {
-      face[i] = side == 0 ? b[i] : a[i];
-      other[i] = side == 0 ? a[i] : b[i];
-    }
-    pierce(face, other, inside, best);
+    const bool first = side == 0;
+    pierce(first ? b[0] : a[0], first ? b[1] : a[1], first ? b[2] : a[2], first ? a[0] : b[0], first ? a[1] : b[1],
+           first ? a[2] : b[2], inside, best);
   }
   precise dvec3 placed = best * size + origin;
   point = placed;

@@ -1,7 +1,5 @@
-// What was copied from a host's buffers, and what is wrong with it.
-
-layout(scalar, binding = kBindWords) readonly restrict buffer Words { uint words[]; };
-layout(scalar, binding = kBindStrays) restrict buffer Strays { Stray stray; };
+// What was copied from a host's buffers.
+layout(scalar, binding = kSlotWords) readonly restrict buffer Words { uint words[]; };
 
 // Four bytes from anywhere; the buffer ends a word later.
 uint wordAt(uint byte) {

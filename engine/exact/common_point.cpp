@@ -51,8 +51,11 @@ void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
 
 }  // namespace
 
-Vec commonPoint(const Triangle& a, const Triangle& b) {
+Vec commonPoint(const Triangle& first, const Triangle& second) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Triangle a = first, b = second;
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
   const Vec origin = b[0];
   Triangle pa, pb;
   double size = 0;

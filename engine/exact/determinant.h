@@ -1,5 +1,5 @@
 // Determinants of differences of points, in three strengths: doubles, twofold doubles, exact. The first two come with a
-// proven bound on their error (docs/method.md), which holds for all finite input, underflow included; where something
+// proven bound on their error (docs/exact.md), which holds for all finite input, underflow included; where something
 // overflows, the bound is not finite, so that every test against it fails and the next strength is asked.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Unevaluated sums of two doubles, 106 bits: the second filter, between doubles and exact integers.
 // T. J. Dekker, "A floating-point technique for extending the available precision", 1971; the error bounds are those of
 // M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
-// arithmetic", 2017, with u = 2^-53: sum 3u^2 + O(u^3), product 5u^2 + O(u^3) (their AccurateDWPlusDW, DWTimesDW1).
+// arithmetic", 2017, with u = 2^-53: sum 3u^2 + O(u^3), product less than 7u^2 (their AccurateDWPlusDW, DWTimesDW1).
 #pragma once
 
 namespace radar::exact {

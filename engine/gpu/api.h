@@ -17,12 +17,12 @@
 #define RADAR_DEVICE_FUNCTIONS(X) \
   X(AllocateCommandBuffers) X(AllocateDescriptorSets) X(AllocateMemory) X(BeginCommandBuffer) X(BindBufferMemory) \
   X(BindImageMemory) X(CmdBeginRenderPass) X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) \
-  X(CmdBindVertexBuffers) X(CmdCopyBuffer) X(CmdCopyImageToBuffer) X(CmdDispatch) X(CmdDrawIndexed) \
-  X(CmdEndRenderPass) X(CmdFillBuffer) X(CmdPipelineBarrier2) X(CmdPushConstants) X(CmdResetQueryPool) \
-  X(CmdSetScissor) X(CmdSetViewport) X(CmdWriteTimestamp2) X(CreateBuffer) X(CreateCommandPool) \
+  X(CmdBindVertexBuffers) X(CmdCopyBuffer) X(CmdCopyImageToBuffer) X(CmdDispatch) X(CmdDispatchIndirect) \
+  X(CmdDrawIndexed) X(CmdEndRenderPass) X(CmdFillBuffer) X(CmdPipelineBarrier2) X(CmdPushConstants) X(CmdResetQueryPool) \
+  X(CmdSetScissor) X(CmdSetViewport) X(CmdWriteTimestamp2) X(CreateBuffer) X(CreateBufferView) X(CreateCommandPool) \
   X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateFence) \
   X(CreateFramebuffer) X(CreateGraphicsPipelines) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout) \
-  X(CreateQueryPool) X(CreateRenderPass) X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) \
+  X(CreateQueryPool) X(CreateRenderPass) X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) X(DestroyBufferView) \
   X(DestroyCommandPool) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyDevice) X(DestroyFence) \
   X(DestroyFramebuffer) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) \
   X(DestroyQueryPool) X(DestroyRenderPass) X(DestroySampler) X(DestroyShaderModule) X(EndCommandBuffer) \

@@ -5,12 +5,15 @@
 
 namespace radar::gpu {
 
-/// A batch's upload is read by depth passes (vertices, indices, draws) and by compute shaders.
+/// A batch's upload is read by depth passes (vertices, indices, draws) and by compute shaders, there also as texels.
 void uploadToRead(const Commands& commands);
-/// What was copied, or filled, is read and written by compute shaders.
+/// What was copied, or filled, is read (also as texels) and written by compute shaders.
 void transferToComputeReadWrite(const Commands& commands);
-/// A compute shader's buffers are read, or written again, by the next one.
+/// A compute shader's buffers are read (also as texels), or written again, by the next one.
 void computeWriteToComputeReadWrite(const Commands& commands);
+/// A compute shader's buffers are read (also as texels), or written again, by an indirect dispatch, and its workgroup
+/// counts are in one of them. Any barrier from compute shaders then lets the counts be overwritten.
+void computeWriteToIndirect(const Commands& commands);
 /// A compute shader's buffers are copied.
 void computeWriteToCopy(const Commands& commands);
 /// What was copied is read by the host after the fence.

@@ -1,5 +1,7 @@
 #include "gpu/buffer.h"
 
+#include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -58,7 +60,70 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   memory_ = std::move(owned);
   mapped_ = static_cast<std::byte*>(mapped);
   capacity_ = size;
+  static std::atomic<uint64_t> made = 0;
+  identity_ = ++made;
   return true;
+}
+
+namespace {
+
+// Vulkan requires every device to read these nine from uniform texel buffers.
+uint32_t bytesOfTexel(VkFormat format, const char* name) {
+  switch (format) {
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R32_SINT:
+    case VK_FORMAT_R32_SFLOAT:
+      return 4;
+    case VK_FORMAT_R32G32_UINT:
+    case VK_FORMAT_R32G32_SINT:
+    case VK_FORMAT_R32G32_SFLOAT:
+      return 8;
+    case VK_FORMAT_R32G32B32A32_UINT:
+    case VK_FORMAT_R32G32B32A32_SINT:
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    default:
+      throw Error(std::string(name) + ": not every device reads texels of VkFormat " + std::to_string(format));
+  }
+}
+
+}  // namespace
+
+TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
+                         VkFormat format)
+    : device_(&device),
+      format_(format),
+      texelBytes_(bytesOfTexel(format, name)),
+      buffer_(device, name, residence, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {
+  makeView();
+}
+
+VkDeviceSize TexelBuffer::maxBytes() const {
+  return VkDeviceSize{device_->properties.limits.maxTexelBufferElements} * texelBytes_;
+}
+
+void TexelBuffer::makeView() {
+  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                    .buffer = buffer_.get(),
+                                    .format = format_,
+                                    .range = capacity()};
+  VkBufferView view;
+  check(device_->vk.CreateBufferView(device_->device(), &info, device_->host.allocator, &view),
+        std::string("vkCreateBufferView (") + buffer_.name() + ", " + std::to_string(info.range) + " bytes)");
+  view_ = {*device_, view};
+  device_->setName(VK_OBJECT_TYPE_BUFFER_VIEW, view, buffer_.name());
+}
+
+bool TexelBuffer::reserve(VkDeviceSize bytes) {
+  if (bytes > maxBytes()) {
+    throw Error(std::string(buffer_.name()) + ": " + std::to_string((bytes + texelBytes_ - 1) / texelBytes_) +
+                " texels, but the device's maxTexelBufferElements is " +
+                std::to_string(device_->properties.limits.maxTexelBufferElements));
+  }
+  const bool grew = buffer_.reserve(bytes);
+  if (grew) view_ = {};
+  if (view_.get() == VK_NULL_HANDLE) makeView();  // also where it could not be made before
+  return grew;
 }
 
 Upload::Upload(const Device::Impl& device)

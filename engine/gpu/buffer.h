@@ -1,6 +1,7 @@
-// Buffers that grow, and the one staging buffer through which a batch reaches the device.
+// Buffers that grow, as bytes or as texels, and the one staging buffer through which a batch reaches the device.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "gpu/device.h"
@@ -25,7 +26,10 @@ class Buffer {
   bool reserve(VkDeviceSize bytes);
 
   VkBuffer get() const { return buffer_.get(); }
+  const char* name() const { return name_; }
   VkDeviceSize capacity() const { return capacity_; }
+  /// Unique to this VkBuffer, unlike its handle, which Vulkan may reuse.
+  uint64_t identity() const { return identity_; }
   /// Host address; only where not resident on the device. Coherent.
   std::byte* mapped() const { return mapped_; }
 
@@ -37,7 +41,37 @@ class Buffer {
   DeviceMemory memory_;
   BufferHandle buffer_;
   VkDeviceSize capacity_ = 0;
+  uint64_t identity_ = 0;
   std::byte* mapped_ = nullptr;
+};
+
+/// A buffer with a view, through which shaders read it as texels.
+class TexelBuffer {
+ public:
+  /// `format`: R32, R32G32 or R32G32B32A32, each as UINT, SINT or SFLOAT. Every device reads these as texels; throws on
+  /// any other.
+  TexelBuffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
+              VkFormat format);
+
+  /// As Buffer::reserve; a new buffer has a new view. Throws Error, and changes nothing, if `bytes` are more texels
+  /// than the device's maxTexelBufferElements.
+  bool reserve(VkDeviceSize bytes);
+
+  const Buffer& buffer() const { return buffer_; }
+  VkBufferView view() const { return view_.get(); }
+  /// Bytes that the view covers.
+  VkDeviceSize capacity() const { return std::min(buffer_.capacity(), maxBytes()); }
+  uint32_t texelBytes() const { return texelBytes_; }
+
+ private:
+  VkDeviceSize maxBytes() const;
+  void makeView();
+
+  const Device::Impl* device_;
+  VkFormat format_;
+  uint32_t texelBytes_;
+  Buffer buffer_;
+  BufferView view_;
 };
 
 /// Gathers copies of host data into one staging buffer, then records them as one upload.

@@ -37,10 +37,9 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   vk.GetPhysicalDeviceMemoryProperties(host.physicalDevice, &memory);
   name = properties.deviceName;
   driver = gpu::driverText(vk, host.physicalDevice, properties);
-  VkPhysicalDeviceVulkan11Properties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
-  VkPhysicalDeviceProperties2 chain{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
-  vk.GetPhysicalDeviceProperties2(host.physicalDevice, &chain);
-  subgroupSize = subgroup.subgroupSize;
+  const gpu::SubgroupFacts subgroups = gpu::subgroupFactsOf(vk, host.physicalDevice);
+  subgroupSize = subgroups.size;
+  choosesSubgroupSize = subgroups.canChoose;
   maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers);
 }
 
@@ -68,6 +67,11 @@ void Device::Impl::beginLabel(const gpu::Commands& commands, const char* label) 
 
 void Device::Impl::endLabel(const gpu::Commands& commands) const {
   if (host.debugNames) vk.CmdEndDebugUtilsLabelEXT(commands);
+}
+
+Device::Impl::Shared& Device::Impl::sharedOf(std::type_index type) const {
+  const std::lock_guard lock(sharedMutex_);
+  return shared_[type];
 }
 
 std::vector<std::string> reasonsAgainst(const HostDevice& host) {

@@ -1,9 +1,12 @@
 // A logical device with one queue, opened or adopted. Opening is making the handles, then adopting them.
 #pragma once
 
-#include <optional>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <typeindex>
 
 #include "gpu/api.h"
 #include "radar/radar.h"
@@ -31,7 +34,8 @@ struct Device::Impl {
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
   uint32_t maxLayers = 0;
-  uint32_t subgroupSize = 0;
+  uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
+  bool choosesSubgroupSize = false;  ///< a compute pipeline may ask for a size; else all have the same
   bool doubles = false;  ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
@@ -40,8 +44,6 @@ struct Device::Impl {
   /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
   /// vkWaitForFences, with that name; an error stands for the call's own. Empty otherwise.
   std::function<VkResult(std::string_view call)> fault;
-  /// Where a test wants outer scopes to be drawn in one way.
-  std::optional<bool> outerByPixel;
   VkResult faultAt(std::string_view call) const { return fault ? fault(call) : VK_SUCCESS; }
   /// Names an object for debuggers and validation messages.
   void setName(VkObjectType type, uint64_t handle, const char* name) const;
@@ -52,7 +54,30 @@ struct Device::Impl {
   /// Opens and closes a labelled region of a command buffer.
   void beginLabel(const gpu::Commands& commands, const char* label) const;
   void endLabel(const gpu::Commands& commands) const;
+
+  /// The device's single T, constructed as T(const Device::Impl&) on first use and destroyed with the device. Any
+  /// thread may call it. T's constructor may call it for other types.
+  template <class T>
+  const T& shared() const;
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::shared_ptr<const void> object;
+  };
+  Shared& sharedOf(std::type_index type) const;
+  mutable std::mutex sharedMutex_;
+  // Declared last, so that its objects are destroyed before the device that made them.
+  mutable std::map<std::type_index, Shared> shared_;
 };
+
+template <class T>
+const T& Device::Impl::shared() const {
+  Shared& mine = sharedOf(typeid(T));
+  const std::lock_guard lock(mine.mutex);
+  if (mine.object == nullptr) mine.object = std::make_shared<const T>(*this);
+  return *static_cast<const T*>(mine.object.get());
+}
 
 namespace gpu {
 

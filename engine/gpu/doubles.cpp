@@ -8,7 +8,7 @@
 #include <random>
 
 #include "gpu/barrier.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "gpu/submission.h"
 #include "shaders/interop.h"
 #include "spirv/doubles_comp.h"
@@ -49,23 +49,18 @@ using Bits = std::array<uint64_t, sizeof(SumResult) / sizeof(uint64_t)>;
 }  // namespace
 
 bool doublesAreRight(const Device::Impl& device) {
-  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  const Binding list[] = {{kBindSums, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                          {kBindSumResults, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
-  static_assert(std::size(list) == kSumBindings);
-  Bindings bindings(device, list, sizeof(uint32_t));
-  const Pipeline pipeline = computePipeline(device, bindings.layout(), k_doubles_comp, "doubles");
   const std::vector<Sum> sums = sumsToTry();
+  const Kernel kernel(device, k_doubles_comp, "doubles");
   Upload upload(device);
-  Buffer given(device, "sums", Residence::device, kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  Buffer computed(device, "sum results", Residence::device, kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  Array<Sum> given(device, "sums", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  Array<SumResult> computed(device, "sum results", Residence::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   Buffer readback(device, "sum readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const VkBufferCopy copy{0, 0, kSums * sizeof(SumResult)};
-  given.reserve(bytesOf(sums));
-  computed.reserve(copy.size);
+  given.reserve(kSums);
+  computed.reserve(kSums);
   readback.reserve(copy.size);
-  bindings.setBuffer(kBindSums, given);
-  bindings.setBuffer(kBindSumResults, computed);
+  KernelArguments arguments(kernel);
+  arguments.set({{kSlotSums, given}, {kSlotSumResults, computed}});
   upload.begin(Upload::aligned(bytesOf(sums)));
   upload.add(sums.data(), bytesOf(sums), given);
 
@@ -74,9 +69,7 @@ bool doublesAreRight(const Device::Impl& device) {
   submission.stage("doubles");
   upload.record(commands);
   uploadToRead(commands);
-  bindings.bind(commands);
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  commands->CmdDispatch(commands, 1, 1, 1);
+  arguments.dispatch(commands, 1);
   computeWriteToCopy(commands);
   commands->CmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);
   copyToHost(commands);

@@ -38,6 +38,7 @@ using Framebuffer = Handle<VkFramebuffer, &Api::DestroyFramebuffer>;
 using ImageHandle = Handle<VkImage, &Api::DestroyImage>;
 using ImageView = Handle<VkImageView, &Api::DestroyImageView>;
 using BufferHandle = Handle<VkBuffer, &Api::DestroyBuffer>;
+using BufferView = Handle<VkBufferView, &Api::DestroyBufferView>;
 using Pipeline = Handle<VkPipeline, &Api::DestroyPipeline>;
 using PipelineLayout = Handle<VkPipelineLayout, &Api::DestroyPipelineLayout>;
 using QueryPool = Handle<VkQueryPool, &Api::DestroyQueryPool>;

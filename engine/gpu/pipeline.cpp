@@ -15,7 +15,9 @@ ShaderModule shaderModule(const Device::Impl& device, std::span<const uint32_t> 
   VkShaderModule module;
   check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module),
         std::string("vkCreateShaderModule ") + name);
-  return {device, module};
+  ShaderModule owned(device, module);
+  device.setName(VK_OBJECT_TYPE_SHADER_MODULE, module, name);
+  return owned;
 }
 
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const ShaderModule& module) {
@@ -108,7 +110,7 @@ void Bindings::bind(const Commands& commands) const {
 }
 
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, std::span<const uint32_t> constants) {
+                         const char* name, std::span<const uint32_t> constants, bool fullSubgroups) {
   const ShaderModule module = shaderModule(device, spirv, name);
   std::vector<VkSpecializationMapEntry> entries;
   for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, sizeof(uint32_t)});
@@ -116,6 +118,11 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
                                     constants.data()};
   VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
   if (!constants.empty()) stage.pSpecializationInfo = &values;
+  const VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO,
+      .requiredSubgroupSize = device.subgroupSize};
+  if (fullSubgroups) stage.flags |= VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+  if (fullSubgroups && device.choosesSubgroupSize) stage.pNext = &size;
   const VkComputePipelineCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
   VkPipeline pipeline;
@@ -127,10 +134,10 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
 }
 
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
-                       std::span<const uint32_t> spirv, const char* name) {
+                       std::span<const uint32_t> spirv, const char* name, uint32_t stride) {
   const ShaderModule module = shaderModule(device, spirv, name);
   const VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_VERTEX_BIT, module);
-  const VkVertexInputBindingDescription binding{0, 3 * sizeof(float), VK_VERTEX_INPUT_RATE_VERTEX};
+  const VkVertexInputBindingDescription binding{0, stride, VK_VERTEX_INPUT_RATE_VERTEX};
   const VkVertexInputAttributeDescription attribute{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0};
   const VkPipelineVertexInputStateCreateInfo vertexInput{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,

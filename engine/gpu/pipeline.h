@@ -36,13 +36,14 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// `constants`: values of specialization constants 0, 1, ..., where the shader leaves some open.
+/// `constants`: values of specialization constants 0, 1, ..., where the shader leaves some open. `fullSubgroups`: all
+/// subgroups have Device::Impl::subgroupSize invocations; the local size is a multiple of it.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                         const char* name, std::span<const uint32_t> constants = {});
+                         const char* name, std::span<const uint32_t> constants = {}, bool fullSubgroups = false);
 
-/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0; viewport and scissor are
-/// dynamic; a fragment survives if its depth is less.
+/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0, each `stride` bytes after
+/// the last; viewport and scissor are dynamic; a fragment survives if its depth is less.
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
-                       std::span<const uint32_t> spirv, const char* name);
+                       std::span<const uint32_t> spirv, const char* name, uint32_t stride);
 
 }  // namespace radar::gpu

@@ -15,8 +15,8 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   sum.drawnTriangles += stats.drawnTriangles;
   sum.pairs += stats.pairs;
   sum.cpuPairs += stats.cpuPairs;
-  sum.clusters += stats.clusters;
-  sum.clusterPairs += stats.clusterPairs;
+  sum.cpuQueries += stats.cpuQueries;
+  sum.nodePairs += stats.nodePairs;
   sum.solves += stats.solves;
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }

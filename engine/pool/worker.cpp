@@ -32,7 +32,7 @@ Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const 
 void Worker::run() {
   nameThread(number_);
   try {
-    copy_ = std::make_shared<SceneCopy>(device_.impl());
+    copy_ = std::make_shared<GpuScene>(device_.impl());
     while (serve()) {
     }
   } catch (const std::exception& error) {
@@ -100,8 +100,9 @@ void Worker::finish(Lane& lane) {
   }
   // The first use of a pipeline may take a hundred times as long: it says nothing of the device's speed.
   bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
-  const double deviceMs = warm ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
-  warm = true;
+  const bool usedDevice = sweep.stats.submissions != 0;
+  const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
+  warm = warm || usedDevice;
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;

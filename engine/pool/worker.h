@@ -24,7 +24,7 @@ class Worker {
     Chunk chunk;
     ChunkTrace trace;
     std::vector<Result> results;
-    std::array<bool, 3> warm{};  // by mode: its pipelines have run
+    std::array<bool, 2> warm{};  // by mode: its pipelines have run
   };
 
   void run();
@@ -38,7 +38,7 @@ class Worker {
   const Scene& scene_;
   const SweeperOptions options_;
   Exchange& exchange_;
-  std::shared_ptr<SceneCopy> copy_;
+  std::shared_ptr<GpuScene> copy_;
   std::array<Lane, kLanes> lanes_;
   size_t oldest_ = 0, inFlight_ = 0;  // lanes in flight: from the oldest on, in a ring
   uint64_t seenVersion_ = 0;

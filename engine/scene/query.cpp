@@ -46,9 +46,6 @@ std::string whatIsWrong(const Query& query, const Scene& scene) {
   if (query.resolution > kMaxResolution) {
     return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);
   }
-  if (!std::isfinite(query.tolerance) || query.tolerance < 0) {
-    return "tolerance: expected a finite number of 0 or more, got " + std::to_string(query.tolerance);
-  }
   return {};
 }
 

@@ -4,14 +4,17 @@
 #include <atomic>
 #include <cmath>
 
+#include "scene/rounding.h"
+
 namespace radar {
 
 namespace {
 
-constexpr double kFloatUlp = 0x1p-24;
 // Of the largest coordinate: so that a transform within its bounds stays there in float arithmetic.
 constexpr double kBoundsRoom = 0x1p-18;
 constexpr double kMostBound = 0x1p120;
+// So that a float holds the inverse of a mesh's unit.
+constexpr int kLeastUnit = -126;
 
 std::string idText(const char* kind, uint32_t id) {
   return std::string(kind) + " " + std::to_string(id);
@@ -39,24 +42,42 @@ Box boxOf(const char* call, const Bounds& bounds) {
                   std::to_string(bounds.lo[k]) + " and " + std::to_string(bounds.hi[k]));
     }
   }
-  return {bounds.lo, bounds.hi};
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = bounds.lo[k];
+    box.hi[k] = bounds.hi[k];
+  }
+  return box;
+}
+
+// A float that makes position - origin exact for every position in [lo, hi], by Sterbenz's lemma where it is not 0.
+double originOf(double lo, double hi) {
+  const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+  return std::abs(middle) >= 2.5 * half ? static_cast<float>(middle) : 0;
 }
 
 // `box`: what a host may make of the mesh; empty: nothing else.
 void derive(Mesh& mesh, Box box) {
   // Vertices that no triangle uses must not widen the window.
   for (uint32_t vertex : mesh.indices) {
-    box.add({mesh.positions[3 * vertex], mesh.positions[3 * vertex + 1], mesh.positions[3 * vertex + 2]});
+    const float* p = &mesh.positions[3 * size_t{vertex}];
+    box.add({p[0], p[1], p[2]});
   }
+  float largest = 0;
   for (int k = 0; k < 3; ++k) {
-    mesh.centre[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
-    mesh.recentred[k].assign(mesh.vertexCount(), 0.0f);
-    mesh.halfExtent[k] =
-        static_cast<float>(std::max(std::abs(box.lo[k] - mesh.centre[k]), std::abs(box.hi[k] - mesh.centre[k])));
+    mesh.origin[k] = originOf(box.lo[k], box.hi[k]);
+    mesh.box.lo[k] = box.lo[k] - mesh.origin[k];
+    mesh.box.hi[k] = box.hi[k] - mesh.origin[k];
+    const double reach = std::max(std::abs(mesh.box.lo[k]), std::abs(mesh.box.hi[k]));
+    mesh.reach[k] = roundUp(reach);
+    largest = std::max(largest, mesh.reach[k]);
+    const double used = mesh.positions[3 * size_t{mesh.indices[0]} + k];
+    mesh.local[k].assign(mesh.vertexCount(), static_cast<float>(used - mesh.origin[k]));
   }
+  mesh.unit = largest > 0 ? std::ldexp(1.0, std::max(std::ilogb(largest), kLeastUnit)) : 1;
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
-      mesh.recentred[k][vertex] = static_cast<float>(mesh.positions[3 * vertex + k] - mesh.centre[k]);
+      mesh.local[k][vertex] = static_cast<float>(mesh.positions[3 * size_t{vertex} + k] - mesh.origin[k]);
     }
   }
   double sum = 0;
@@ -65,7 +86,7 @@ void derive(Mesh& mesh, Box box) {
     sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
   }
   mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
-  mesh.clusters = clustersOf(mesh);
+  mesh.tree = buildMeshTree(mesh);
 }
 
 template <class Slots>
@@ -81,38 +102,19 @@ uint32_t takeSlot(Slots& slots, FreeIds& free) {
 
 }  // namespace
 
-void Box::add(const std::array<double, 3>& p) {
-  for (int k = 0; k < 3; ++k) {
-    lo[k] = std::min(lo[k], p[k]);
-    hi[k] = std::max(hi[k], p[k]);
-  }
-}
-
-void Box::merge(const Box& b) {
-  add(b.lo);
-  add(b.hi);
-}
-
-bool overlap(const Box& a, const Box& b, double slack) {
-  for (int k = 0; k < 3; ++k) {
-    if (a.lo[k] > b.hi[k] + slack || a.hi[k] < b.lo[k] - slack) return false;
-  }
-  return true;
-}
-
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
-  std::array<double, 12> recentred = m;
+  std::array<double, 12> parentFromLocal = m;
   double magnitude = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &m[4 * row];
     double sum = std::abs(r[3]);
     for (int k = 0; k < 3; ++k) {
-      recentred[4 * row + 3] += r[k] * mesh.centre[k];
-      sum += std::abs(r[k]) * (std::abs(mesh.centre[k]) + mesh.halfExtent[k]);
+      parentFromLocal[4 * row + 3] += r[k] * mesh.origin[k];
+      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
     }
     magnitude = std::max(magnitude, sum);
   }
-  Box box = boxOfRecentred(mesh, recentred);
+  Box box = boxOfLocal(mesh, parentFromLocal);
   for (int row = 0; row < 3; ++row) {
     box.lo[row] -= 0x1p-48 * magnitude;
     box.hi[row] += 0x1p-48 * magnitude;
@@ -120,15 +122,17 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
   return box;
 }
 
-Box boxOfRecentred(const Mesh& mesh, const std::array<double, 12>& m) {
+Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
   Box box;
   for (int row = 0; row < 3; ++row) {
     const double* r = &m[4 * row];
-    double half = 0;
-    for (int k = 0; k < 3; ++k) half += std::abs(r[k]) * mesh.halfExtent[k];
-    half += 2 * kFloatUlp * half;  // recentring rounds each coordinate to float
-    box.lo[row] = r[3] - half;
-    box.hi[row] = r[3] + half;
+    double middle = r[3], half = 0;
+    for (int k = 0; k < 3; ++k) {
+      middle += r[k] * mesh.box.middle(k);
+      half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
+    }
+    box.lo[row] = middle - half;
+    box.hi[row] = middle + half;
   }
   return box;
 }
@@ -149,6 +153,12 @@ std::array<double, 3> place(const Pose& pose, const float* p) {
 }
 
 Scene::Impl::Impl() : identity(nextVersion()) {}
+
+const ObjectTree& Scene::Impl::objectTree() const {
+  const std::scoped_lock lock(treeMutex_);
+  tree_.update(*this);
+  return tree_;
+}
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
 Scene::~Scene() = default;
@@ -178,7 +188,14 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   mesh.used = true;
   mesh.deforms = bounds.has_value();
   mesh.version = nextVersion();
-  derive(mesh, bounds ? boxOf("addMesh", *bounds) : Box{});
+  Box box;
+  if (bounds) box = boxOf("addMesh", *bounds);
+  // What a host writes there are floats.
+  for (int k = 0; k < 3 && bounds; ++k) {
+    box.lo[k] = roundDown(box.lo[k]);
+    box.hi[k] = roundUp(box.hi[k]);
+  }
+  derive(mesh, box);
   const MeshId id = takeSlot(impl_->meshes, impl_->freeMeshes);
   impl_->meshes[id] = std::move(mesh);
   impl_->meshVersion = nextVersion();

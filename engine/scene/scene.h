@@ -5,41 +5,43 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <queue>
 #include <vector>
 
 #include "radar/radar.h"
-#include "scene/clusters.h"
+#include "scene/box.h"
+#include "scene/mesh_tree.h"
+#include "scene/object_tree.h"
 
 namespace radar {
-
-/// An axis-aligned box; empty while lo > hi.
-struct Box {
-  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
-  void add(const std::array<double, 3>& p);
-  void merge(const Box& b);
-};
 
 struct Mesh {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   bool used = false;
-  bool deforms = false;  ///< a host may move its vertices, within halfExtent of the centre
+  bool deforms = false;  ///< a host may move its vertices, within `reach` of the origin
   uint32_t objects = 0;  ///< how many place it
   uint64_t version = 0;  ///< unique over all meshes of all scenes: what a device copy is compared with
 
-  /// Derived. Vertices are recentred for pictures and boxes, so that a part modelled far from its origin keeps its
-  /// float precision: recentred[i] = float(positions[i] - centre). The centre is of floats, for shaders that do the
-  /// same. One array per axis, so that loops over vertices vectorise.
-  std::array<double, 3> centre{};
-  std::array<std::vector<float>, 3> recentred;
-  std::array<float, 3> halfExtent{};  ///< of the recentred vertices' box, or of what a host may make of it
-  double meanEdge = 0;                ///< mean length of the triangles' edges
+  /// Derived. A local vertex is position - origin, so that a part modelled far from its origin keeps its float
+  /// precision. The origin is of floats that make this difference exact: 0 along an axis on which the mesh spans or
+  /// nears 0, the middle on the others. One array per axis, so that loops over vertices vectorise.
+  std::array<double, 3> origin{};
+  std::array<std::vector<float>, 3> local;
+  Box box;                       ///< of local vertices, and of what a host may make of them
+  std::array<float, 3> reach{};  ///< greatest |coordinate| in the box
+  double meanEdge = 0;           ///< mean length of the triangles' edges
 
-  Clusters clusters;
+  /// A power of two: normalised vertices, local / unit, are below 2 on all axes. Exact, since floats are binary.
+  double unit = 1;
+  MeshTree tree;
 
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
+  float normalised(uint32_t vertex, int axis) const {
+    return static_cast<float>(local[axis][vertex] * (1 / unit));  // in doubles: no float holds the inverse of 2^-149
+  }
 };
 
 using FreeIds = std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>>;
@@ -63,23 +65,28 @@ struct Scene::Impl {
   std::vector<uint64_t> changedAt;
   std::map<ObjectId, Box> bounds;  ///< where a host may move them, with some room; world
 
+  /// The tree over the objects' world boxes, up to date; built or refitted at the first call after a change. Any thread
+  /// may call it while the scene does not change.
+  const ObjectTree& objectTree() const;
+
   /// Null: nowhere.
   const Box* boundsOf(ObjectId object) const {
     const auto found = bounds.find(object);
     return found == bounds.end() ? nullptr : &found->second;
   }
+
+ private:
+  mutable std::mutex treeMutex_;
+  mutable ObjectTree tree_;
 };
 
-/// Whether two boxes, one of them widened by `slack`, have a point in common.
-bool overlap(const Box& a, const Box& b, double slack);
-
 /// A box around the placed mesh, in a frame: parentFromMesh is row-major 3x4 in double precision. Holds every vertex
-/// that `place` computes and every one a shader computes from the recentred floats.
+/// that `place` computes and every one a shader computes from the local floats.
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 
-/// The same for a matrix that takes recentred vertices. What double precision loses on the way to that matrix is the
+/// The same for a matrix that takes local vertices. What double precision loses on the way to that matrix is the
 /// caller's to add.
-Box boxOfRecentred(const Mesh& mesh, const std::array<double, 12>& parentFromRecentred);
+Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
 
 /// Of the 3x3 part.
 double determinant(const Pose& pose);

@@ -25,6 +25,7 @@ uint32_t layersPerPass(std::span<const ViewPlan* const> plans) {
 gpu::Draw drawOf(const Placed& placed, uint32_t view, uint32_t layer) {
   gpu::Draw draw{};
   std::copy(placed.clipFromMesh.begin(), placed.clipFromMesh.end(), draw.clipFromMesh);
+  std::copy(placed.origin.begin(), placed.origin.end(), draw.origin);
   draw.snap = placed.snap;
   draw.slack = placed.slack;
   draw.view = view;

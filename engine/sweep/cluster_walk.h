@@ -1,23 +1,27 @@
-// The clusters of a placed mesh, through its tree.
+// The clusters of a placed mesh: triangles near each other, few enough to be taken or left together.
 #pragma once
 
 #include <cmath>
 #include <vector>
 
 #include "scene/scene.h"
-#include "sweep/frame.h"
+#include "scene/frame.h"
 
 namespace radar {
 
-/// Around what a node holds, placed, each vertex up to `error` off.
-inline Box turned(const ClusterNode& node, const Affine& frameFromMesh, double error) {
+/// Triangles of a cluster, at most.
+inline constexpr uint32_t kClusterTriangles = 64;
+
+/// Around what a node of a mesh's tree holds, placed, each vertex up to `error` off. `frameFromNormalised` takes
+/// normalised vertices.
+inline Box turned(const gpu::MeshNode& node, const Affine& frameFromNormalised, double error) {
   Box box;
   for (int row = 0; row < 3; ++row) {
-    const double* r = &frameFromMesh[4 * row];
+    const double* r = &frameFromNormalised[4 * row];
     double middle = r[3], half = error;
     for (int k = 0; k < 3; ++k) {
       middle += r[k] * node.centre[k];
-      half += std::abs(r[k]) * node.half[k];
+      half += std::abs(r[k]) * node.halfExtent[k];
     }
     box.lo[row] = middle - half;
     box.hi[row] = middle + half;
@@ -25,24 +29,26 @@ inline Box turned(const ClusterNode& node, const Affine& frameFromMesh, double e
   return box;
 }
 
-/// Calls found(node number, box) for each cluster, in the order of their triangles, that `wanted`(box) holds for, as it
-/// must for every box around a wanted one.
+/// Calls found(MeshTree::Below, box) for each cluster, in the order of their triangles, that `wanted`(box) holds for,
+/// as it must for every box around a wanted one.
 template <class Wanted, class Found>
-void walkClusters(const Clusters& clusters, const Affine& frameFromMesh, double error, const Wanted& wanted,
+void walkClusters(const Mesh& mesh, const Affine& frameFromLocal, double error, const Wanted& wanted,
                   const Found& found) {
+  Affine frameFromNormalised = frameFromLocal;
+  for (int i = 0; i < 12; ++i) frameFromNormalised[i] *= i % 4 == 3 ? 1 : mesh.unit;
   thread_local std::vector<uint32_t> open;
   open.assign(1, 0);
   while (!open.empty()) {
     const uint32_t at = open.back();
     open.pop_back();
-    const ClusterNode& node = clusters.nodes[at];
-    const Box box = turned(node, frameFromMesh, error);
+    const gpu::MeshNode& node = mesh.tree.nodes[at];
+    const Box box = turned(node, frameFromNormalised, error);
     if (!wanted(box)) continue;
-    if (node.count == 0) {
-      open.push_back(node.first + 1);
-      open.push_back(node.first);
+    if (mesh.tree.below[at].count > kClusterTriangles) {
+      open.push_back(node.link + 1);
+      open.push_back(node.link);
     } else {
-      found(at, box);
+      found(mesh.tree.below[at], box);
     }
   }
 }

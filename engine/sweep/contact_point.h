@@ -1,7 +1,7 @@
 // Where two triangles touch.
 #pragma once
 
-#include "sweep/frame.h"
+#include "scene/frame.h"
 
 namespace radar {
 

@@ -77,12 +77,11 @@ template <class Wanted, class Found>
 void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine& frameFromMesh, double error,
                  const Wanted& wanted, const Found& found) {
   placed.firstRun = static_cast<uint32_t>(plan.runs.size());
-  walkClusters(mesh.clusters, frameFromMesh, error, wanted, [&](uint32_t at, const Box& box) {
-    const ClusterNode& node = mesh.clusters.nodes[at];
+  walkClusters(mesh, frameFromMesh, error, wanted, [&](const MeshTree::Below& cluster, const Box& box) {
     const bool follows =
-        plan.runs.size() > placed.firstRun && plan.runs.back().first + plan.runs.back().count == node.first;
-    if (!follows) plan.runs.push_back({node.first, 0});
-    plan.runs.back().count += node.count;
+        plan.runs.size() > placed.firstRun && plan.runs.back().first + plan.runs.back().count == cluster.first;
+    if (!follows) plan.runs.push_back({cluster.first, 0});
+    plan.runs.back().count += cluster.count;
     found(box);
   });
   placed.runs = static_cast<uint32_t>(plan.runs.size()) - placed.firstRun;
@@ -137,9 +136,9 @@ void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, con
     } else if (const Object& object = scene.objects[id].object;
                scene.objects[id].used && !isExcluded(query, object, id)) {
       const Mesh& mesh = scene.meshes[object.mesh];
-      const Affine m = frameFromRecentred(plan.axes, origin, object.worldFromMesh, mesh.centre);
+      const Affine m = frameFromLocal(plan.axes, origin, object.worldFromMesh, mesh.origin);
       const double error = placementError(mesh, m);
-      if (overlap(boxOfRecentred(mesh, m), visible, 2 * error)) continue;
+      if (overlap(boxOfLocal(mesh, m), visible, 2 * error)) continue;
       plan.others.push_back(placeInRange(id, m, error));
       addWhole(plan, plan.others.back(), mesh);
     }
@@ -153,7 +152,7 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
   return std::bit_ceil(static_cast<uint32_t>(std::clamp(wanted, 64.0, 512.0)));
 }
 
-ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t subPixelBits,
+ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits,
                 Drawn drawn) {
   ViewPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
@@ -170,7 +169,7 @@ ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& h
     plan.corner[i] = window.origin[i];
     for (int k = 0; k < 3; ++k) plan.corner[i] += plan.axes[k][i] * window.box.lo[k];
   }
-  const Reach reach = reachOf(query, scene, hierarchy, window);
+  const Reach reach = reachOf(query, scene, window);
   fillView(plan.view, query, window, reach, plan, resolution);
 
   // The scales as the shaders see them, rounded to float: pictures and what is read from them agree.
@@ -179,8 +178,13 @@ ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& h
   const auto place = [&](ObjectId object, MeshId mesh, const Affine& m, double error, double scaleZ, double offsetZ) {
     const double snap =
         std::ldexp(1.0, -static_cast<int>(subPixelBits)) + error / plan.pixel + 6 * kFloatUnit * resolution;
-    return Placed{object, mesh, clipFrom(m, window.box, plan.pixel, resolution, scaleZ, offsetZ),
-                  static_cast<float>(snap), static_cast<float>(error * std::abs(scaleZ) + 8 * kFloatUnit)};
+    const Vector& origin = scene.meshes[mesh].origin;
+    return Placed{object,
+                  mesh,
+                  clipFrom(m, window.box, plan.pixel, resolution, scaleZ, offsetZ),
+                  {static_cast<float>(origin[0]), static_cast<float>(origin[1]), static_cast<float>(origin[2])},
+                  static_cast<float>(snap),
+                  static_cast<float>(error * std::abs(scaleZ) + 8 * kFloatUnit)};
   };
   plan.mask =
       place(kNone, query.mesh, window.frameFromMesh, window.error, -1 / maskScale, (maskBase + backPlane) / maskScale);

@@ -19,6 +19,7 @@ struct Placed {
   ObjectId object = kNone;  ///< kNone: the sensor
   MeshId mesh = kNone;
   std::array<float, 12> clipFromMesh{};
+  std::array<float, 3> origin{};    ///< of the mesh's local vertices
   float snap = 0;                   ///< how far from a triangle a covered centre may lie, pixels
   float slack = 0;                  ///< rounding of stored depth
   uint32_t firstRun = 0, runs = 0;  ///< what of it is drawn, ascending: into ViewPlan::runs
@@ -48,7 +49,7 @@ struct ViewPlan {
 };
 
 /// `subPixelBits`: of the device.
-ViewPlan encode(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, uint32_t subPixelBits,
+ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits,
                 Drawn drawn);
 
 /// The window's longer side, pixels, where the query leaves it open: four pixels to the sensor's mean triangle edge, so

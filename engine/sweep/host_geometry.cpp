@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gpu/barrier.h"
+#include "scene/rounding.h"
 #include "spirv/deform_comp.h"
 #include "spirv/move_comp.h"
 #include "spirv/move_comp_RADAR_NO_DOUBLES.h"
@@ -12,12 +13,13 @@
 
 // pass    reads                              writes                     barrier behind it
 // ------- ---------------------------------- -------------------------- -------------------------------
-// copy    staging, the host's buffers        moved, words, stray        transferToComputeReadWrite
-// deform  words, meshes                      positions, originals,
+// copy    staging, the host's buffers        moved, words, refit nodes, transferToComputeReadWrite
 //                                            stray
-// move    words, moved, meshes, placements   placements, objects,       computeWriteToComputeReadWrite
-//                                            stray
-// refit   positions, indices, meshes, nodes  nodes                      computeWriteToComputeReadWrite
+// deform  words, meshes                      vertices, stray
+// move    words, moved, meshes               placements, objects, stray computeWriteToComputeReadWrite
+// refit   vertices, triangles, meshes, refit nodes                      computeWriteToComputeReadWrite
+//   (one    nodes, nodes
+//   a depth)
 //
 // Behind the answers:
 //
@@ -33,39 +35,22 @@ namespace {
 constexpr VkDeviceSize kTransformBytes = 48;
 constexpr uint32_t kGroup = 64;  ///< invocations in a workgroup of deform, move and refuse
 
-struct Push {
-  uint32_t count, groupsX;
-  uint32_t mesh = 0;  ///< or how many placements
-  uint32_t firstByte = 0, stride = 0, format = 0;
+struct DeformPush {
+  uint32_t count, mesh, firstByte, stride, format;
+};
+struct RefitPush {
+  uint32_t first, count, mesh;
 };
 
-std::vector<gpu::Binding> bindingList() {
-  std::vector<gpu::Binding> list;
-  for (const uint32_t number :
-       {gpu::kBindPositions, gpu::kBindOriginals, gpu::kBindIndices, gpu::kBindMeshes, gpu::kBindObjects,
-        gpu::kBindNodes, gpu::kBindPlacements, gpu::kBindResults, gpu::kBindWords, gpu::kBindMoved, gpu::kBindStrays}) {
-    list.push_back({number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
-  }
-  return list;
-}
-
-std::span<const uint32_t> moveShader(const Device::Impl& device) {
-  if (device.doubles) return k_move_comp;
-  return k_move_comp_RADAR_NO_DOUBLES;
-}
-
-void dispatch(const gpu::Commands& commands, const gpu::Bindings& bindings, const gpu::Pipeline& pipeline,
-              uint32_t groups, Push push) {
-  if (groups == 0) return;
-  push.groupsX = std::min(groups, 65535u);
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  commands->CmdPushConstants(commands, bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  commands->CmdDispatch(commands, push.groupsX, (groups + push.groupsX - 1) / push.groupsX, 1);
-}
-
-uint32_t groupsFor(uint32_t invocations) {
-  return (invocations + kGroup - 1) / kGroup;
-}
+// Made once for a device.
+struct HostGeometryKernels {
+  explicit HostGeometryKernels(const Device::Impl& device)
+      : deform(device, k_deform_comp, "deform"),
+        refit(device, k_refit_comp, "refit"),
+        move(device, device.doubles ? std::span<const uint32_t>(k_move_comp) : k_move_comp_RADAR_NO_DOUBLES, "move"),
+        refuse(device, k_refuse_comp, "refuse") {}
+  gpu::Kernel deform, refit, move, refuse;
+};
 
 bool repeats(std::vector<uint32_t> ids) {
   std::sort(ids.begin(), ids.end());
@@ -102,22 +87,19 @@ std::string whatIsWrong(const HostGeometry& geometry, const Scene& scene) {
   return {};
 }
 
-HostGeometryPass::HostGeometryPass(const Device::Impl& device, const ResidentScene& resident)
+HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& resident)
     : device_(&device),
       resident_(resident),
-      bindings_(device, bindingList(), sizeof(Push)),
-      deform_(gpu::computePipeline(device, bindings_.layout(), k_deform_comp, "deform")),
-      refit_(gpu::computePipeline(device, bindings_.layout(), k_refit_comp, "refit")),
-      move_(gpu::computePipeline(device, bindings_.layout(), moveShader(device), "move")),
-      refuse_(gpu::computePipeline(device, bindings_.layout(), k_refuse_comp, "refuse")),
+      deform_(device.shared<HostGeometryKernels>().deform),
+      refit_(device.shared<HostGeometryKernels>().refit),
+      move_(device.shared<HostGeometryKernels>().move),
+      refuse_(device.shared<HostGeometryKernels>().refuse),
       upload_(device),
-      words_(device, "words of the host's", Residence::device,
-             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      movedBuffer_(device, "moved objects", Residence::device,
-                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      stray_(device, "stray", Residence::readback,
-             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-  stray_.reserve(sizeof(gpu::Stray));
+      words_(device, "words of the host's", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      refitNodes_(device, "nodes to refit", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      movedBuffer_(device, "moved objects", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      stray_(device, "stray", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+  stray_.reserve(1);
 }
 
 // Returns where in `words_` the bytes will be.
@@ -145,11 +127,35 @@ void HostGeometryPass::addMoved(const MovedObjects& objects, const Scene::Impl& 
                      .firstByte = static_cast<uint32_t>(firstByte + i * objects.stride)};
     for (int k = 0; k < 3; ++k) {
       moved.anchor[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
-      moved.halfExtent[k] = downward(std::min(box.hi[k] - moved.anchor[k], moved.anchor[k] - box.lo[k]));
+      moved.halfExtent[k] = roundDown(std::min(box.hi[k] - moved.anchor[k], moved.anchor[k] - box.lo[k]));
     }
-    movedIndex_[id] = static_cast<uint32_t>(moved_.size());
     moved_.push_back(moved);
-    bounds_.push_back(box);
+  }
+}
+
+// By depth: a node is refitted after its children.
+void HostGeometryPass::listNodes(const Scene::Impl& scene) {
+  std::vector<uint64_t> versions;
+  for (const Deformed& deformed : meshes_) versions.push_back(scene.meshes[deformed.mesh].version);
+  if (versions == listed_) return;
+  listed_ = std::move(versions);
+  nodeList_.clear();
+  levels_.clear();
+  for (const Deformed& deformed : meshes_) {
+    const MeshTree& tree = scene.meshes[deformed.mesh].tree;
+    std::vector<std::vector<uint32_t>> byDepth(tree.depth);
+    std::vector<uint32_t> depths(tree.nodes.size());
+    for (uint32_t n = 0; n < depths.size(); ++n) {  // parents before children
+      byDepth[depths[n]].push_back(n);
+      const uint32_t link = tree.nodes[n].link;
+      if ((link & gpu::kLinkLeaf) == 0) depths[link] = depths[link + 1] = depths[n] + 1;
+    }
+    levels_.resize(std::max(levels_.size(), byDepth.size()));
+    for (size_t depth = 0; depth < byDepth.size(); ++depth) {
+      levels_[depth].push_back({deformed.mesh, static_cast<uint32_t>(nodeList_.size()),
+                                static_cast<uint32_t>(byDepth[depth].size())});
+      nodeList_.insert(nodeList_.end(), byDepth[depth].begin(), byDepth[depth].end());
+    }
   }
 }
 
@@ -158,83 +164,82 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   copied_ = 0;
   meshes_.clear();
   moved_.clear();
-  bounds_.clear();
-  movedIndex_.assign(scene.objects.size(), kNone);
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.meshes[deformed.mesh];
     const HostPositions& positions = deformed.positions;
-    meshes_.push_back({deformed.mesh, mesh.vertexCount(), static_cast<uint32_t>(mesh.clusters.nodes.size()),
+    meshes_.push_back({deformed.mesh, mesh.vertexCount(),
                        copyFrom(positions.buffer, positions.first, spanOf(positions, mesh.vertexCount())),
                        static_cast<uint32_t>(positions.stride), HostFormat(positions.format).component()});
   }
   for (const MovedObjects& objects : geometry.objects) addMoved(objects, scene);
   if (empty()) return;
-  words_.reserve(copied_ + sizeof(uint32_t));
-  movedBuffer_.reserve(std::max(gpu::bytesOf(moved_), sizeof(gpu::Moved)));
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(moved_)));
+  listNodes(scene);
+  words_.reserve(copied_ / sizeof(uint32_t) + 1);
+  movedBuffer_.reserve(moved_.size());
+  refitNodes_.reserve(nodeList_.size());
+  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(moved_)) + gpu::Upload::aligned(gpu::bytesOf(nodeList_)));
   upload_.add(moved_.data(), gpu::bytesOf(moved_), movedBuffer_);
+  upload_.add(nodeList_.data(), gpu::bytesOf(nodeList_), refitNodes_);
 }
 
-ResidentScene::Overwritten HostGeometryPass::overwritten() const {
-  ResidentScene::Overwritten overwritten;
+GpuScene::Overwritten HostGeometryPass::overwritten() const {
+  GpuScene::Overwritten overwritten;
   for (const Deformed& deformed : meshes_) overwritten.meshes.push_back(deformed.mesh);
   for (const gpu::Moved& moved : moved_) overwritten.objects.push_back(moved.object);
   return overwritten;
 }
 
-void HostGeometryPass::prepare(ContactPlan& plan) const {
-  for (gpu::Placement& placement : plan.placements) {
-    if (placement.object == kNone || movedIndex_[placement.object] == kNone) continue;
-    placement.moved = movedIndex_[placement.object];
-    const float* anchor = moved_[placement.moved].anchor;
-    const Vector fromOrigin{anchor[0] - plan.origin[0], anchor[1] - plan.origin[1], anchor[2] - plan.origin[2]};
-    for (int row = 0; row < 3; ++row) {
-      float* r = &placement.frameFromMesh[4 * row];
-      for (int k = 0; k < 3; ++k) r[k] = static_cast<float>(plan.axes[row][k]);
-      r[3] = static_cast<float>(dot(plan.axes[row], fromOrigin));
-    }
-    placement.error = upward(doubleErrorWithin(bounds_[placement.moved], plan.origin));
-  }
+void HostGeometryPass::setArguments() {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = resident_.buffers();
+  deform_.set({{kSlotVertices, scene.vertices}, {kSlotMeshes, scene.meshes}, {kSlotStray, stray_}, {kSlotWords, words_}});
+  refit_.set({{kSlotVertices, scene.vertices},
+              {kSlotTriangles, scene.triangles},
+              {kSlotMeshes, scene.meshes},
+              {kSlotMeshNodes, scene.meshNodes},
+              {kSlotRefitNodes, refitNodes_}});
+  move_.set({{kSlotMeshes, scene.meshes},
+             {kSlotObjects, scene.objects},
+             {kSlotPlacements, scene.placements},
+             {kSlotMoved, movedBuffer_},
+             {kSlotStray, stray_},
+             {kSlotWords, words_}});
 }
 
-void HostGeometryPass::record(const gpu::Commands& commands, const gpu::Buffer& placements, uint32_t placementCount,
-                              const gpu::Buffer& results) {
+void HostGeometryPass::record(const gpu::Commands& commands) {
   upload_.record(commands);
   for (const Source& source : sources_) {
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
   }
   commands->CmdFillBuffer(commands, stray_.get(), 0, sizeof(gpu::Stray), kNone);
   gpu::transferToComputeReadWrite(commands);
-  resident_.bindTo(bindings_);
-  bindings_.setBuffer(gpu::kBindNodes, resident_.buffers().nodes);
-  bindings_.setBuffer(gpu::kBindPlacements, placements);
-  bindings_.setBuffer(gpu::kBindResults, results);
-  bindings_.setBuffer(gpu::kBindWords, words_);
-  bindings_.setBuffer(gpu::kBindMoved, movedBuffer_);
-  bindings_.setBuffer(gpu::kBindStrays, stray_);
-  bindings_.bind(commands);
+  setArguments();
   for (const Deformed& d : meshes_) {
-    dispatch(commands, bindings_, deform_, groupsFor(d.vertices),
-             {d.vertices, 0, d.mesh, d.firstByte, d.stride, d.component});
+    deform_.dispatch(commands, gpu::groupsFor(d.vertices, kGroup),
+                     DeformPush{d.vertices, d.mesh, d.firstByte, d.stride, d.component});
   }
-  if (!moved_.empty()) {
-    const uint32_t count = placementCount + static_cast<uint32_t>(moved_.size());
-    dispatch(commands, bindings_, move_, groupsFor(count), {count, 0, placementCount});
+  const auto moved = static_cast<uint32_t>(moved_.size());
+  move_.dispatch(commands, gpu::groupsFor(moved, kGroup), moved);
+  gpu::computeWriteToComputeReadWrite(commands);
+  if (meshes_.empty()) return;
+  for (size_t depth = levels_.size(); depth-- > 0;) {
+    for (const Level& level : levels_[depth]) {
+      refit_.dispatch(commands, gpu::groupsFor(level.count, kGroup), RefitPush{level.first, level.count, level.mesh});
+    }
+    gpu::computeWriteToComputeReadWrite(commands);
   }
-  gpu::computeWriteToComputeReadWrite(commands);
-  for (const Deformed& d : meshes_) dispatch(commands, bindings_, refit_, d.nodes, {d.nodes, 0, d.mesh});
-  gpu::computeWriteToComputeReadWrite(commands);
 }
 
-void HostGeometryPass::recordRefusal(const gpu::Commands& commands, uint32_t count) {
+void HostGeometryPass::recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results,
+                                     uint32_t count) {
   gpu::computeWriteToComputeReadWrite(commands);
-  bindings_.bind(commands);
-  dispatch(commands, bindings_, refuse_, groupsFor(count), {count, 0});
+  refuse_.set({{gpu::kSlotResults, results}, {gpu::kSlotStray, stray_}});
+  refuse_.dispatch(commands, gpu::groupsFor(count, kGroup), count);
 }
 
 std::string HostGeometryPass::stray() const {
   if (empty()) return {};
-  const auto& stray = *reinterpret_cast<const gpu::Stray*>(stray_.mapped());
+  const gpu::Stray& stray = *stray_.mapped();
   if (stray.mesh != kNone) {
     return "mesh " + std::to_string(stray.mesh) + ": vertex " + std::to_string(stray.vertex) +
            " is out of its bounds, or not finite";

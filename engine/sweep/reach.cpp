@@ -18,7 +18,7 @@ double doubleError(const Mesh& mesh, const Pose& pose, const Vector& origin) {
   for (int row = 0; row < 3; ++row) {
     const double* r = &pose.m[4 * row];
     double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * (std::abs(mesh.centre[k]) + mesh.halfExtent[k]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
     worst = std::max(worst, sum);
   }
   return 0x1p-47 * (worst + largest(origin));
@@ -48,7 +48,7 @@ Box tightBox(const Mesh& mesh, const Affine& m) {
   for (int row = 0; row < 3; ++row) {
     const auto x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
                z = static_cast<float>(m[4 * row + 2]);
-    const float *px = mesh.recentred[0].data(), *py = mesh.recentred[1].data(), *pz = mesh.recentred[2].data();
+    const float *px = mesh.local[0].data(), *py = mesh.local[1].data(), *pz = mesh.local[2].data();
     float low = 3e38f, high = -3e38f;
     for (uint32_t i = 0; i < mesh.vertexCount(); ++i) {
       const float at = x * px[i] + y * py[i] + z * pz[i];
@@ -62,19 +62,19 @@ Box tightBox(const Mesh& mesh, const Affine& m) {
 }
 
 // Objects in the swept prism, by id.
-std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy,
+std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene,
                                     const Prism& prism, double& farthest) {
   thread_local std::vector<ObjectId> ids;
   ids.clear();
-  hierarchy.collect(prism, ids);
+  selectObjects(scene, prism, ids);
   std::sort(ids.begin(), ids.end());
   std::vector<Reached> reached;
   for (ObjectId id : ids) {
     const Object& object = scene.objects[id].object;
     if (isExcluded(query, object, id)) continue;
     const Mesh& mesh = scene.meshes[object.mesh];
-    const Affine m = frameFromRecentred(prism.axes, prism.origin, object.worldFromMesh, mesh.centre);
-    Box box = boxOfRecentred(mesh, m);
+    const Affine m = frameFromLocal(prism.axes, prism.origin, object.worldFromMesh, mesh.origin);
+    Box box = boxOfLocal(mesh, m);
     const Box* bounds = scene.boundsOf(id);
     if (bounds != nullptr) box.merge(turnedBox(*bounds, prism.axes, prism.origin));
     const double error = doubleError(mesh, object.worldFromMesh, prism.origin);
@@ -85,29 +85,19 @@ std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene
       box.lo[k] -= total;
       box.hi[k] += total;
     }
-    reached.push_back({id, m, total, box, mesh.deforms || bounds != nullptr});
+    reached.push_back({id, m, total, box});
   }
   return reached;
 }
 
 }  // namespace
 
-float upward(double x) {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  return x < kMost ? std::nextafter(static_cast<float>(x), INFINITY) : INFINITY;
-}
-
-float downward(double x) {
-  const double most = std::numeric_limits<float>::max();
-  return std::nextafter(static_cast<float>(std::min(x, most)), 0.0f);
-}
-
 bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh) {
   constexpr double kMost = 0x1p125;
   for (int row = 0; row < 3; ++row) {
     const double* r = &frameFromMesh[4 * row];
     double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max(1.0f, mesh.halfExtent[k]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max(1.0f, mesh.reach[k]);
     if (!(sum < kMost)) return false;
   }
   return true;
@@ -115,12 +105,12 @@ bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh) {
 
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
   // What float loses below its normal range: of a product, of an entry for each unit of the mesh, of a vertex.
-  const double extent = mesh.halfExtent[0] + double{mesh.halfExtent[1]} + mesh.halfExtent[2];
+  const double extent = mesh.reach[0] + double{mesh.reach[1]} + mesh.reach[2];
   double worst = 0, scale = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &frameFromMesh[4 * row];
     double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.halfExtent[k];
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.reach[k];
     worst = std::max(worst, sum);
     scale = std::max(scale, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
   }
@@ -139,11 +129,11 @@ bool isExcluded(const Query& query, const Object& object, ObjectId id) {
 SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
   SensorWindow w;
   w.axes = axesAlong(query.direction);
-  w.origin = transform(query.worldFromMesh, sensor.centre);
-  w.frameFromMesh = frameFromRecentred(w.axes, w.origin, query.worldFromMesh, sensor.centre);
+  w.origin = transform(query.worldFromMesh, sensor.origin);
+  w.frameFromMesh = frameFromLocal(w.axes, w.origin, query.worldFromMesh, sensor.origin);
   w.error = placementError(sensor, w.frameFromMesh) + doubleError(sensor, query.worldFromMesh, w.origin);
   const bool tight = !sensor.deforms && fitsFloats(sensor, w.frameFromMesh);
-  w.box = tight ? tightBox(sensor, w.frameFromMesh) : boxOfRecentred(sensor, w.frameFromMesh);
+  w.box = tight ? tightBox(sensor, w.frameFromMesh) : boxOfLocal(sensor, w.frameFromMesh);
   w.length = w.box.hi[2] - w.box.lo[2];
   w.size = 0;
   for (int k = 0; k < 3; ++k) w.size = std::max(w.size, w.box.hi[k] - w.box.lo[k]);
@@ -157,7 +147,7 @@ SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
   return w;
 }
 
-Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, const SensorWindow& window) {
+Reach reachOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window) {
   Reach reach;
   const double d = window.length + query.distance;
   reach.prism = {window.origin, window.axes, window.box};
@@ -168,7 +158,7 @@ Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hie
     prism.box.hi[k] += window.error;
   }
   double farthest = window.box.lo[2];
-  reach.objects = collectReached(query, scene, hierarchy, prism, farthest);
+  reach.objects = collectReached(query, scene, prism, farthest);
   for (const Reached& r : reach.objects) reach.error = std::max(reach.error, r.error);
   reach.depth = std::min(d, std::max(farthest - window.box.lo[2], 0.0));
   return reach;

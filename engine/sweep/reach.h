@@ -3,18 +3,13 @@
 
 #include <vector>
 
-#include "scene/hierarchy.h"
-#include "sweep/frame.h"
+#include "sweep/select.h"
+#include "scene/frame.h"
 
 namespace radar {
 
 /// Half an ulp of 1 in float.
 inline constexpr double kFloatUnit = 0x1p-24;
-
-/// A float above `x` >= 0: an error bound must not shrink. Infinity where there is none.
-float upward(double x);
-/// A float below `x` >= 0, or 0.
-float downward(double x);
 
 /// Where the sensor is, in the frame of its view.
 struct SensorWindow {
@@ -35,7 +30,6 @@ struct Reached {
   Affine frameFromMesh;  ///< from recentred vertices
   double error;          ///< how far a vertex that a shader places may be off
   Box box;               ///< around it, and around all that a host may make of it
-  bool loose;            ///< a host may: it need not be where its clusters are
 };
 
 struct Reach {
@@ -45,7 +39,7 @@ struct Reach {
   double error = 0;              ///< the greatest placement error
 };
 
-Reach reachOf(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy, const SensorWindow& window);
+Reach reachOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window);
 
 /// What double precision may lose of a point within `box`, placed in the world and seen from `origin`, world units.
 double doubleErrorWithin(const Box& box, const Vector& origin);

@@ -28,43 +28,34 @@ using gpu::Upload;
 
 namespace {
 
-constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+constexpr gpu::Binding kDraws[] = {{gpu::kSlotDraws.number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
 
-struct IdentifyPush {
-  uint32_t items, groupsX;
+// The compute passes, made once for a device.
+struct SampledKernels {
+  explicit SampledKernels(const Device::Impl& device)
+      : reduce(device, k_reduce_comp, "reduce"),
+        identify(device, k_identify_comp, "identify"),
+        solve(device, device.doubles ? std::span<const uint32_t>(k_solve_comp) : k_solve_comp_RADAR_NO_DOUBLES,
+              "solve") {}
+  gpu::Kernel reduce, identify, solve;
 };
-
-std::vector<gpu::Binding> bindingList() {
-  std::vector<gpu::Binding> list;
-  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
-    const bool image = i == gpu::kBindRange || i == gpu::kBindMask;
-    list.push_back({i, image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
-  }
-  return list;
-}
 
 }  // namespace
 
-std::span<const uint32_t> solveShader(const Device::Impl& device) {
-  if (device.doubles) return k_solve_comp;
-  return k_solve_comp_RADAR_NO_DOUBLES;
-}
-
-SampledRecorder::SampledRecorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes,
+SampledRecorder::SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
                                  bool timestamps)
     : device_(&device),
       pictureBytes_(pictureBytes),
       resident_(resident),
       upload_(device),
       submission_(device, timestamps),
-      bindings_(device, bindingList(), sizeof(IdentifyPush)),
+      drawBindings_(device, kDraws, sizeof(uint32_t)),
       renderPass_(gpu::depthRenderPass(device)),
       sampler_(gpu::texelSampler(device)),
-      depth_(gpu::depthPipeline(device, bindings_.layout(), renderPass_.get(), k_depth_vert, "depth")),
-      reduce_(gpu::computePipeline(device, bindings_.layout(), k_reduce_comp, "reduce")),
-      identify_(gpu::computePipeline(device, bindings_.layout(), k_identify_comp, "identify")),
-      solve_(gpu::computePipeline(device, bindings_.layout(), solveShader(device), "solve")),
+      depth_(gpu::depthPipeline(device, drawBindings_.layout(), renderPass_.get(), k_depth_vert, "depth",
+                                sizeof(gpu::Vertex))),
       views_(device, "views", Residence::device, kUploaded),
       draws_(device, "draws", Residence::device, kUploaded),
       items_(device, "items", Residence::device, kUploaded),
@@ -72,20 +63,10 @@ SampledRecorder::SampledRecorder(const Device::Impl& device, ResidentScene& resi
       ranks_(device, "ranks", Residence::device, kComputed),
       answers_(device, "answers", Residence::device, kComputed),
       openPairs_(device, "open pairs", Residence::device, kComputed),
-      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
-
-void SampledRecorder::sync(const Scene::Impl& scene) {
-  const VkDeviceSize bytes = resident_.prepare(scene);
-  if (bytes == 0) return;
-  upload_.begin(bytes);
-  resident_.upload(scene, upload_);
-  const gpu::Commands commands = submission_.begin();
-  submission_.stage("upload");
-  upload_.record(commands);
-  gpu::uploadToRead(commands);
-  submission_.submitAndWait();
-  resident_.confirm(scene);
-}
+      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      reduce_(device.shared<SampledKernels>().reduce),
+      identify_(device.shared<SampledKernels>().identify),
+      solve_(device.shared<SampledKernels>().solve) {}
 
 SampledRecorder::Pictures& SampledRecorder::picturesFor(const Batch& batch) {
   const auto found = pictures_.find(batch.resolution);
@@ -101,14 +82,13 @@ SampledRecorder::Pictures& SampledRecorder::picturesFor(const Batch& batch) {
 }
 
 void SampledRecorder::stage(const Batch& batch, const Scene::Impl& scene) {
-  views_.reserve(bytesOf(batch.views));
-  draws_.reserve(bytesOf(batch.draws));
-  items_.reserve(bytesOf(batch.items));
-  const VkDeviceSize cells = batch.views.size() * gpu::kCells;
-  candidates_.reserve(cells * sizeof(gpu::Candidate));
-  ranks_.reserve(cells * sizeof(uint32_t));
-  answers_.reserve(batch.views.size() * sizeof(gpu::Answer));
-  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs * sizeof(gpu::OpenPair));
+  views_.reserve(batch.views.size());
+  draws_.reserve(batch.draws.size());
+  items_.reserve(batch.items.size());
+  candidates_.reserve(batch.views.size() * gpu::kCells);
+  ranks_.reserve(batch.views.size() * gpu::kCells);
+  answers_.reserve(batch.views.size());
+  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs);
   upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
                 Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
   resident_.upload(scene, upload_);
@@ -118,15 +98,34 @@ void SampledRecorder::stage(const Batch& batch, const Scene::Impl& scene) {
 }
 
 void SampledRecorder::bind(const Pictures& pictures) {
-  resident_.bindTo(bindings_);
-  bindings_.setBuffer(gpu::kBindTriangleIds, resident_.buffers().triangleIds);
-  const std::pair<uint32_t, const gpu::Buffer*> buffers[] = {
-      {gpu::kBindViews, &views_},           {gpu::kBindDraws, &draws_}, {gpu::kBindItems, &items_},
-      {gpu::kBindCandidates, &candidates_}, {gpu::kBindRanks, &ranks_}, {gpu::kBindAnswers, &answers_},
-      {gpu::kBindOpenPairs, &openPairs_}};
-  for (const auto& [number, buffer] : buffers) bindings_.setBuffer(number, *buffer);
-  bindings_.setImage(gpu::kBindRange, pictures.range.view(), sampler_.get());
-  bindings_.setImage(gpu::kBindMask, pictures.mask.view(), sampler_.get());
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = resident_.buffers();
+  drawBindings_.setBuffer(kSlotDraws.number, draws_);
+  reduce_.set({{kSlotViews, views_},
+               {kSlotCandidates, candidates_},
+               {kSlotRanks, ranks_},
+               {kSlotAnswers, answers_},
+               {kSlotRange, pictures.range.view(), sampler_.get()},
+               {kSlotMask, pictures.mask.view(), sampler_.get()}});
+  identify_.set({{kSlotVertices, scene.vertices},
+                 {kSlotTriangles, scene.triangles},
+                 {kSlotMeshes, scene.meshes},
+                 {kSlotViews, views_},
+                 {kSlotDraws, draws_},
+                 {kSlotItems, items_},
+                 {kSlotRanks, ranks_},
+                 {kSlotAnswers, answers_},
+                 {kSlotCandidates, candidates_}});
+  solve_.set({{kSlotVertices, scene.vertices},
+              {kSlotTriangles, scene.triangles},
+              {kSlotMeshes, scene.meshes},
+              {kSlotObjects, scene.objects},
+              {kSlotViews, views_},
+              {kSlotDraws, draws_},
+              {kSlotItems, items_},
+              {kSlotCandidates, candidates_},
+              {kSlotAnswers, answers_},
+              {kSlotOpenPairs, openPairs_}});
 }
 
 void SampledRecorder::drawScopes(const gpu::Commands& commands, const Batch& batch,
@@ -136,8 +135,8 @@ void SampledRecorder::drawScopes(const gpu::Commands& commands, const Batch& bat
     for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
       const DrawCall& call = batch.calls[i];
       const gpu::MeshRecord& record = resident_.record(call.mesh);
-      commands->CmdDrawIndexed(commands, 3 * call.run.count, call.count, record.firstIndex + 3 * call.run.first,
-                               static_cast<int32_t>(record.firstVertex), call.firstDraw);
+      commands->CmdDrawIndexed(commands, 3 * call.run.count, call.count, 3 * (record.firstTriangle + call.run.first), 0,
+                               call.firstDraw);
     }
     commands->CmdEndRenderPass(commands);
   }
@@ -166,36 +165,28 @@ void SampledRecorder::submit(const Batch& batch, const Scene::Impl& scene, bool 
   pictures.mask.recordFirstUse(commands);
   gpu::uploadToRead(commands);
 
-  const VkDescriptorSet set = bindings_.set();
-  const VkBuffer positions = resident_.buffers().positions.get();
+  const VkDescriptorSet set = drawBindings_.set();
+  const VkBuffer vertices = resident_.buffers().vertices.get();
   const VkDeviceSize zero = 0;
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bindings_.layout(), 0, 1, &set, 0,
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawBindings_.layout(), 0, 1, &set, 0,
                                   nullptr);
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
-  commands->CmdBindVertexBuffers(commands, 0, 1, &positions, &zero);
+  commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
   commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");
   drawScopes(commands, batch, batch.rangePasses, pictures.range);
   submission_.stage("mask");
   drawScopes(commands, batch, batch.maskPasses, pictures.mask);
 
-  bindings_.bind(commands);
   submission_.stage("reduce");
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, reduce_.get());
-  commands->CmdDispatch(commands, views, 1, 1);
+  reduce_.dispatch(commands, views);
   gpu::computeWriteToComputeReadWrite(commands);
-
   submission_.stage("identify");
   const auto items = static_cast<uint32_t>(batch.items.size());
-  const IdentifyPush push{items, std::min(items, 65535u)};
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, identify_.get());
-  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
-  commands->CmdDispatch(commands, push.groupsX, (items + push.groupsX - 1) / push.groupsX, 1);
+  identify_.dispatch(commands, items, items);
   gpu::computeWriteToComputeReadWrite(commands);
-
   submission_.stage("solve");
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve_.get());
-  commands->CmdDispatch(commands, views, 1, 1);
+  solve_.dispatch(commands, views);
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");

@@ -1,14 +1,14 @@
-// The recipe of a sweep: owns pipelines, buffers and pictures, and records a batch. The only file that puts barriers
-// between stages.
+// Records a batch of mode sampled: its pictures, its buffers, and the barriers between its stages.
 #pragma once
 
 #include <map>
 
 #include "gpu/depth_array.h"
+#include "gpu/kernel.h"
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
+#include "scene/gpu_scene.h"
 #include "sweep/batch.h"
-#include "sweep/resident_scene.h"
 
 namespace radar {
 
@@ -23,16 +23,11 @@ struct StoredScopes {
   std::vector<float> range, mask;
 };
 
-/// Solves nominated pairs, with doubles where the device has them.
-std::span<const uint32_t> solveShader(const Device::Impl& device);
-
 class SampledRecorder {
  public:
-  /// `resident`: the scene's copy, shared with other recorders of the device.
-  SampledRecorder(const Device::Impl& device, ResidentScene& resident, uint64_t pictureBytes, bool timestamps);
+  /// `resident`: the scene's copy, shared with others of the device.
+  SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
-  /// Uploads what changed in the scene, and nothing else.
-  void sync(const Scene::Impl& scene);
   /// One upload, one command buffer, one readback; returns while the device works on it, and collect() comes next, with
   /// the same arguments. With `scopes`, the pictures of view 0 come too.
   void submit(const Batch& batch, const Scene::Impl& scene, bool scopes = false);
@@ -59,14 +54,22 @@ class SampledRecorder {
 
   const Device::Impl* device_;
   uint64_t pictureBytes_;
-  ResidentScene& resident_;
+  GpuScene& resident_;
   gpu::Upload upload_;
   gpu::Submission submission_;
-  gpu::Bindings bindings_;
+  gpu::Bindings drawBindings_;  ///< of the depth passes
   gpu::RenderPass renderPass_;
   gpu::Sampler sampler_;
-  gpu::Pipeline depth_, reduce_, identify_, solve_;
-  gpu::Buffer views_, draws_, items_, candidates_, ranks_, answers_, openPairs_, readback_;
+  gpu::Pipeline depth_;
+  gpu::Array<gpu::View> views_;
+  gpu::Array<gpu::Draw> draws_;
+  gpu::Array<gpu::Item> items_;
+  gpu::Array<gpu::Candidate> candidates_;
+  gpu::Array<uint32_t> ranks_;
+  gpu::Array<gpu::Answer> answers_;
+  gpu::Array<gpu::OpenPair> openPairs_;
+  gpu::Buffer readback_;
+  gpu::KernelArguments reduce_, identify_, solve_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side
 };
 

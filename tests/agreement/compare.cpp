@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "reference/reference.h"
+#include "support/answer.h"
 #include "stability/promises.h"
 #include "support/test_device.h"
 #include "workloads/workload.h"
@@ -33,7 +33,7 @@ double pairContact(const Scene& scene, const Query& query, const Result& result)
   alone.exclude.clear();
   alone.mask = ~0u;
   pair.addObject({b, object.worldFromMesh, ~0u});
-  return reference::Reference(pair).answer(alone).t;
+  return test::answer(pair, alone).t;
 }
 
 // Every promise that a single sampled answer makes.
@@ -60,7 +60,7 @@ void checkAnswer(const Scene& scene, const Query& query, const Result& sampled, 
   REQUIRE(contact);
   CHECK(sampled.hi <= query.distance);
   CHECK(sampled.t == sampled.hi);
-  // The reference rounds its t; `hi` adds its error bound to its own rounding.
+  // The exact t is rounded; `hi` adds its error bound to its own rounding.
   const double rounding = 0x1p-50 * (exact.t + tools::sensorSize(scene, query));
   CHECK(sampled.hi >= exact.t - rounding);
   if (sampled.status == Status::overlap) CHECK(exact.status == Status::overlap);
@@ -78,7 +78,7 @@ Tally compareWithReference(const tools::Workload& workload, uint32_t resolution)
   Tally tally;
   tools::ScenePlayer player(workload);
   Sweeper sweeper(device(), player.scene());
-  reference::Reference exact(player.scene());
+  CpuSweeper exact(player.scene());
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
     player.show(batch.scene);
     std::vector<Query> queries;

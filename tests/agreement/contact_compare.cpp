@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "agreement/compare.h"
-#include "reference/reference.h"
+#include "support/answer.h"
 #include "stability/promises.h"
 #include "support/test_device.h"
 
@@ -9,18 +9,18 @@ namespace radar::test {
 
 namespace {
 
-void compare(const Scene& scene, Sweeper& sweeper, reference::Reference& reference, std::vector<Query> queries,
+void compare(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, std::vector<Query> queries,
              const std::vector<std::string>& names, ContactTally& tally) {
   for (Query& query : queries) query.mode = Mode::contact;
   const std::vector<Result> results = sweeper.run(queries);
-  const std::vector<Result> exact = reference.run(queries);
+  const std::vector<Result> exact = cpu.run(queries);
   REQUIRE(results.size() == queries.size());
   for (size_t i = 0; i < queries.size(); ++i) {
     ++tally.queries;
     tally.hits += exact[i].status == Status::hit;
     tally.overlaps += exact[i].status == Status::overlap;
     tally.clear += exact[i].status == Status::clear;
-    INFO("query " << names[i] << ", reference t " << exact[i].t << " of " << queries[i].distance << " object "
+    INFO("query " << names[i] << ", exact t " << exact[i].t << " of " << queries[i].distance << " object "
                   << exact[i].object << " triB " << exact[i].triB << " triA " << exact[i].triA);
     const tools::Verdict verdict = tools::judgeContact(scene, queries[i], results[i], exact[i]);
     CHECK(verdict.words() == "");
@@ -34,20 +34,19 @@ void compare(const Scene& scene, Sweeper& sweeper, reference::Reference& referen
 
 ContactTally compareContact(const Scene& scene, std::vector<Query> queries) {
   ContactTally tally;
-  Sweeper sweeper(device(), scene);
-  reference::Reference reference(scene);
+  Sweeper sweeper(device(), scene, {.cpuBatch = 0});
+  CpuSweeper cpu(scene);
   std::vector<std::string> names;
   for (size_t i = 0; i < queries.size(); ++i) names.push_back(std::to_string(i));
-  compare(scene, sweeper, reference, queries, names, tally);
-  compareBounded(scene, sweeper, reference, std::move(queries), 32);
+  compare(scene, sweeper, cpu, std::move(queries), names, tally);
   return tally;
 }
 
 ContactTally compareContact(const tools::Workload& workload) {
   ContactTally tally;
   tools::ScenePlayer player(workload);
-  Sweeper sweeper(device(), player.scene());
-  reference::Reference reference(player.scene());
+  Sweeper sweeper(device(), player.scene(), {.cpuBatch = 0});
+  CpuSweeper cpu(player.scene());
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
     player.show(batch.scene);
     std::vector<Query> queries;
@@ -56,7 +55,7 @@ ContactTally compareContact(const tools::Workload& workload) {
       queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
       names.push_back(workload.queries[i].id);
     }
-    compare(player.scene(), sweeper, reference, std::move(queries), names, tally);
+    compare(player.scene(), sweeper, cpu, std::move(queries), names, tally);
   }
   return tally;
 }

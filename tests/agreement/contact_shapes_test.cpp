@@ -1,4 +1,4 @@
-// Mode contact against the reference where shapes interlock, touch, slide and tie.
+// The search on the device against the CPU's where shapes interlock, touch, slide and tie.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -73,7 +73,7 @@ MeshData rectangle(int u, int v) {
 
 }  // namespace
 
-TEST_CASE("interlocked shapes meet when and where the reference says, either one as the sensor") {
+TEST_CASE("interlocked shapes meet when and where the CPU says, either one as the sensor") {
   const size_t which = GENERATE(0, 1, 2, 3);
   const bool swapped = GENERATE(false, true);
   const Interlocked shapes = interlockedShapes()[which];
@@ -97,7 +97,7 @@ TEST_CASE("interlocked shapes meet when and where the reference says, either one
   CHECK(tally.hits >= 12);
 }
 
-TEST_CASE("boxes on a lattice that touch, tie and share outlines give the reference's least pair") {
+TEST_CASE("boxes on a lattice that touch, tie and share outlines give the CPU's least pair") {
   const uint64_t seed = GENERATE(1, 2, 3, 4);
   CAPTURE(seed);
   Random random(seed);
@@ -146,7 +146,7 @@ TEST_CASE("boxes in one line touch at the start, in flight and at exactly the di
                              ask({-1, 0.5, 0}, 9)};
   compareContact(scene, queries);
   for (Query& query : queries) query.mode = Mode::contact;
-  Sweeper sweeper(test::device(), scene);
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
   const std::vector<Result> results = sweeper.run(queries);
   CHECK((results[0].status == Status::hit && results[0].t == 3 && results[0].hi == 3));
   CHECK(results[0].object == object);
@@ -159,7 +159,7 @@ TEST_CASE("boxes in one line touch at the start, in flight and at exactly the di
   CHECK((results[10].status == Status::hit && results[11].status == Status::clear));
 }
 
-TEST_CASE("plates that fly edge-on meet plates as the reference says") {
+TEST_CASE("plates that fly edge-on meet plates as the CPU says") {
   const bool thick = GENERATE(false, true);
   CAPTURE(thick);
   Random random(5);
@@ -186,7 +186,7 @@ TEST_CASE("plates that fly edge-on meet plates as the reference says") {
   CHECK(tally.overlaps >= 5);
 }
 
-TEST_CASE("meshes in units so small or large that float cannot hold their poses meet as the reference says") {
+TEST_CASE("meshes in units so small or large that float cannot hold their poses meet as the CPU says") {
   const auto [unit, world] = GENERATE(table<double, double>({{1e-30, 1e12}, {1e25, 1e-18}, {1e20, 1e-21}, {1, 1}}));
   CAPTURE(unit, world);
   Random random(7);
@@ -238,13 +238,13 @@ TEST_CASE("a distance of zero asks for overlap at the start") {
   CHECK(tally.clear >= 3);
 }
 
-TEST_CASE("two balls of many clusters meet as the reference says, however often they are asked") {
+TEST_CASE("two balls of many triangles meet as the CPU says, however often they are asked") {
   const uint32_t rings = GENERATE(100, 140, 180);
   CAPTURE(rings);
   Scene scene;
   const MeshId ball = add(scene, tools::makeUvSphere(rings, 2 * rings));
   scene.addObject({ball, {}, ~0u});
-  // Many cluster pairs: a search that takes several dispatches.
+  // A search of many rounds.
   std::vector<Query> queries(
       4, {.mesh = ball, .worldFromMesh = at({-0.5, 0.25, -7}), .direction = {0, 0, 1}, .distance = 50});
   queries.push_back({.mesh = ball, .worldFromMesh = at({-1.25, 0.5, -7}), .direction = {0, 0, 1}, .distance = 50});

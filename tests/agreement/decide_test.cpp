@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "reference/reference.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 #include "workloads/families.h"
 #include "workloads/shapes.h"
@@ -43,31 +43,31 @@ struct Shown {
 
 }  // namespace
 
-TEST_CASE("a decision is the reference's, in mode contact and by the reference, at exactly D and beside it too") {
+TEST_CASE("a decision is that of the whole answer, on the device and on the CPU, at exactly D and beside it too") {
   const tools::Family family = GENERATE(from_range(tools::kFamilies));
   CAPTURE(tools::nameOf(family));
   const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 96, .seed = 9});
   Shown shown(workload, Mode::contact);
-  reference::Reference reference(shown.player.scene());
+  CpuSweeper cpu(shown.player.scene());
   std::vector<Query> queries = shown.queries;
   for (const Query& query : shown.queries) {
-    const Result exact = reference.answer(query);
+    const Result exact = test::answer(cpu, query);
     if (exact.status != Status::hit) continue;
     for (double distance : {exact.t, std::nextafter(exact.t, 0), std::nextafter(exact.t, 1e300)}) {
       queries.push_back(query);
       queries.back().distance = distance;
     }
   }
-  const std::vector<Result> exact = reference.run(queries);
+  const std::vector<Result> exact = cpu.run(queries);
   queries = deciding(std::move(queries));
-  Sweeper sweeper(test::device(), shown.player.scene());
-  const std::vector<Result> swept = sweeper.run(queries), referred = reference.run(queries);
+  Sweeper sweeper(test::device(), shown.player.scene(), {.cpuBatch = 0});
+  const std::vector<Result> swept = sweeper.run(queries), onCpu = cpu.run(queries);
   for (size_t i = 0; i < queries.size(); ++i) {
     CAPTURE(i, exact[i].t, queries[i].distance);
     checkDecision(queries[i], swept[i], exact[i]);
-    checkDecision(queries[i], referred[i], exact[i]);
+    checkDecision(queries[i], onCpu[i], exact[i]);
     CHECK((swept[i].tier == Tier::contact || swept[i].tier == Tier::select));
-    CHECK(referred[i].tier == Tier::reference);
+    CHECK(onCpu[i].tier == Tier::reference);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a decision on a deep overlap costs a fraction of the whole answer") {
   for (double x : {0.0, 8.0, 16.0}) scene.addObject({mesh, {{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}, ~0u});
   const Pose across{{1, 0, 0, 0.3, 0, 0.8, -0.6, 0.2, 0, 0.6, 0.8, 0.1}};
   const Query whole{.mesh = mesh, .worldFromMesh = across, .direction = {1, 0.1, 0.2}, .distance = 20};
-  Sweeper sweeper(test::device(), scene);
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
   CHECK(sweeper.run({&whole, 1})[0].status == Status::overlap);
   const SweepStats all = sweeper.stats();
   const Query decide = deciding({whole})[0];

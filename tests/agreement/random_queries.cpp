@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "agreement/real_meshes.h"
-#include "reference/reference.h"
+#include "support/answer.h"
 #include "stability/promises.h"
-#include "sweep/sweeper.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
 
@@ -80,24 +79,23 @@ void RandomTally::add(const RandomTally& other) {
   }
   worstError = std::max(worstError, other.worstError);
   deviceSeconds += other.deviceSeconds;
-  referenceSeconds += other.referenceSeconds;
+  cpuSeconds += other.cpuSeconds;
 }
 
 /// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.
 struct RandomQueries::Stage {
-  Stage(const Device& device, ContactWay way)
-      : sweeper(device, scene, {}, std::make_shared<SceneCopy>(device.impl()), {.way = way}), reference(scene) {}
+  explicit Stage(const Device& device) : sweeper(device, scene, {.cpuBatch = 0}), cpu(scene) {}
 
   void show(const tools::Workload& workload) {
     tools::replaceBy(workload, 0, scene);
     sweeper.sync();
-    reference.sync();
+    cpu.sync();
   }
 
-  /// D becomes where the reference finds the contact, or a rounding beside it.
+  /// D becomes where the CPU finds the contact, or a rounding beside it.
   void moveDistances(std::vector<Query>& queries, uint64_t number) {
     for (Query& query : queries) {
-      const Result exact = reference.answer(query);
+      const Result exact = test::answer(cpu, query);
       const uint64_t which = number++ % 3;
       if (exact.status != Status::hit) continue;
       query.distance = which == 0 ? exact.t : std::nextafter(exact.t, which == 1 ? 0 : INFINITY);
@@ -105,11 +103,11 @@ struct RandomQueries::Stage {
   }
 
   Scene scene;
-  Sweeper::Impl sweeper;
-  reference::Reference reference;
+  Sweeper sweeper;
+  CpuSweeper cpu;
 };
 
-RandomQueries::RandomQueries(const Device& device, ContactWay way) : stage_(std::make_unique<Stage>(device, way)) {}
+RandomQueries::RandomQueries(const Device& device) : stage_(std::make_unique<Stage>(device)) {}
 RandomQueries::~RandomQueries() = default;
 
 RandomTally RandomQueries::run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,
@@ -123,26 +121,22 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
     std::vector<Query> queries;
     const uint64_t first = next;
     for (; next < std::min(end, (number + 1) * kQueriesPerScene); ++next) {
-      queries.push_back(tools::toQuery(workload.queries[next % kQueriesPerScene], range.mode, range.resolution));
+      queries.push_back(tools::toQuery(workload.queries[next % kQueriesPerScene], Mode::contact));
     }
     stage_->show(workload);
     if (range.family == kAtDistance) stage_->moveDistances(queries, first);
     const Clock::time_point start = Clock::now();
-    std::vector<Result> results(queries.size());
-    stage_->sweeper.begin(queries, results);
-    stage_->sweeper.finish();
+    const std::vector<Result> results = stage_->sweeper.run(queries);
     tally.deviceSeconds += secondsSince(start);
-    tally.pairs += stage_->sweeper.stats.pairs;
-    tally.cpuPairs += stage_->sweeper.stats.cpuPairs;
-    const Clock::time_point referenceStart = Clock::now();
-    const std::vector<Result> exact = stage_->reference.run(queries);
-    tally.referenceSeconds += secondsSince(referenceStart);
+    tally.pairs += stage_->sweeper.stats().pairs;
+    tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
+    const Clock::time_point cpuStart = Clock::now();
+    const std::vector<Result> exact = stage_->cpu.run(queries);
+    tally.cpuSeconds += secondsSince(cpuStart);
     for (size_t i = 0; i < queries.size(); ++i) {
-      const tools::Verdict verdict = range.mode == Mode::bounded
-                                         ? tools::judgeBracket(queries[i], results[i], exact[i])
-                                         : tools::judgeContact(stage_->scene, queries[i], results[i], exact[i]);
+      const tools::Verdict verdict = tools::judgeContact(stage_->scene, queries[i], results[i], exact[i]);
       count(tally, verdict, results[i], exact[i]);
-      if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reasons[i]);
+      if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reason(i));
     }
     onProgress(next - range.first);
   }

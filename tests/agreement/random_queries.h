@@ -1,4 +1,4 @@
-// Seeded random queries of every family, mode contact or bounded held against the reference. Query i of a family and a
+// Seeded random queries of every family, the search on the device held against the CPU's. Query i of a family and a
 // seed is the same whatever else is asked.
 #pragma once
 
@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "sweep/contact_recorder.h"
+#include "radar/radar.h"
 
 namespace radar::test {
 
 /// Those of workloads/families.h; `assimp` and `cgal`: meshes that people made, in random poses; `at-distance`: all
-/// families in turn, asked again with D at the t that the reference found, one ulp less and one ulp more.
+/// families in turn, asked again with D at the t that the CPU found, one ulp less and one ulp more.
 std::vector<std::string> familyNames();
 
 struct RandomTally {
@@ -23,20 +23,18 @@ struct RandomTally {
   uint64_t wrong = 0;     ///< queries with anything wrong
   double worstError = 0;  ///< |t - t*| / max(size of the sensor, t*)
   uint64_t pairs = 0, cpuPairs = 0;
-  double deviceSeconds = 0, referenceSeconds = 0;
+  double deviceSeconds = 0, cpuSeconds = 0;
   void add(const RandomTally& other);
 };
 
 class RandomQueries {
  public:
-  explicit RandomQueries(const Device& device, ContactWay way = ContactWay::cheaper);
+  explicit RandomQueries(const Device& device);
   ~RandomQueries();
 
   struct Range {
     std::string family;
     uint64_t seed = 1, first = 0, queries = 0;
-    Mode mode = Mode::contact;  ///< or bounded
-    uint32_t resolution = 0;    ///< of mode bounded; 0: it refines
   };
   /// `onWrong` is told the query's number and what is wrong; `onProgress` the queries done so far.
   RandomTally run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,

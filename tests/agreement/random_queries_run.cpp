@@ -1,4 +1,4 @@
-// The run of seeded random queries by command: mode contact or bounded against the reference, a table per family. Exit
+// The run of seeded random queries by command: the search on the device against the CPU's, a table per family. Exit
 // status 1 if anything is wrong.
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -15,7 +15,7 @@ using radar::test::RandomTally;
 void printHeader() {
   std::printf("%-13s %7s %6s %6s %6s | %6s %5s %5s %6s %5s %7s %4s %5s %6s | %8s | %11s %9s %8s | %7s %7s\n", "family",
               "queries", "hit", "clear", "overl.", "missed", "false", "none", "status", "pair", "bracket", "late",
-              "point", "normal", "error", "pairs", "cpu_pairs", "share", "s", "ref. s");
+              "point", "normal", "error", "pairs", "cpu_pairs", "share", "s", "CPU s");
 }
 
 void print(const std::string& family, const RandomTally& t) {
@@ -26,58 +26,45 @@ void print(const std::string& family, const RandomTally& t) {
               number(t.late), number(t.points), number(t.normals), t.worstError);
   std::printf("%11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.pairs), number(t.cpuPairs),
               t.pairs == 0 ? 0.0 : 100.0 * static_cast<double>(t.cpuPairs) / static_cast<double>(t.pairs),
-              t.deviceSeconds, t.referenceSeconds);
+              t.deviceSeconds, t.cpuSeconds);
   std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Holds mode contact or bounded against the reference on seeded random queries");
+  CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
-  uint32_t index = radar::kNone, resolution = 0;
+  uint32_t index = radar::kNone;
   bool withoutDoubles = false;
-  std::string mode = "contact", outer, way = "cheaper";
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
   app.add_option("--first", first, "Number of each family's first query: to ask one again");
   app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
-  app.add_option("--mode", mode, "What is asked")->check(CLI::IsMember({"contact", "bounded"}))->capture_default_str();
-  app.add_option("--way", way, "How mode contact goes about it")
-      ->check(CLI::IsMember({"cheaper", "direct", "masked"}))
-      ->capture_default_str();
-  app.add_option("--resolution", resolution, "Of mode bounded, pixels; 0: it refines")->capture_default_str();
-  app.add_option("--outer", outer, "How mode bounded draws; else as it is cheaper")
-      ->check(CLI::IsMember({"by-triangle", "by-pixel"}));
   app.add_option("--device", index, "As `cyber-radar devices` numbers them");
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = radar::test::familyNames();
 
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});
-  if (!outer.empty()) device.impl().outerByPixel = outer == "by-pixel";
   std::printf("device %s, driver %s, commit %s, seed %llu, %s doubles\n", device.name().c_str(),
               device.driver().c_str(), radar::tools::commit(), static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without");
   printHeader();
-  RandomQueries asking(device, way == "direct"   ? radar::ContactWay::direct
-                               : way == "masked" ? radar::ContactWay::masked
-                                                 : radar::ContactWay::cheaper);
+  RandomQueries asking(device);
   RandomTally all;
-  const radar::Mode asked = mode == "bounded" ? radar::Mode::bounded : radar::Mode::contact;
   const uint64_t each = (queries + families.size() - 1) / families.size();
   for (const std::string& family : families) {
     const auto onWrong = [&](uint64_t query, const std::string& words) {
-      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1 --mode %s --way %s --resolution %u\n",
-                  words.c_str(), family.c_str(), static_cast<unsigned long long>(seed),
-                  static_cast<unsigned long long>(query), mode.c_str(), way.c_str(), resolution);
+      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1\n", words.c_str(),
+                  family.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(query));
     };
     const auto onProgress = [&](uint64_t done) {
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),
                    static_cast<unsigned long long>(each));
     };
-    const RandomTally tally = asking.run({family, seed, first, each, asked, resolution}, onWrong, onProgress);
+    const RandomTally tally = asking.run({family, seed, first, each}, onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);
     all.add(tally);

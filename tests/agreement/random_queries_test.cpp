@@ -7,7 +7,7 @@
 
 using namespace radar;
 
-TEST_CASE("random queries of every family get the reference's answer in mode contact") {
+TEST_CASE("random queries of every family get the CPU's answer on the device") {
   test::RandomQueries asking(test::device());
   for (const std::string& family : test::familyNames()) {
     CAPTURE(family);
@@ -19,19 +19,6 @@ TEST_CASE("random queries of every family get the reference's answer in mode con
     CHECK(tally.queries == queries);
     CHECK(tally.wrong == 0);
     CHECK(tally.worstError <= 1e-12);
-    CHECK(tally.hits >= 5);
-  }
-}
-
-TEST_CASE("random queries of every family have a bracket that holds in mode bounded") {
-  test::RandomQueries asking(test::device());
-  for (const std::string& family : test::familyNames()) {
-    CAPTURE(family);
-    const auto onWrong = [](uint64_t query, const std::string& words) {
-      UNSCOPED_INFO("query " << query << ": " << words);
-    };
-    const test::RandomTally tally = asking.run({family, 2, 0, 130, Mode::bounded, 32}, onWrong, [](uint64_t) {});
-    CHECK(tally.wrong == 0);
     CHECK(tally.hits >= 5);
   }
 }
@@ -48,5 +35,4 @@ TEST_CASE("a random query is the same whichever queries are asked before it") {
   CHECK(parts.queries == 10);
   CHECK(parts.hits == whole.hits);
   CHECK(parts.overlaps == whole.overlaps);
-  CHECK(parts.pairs == whole.pairs);
 }

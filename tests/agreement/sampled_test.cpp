@@ -1,4 +1,4 @@
-// Mode sampled against the reference, on seeded workloads of every kind.
+// Mode sampled against the exact answers, on seeded workloads of every kind.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

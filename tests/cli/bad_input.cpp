@@ -66,6 +66,8 @@ TEST_CASE("every kind of bad query file ends with status 2, a message that names
                  "queries[0].exclude[0]", "one of the 1 objects");
   requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8, "d": 1)")), "queries[0].d",
                  "expected one of the keys");
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8, "mode": "bounded")")),
+                 "queries[0].mode", "expected mode sampled, contact or reference, got \"bounded\"");
   requireRefused(folder, queryFile(kGood + "," + kGood), "queries[1].id", "no other query");
   const std::string whole = queryFile(kGood);
   requireRefused(folder, whole.substr(0, whole.size() - 9), "line 2", "unexpected end of input");
@@ -85,10 +87,11 @@ TEST_CASE("options that do not exist, or have values out of range, are refused b
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));
   for (const auto& [options, words] :
-       {std::pair{"--mode exact", "--mode: expected mode"}, std::pair{"--tolerance -1", "a finite number of 0 or more"},
-        std::pair{"--mode exact", "got \"exact\""}, std::pair{"--tolerance wide", "--tolerance"},
-        std::pair{"--resolution 0", "--resolution"}, std::pair{"--resolution 4096", "--resolution"},
-        std::pair{"--resolution 64x", "\"64x\""}, std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
+       {std::pair{"--mode exact", "--mode: expected mode"}, std::pair{"--mode exact", "got \"exact\""},
+        std::pair{"--mode bounded", "expected mode sampled, contact or reference, got \"bounded\""},
+        std::pair{"--tolerance 1", "--tolerance"}, std::pair{"--resolution 0", "--resolution"},
+        std::pair{"--resolution 4096", "--resolution"}, std::pair{"--resolution 64x", "\"64x\""},
+        std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
         std::pair{"--out no/folder.jsonl", "no/folder.jsonl"}, std::pair{"--stats no/s.json", "no/s.json"}}) {
     CAPTURE(options);
     const Run run = runProgram(folder, std::string("query q.json ") + options);

@@ -13,6 +13,10 @@ namespace {
 
 using namespace radar;
 
+constexpr Mode kModes[] = {Mode::sampled, Mode::contact};
+// However few queries there are, the device answers them.
+constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
+
 // A box ahead of another.
 struct Boxes {
   Boxes() {
@@ -22,13 +26,11 @@ struct Boxes {
   }
   Result ask(const Device& device, Mode mode) {
     query.mode = mode;
-    return Sweeper(device, scene).run({&query, 1})[0];
+    return Sweeper(device, scene, kOnDevice).run({&query, 1})[0];
   }
   Scene scene;
   Query query{.direction = {0, 0, 1}, .distance = 10};
 };
-
-constexpr Mode kModes[] = {Mode::sampled, Mode::bounded, Mode::contact};
 
 }  // namespace
 
@@ -95,12 +97,13 @@ TEST_CASE("two engines on two threads share a host's queue under its lock") {
     threads.emplace_back([&] {
       Boxes boxes;
       const Device device = Device::adopt(host.handles);
-      Sweeper sweeper(device, boxes.scene);
+      Sweeper sweeper(device, boxes.scene, kOnDevice);
       for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1})[0].t;
     });
   }
   threads.clear();
   CHECK(t == std::array<double, 2>{3, 3});
+  CHECK(locked >= 2 * 20);
   CHECK(locked == test::counts().submissions);
 }
 
@@ -109,11 +112,16 @@ TEST_CASE("several sweepers share one device and one scene") {
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   const ObjectId object = scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
-  Sweeper first(test::device(), scene), second(test::device(), scene);
-  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled};
-  CHECK(first.run({&query, 1})[0].t == second.run({&query, 1})[0].t);
-  scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
-  CHECK(second.run({&query, 1})[0].t == first.run({&query, 1})[0].t);
+  Sweeper first(test::device(), scene, kOnDevice), second(test::device(), scene, kOnDevice);
+  for (const Mode mode : kModes) {
+    const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = mode};
+    scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
+    CHECK(first.run({&query, 1})[0].t == Approx(3));
+    CHECK(second.run({&query, 1})[0].t == Approx(3));
+    scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
+    CHECK(second.run({&query, 1})[0].t == Approx(5));
+    CHECK(first.run({&query, 1})[0].t == Approx(5));
+  }
 }
 
 TEST_CASE("a device that does not exist is refused with the number there are") {

@@ -7,10 +7,12 @@
 #include <random>
 
 #include "embed/on_device.h"
+#include "embed/renderer.h"
+#include "exact/dyadic.h"
 #include "gpu/barrier.h"
-#include "gpu/pipeline.h"
 #include "radar/recorder.h"
-#include "spirv/copy_words_comp.h"
+#include "support/buffer_words.h"
+#include "support/exact_placement.h"
 #include "sweep/host_format.h"
 #include "sweep/host_geometry.h"
 #include "workloads/families.h"
@@ -23,10 +25,7 @@ using test::append;
 using test::execute;
 using test::kRoom;
 using test::OnDevice;
-
-bool sameBits(const Result& p, const Result& q) {
-  return std::memcmp(&p, &q, sizeof(Result)) == 0;
-}
+using test::sameBits;
 
 /// A box with room around the vertices.
 Bounds around(std::span<const float> positions) {
@@ -110,8 +109,8 @@ class Hosted {
     const Mesh& mesh = scene.impl().meshes[instance.mesh];
     Bounds box;
     for (size_t k = 0; k < 3; ++k) {
-      box.lo[k] = mesh.centre[k] - mesh.halfExtent[k];
-      box.hi[k] = mesh.centre[k] + mesh.halfExtent[k];
+      box.lo[k] = mesh.origin[k] + mesh.box.lo[k];
+      box.hi[k] = mesh.origin[k] + mesh.box.hi[k];
     }
     Bounds bounds = placed(box, instance.worldFromMesh);
     // What float arithmetic loses of a mesh far from its origin.
@@ -140,27 +139,85 @@ class Hosted {
   std::vector<MovedObjects> moved_;
 };
 
-/// The words of a storage buffer.
-std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count) {
-  const Device::Impl& device = test::device().impl();
-  gpu::Bindings bindings(
-      device,
-      std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}}, 4);
-  const gpu::Pipeline pipeline = gpu::computePipeline(device, bindings.layout(), k_copy_words_comp, "copy words");
-  gpu::Buffer out(device, "words", gpu::Residence::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  out.reserve(4 * count);
-  bindings.setBuffer(0, buffer);
-  bindings.setBuffer(1, out);
-  gpu::Submission submission(device, false);
-  const gpu::Commands commands = submission.begin();
-  bindings.bind(commands);
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
-  commands->CmdDispatch(commands, static_cast<uint32_t>((count + 63) / 64), 1, 1);
-  gpu::writtenToHost(commands);
-  submission.submitAndWait();
-  std::vector<uint32_t> words(count);
-  std::memcpy(words.data(), out.mapped(), 4 * count);
-  return words;
+/// A scene's copy on the device, with what a host has put in place of it.
+struct OnDeviceScene {
+  OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : resident(test::device().impl()) {
+    CHECK(whatIsWrong(geometry, scene).empty());
+    const Device::Impl& device = test::device().impl();
+    HostGeometryPass pass(device, resident);
+    gpu::Upload upload(device);
+    pass.stage(geometry, scene.impl());
+    upload.begin(resident.prepare(scene.impl()));
+    resident.upload(scene.impl(), upload);
+    gpu::Submission submission(device, false);
+    const gpu::Commands commands = submission.begin();
+    upload.record(commands);
+    gpu::uploadToRead(commands);
+    gpu::transferToComputeReadWrite(commands);
+    pass.record(commands);
+    submission.submitAndWait();
+    CHECK(pass.stray().empty());
+  }
+  GpuScene resident;
+};
+
+/// What a deformed mesh's vertices and nodes are there.
+struct Deformed {
+  Deformed(const Scene& scene, const DeformedMesh& deformed) {
+    const OnDeviceScene there(scene, {.meshes = {&deformed, 1}});
+    const GpuScene::Buffers& buffers = there.resident.buffers();
+    const Mesh& mesh = scene.impl().meshes[deformed.mesh];
+    const gpu::MeshRecord& record = there.resident.record(deformed.mesh);
+    vertices = test::elementsOf(buffers.vertices, record.firstVertex, mesh.vertexCount());
+    nodes = test::elementsOf(buffers.meshNodes, record.firstNode, mesh.tree.nodes.size());
+    firstNode = record.firstNode;
+    firstTriangle = record.firstTriangle;
+  }
+
+  std::vector<gpu::Vertex> vertices;
+  std::vector<gpu::MeshNode> nodes;
+  uint32_t firstNode, firstTriangle;
+};
+
+/// Exactly: |sum of normal * q - middle| <= half.
+bool isBetween(const float (&normal)[3], const std::array<float, 3>& q, float middle, float half) {
+  using exact::Dyadic;
+  Dyadic at = Dyadic(0.0) - Dyadic(middle);
+  for (size_t k = 0; k < 3; ++k) at = at + Dyadic(normal[k]) * Dyadic(q[k]);
+  return (Dyadic(half) - at).sign() >= 0 && (Dyadic(half) + at).sign() >= 0;
+}
+
+/// Every node's box and slab hold the vertices below it as they are now, and leaves are where the scene's tree has
+/// them.
+void checkNodes(const Mesh& mesh, const Deformed& deformed) {
+  constexpr float kAxes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  size_t slabs = 0, thin = 0;
+  for (size_t n = 0; n < deformed.nodes.size(); ++n) {
+    const gpu::MeshNode& node = deformed.nodes[n];
+    const uint32_t link = mesh.tree.nodes[n].link;
+    const bool leaf = (link & gpu::kLinkLeaf) != 0;
+    if (node.link != link + (leaf ? deformed.firstTriangle : deformed.firstNode)) FAIL("link of node " << n);
+    slabs += node.normal[0] != 0 || node.normal[1] != 0 || node.normal[2] != 0;
+    thin += leaf && node.slabHalf < 0.3f;
+    const MeshTree::Below& below = mesh.tree.below[n];
+    for (uint32_t place = below.first; place < below.first + below.count; ++place) {
+      for (size_t i = 0; i < 3; ++i) {
+        const gpu::Vertex& vertex = deformed.vertices[mesh.indices[3 * size_t{mesh.tree.order[place]} + i]];
+        std::array<float, 3> q;
+        for (size_t k = 0; k < 3; ++k) q[k] = static_cast<float>((vertex.position[k] - mesh.origin[k]) / mesh.unit);
+        for (size_t k = 0; k < 3; ++k) {
+          if (!isBetween(kAxes[k], q, node.centre[k], node.halfExtent[k])) {
+            FAIL("the box of node " << n << " leaves out a vertex of place " << place);
+          }
+        }
+        if (!isBetween(node.normal, q, node.slabMiddle, node.slabHalf)) {
+          FAIL("the slab of node " << n << " leaves out a vertex of place " << place);
+        }
+      }
+    }
+  }
+  CHECK(slabs > 0);
+  CHECK(thin > 0);
 }
 
 /// Asks `rounds` scenes of each family.
@@ -175,16 +232,15 @@ void meetHosted(uint32_t rounds) {
     tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = seed});
     const Hosted hosted(workload, seed, scene);
     tools::replaceBy(workload, 0, truth);
-    std::vector<Query> queries;
-    for (const auto& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
+    std::vector<Query> queries = test::queriesOf(workload);
     for (size_t q = 0; q < queries.size(); q += 7) queries[q].decide = true;
     const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, hosted.geometry());
     for (size_t q = 0; q < queries.size(); ++q) {
       CAPTURE(tools::nameOf(family), seed, q, got[q].flags, got[q].t, expected[q].t);
       ++answers;
       if (got[q].flags != 0) {
-        // Rest poses at random make every cluster as large as the mesh: room may run out, and nothing else.
-        CHECK((got[q].flags & (kFlagOpen | kFlagClusterPairs | kFlagContenders | kFlagDispatches)) != 0);
+        // Rest poses at random make every node as large as the mesh: room may run out, and nothing else.
+        CHECK((got[q].flags & (kFlagOpen | kFlagCandidates | kFlagRounds)) != 0);
         CHECK(got[q].status == (got[q].flags == kFlagOpen ? Status::undecided : Status::invalid));
         if (got[q].flags == kFlagOpen && expected[q].status != Status::clear) CHECK_FALSE(got[q].lo > expected[q].hi);
         ++refused;
@@ -207,7 +263,7 @@ void meetHosted(uint32_t rounds) {
 
 }  // namespace
 
-TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit") {
+TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit", "[subgroups]") {
   meetHosted(1);
 }
 
@@ -215,8 +271,7 @@ TEST_CASE("what a host deforms and moves is met as in a scene that has it so, in
   meetHosted(60);
 }
 
-TEST_CASE(
-    "every 16-bit position comes to the device as it is read while loading, and every cluster holds its vertices") {
+TEST_CASE("every 16-bit position comes to the device as it is read while loading, and every node holds what is below") {
   const VkFormat format = GENERATE(VK_FORMAT_R16G16B16_SFLOAT, VK_FORMAT_R16G16B16A16_SNORM, VK_FORMAT_R16G16B16_UNORM);
   const uint32_t vertices = 21846;
   const HostPositions positions{
@@ -238,48 +293,97 @@ TEST_CASE(
   for (uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
   const MeshId mesh = scene.addMesh(std::vector<float>(expected.size()), indices, around(expected));
 
-  ResidentScene resident(test::device().impl());
-  HostGeometryPass pass(test::device().impl(), resident);
   const OnDevice buffer(bytes);
   HostPositions there = positions;
   there.buffer = buffer.get();
-  const DeformedMesh deformed{mesh, there};
-  const HostGeometry geometry{.meshes = {&deformed, 1}};
-  CHECK(whatIsWrong(geometry, scene).empty());
-  gpu::Upload upload(test::device().impl());
-  upload.begin(resident.prepare(scene.impl()));
-  resident.upload(scene.impl(), upload);
-  pass.stage(geometry, scene.impl());
-  gpu::Submission submission(test::device().impl(), false);
-  const gpu::Commands commands = submission.begin();
-  upload.record(commands);
-  pass.record(commands, resident.buffers().meshes, 0, resident.buffers().meshes);
-  submission.submitAndWait();
-
-  const std::vector<uint32_t> originals = wordsOf(resident.buffers().originals, expected.size());
-  CHECK(std::memcmp(originals.data(), expected.data(), 4 * expected.size()) == 0);
-  const std::vector<uint32_t> words = wordsOf(resident.buffers().positions, expected.size());
-  std::vector<float> recentred(words.size());
-  std::memcpy(recentred.data(), words.data(), 4 * words.size());
-  const Mesh& inner = scene.impl().meshes[mesh];
+  const Deformed deformed(scene, {mesh, there});
   for (size_t i = 0; i < expected.size(); ++i) {
-    const double exact = expected[i] - inner.centre[i % 3];
-    if (std::abs(recentred[i] - exact) > 0x1p-23 * std::abs(exact) + 0x1p-126) FAIL("vertex " << i / 3);
+    if (std::memcmp(&deformed.vertices[i / 3].position[i % 3], &expected[i], 4) != 0) FAIL("vertex " << i / 3);
   }
-  const std::vector<uint32_t> nodeWords =
-      wordsOf(resident.buffers().nodes, inner.clusters.nodes.size() * sizeof(gpu::ClusterRecord) / 4);
-  size_t leaves = 0;
-  for (size_t n = 0; n < inner.clusters.nodes.size(); ++n) {
-    gpu::ClusterRecord node;
-    std::memcpy(&node, &nodeWords[n * sizeof(node) / 4], sizeof(node));
-    for (size_t slot = node.first; slot < node.first + node.count; ++slot) {
-      for (size_t i = 0; i < 9; ++i) {
-        const size_t vertex = indices[3 * size_t{inner.clusters.order[slot]} + i / 3], k = i % 3;
-        if (std::abs(double{recentred[3 * vertex + k]} - node.centre[k]) > node.halfExtent[k]) FAIL("cluster " << n);
-      }
-    }
-    leaves += node.count != 0;
-  }
-  CHECK(leaves == inner.clusters.leaves);
+  checkNodes(scene.impl().meshes[mesh], deformed);
   CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("every node of a deformed mesh holds what is below, however far that is from its rest pose") {
+  std::mt19937 random(17);
+  for (const tools::MeshData& data :
+       {tools::makeTorus(3, 1, 30, 20), tools::makeHook(3, 1, 0.5, 0.2), tools::makeUvSphere(40, 40)}) {
+    for (const double away : {0.0, 1000.0}) {
+      std::vector<float> rest = data.positions, moved = data.positions;
+      for (size_t i = 0; i < rest.size(); ++i) {
+        rest[i] = static_cast<float>(rest[i] + away);
+        moved[i] = static_cast<float>(rest[i] + 0.3 * (static_cast<double>(random() >> 8) * 0x1p-23 - 1));
+      }
+      Bounds bounds = around(rest);
+      for (size_t k = 0; k < 3; ++k) {
+        bounds.lo[k] -= 0.4;
+        bounds.hi[k] += 0.4;
+      }
+      Scene scene;
+      scene.addMesh(data.positions, data.indices);  // so that the other's first node is not the buffer's
+      const MeshId mesh = scene.addMesh(rest, data.indices, bounds);
+      std::vector<std::byte> bytes(gpu::bytesOf(moved));
+      std::memcpy(bytes.data(), moved.data(), bytes.size());
+      const OnDevice buffer(bytes);
+      CAPTURE(data.triangleCount(), away);
+      const Deformed deformed(scene, {mesh, {.buffer = buffer.get()}});
+      CHECK(std::memcmp(deformed.vertices[0].position, moved.data(), 12) == 0);
+      checkNodes(scene.impl().meshes[mesh], deformed);
+    }
+  }
+}
+
+TEST_CASE("an object that a host moves is placed where its transform says, but for what its placement says",
+          "[subgroups]") {
+  std::mt19937_64 bits(23);
+  const auto uniform = [&](double lo, double hi) {
+    return lo + (hi - lo) * static_cast<double>(bits() >> 11) * 0x1p-53;
+  };
+  const auto powerOfTwo = [&](int lowest, int highest) {
+    return std::ldexp(uniform(1, 2), lowest + static_cast<int>(bits() % static_cast<uint64_t>(highest - lowest + 1)));
+  };
+  Scene scene;
+  for (int i = 0; i < 40; ++i) {
+    const double size = powerOfTwo(-20, 20), baked = i % 2 == 0 ? 0 : size * powerOfTwo(-4, 12);
+    std::vector<float> positions;
+    const double middle[3] = {uniform(-baked, baked), uniform(-baked, baked), uniform(-baked, baked)};
+    for (size_t v = 0; v < 18; ++v) positions.push_back(static_cast<float>(middle[v % 3] + uniform(-size, size)));
+    scene.addMesh(positions, std::vector<uint32_t>{0, 1, 2, 3, 4, 5});
+  }
+  std::vector<std::byte> bytes;
+  std::vector<ObjectId> objects;
+  std::vector<Pose> poses;
+  for (uint32_t i = 0; i < 1200; ++i) {
+    Pose pose;
+    const double scale = powerOfTwo(-30, 30), away = i % 3 == 0 ? 0 : powerOfTwo(-40, 55);
+    for (double& value : pose.m) value = static_cast<float>(scale * uniform(-1, 1));
+    // Some are flat, or nearly.
+    for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 2] *= i % 5 == 0 ? 0 : i % 5 == 1 ? 0x1p-20 : 1;
+    for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 3] = static_cast<float>(uniform(-away, away));
+    for (const double value : pose.m) append<float>(bytes, {static_cast<float>(value)});
+    poses.push_back(pose);
+    objects.push_back(scene.addObject({i % 40, {}, ~0u}));
+    scene.setBounds(objects.back(), {{-0x1p79, -0x1p79, -0x1p79}, {0x1p79, 0x1p79, 0x1p79}});
+  }
+  const OnDevice transforms(bytes);
+  const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
+  const OnDeviceScene there(scene, {.objects = {&moved, 1}});
+  const std::vector<gpu::Placement> placements =
+      test::elementsOf(there.resident.buffers().placements, 0, objects.size());
+  const std::vector<gpu::ObjectRecord> records = test::elementsOf(there.resident.buffers().objects, 0, objects.size());
+  test::BoundsUsed used;
+  size_t inRange = 0;
+  for (uint32_t i = 0; i < objects.size(); ++i) {
+    CAPTURE(i);
+    CHECK(records[i].mesh == i % 40);
+    CHECK(std::equal(poses[i].m.begin(), poses[i].m.end(), records[i].pose));
+    CHECK(placements[i].mesh == i % 40);
+    CHECK(placements[i].mask == ~0u);
+    CHECK(placements[i].root == there.resident.record(i % 40).firstNode);
+    if (!isInRange(placements[i])) continue;
+    ++inRange;
+    test::checkPlacement(scene.impl().meshes[i % 40], poses[i], placements[i], used);
+  }
+  CHECK(inRange > 1100);
+  CHECK(used.inverse > 0.01);
 }

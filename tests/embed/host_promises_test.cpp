@@ -11,6 +11,7 @@
 #include "gpu/pipeline.h"
 #include "radar/recorder.h"
 #include "spirv/skin_comp.h"
+#include "workloads/shapes.h"
 
 struct Moving {
   radar::MeshId body;
@@ -100,47 +101,82 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what float cannot place in a sensor's frame is met, or has left its bounds") {
-  Scene truth, scene;
+TEST_CASE("what floats cannot hold is out of range, or has left its bounds, and nothing else is") {
+  Scene scene;
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
-  std::vector<float> apart;  // two clusters
-  std::vector<uint32_t> indices;
-  for (uint32_t i = 0; i < 3 * 128; ++i) {
-    const float side = i < 3 * 64 ? -5e37f : 5e37f;
-    apart.insert(apart.end(), {side + 1e36f * corners[3 * (i % 3)], 1e36f * corners[3 * (i % 3) + 1], 0});
-    indices.push_back(i);
-  }
-  for (Scene* one : {&truth, &scene}) {
-    const MeshId mesh = one->addMesh(corners, triangle);
-    one->addMesh(apart, indices);
-    one->addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0.5, 0, 0, 1, 0.5, 0, 0, 0, 1, 0}}});
-  }
-  const ObjectId object = 0;
-  scene.setBounds(object, {{-2, -2, -2}, {2, 2, 2}});
-  std::vector<Query> queries{{.mesh = 1, .direction = {0, 0, 1}, .distance = 1e38},
-                             {.mesh = 0, .direction = {0, 0, 1}, .distance = 1e38},
-                             {.mesh = 0, .direction = {1, 1, 1}, .distance = 20}};
-  queries[0].worldFromMesh.m[3] = 5e37;
-  queries[0].worldFromMesh.m[11] = -1e37;
-  queries[1].worldFromMesh.m[11] = -1e38;
-  for (const size_t k : {3, 7, 11}) queries[2].worldFromMesh.m[k] = -5;
-  Sweeper sweeper(test::device(), truth);
+  const MeshId mesh = scene.addMesh(corners, triangle);
+  const ObjectId object = scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 30, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  scene.setBounds(object, {{-2, -2, 3}, {2, 2, 7}});
+  std::vector<Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = mesh, .direction = {0, 0, 1}, .distance = 20},
+                             {.mesh = mesh, .direction = {0, 0, 1}, .distance = 20}};
+  queries[1].worldFromMesh.m[3] = 30;
+  queries[2].worldFromMesh.m[11] = -1e25;
   Recorder recorder(test::device(), scene, kRoom);
-  // A flat mesh has no use for the third column.
-  const OnDevice there(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 0})),
+  // A flat mesh has no use for the third column, but floats for squares of it.
+  const OnDevice usual(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4})),
+      huge(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 4})),
       none(floats({3e38f, -3e38f, 0, 0, 3e38f, -3e38f, 0, 0, 0, 0, 1, 0}));
-  MovedObjects moved{.transforms = there.get(), .objects = {&object, 1}};
-  const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, {.objects = {&moved, 1}});
-  for (size_t q = 0; q < queries.size(); ++q) {
-    CAPTURE(q);
-    CHECK(expected[q].status == Status::hit);
-    CHECK(got[q].status == Status::hit);
-    CHECK(got[q].t == Approx(expected[q].t));
-  }
-  moved.transforms = none.get();
-  for (const Result& result : execute(recorder, queries, {.objects = {&moved, 1}})) CHECK(result.flags == kFlagBounds);
+  const auto look = [&](const OnDevice& transform) {
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
+    return execute(recorder, queries, {.objects = {&moved, 1}});
+  };
+  const auto expectHit = [](const Result& result, double t) {
+    CHECK(result.status == Status::hit);
+    CHECK(result.flags == 0);
+    CHECK(result.t == Approx(t));
+  };
+  const auto expectRefused = [](const Result& result, uint32_t flag) {
+    CHECK(result.status == Status::invalid);
+    CHECK(result.flags == flag);
+    CHECK(std::isnan(result.lo));
+  };
+  std::vector<Result> read = look(usual);
+  expectHit(read[0], 4);
+  expectHit(read[1], 5);
+  expectRefused(read[2], kFlagRange);
+  read = look(huge);
+  expectRefused(read[0], kFlagRange);
+  expectHit(read[1], 5);
+  read = look(none);
+  for (const Result& result : read) expectRefused(result, kFlagBounds);
+  // Where one object is too far away for the tree, every query is refused.
+  scene.setPose(object, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1e25}});
+  for (const Result& result : execute(recorder, queries)) expectRefused(result, kFlagRange);
   CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("a transform that flattens a mesh is met as what it leaves, and one that leaves a point is out of range") {
+  Scene scene;
+  const tools::MeshData box = tools::makeBox({2, 2, 2});
+  const MeshId cube = scene.addMesh(box.positions, box.indices);
+  const ObjectId object = scene.addObject({.mesh = cube, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9}}});
+  scene.setBounds(object, {{-3, -3, 3}, {3, 3, 12}});
+  Query query{.mesh = cube, .direction = {0, 0, 1}, .distance = 20};
+  Recorder recorder(test::device(), scene);
+  const auto look = [&](std::initializer_list<float> rows) {
+    const OnDevice transform(floats(rows));
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
+    return execute(recorder, {&query, 1}, {.objects = {&moved, 1}})[0];
+  };
+  const Result whole = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 1, 8}),
+               flat = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 0, 8}),
+               line = look({1, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8}),
+               point = look({0, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8});
+  CHECK(whole.status == Status::hit);
+  CHECK(whole.t == 6);
+  CHECK(flat.status == Status::hit);
+  CHECK(flat.t == 7);
+  CHECK(line.status == Status::hit);
+  CHECK(line.t == 7);
+  // Sizes of 0 have no floats beside them.
+  CHECK(point.status == Status::invalid);
+  CHECK(point.flags == kFlagRange);
+  const Result tiny = look({1e-30f, 0, 0, 0.25f, 0, 1e-30f, 0, 0.25f, 0, 0, 1e-30f, 8});
+  CHECK(tiny.status == Status::invalid);
+  CHECK(tiny.flags == kFlagRange);
 }
 
 TEST_CASE("what a host no longer names is as the scene has it") {
@@ -169,6 +205,44 @@ TEST_CASE("what a host no longer names is as the scene has it") {
   CHECK(look({.meshes = {&deformed, 1}}) == Approx(5));
   wall.scene.removeObject(wall.wall);
   CHECK(std::isnan(look({})));
+}
+
+TEST_CASE("whichever meshes a recording deforms, what is met is where they are now") {
+  // Four walls side by side. Each pair of them in turn is deformed, to the side, where small sensors then meet them.
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  Scene scene;
+  for (uint32_t i = 0; i < 4; ++i) {
+    const MeshId mesh = scene.addMesh(corners, triangle, Bounds{{-2, -2, -2}, {2, 2, 2}});
+    scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 10.0 * i, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  }
+  const MeshId sensor = scene.addMesh(corners, triangle);
+  std::vector<Query> queries;
+  for (uint32_t i = 0; i < 4; ++i) {
+    queries.push_back({.mesh = sensor,
+                       .worldFromMesh = {{0.1, 0, 0, 10.0 * i + 1.6, 0, 0.1, 0, -0.8, 0, 0, 0.1, 0}},
+                       .direction = {0, 0, 1},
+                       .distance = 20});
+  }
+  const OnDevice aside(floats({0, -1, 1, 2, -1, 1, 1, 1, 1}));
+  Recorder recorder(test::device(), scene);
+  std::vector<std::array<MeshId, 2>> pairs;
+  for (MeshId p = 0; p < 4; ++p) {
+    for (MeshId q = p + 1; q < 4; ++q) pairs.push_back({p, q});
+  }
+  for (const auto& last : pairs) {
+    for (const auto& next : pairs) {
+      for (const auto& pair : {last, next}) {
+        const HostPositions there{.buffer = aside.get()};
+        const DeformedMesh deformed[] = {{pair[0], there}, {pair[1], there}};
+        const std::vector<Result> read = execute(recorder, queries, {.meshes = deformed});
+        for (uint32_t i = 0; i < 4; ++i) {
+          CAPTURE(last[0], last[1], pair[0], pair[1], i);
+          CHECK(read[i].status == (i == pair[0] || i == pair[1] ? Status::hit : Status::clear));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("a scene without objects is recorded, too") {

@@ -42,12 +42,7 @@ void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
 }
 
 /// For what the tests record.
-inline constexpr Capacity kRoom{.queries = 48,
-                                .clusters = 1u << 17,
-                                .clusterPairs = 1u << 22,
-                                .contenders = 1u << 15,
-                                .dispatches = 40,
-                                .openPairs = 1u << 17};
+inline constexpr Capacity kRoom{.queries = 48, .candidates = 1u << 17, .rounds = 64, .openPairs = 1u << 17};
 
 inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries,
                                    const HostGeometry& geometry = {}) {
@@ -55,6 +50,10 @@ inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> qu
   recorder.record(submission.begin(), queries, geometry);
   submission.submitAndWait();
   return recorder.read();
+}
+
+inline bool sameBits(const Result& p, const Result& q) {
+  return std::memcmp(&p, &q, sizeof(Result)) == 0;
 }
 
 }  // namespace radar::test

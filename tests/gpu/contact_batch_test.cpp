@@ -31,6 +31,9 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
   }
 }
 
+// SweeperOptions::cpuBatch: all on the device, all beside it.
+constexpr uint32_t kOnDevice = 0, kAlone = kNone - 1;
+
 Pose at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
@@ -41,25 +44,34 @@ MeshId add(Scene& scene, const tools::MeshData& mesh) {
 
 }  // namespace
 
-TEST_CASE("in mode contact a batch of any size gives the same bits as one query at a time") {
+TEST_CASE("in mode contact a batch of any size gives the same bits as one query at a time, on the device and beside it") {
   Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
-  Sweeper sweeper(test::device(), loaded.player.scene());
+  const uint32_t cpuBatch = GENERATE(kOnDevice, 500u, kNone);
+  CAPTURE(cpuBatch);
+  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = cpuBatch});
   std::vector<Result> single;
   for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
   CHECK(std::count_if(single.begin(), single.end(), [](const Result& r) { return r.status == Status::hit; }) > 100);
   for (size_t size : {63, 64, 65, 1234}) {
     CAPTURE(size);
     checkSame(sweeper.run(std::span(loaded.queries).first(size)), {single.begin(), single.begin() + size});
+    if (size < cpuBatch && cpuBatch != kNone) CHECK(sweeper.stats().cpuQueries == size);
+    // Without doubles, the device may leave some open.
+    if (size >= cpuBatch && test::device().doubles()) CHECK(sweeper.stats().cpuQueries == 0);
   }
+  Sweeper processor(test::device(), loaded.player.scene(), {.cpuBatch = kAlone});
+  checkSame(processor.run(loaded.queries), single);
+  CHECK(processor.stats().cpuQueries == loaded.queries.size());
+  CHECK(processor.stats().submissions == 0);
 }
 
 TEST_CASE("in mode contact soups give the same bits alone, in a batch, reversed and from another sweeper") {
   Loaded loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
-  Sweeper sweeper(test::device(), loaded.player.scene());
+  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
   std::vector<Result> single;
   for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
   checkSame(sweeper.run(loaded.queries), single);
-  Sweeper other(test::device(), loaded.player.scene());
+  Sweeper other(test::device(), loaded.player.scene(), {.cpuBatch = kAlone});
   std::reverse(loaded.queries.begin(), loaded.queries.end());
   std::vector<Result> backward = other.run(loaded.queries);
   std::reverse(backward.begin(), backward.end());
@@ -68,7 +80,7 @@ TEST_CASE("in mode contact soups give the same bits alone, in a batch, reversed 
 
 TEST_CASE("queries of both modes in one batch get the bits they get apart") {
   Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}));
-  Sweeper sweeper(test::device(), loaded.player.scene());
+  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
   std::vector<Query> contact = loaded.queries, sampled = loaded.queries, mixed = loaded.queries;
   for (size_t i = 0; i < mixed.size(); ++i) {
     sampled[i].mode = Mode::sampled;
@@ -87,7 +99,7 @@ TEST_CASE("in mode contact a mesh of 160,000 triangles is answered as a scene an
   REQUIRE(scene.mesh(sphere).triangleCount() > 159'000);
   scene.addObject({sphere, {}, ~0u});
   scene.addObject({cube, at(0.1, 0.2, 20), ~0u});
-  Sweeper sweeper(test::device(), scene);
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kAlone)});
   // The ball's points nearest to a corner of the box, where it is highest over the box: at most its radius from z = 0.
   const double reach = std::sqrt(1 - 0.1 * 0.1 - 0.05 * 0.05);
   const auto check = [&](const Query& query, ObjectId object, double least, double most) {
@@ -121,7 +133,7 @@ TEST_CASE("of many objects met at exactly the same moment the least id is told")
   for (int y = 31; y >= 0; --y) {
     for (int x = 31; x >= 0; --x) scene.addObject({box, at(2 * x, 2 * y, 0), ~0u});
   }
-  Sweeper sweeper(test::device(), scene);
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kAlone)});
   Query query{.mesh = plate, .worldFromMesh = at(32, 32, -6), .direction = {0, 0, 0.5}, .distance = 10};
   for (uint32_t least = 0; least < 4; ++least) {
     CAPTURE(least);

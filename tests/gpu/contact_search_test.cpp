@@ -1,100 +1,84 @@
-// The contact tier's search with its culling and rounds switched off, with the least room, and over long lists.
-#include <algorithm>
+// The contact tier's search with the least room, in the shortest rounds, and over long lists: nothing is lost.
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <cstring>
 
-#include "gpu/device.h"
+#include <cstring>
+#include <map>
+#include <ostream>
+
 #include "support/test_device.h"
-#include "sweep/contact_decode.h"
-#include "sweep/decode.h"
+#include "sweep/sweeper.h"
 #include "workloads/families.h"
 #include "workloads/shapes.h"
+
+namespace radar {
+
+std::ostream& operator<<(std::ostream& out, const SearchRoom& room) {
+  return out << "tasks " << room.tasks << ", candidates " << room.candidates << ", unresolved " << room.unresolved
+             << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width;
+}
+
+}  // namespace radar
 
 namespace {
 
 using namespace radar;
 
-/// Every cluster of the sensor and of every object that takes part, placed so loosely that each box holds everything:
-/// all pairs of clusters have gap 0, which leaves one round, and every pair of triangles is solved.
-ContactPlan everything(const Query& query, const Scene::Impl& scene, const Hierarchy& hierarchy) {
-  ContactPlan plan = planContact(query, scene, hierarchy);
-  plan.placements.clear();
-  plan.sensor.clear();
-  plan.scene.clear();
-  const auto add = [&](MeshId mesh, ObjectId object, std::vector<gpu::ClusterRef>& refs) {
-    const auto placement = static_cast<uint32_t>(plan.placements.size());
-    plan.placements.push_back({.frameFromMesh = {}, .error = 1e15f, .mesh = mesh, .object = object, .moved = kNone});
-    const std::vector<ClusterNode>& nodes = scene.meshes[mesh].clusters.nodes;
-    for (uint32_t i = 0; i < nodes.size(); ++i) {
-      if (nodes[i].count != 0) refs.push_back({placement, i});
-    }
-  };
-  add(query.mesh, kNone, plan.sensor);
-  for (ObjectId id = 0; id < scene.objects.size(); ++id) add(scene.objects[id].object.mesh, id, plan.scene);
-  return plan;
+/// Made once for each shape: compiling them takes a second.
+std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
+  const Device& device = test::device();  // outlives the kernels
+  static std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>> all;
+  auto& kernels = all[{shape.queue, shape.stack}];
+  if (!kernels) kernels = std::make_shared<ContactKernels>(device.impl(), shape);
+  return kernels;
 }
 
-/// A search of its own, over the plans it is given.
+/// On the device, whatever the batch's size.
 class Searching {
  public:
-  Searching(const Scene& scene, const ContactRoom& room)
-      : scene_(scene), resident_(test::device().impl()), recorder_(test::device().impl(), resident_, false, room) {
-    hierarchy_.update(scene.impl());
-  }
+  explicit Searching(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
+      : sweeper_(test::device(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
+                 kernelsOf(shape)) {}
 
-  std::vector<Result> run(const std::vector<Query>& queries, bool cull) {
-    std::vector<ContactPlan> plans;
-    for (const Query& query : queries) {
-      plans.push_back(cull ? planContact(query, scene_.impl(), hierarchy_)
-                           : everything(query, scene_.impl(), hierarchy_));
-    }
-    std::vector<Result> results(queries.size(), decodeClear());
-    std::vector<const ContactPlan*> asked;
-    std::vector<size_t> which;
-    for (size_t i = 0; i < plans.size(); ++i) {
-      if (plans[i].scene.empty()) continue;
-      asked.push_back(&plans[i]);
-      which.push_back(i);
-    }
-    std::vector<StageTime> stages;
-    recorder_.submit(asked, scene_.impl());
-    const auto refused = recorder_.collect(asked, scene_.impl(), stages, [&](size_t i, const Found& found) {
-      solved += found.state.solved;
-      most = std::max(most, found.state.pairCount);
-      uint64_t cpuPairs = 0;
-      results[which[i]] = decodeContact(found, queries[which[i]], cpuPairs);
-    });
-    CHECK(refused.empty());
+  std::vector<Result> run(std::span<const Query> queries) {
+    std::vector<Result> results(queries.size());
+    sweeper_.begin(queries, results);
+    sweeper_.finish();
     return results;
   }
-
-  uint64_t solved = 0;
-  uint32_t most = 0;  ///< cluster pairs of one search
+  const SweepStats& stats() const { return sweeper_.stats; }
 
  private:
-  const Scene& scene_;
-  ResidentScene resident_;
-  ContactRecorder recorder_;
-  Hierarchy hierarchy_;
+  Sweeper::Impl sweeper_;
 };
 
-/// Which tier saw that there is nothing may differ.
-void checkSame(Result a, Result b) {
-  if (a.status == Status::clear && b.status == Status::clear) {
-    a.tier = b.tier;
-    a.detected = b.detected;
-  }
+void checkSame(const Result& a, const Result& b) {
   CAPTURE(a.t, b.t, a.lo, b.lo, a.hi, b.hi, a.object, b.object, a.triB, b.triB, a.triA, b.triA);
   CHECK(std::memcmp(&a, &b, sizeof a) == 0);
 }
 
-std::vector<Query> show(const tools::Workload& workload, tools::ScenePlayer& player) {
-  player.show(0);
-  std::vector<Query> queries;
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
-  return queries;
+void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
+  REQUIRE(a.size() == b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    CAPTURE(i);
+    checkSame(a[i], b[i]);
+  }
 }
+
+/// A family's queries, every fourth of which only asks for a decision.
+struct FamilyQueries {
+  FamilyQueries(tools::Family family, uint32_t count, uint64_t seed)
+      : workload(tools::makeWorkload(tools::FamilyScene{.family = family, .queries = count, .seed = seed})),
+        player(workload) {
+    player.show(0);
+    for (const tools::QuerySpec& spec : workload.queries) {
+      queries.push_back(tools::toQuery(spec, Mode::contact));
+      queries.back().decide = queries.size() % 4 == 0;
+    }
+  }
+  tools::Workload workload;
+  tools::ScenePlayer player;
+  std::vector<Query> queries;
+};
 
 Pose at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
@@ -102,56 +86,34 @@ Pose at(double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE(
-    "with culling and rounds switched off, brute force over all pairs of triangles, the answers have the same bits") {
-  const tools::Family family = GENERATE(tools::Family::convex, tools::Family::open, tools::Family::soup,
-                                        tools::Family::lattice, tools::Family::touching, tools::Family::directions);
-  CAPTURE(tools::nameOf(family));
-  tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 12, .seed = 2});
-  workload.scenes[0].instances.resize(12);
-  tools::ScenePlayer player(workload);
-  const std::vector<Query> queries = show(workload, player);
-  Sweeper sweeper(test::device(), player.scene());
-  const std::vector<Result> culled = sweeper.run(queries);
-  Searching searching(player.scene(), {.way = ContactWay::direct});
-  const std::vector<Result> all = searching.run(queries, false);
-  uint64_t pairs = 0, contacts = 0;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    CAPTURE(i);
-    checkSame(all[i], culled[i]);
-    contacts += all[i].status != Status::clear;
-    for (ObjectId id = 0; id < player.scene().objectLimit(); ++id) {
-      pairs += uint64_t{player.scene().mesh(queries[i].mesh).triangleCount()} *
-               player.scene().mesh(player.scene().object(id).mesh).triangleCount();
-    }
-  }
-  CHECK(searching.solved == pairs);
-  CHECK(contacts >= 1);
+TEST_CASE("with the least room, and in the shortest rounds, the answers have the same bits") {
+  const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice, tools::Family::touching,
+                                        tools::Family::floor, tools::Family::soup);
+  const FamilyQueries asked(family, 96, 1);
+  const std::vector<Result> roomy = Searching(asked.player.scene()).run(asked.queries);
+  const SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
+                                   SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
+                                   SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
+                                   SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
+  const SearchShape shape = GENERATE(SearchShape{}, SearchShape{.queue = 1, .stack = 4}, SearchShape{.stack = 7});
+  CAPTURE(tools::nameOf(family), room, shape.queue, shape.stack);
+  Searching narrow(asked.player.scene(), room, shape);
+  checkSame(narrow.run(asked.queries), roomy);
+  // What a list has no room for goes to the processor, and nothing else does; rounds that are cut short go on in others.
+  if (room.candidates == 1) CHECK(narrow.stats().cpuQueries > 0);
+  if (room.budget == 1 && family == tools::Family::interlocking) CHECK(narrow.stats().submissions > 1);
+  if (room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);
 }
 
-TEST_CASE("with the least room for pairs and contenders, and in the shortest runs, the answers have the same bits") {
-  const ContactRoom room =
-      GENERATE(ContactRoom{.pairs = 1, .pairsPerCluster = 0}, ContactRoom{.contenders = 1}, ContactRoom{.run = 1},
-               ContactRoom{.run = 17}, ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1},
-               ContactRoom{.contenders = 1, .way = ContactWay::masked},
-               ContactRoom{.pairs = 1, .pairsPerCluster = 0, .contenders = 1, .run = 1, .way = ContactWay::masked});
-  const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice);
-  CAPTURE(tools::nameOf(family), room.pairs, room.contenders, room.run);
-  const tools::Workload workload = tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 32, .seed = 4});
-  tools::ScenePlayer player(workload);
-  const std::vector<Query> queries = show(workload, player);
-  Sweeper sweeper(test::device(), player.scene());
-  const std::vector<Result> roomy = sweeper.run(queries);
-  Searching searching(player.scene(), room);
-  const std::vector<Result> narrow = searching.run(queries, true);
-  for (size_t i = 0; i < queries.size(); ++i) {
-    CAPTURE(i);
-    checkSame(narrow[i], roomy[i]);
-  }
-  CHECK(searching.most > 1);
+TEST_CASE("a search that overflowed once has room the next time") {
+  const FamilyQueries asked(tools::Family::touching, 400, 2);
+  Searching searching(asked.player.scene());
+  const std::vector<Result> first = searching.run(asked.queries);
+  checkSame(searching.run(asked.queries), first);
+  CHECK(searching.stats().cpuQueries == 0);
 }
 
-TEST_CASE("a list of 70,000 cluster pairs, longer than a loop may be on lavapipe, is searched to its end") {
+TEST_CASE("70,000 pairs that all may be first, more than a loop may be long on lavapipe, are searched to their end") {
   Scene scene;
   const std::vector<float> small{0, 0, 0, 0.5f, 0, 0, 0, 0.5f, 0}, large{-1, -1, 0, 601, -1, 0, -1, 601, 0};
   const std::vector<uint32_t> corners{0, 1, 2};
@@ -166,14 +128,28 @@ TEST_CASE("a list of 70,000 cluster pairs, longer than a loop may be on lavapipe
   }
   // The last is the nearest, if not all are alike.
   if (!level) scene.setPose(kCount - 1, at(1, 2, 4.5));
-  const std::vector<Query> queries{
-      {.mesh = wing, .worldFromMesh = at(0, 0, 0), .direction = {0, 0, 2}, .distance = 20}};
-  Searching searching(scene, {});
-  const Result result = searching.run(queries, true)[0];
-  CHECK(searching.most == kCount);
+  const Query query{.mesh = wing, .worldFromMesh = at(0, 0, 0), .direction = {0, 0, 2}, .distance = 20};
+  Searching searching(scene, {.candidates = 100'000});
+  const Result result = searching.run({&query, 1})[0];
+  if (level) CHECK(searching.stats().solves == kCount);
   CHECK(result.status == Status::hit);
   CHECK(result.t == (level ? 4 : 4.5));
   CHECK(result.object == (level ? 0 : kCount - 1));
-  Sweeper sweeper(test::device(), scene);
-  checkSame(sweeper.run(queries)[0], result);
+  checkSame(Searching(scene).run({&query, 1})[0], result);
+}
+
+TEST_CASE("what floats cannot hold is answered on the processor: as on the device, where both can") {
+  Scene scene;
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const double size = GENERATE(1e-40, 1.0, 1e30, 1e80);
+  CAPTURE(size);
+  const auto placed = [&](double x) { return Pose{{size, 0, 0, x * size, 0, size, 0, 0, 0, 0, size, 0}}; };
+  scene.addObject({mesh, placed(3), ~0u});
+  const Query query{.mesh = mesh, .worldFromMesh = placed(0), .direction = {1, 0, 0}, .distance = 5 * size};
+  Searching searching(scene);
+  const Result result = searching.run({&query, 1})[0];
+  CHECK(result.status == Status::hit);
+  CHECK(result.t == Approx(2 * size));
+  CHECK(searching.stats().cpuQueries == (size == 1 ? 0 : 1));
 }

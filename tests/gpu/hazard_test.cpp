@@ -1,48 +1,47 @@
 // The validation layer must see what it is there for: a missing barrier between an upload and a dispatch.
 #include <catch2/catch.hpp>
-#include <map>
+
+#include <cstring>
 
 #include "gpu/barrier.h"
-#include "gpu/buffer.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "gpu/submission.h"
-#include "shaders/interop.h"
-#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+#include "shaders/contact/interop.h"
+#include "spirv/contact_collect_comp.h"
 #include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
+using gpu::Array;
+using gpu::Residence;
 
-// An upload, then a dispatch that reads what was uploaded (and, of all zeros, finds nothing to do).
+template <class T>
+Array<T> zeros(const char* name) {
+  Array<T> array(test::device().impl(), name, Residence::upload, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  std::memset(array.mapped(), 0, array.bytes());
+  return array;
+}
+
+// An upload, then a dispatch that reads what was uploaded (and, where all counts are zero, finds nothing to do).
 std::vector<std::string> messagesOf(bool withBarrier) {
   const Device::Impl& device = test::device().impl();
-  std::vector<gpu::Binding> list;
-  for (uint32_t i = 0; i < gpu::kBindings; ++i) {
-    if (i != gpu::kBindRange && i != gpu::kBindMask) list.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
-  }
-  gpu::Bindings bindings(device, list, 8);
-  const gpu::Pipeline solve = gpu::computePipeline(device, bindings.layout(), k_solve_comp_RADAR_NO_DOUBLES, "solve");
-  std::map<uint32_t, gpu::Buffer> buffers;
-  for (const gpu::Binding& binding : list) {
-    gpu::Buffer& buffer = buffers
-                              .try_emplace(binding.number, device, "hazard", gpu::Residence::upload,
-                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT)
-                              .first->second;
-    std::fill_n(buffer.mapped(), 1024, std::byte{0});
-    bindings.setBuffer(binding.number, buffer);
-  }
-  const gpu::View nothing{};
+  const gpu::Kernel collect(device, k_contact_collect_comp, "collect");
+  gpu::KernelArguments arguments(collect);
+  const Array<gpu::SearchCounts> counts = zeros<gpu::SearchCounts>("counts");
+  const Array<gpu::SearchState> states = zeros<gpu::SearchState>("states");
+  const Array<gpu::SearchTask> tasks = zeros<gpu::SearchTask>("tasks"), spilled = zeros<gpu::SearchTask>("spilled");
+  arguments.set(
+      {{gpu::kSlotCounts, counts}, {gpu::kSlotStates, states}, {gpu::kSlotTasks, tasks}, {gpu::kSlotSpilled, spilled}});
+  const gpu::SearchTask nothing{};
   gpu::Upload upload(device);
-  upload.begin(sizeof(nothing));
-  upload.add(&nothing, sizeof(nothing), buffers.at(gpu::kBindViews));
+  upload.begin(gpu::Upload::aligned(sizeof(nothing)));
+  upload.add(&nothing, sizeof(nothing), tasks);
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, solve.get());
-  bindings.bind(commands);
   upload.record(commands);
   if (withBarrier) gpu::uploadToRead(commands);
-  commands->CmdDispatch(commands, 1, 1, 1);
+  arguments.dispatch(commands, 1, gpu::CollectPush{0, 0, 0});
   submission.submitAndWait();
   return test::takeValidationMessages();
 }

@@ -1,20 +1,31 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Holds the order of the floors: cmake -DROOT=... -P floors.cmake. Each folder may include itself and what is listed.
-set(scene_may radar)
-set(gpu_may radar shaders spirv)
+# Holds the order of the floors: cmake -DROOT=... -P floors.cmake. From low to high; each folder may include itself and what
+# is listed. No floor names one that comes later.
+set(floors exact gpu scene contact cpu sweep pool)
 set(exact_may)
-set(sweep_may radar gpu scene exact shaders spirv)
+set(gpu_may radar shaders spirv)
+set(scene_may radar gpu shaders)
+set(contact_may radar exact gpu scene shaders spirv)
+set(cpu_may radar exact scene shaders)
+set(sweep_may radar exact gpu scene contact cpu shaders spirv)
 set(pool_may radar gpu scene sweep)
-set(reference_may radar exact Eigen)
 
 set(wrong "")
-foreach(floor scene gpu exact sweep pool reference)
+set(lower radar shaders spirv)
+foreach(floor ${floors})
+  foreach(allowed ${${floor}_may})
+    if(NOT allowed IN_LIST lower)
+      string(APPEND wrong "  ${floor} may not include ${allowed}, which is above it\n")
+    endif()
+  endforeach()
+  list(APPEND lower ${floor})
   file(GLOB sources ${ROOT}/engine/${floor}/*.cpp ${ROOT}/engine/${floor}/*.h)
   foreach(source ${sources})
-    file(STRINGS ${source} lines REGEX "^#include [<\"][A-Za-z0-9_]+/")
+    # A name with a folder, or a quoted one without.
+    file(STRINGS ${source} lines REGEX "^#include ([<\"][A-Za-z0-9_.]+/|\")")
     foreach(line ${lines})
-      string(REGEX REPLACE "^#include [<\"]([A-Za-z0-9_]+)/.*" "\\1" folder "${line}")
+      string(REGEX REPLACE "^#include [<\"]([^/>\"]+).*" "\\1" folder "${line}")
       if(NOT folder STREQUAL floor AND NOT folder IN_LIST ${floor}_may AND NOT folder STREQUAL vulkan)
         string(APPEND wrong "  ${source}: ${line}\n")
       endif()
@@ -25,7 +36,15 @@ foreach(floor scene gpu exact sweep pool reference)
   endif()
 endforeach()
 
-# The engine does not know the reference, nor any floor the tools.
+# Every folder of the engine is a floor.
+file(GLOB folders RELATIVE ${ROOT}/engine LIST_DIRECTORIES true ${ROOT}/engine/*)
+foreach(folder ${folders})
+  if(IS_DIRECTORY ${ROOT}/engine/${folder} AND NOT folder IN_LIST floors AND NOT folder MATCHES "^(include|package)$")
+    string(APPEND wrong "  engine/${folder} is no floor\n")
+  endif()
+endforeach()
+
+# No floor knows the tools.
 file(GLOB_RECURSE sources ${ROOT}/engine/*.cpp ${ROOT}/engine/*.h)
 foreach(source ${sources})
   file(STRINGS ${source} lines REGEX "#include \"(tools|workloads|import|batch)/")
@@ -33,10 +52,10 @@ foreach(source ${sources})
     string(APPEND wrong "  ${source}: ${lines}\n")
   endif()
 endforeach()
-# ... nor links it: no symbol of namespace radar::reference in the library.
+# ... nor does the library link them.
 execute_process(COMMAND ${NM} -C ${LIBRARY} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
-if(symbols MATCHES "radar::reference")
-  string(APPEND wrong "  ${LIBRARY} contains radar::reference\n")
+if(symbols MATCHES "radar::tools")
+  string(APPEND wrong "  ${LIBRARY} contains radar::tools\n")
 endif()
 if(NOT symbols MATCHES "radar::Sweeper::run")
   string(APPEND wrong "  ${LIBRARY} does not contain radar::Sweeper::run\n")

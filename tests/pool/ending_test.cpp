@@ -60,7 +60,7 @@ size_t threadCount() {
 TEST_CASE("cancelling answers what no device has taken, and leaves other batches alone") {
   const Boxes boxes(300);
   const std::vector<Result> expected = boxes.answers();
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::stop_source stopBegun, stopQueued;
   hold();
   std::future<PoolAnswers> begun = pool.submit(boxes.queries, stopBegun.get_token());
@@ -80,7 +80,7 @@ TEST_CASE("cancelling answers what no device has taken, and leaves other batches
 
 TEST_CASE("after drain every future submitted before is ready") {
   const Boxes boxes(100);
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::vector<std::future<PoolAnswers>> futures;
   for (int i = 0; i < 5; ++i) futures.push_back(pool.submit(boxes.queries));
   pool.drain();
@@ -94,7 +94,7 @@ TEST_CASE("a pool that ends with work queued answers every future: finished, or 
   std::vector<std::future<PoolAnswers>> futures;
   std::jthread releasing;  // outlives the pool, whose end waits for it
   {
-    Pool pool(twoDevices(), boxes.player.scene());
+    Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
     hold();
     for (int i = 0; i < 4; ++i) futures.push_back(pool.submit(boxes.queries));
     for (size_t i : {0, 1}) faults(i).awaitHeld();
@@ -119,14 +119,14 @@ TEST_CASE("a thousand pools come, take a query and go, and leave no thread and n
   setenv("VK_INSTANCE_LAYERS", restored.c_str(), 1);
   const auto cycle = [&](int count) {
     for (int i = 0; i < count; ++i) {
-      Pool pool(devices, boxes.player.scene());
+      Pool pool(devices, boxes.player.scene(), test::kOnDevice);
       std::future<PoolAnswers> answers = pool.submit({boxes.queries[1 + i % 2]});
       if (i % 100 == 0) answers.wait();  // the other pools end with it queued, or just begun
     }
   };
   // A driver keeps what it made for its first pipelines: both have had theirs before the count.
   for (bool both = false; !both;) {
-    Pool pool(devices, boxes.player.scene());
+    Pool pool(devices, boxes.player.scene(), test::kOnDevice);
     pool.submit(boxes.queries).wait();
     both = pool.devices()[0].queries > 0 && pool.devices()[1].queries > 0;
   }

@@ -27,7 +27,7 @@ TEST_CASE("a device lost in the middle loses no query: the other does its chunks
     for (const int after : {0, 3}) {
       CAPTURE(call, after);
       const Mended mended;
-      Pool pool(twoDevices(), boxes.player.scene());
+      Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
       faults(1).failFrom(call, after, VK_ERROR_DEVICE_LOST);
       const PoolAnswers answers = pool.submit(boxes.queries).get();
       CHECK(differences(answers.results, expected) == 0);
@@ -49,7 +49,7 @@ TEST_CASE("a device without memory is retired, and the other answers") {
   const std::vector<Result> expected = boxes.answers();
   const Mended mended;
   faults(0).failFrom("vkAllocateMemory", 30, VK_ERROR_OUT_OF_DEVICE_MEMORY);
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   const PoolAnswers answers = pool.submit(boxes.queries).get();
   CHECK(differences(answers.results, expected) == 0);
   CHECK_THAT(pool.devices()[0].retired, Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
@@ -58,7 +58,7 @@ TEST_CASE("a device without memory is retired, and the other answers") {
 TEST_CASE("with no device left every query says why, now and later") {
   const Boxes boxes(100);
   const Mended mended;
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   for (size_t i : {0, 1}) faults(i).failFrom("vkQueueSubmit2", 3, VK_ERROR_DEVICE_LOST);
   for (int round = 0; round < 100; ++round) {
     if (!pool.devices()[0].retired.empty() && !pool.devices()[1].retired.empty()) break;
@@ -77,7 +77,7 @@ TEST_CASE("with no device left every query says why, now and later") {
 TEST_CASE("queries for which no device has memory are invalid, and the last device stays for others") {
   Boxes boxes(30);
   const Mended mended;
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   const std::vector<Result> expected = boxes.answers();
   CHECK(differences(pool.submit(boxes.queries).get().results, expected) == 0);
   for (Query& query : boxes.queries) query.resolution = 256;  // needs larger pictures than there are yet

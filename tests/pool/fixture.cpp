@@ -87,7 +87,7 @@ Boxes::Boxes(uint32_t sensors, uint32_t boxes)
 }
 
 std::vector<Result> Boxes::answers() const {
-  Sweeper sweeper(twoDevices()[0], player.scene());
+  Sweeper sweeper(twoDevices()[0], player.scene(), kOnDevice);
   return sweeper.run(queries);
 }
 

@@ -33,6 +33,9 @@ class Faults {
   int held_ = 0;
 };
 
+/// So that queries of mode contact go to the devices, too.
+inline constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
+
 /// Opened on first use, with the validation layers listening.
 std::span<const Device> twoDevices();
 /// Of those. A test that breaks something mends it.

@@ -33,7 +33,7 @@ TEST_CASE("one device and two give the bits of a plain sweeper, over 10,000 rand
   CHECK(std::count_if(expected.begin(), expected.end(), [](const Result& r) { return r.status == Status::hit; }) > 500);
   for (const size_t count : {1, 2}) {
     CAPTURE(count);
-    Pool pool(twoDevices().first(count), boxes.player.scene());
+    Pool pool(twoDevices().first(count), boxes.player.scene(), test::kOnDevice);
     const PoolAnswers answers = pool.submit(boxes.queries).get();
     CHECK(differences(answers.results, expected) == 0);
     CHECK(answers.reasons.empty());
@@ -49,7 +49,7 @@ TEST_CASE("one device and two give the bits of a plain sweeper, over 10,000 rand
 
 TEST_CASE("a batch's chunks account for its queries, and their times are in order") {
   const Boxes boxes(200);
-  Pool pool(twoDevices(), boxes.player.scene(), {.timestamps = true});
+  Pool pool(twoDevices(), boxes.player.scene(), {.timestamps = true, .cpuBatch = 0});
   const PoolAnswers answers = pool.submit(boxes.queries).get();
   uint32_t queries = 0;
   for (const ChunkTrace& chunk : answers.chunks) {
@@ -76,7 +76,7 @@ TEST_CASE("edits wait for the batches before them and reach every device") {
   const auto at = [](double z) { return Pose{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
   const ObjectId object = scene.addObject({id, at(100), ~0u});
   const std::vector<Query> many(64, Query{.mesh = id, .direction = {0, 0, 1}, .distance = 200});
-  Pool pool(twoDevices(), scene);
+  Pool pool(twoDevices(), scene, test::kOnDevice);
   std::vector<std::future<PoolAnswers>> futures;
   for (int step = 0; step < 20; ++step) {
     futures.push_back(pool.submit(many));
@@ -96,7 +96,7 @@ TEST_CASE("edits wait for the batches before them and reach every device") {
 
 TEST_CASE("an edit that throws passes its exception on, and the pool goes on") {
   const Boxes boxes(16);
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   CHECK_THROWS_AS(pool.edit([] { throw std::runtime_error("no"); }), std::runtime_error);
   CHECK(differences(pool.submit(boxes.queries).get().results, boxes.answers()) == 0);
 }
@@ -104,7 +104,7 @@ TEST_CASE("an edit that throws passes its exception on, and the pool goes on") {
 TEST_CASE("many threads submit and edit at once, and each gets its own answers") {
   const Boxes boxes(96);
   const std::vector<Result> expected = boxes.answers();
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::atomic<size_t> wrong = 0;
   std::vector<std::thread> threads;
   for (size_t t = 0; t < 6; ++t) {
@@ -125,7 +125,7 @@ TEST_CASE("many threads submit and edit at once, and each gets its own answers")
 
 TEST_CASE("a query that breaks its contract is refused by name and nothing of its batch is begun") {
   const Boxes boxes(8);
-  Pool pool(twoDevices(), boxes.player.scene());
+  Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   CHECK(pool.submit({}).get().results.empty());
   std::vector<Query> queries = boxes.queries;
   queries[5].direction = {};
@@ -142,7 +142,7 @@ TEST_CASE("a pool runs one named thread a device, and none once it is gone") {
   const std::multiset<std::string> before = expected;
   expected.insert({"radar-device-0", "radar-device-1"});
   {
-    Pool pool(twoDevices(), boxes.player.scene());
+    Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
     pool.submit(boxes.queries).wait();
     CHECK(threadNames() == expected);
   }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "reference/reference.h"
+#include "support/answer.h"
 #include "stability/method.h"
 #include "stability/promises.h"
 #include "support/test_device.h"
@@ -17,7 +17,7 @@ constexpr uint32_t kResolution = 32;
 
 /// One family after the other, its queries with D moved to the exact t, one rounding less and one more.
 struct AtContact {
-  AtContact() : sweeper(test::device(), scene), reference(scene) {}
+  AtContact() : sweeper(test::device(), scene, {.cpuBatch = 0}), cpu(scene) {}
 
   void show(const StabilityFamily& family) {
     std::vector<StabilityCase> cases;
@@ -27,19 +27,19 @@ struct AtContact {
     queries.clear();
     for (const QuerySpec& spec : workload.queries) {
       Query query = toQuery(spec, Mode::contact);
-      const Result first = reference.answer(query);
+      const Result first = test::answer(cpu, query);
       if (first.status != Status::hit) continue;
       for (const double distance : {std::nextafter(first.t, 0), first.t, std::nextafter(first.t, INFINITY)}) {
         query.distance = distance;
         queries.push_back(query);
       }
     }
-    exact = reference.run(queries);
+    exact = cpu.run(queries);
   }
 
   Scene scene;
   Sweeper sweeper;
-  reference::Reference reference;
+  CpuSweeper cpu;
   std::vector<Query> queries;
   std::vector<Result> exact;
 };
@@ -52,12 +52,12 @@ TEST_CASE("where methods fail, D at the contact and a rounding beside it keeps e
     asking.show(family);
     REQUIRE(asking.queries.size() >= 3);
     const std::vector<Result> contact = answersBy(Method::contact, asking.sweeper, asking.queries, 0);
-    const std::vector<Result> bounded = answersBy(Method::bounded, asking.sweeper, asking.queries, kResolution);
+    const std::vector<Result> sampled = answersBy(Method::sampled, asking.sweeper, asking.queries, kResolution);
     for (size_t i = 0; i < asking.queries.size(); ++i) {
       CAPTURE(family.name, i, asking.exact[i].t, asking.queries[i].distance);
       const Query& query = asking.queries[i];
       CHECK(judgeContact(asking.scene, query, contact[i], asking.exact[i]).words() == "");
-      CHECK(judgeBracket(query, bounded[i], asking.exact[i]).words() == "");
+      CHECK(judgeSampled(query, sampled[i], asking.exact[i]).words() == "");
     }
   }
 }
@@ -68,12 +68,12 @@ TEST_CASE("where methods fail, whether there is a contact within D is decided ri
     asking.show(family);
     for (Query& query : asking.queries) query.decide = true;
     const std::vector<Result> contact = answersBy(Method::contact, asking.sweeper, asking.queries, 0);
-    const std::vector<Result> bounded = answersBy(Method::bounded, asking.sweeper, asking.queries, kResolution);
+    const std::vector<Result> sampled = answersBy(Method::sampled, asking.sweeper, asking.queries, kResolution);
     for (size_t i = 0; i < asking.queries.size(); ++i) {
       CAPTURE(family.name, i, asking.exact[i].t, asking.queries[i].distance);
       const bool meets = asking.exact[i].status != Status::clear;
       CHECK(contact[i].status == (meets ? Status::hit : Status::clear));
-      CHECK(bounded[i].status != (meets ? Status::clear : Status::hit));
+      CHECK(sampled[i].status != (meets ? Status::clear : Status::hit));
     }
   }
 }

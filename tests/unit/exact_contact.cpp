@@ -3,7 +3,7 @@
 
 #include "exact/contact.h"
 #include "exact_oracle.h"
-#include "reference_soups.h"
+#include "soups.h"
 
 using namespace radar::exact;
 using oracle::Fraction;

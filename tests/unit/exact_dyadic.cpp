@@ -5,7 +5,7 @@
 #include "exact/dyadic.h"
 #include "exact/twofold.h"
 #include "exact_oracle.h"
-#include "reference_soups.h"
+#include "soups.h"
 
 using namespace radar::exact;
 using oracle::Rational;

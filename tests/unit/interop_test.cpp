@@ -3,39 +3,23 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
+#include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <span>
 #include <string>
 
+#include "engine_shaders.h"
 #include "radar/radar.h"
-#include "shaders/interop.h"
-#include "spirv/bounds_comp.h"
-#include "spirv/contact_comp.h"
-#include "spirv/contact_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/deform_comp.h"
-#include "spirv/depth_vert.h"
-#include "spirv/identify_comp.h"
-#include "spirv/mask_comp.h"
-#include "spirv/move_comp.h"
-#include "spirv/move_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/outer_draw_comp.h"
-#include "spirv/outer_fill_comp.h"
-#include "spirv/outer_identify_comp.h"
-#include "spirv/outer_reduce_comp.h"
-#include "spirv/pairs_comp.h"
-#include "spirv/reduce_comp.h"
-#include "spirv/refit_comp.h"
-#include "spirv/refuse_comp.h"
-#include "spirv/solve_comp.h"
-#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/tell_comp.h"
-#include "spirv/tell_comp_RADAR_NO_DOUBLES.h"
+#include "shaders/contact/interop.h"
+#include "spirv/shared_structs_comp.h"
+#include "spirv/shared_structs_comp_RADAR_NO_DOUBLES.h"
 
 namespace {
 
 using namespace radar::gpu;
+using radar::test::kEngineShaders;
 
 // struct -> member -> offset, and struct -> stride of the arrays of it.
 struct Layouts {
@@ -62,37 +46,20 @@ Layouts layoutsOf(std::span<const uint32_t> spirv) {
   }
   Layouts layouts;
   for (const auto& [member, offset] : memberOffsets) layouts.offsets[names[member.first]][memberNames[member]] = offset;
-  for (const auto& [array, stride] : arrayStrides) layouts.strides[names[elementTypes[array]]] = stride;
+  for (const auto& [array, element] : elementTypes) layouts.strides[names[element]] = arrayStrides[array];
   return layouts;
 }
 
-// Every shader that is compiled.
-const std::pair<const char*, std::span<const uint32_t>> kShaders[] = {
-    {"depth.vert", k_depth_vert},
-    {"reduce.comp", k_reduce_comp},
-    {"identify.comp", k_identify_comp},
-    {"solve.comp", k_solve_comp},
-    {"solve.comp without doubles", k_solve_comp_RADAR_NO_DOUBLES},
-    {"bounds.comp", k_bounds_comp},
-    {"pairs.comp", k_pairs_comp},
-    {"contact.comp", k_contact_comp},
-    {"mask.comp", k_mask_comp},
-    {"outer_draw.comp", k_outer_draw_comp},
-    {"outer_fill.comp", k_outer_fill_comp},
-    {"outer_reduce.comp", k_outer_reduce_comp},
-    {"outer_identify.comp", k_outer_identify_comp},
-    {"contact.comp without doubles", k_contact_comp_RADAR_NO_DOUBLES},
-    {"tell.comp", k_tell_comp},
-    {"tell.comp without doubles", k_tell_comp_RADAR_NO_DOUBLES},
-    {"deform.comp", k_deform_comp},
-    {"refit.comp", k_refit_comp},
-    {"move.comp", k_move_comp},
-    {"move.comp without doubles", k_move_comp_RADAR_NO_DOUBLES},
-    {"refuse.comp", k_refuse_comp},
-};
+bool hasDoubles(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kOpTypeFloat = 22;
+  for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+    if ((spirv[at] & 0xffff) == kOpTypeFloat && spirv[at + 2] == 64) return true;
+  }
+  return false;
+}
 
 struct Expected {
-  const char* structure;
+  std::string structure;
   size_t size;
   std::map<std::string, size_t> members;
 };
@@ -100,14 +67,27 @@ struct Expected {
 #define MEMBER(type, name) \
   { #name, offsetof(type, name) }
 
-}  // namespace
-
-TEST_CASE("every shared struct has the offsets and the stride that the shaders use") {
-  const Expected expected[] = {
+const std::vector<Expected>& sharedStructs() {
+  static const std::vector<Expected> all{
+      {"MeshNode",
+       sizeof(MeshNode),
+       {MEMBER(MeshNode, centre), MEMBER(MeshNode, link), MEMBER(MeshNode, halfExtent), MEMBER(MeshNode, slabMiddle),
+        MEMBER(MeshNode, normal), MEMBER(MeshNode, slabHalf)}},
+      {"ObjectNode",
+       sizeof(ObjectNode),
+       {MEMBER(ObjectNode, centre), MEMBER(ObjectNode, link), MEMBER(ObjectNode, halfExtent), MEMBER(ObjectNode, pad)}},
+      {"Vertex", sizeof(Vertex), {MEMBER(Vertex, position), MEMBER(Vertex, pad)}},
+      {"Triangle", sizeof(Triangle), {MEMBER(Triangle, corners), MEMBER(Triangle, id)}},
+      {"Placement",
+       sizeof(Placement),
+       {MEMBER(Placement, coarse), MEMBER(Placement, fine), MEMBER(Placement, inverse), MEMBER(Placement, reach),
+        MEMBER(Placement, root), MEMBER(Placement, origin), MEMBER(Placement, perUnit), MEMBER(Placement, error),
+        MEMBER(Placement, size), MEMBER(Placement, mask), MEMBER(Placement, mesh)}},
       {"MeshRecord",
        sizeof(MeshRecord),
-       {MEMBER(MeshRecord, centre), MEMBER(MeshRecord, halfExtent), MEMBER(MeshRecord, firstVertex),
-        MEMBER(MeshRecord, firstIndex), MEMBER(MeshRecord, firstNode)}},
+       {MEMBER(MeshRecord, origin), MEMBER(MeshRecord, lo), MEMBER(MeshRecord, hi), MEMBER(MeshRecord, unit),
+        MEMBER(MeshRecord, perUnit), MEMBER(MeshRecord, firstVertex), MEMBER(MeshRecord, firstTriangle),
+        MEMBER(MeshRecord, firstNode)}},
       {"ObjectRecord",
        sizeof(ObjectRecord),
        {MEMBER(ObjectRecord, pose), MEMBER(ObjectRecord, mesh), MEMBER(ObjectRecord, pad)}},
@@ -116,20 +96,11 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        {MEMBER(View, pose), MEMBER(View, direction), MEMBER(View, directionLength), MEMBER(View, distance),
         MEMBER(View, size), MEMBER(View, mesh), MEMBER(View, layer), MEMBER(View, resolution), MEMBER(View, width),
         MEMBER(View, height), MEMBER(View, cell), MEMBER(View, rangeScale), MEMBER(View, maskBase),
-        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, rangeLimit), MEMBER(View, firstPixel)}},
+        MEMBER(View, maskScale), MEMBER(View, slack), MEMBER(View, rangeLimit), MEMBER(View, pad)}},
       {"Draw",
        sizeof(Draw),
-       {MEMBER(Draw, clipFromMesh), MEMBER(Draw, snap), MEMBER(Draw, slack), MEMBER(Draw, view), MEMBER(Draw, layer),
-        MEMBER(Draw, mesh), MEMBER(Draw, object)}},
-      {"Band",
-       sizeof(Band),
-       {MEMBER(Band, pixelsFromMesh), MEMBER(Band, snap), MEMBER(Band, slack), MEMBER(Band, view),
-        MEMBER(Band, firstPixel), MEMBER(Band, pitch), MEMBER(Band, firstVertex), MEMBER(Band, firstIndex),
-        MEMBER(Band, triangles), MEMBER(Band, firstColumn), MEMBER(Band, endColumn), MEMBER(Band, firstRow),
-        MEMBER(Band, endRow), MEMBER(Band, fromRow), MEMBER(Band, toRow), MEMBER(Band, item), MEMBER(Band, isSensor)}},
-      {"Strip",
-       sizeof(Strip),
-       {MEMBER(Strip, firstRow), MEMBER(Strip, endRow), MEMBER(Strip, firstBand), MEMBER(Strip, endBand)}},
+       {MEMBER(Draw, clipFromMesh), MEMBER(Draw, origin), MEMBER(Draw, snap), MEMBER(Draw, slack), MEMBER(Draw, view),
+        MEMBER(Draw, layer), MEMBER(Draw, mesh), MEMBER(Draw, object)}},
       {"Item", sizeof(Item), {MEMBER(Item, draw), MEMBER(Item, firstTriangle), MEMBER(Item, endTriangle)}},
       {"Candidate",
        sizeof(Candidate),
@@ -139,93 +110,172 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
        sizeof(Answer),
        {MEMBER(Answer, hi), MEMBER(Answer, object), MEMBER(Answer, triB), MEMBER(Answer, triA), MEMBER(Answer, feature),
         MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs),
-        MEMBER(Answer, openPairs), MEMBER(Answer, lo)}},
+        MEMBER(Answer, openPairs), MEMBER(Answer, pad)}},
       {"OpenPair",
        sizeof(OpenPair),
        {MEMBER(OpenPair, low), MEMBER(OpenPair, object), MEMBER(OpenPair, triB), MEMBER(OpenPair, triA),
         MEMBER(OpenPair, pad)}},
-      {"ClusterRecord",
-       sizeof(ClusterRecord),
-       {MEMBER(ClusterRecord, centre), MEMBER(ClusterRecord, halfExtent), MEMBER(ClusterRecord, edge),
-        MEMBER(ClusterRecord, first), MEMBER(ClusterRecord, count)}},
-      {"Target",
-       sizeof(Target),
-       {MEMBER(Target, pose), MEMBER(Target, direction), MEMBER(Target, directionLength), MEMBER(Target, distance),
-        MEMBER(Target, mesh), MEMBER(Target, firstPair), MEMBER(Target, pairCapacity), MEMBER(Target, firstContender),
-        MEMBER(Target, contenderCapacity), MEMBER(Target, enough), MEMBER(Target, corner),
-        MEMBER(Target, pixelsPerUnit), MEMBER(Target, maskCost), MEMBER(Target, decides), MEMBER(Target, result)}},
-      {"OpenContender",
-       sizeof(OpenContender),
-       {MEMBER(OpenContender, target), MEMBER(OpenContender, object), MEMBER(OpenContender, triB),
-        MEMBER(OpenContender, triA), MEMBER(OpenContender, a), MEMBER(OpenContender, b), MEMBER(OpenContender, pose)}},
-      {"RadarResult",
-       sizeof(radar::Result),
-       {MEMBER(radar::Result, status), MEMBER(radar::Result, tier), MEMBER(radar::Result, detected),
-        MEMBER(radar::Result, resolution), MEMBER(radar::Result, t), MEMBER(radar::Result, lo),
-        MEMBER(radar::Result, hi), MEMBER(radar::Result, fraction), MEMBER(radar::Result, object),
-        MEMBER(radar::Result, triB), MEMBER(radar::Result, triA), MEMBER(radar::Result, flags),
-        MEMBER(radar::Result, point), MEMBER(radar::Result, normal), MEMBER(radar::Result, paperMinL)}},
-      {"Placement",
-       sizeof(Placement),
-       {MEMBER(Placement, frameFromMesh), MEMBER(Placement, error), MEMBER(Placement, mesh), MEMBER(Placement, object),
-        MEMBER(Placement, moved)}},
+      {"Stray", sizeof(Stray), {MEMBER(Stray, mesh), MEMBER(Stray, vertex), MEMBER(Stray, object)}},
       {"Moved",
        sizeof(Moved),
        {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, firstByte), MEMBER(Moved, anchor),
         MEMBER(Moved, halfExtent)}},
-      {"ClusterRef", sizeof(ClusterRef), {MEMBER(ClusterRef, placement), MEMBER(ClusterRef, node)}},
-      {"RefBox", sizeof(RefBox), {MEMBER(RefBox, lo), MEMBER(RefBox, hi), MEMBER(RefBox, edge)}},
-      {"PairItem",
-       sizeof(PairItem),
-       {MEMBER(PairItem, target), MEMBER(PairItem, firstA), MEMBER(PairItem, endA), MEMBER(PairItem, firstB),
-        MEMBER(PairItem, endB)}},
-      {"ClusterPair", sizeof(ClusterPair), {MEMBER(ClusterPair, gap), MEMBER(ClusterPair, a), MEMBER(ClusterPair, b)}},
+      {"Sum", sizeof(Sum), {MEMBER(Sum, x), MEMBER(Sum, y), MEMBER(Sum, row), MEMBER(Sum, p), MEMBER(Sum, pad)}},
+      {"SumResult",
+       sizeof(SumResult),
+       {MEMBER(SumResult, sum), MEMBER(SumResult, product), MEMBER(SumResult, quotient), MEMBER(SumResult, placed),
+        MEMBER(SumResult, rounded)}},
+      {"Sensor",
+       sizeof(Sensor),
+       {MEMBER(Sensor, placement), MEMBER(Sensor, frame), MEMBER(Sensor, direction), MEMBER(Sensor, scale),
+        MEMBER(Sensor, centre), MEMBER(Sensor, distance), MEMBER(Sensor, halfExtent), MEMBER(Sensor, enough),
+        MEMBER(Sensor, mask), MEMBER(Sensor, firstExcluded), MEMBER(Sensor, endExcluded), MEMBER(Sensor, unscale)}},
+      {"Sweep",
+       sizeof(Sweep),
+       {MEMBER(Sweep, pose), MEMBER(Sweep, direction), MEMBER(Sweep, directionLength), MEMBER(Sweep, distance),
+        MEMBER(Sweep, decides), MEMBER(Sweep, result), MEMBER(Sweep, scale), MEMBER(Sweep, start)}},
+      {"SearchState", sizeof(SearchState), {MEMBER(SearchState, hi), MEMBER(SearchState, flags)}},
+      {"SearchTask",
+       sizeof(SearchTask),
+       {MEMBER(SearchTask, sensor), MEMBER(SearchTask, object), MEMBER(SearchTask, a), MEMBER(SearchTask, b),
+        MEMBER(SearchTask, gap)}},
+      {"PairCandidate",
+       sizeof(PairCandidate),
+       {MEMBER(PairCandidate, sensor), MEMBER(PairCandidate, object), MEMBER(PairCandidate, slotA),
+        MEMBER(PairCandidate, slotB), MEMBER(PairCandidate, low)}},
       {"Contender",
        sizeof(Contender),
-       {MEMBER(Contender, low), MEMBER(Contender, at), MEMBER(Contender, error), MEMBER(Contender, object),
-        MEMBER(Contender, slotB), MEMBER(Contender, slotA), MEMBER(Contender, flags)}},
-      {"State",
-       sizeof(State),
-       {MEMBER(State, hi), MEMBER(State, pairCount), MEMBER(State, contenderCount), MEMBER(State, progress),
-        MEMBER(State, boxPairs), MEMBER(State, solved), MEMBER(State, round), MEMBER(State, cursor),
-        MEMBER(State, spent), MEMBER(State, met), MEMBER(State, tiles)}},
-      {"MaskItem",
-       sizeof(MaskItem),
-       {MEMBER(MaskItem, target), MEMBER(MaskItem, ref), MEMBER(MaskItem, firstPixel), MEMBER(MaskItem, firstOther),
-        MEMBER(MaskItem, endOther)}},
+       {MEMBER(Contender, low), MEMBER(Contender, at), MEMBER(Contender, error), MEMBER(Contender, sensor),
+        MEMBER(Contender, object), MEMBER(Contender, slotA), MEMBER(Contender, slotB), MEMBER(Contender, flags),
+        MEMBER(Contender, next), MEMBER(Contender, first), MEMBER(Contender, padding)}},
+      {"UnresolvedPair",
+       sizeof(UnresolvedPair),
+       {MEMBER(UnresolvedPair, sensor), MEMBER(UnresolvedPair, object), MEMBER(UnresolvedPair, triB),
+        MEMBER(UnresolvedPair, triA), MEMBER(UnresolvedPair, a), MEMBER(UnresolvedPair, b),
+        MEMBER(UnresolvedPair, pose)}},
+      {"SearchRound",
+       sizeof(SearchRound),
+       {MEMBER(SearchRound, tasks), MEMBER(SearchRound, taken), MEMBER(SearchRound, spilled)}},
+      {"SearchCounts",
+       sizeof(SearchCounts),
+       {MEMBER(SearchCounts, filterGroups), MEMBER(SearchCounts, candidates), MEMBER(SearchCounts, contenders),
+        MEMBER(SearchCounts, unresolved), MEMBER(SearchCounts, broken), MEMBER(SearchCounts, nodePairs),
+        MEMBER(SearchCounts, nodePairsHigh), MEMBER(SearchCounts, trianglePairs),
+        MEMBER(SearchCounts, trianglePairsHigh), MEMBER(SearchCounts, solves), MEMBER(SearchCounts, solvesHigh),
+        MEMBER(SearchCounts, rounds)}},
+      {"SearchPush",
+       sizeof(SearchPush),
+       {MEMBER(SearchPush, round), MEMBER(SearchPush, taskCapacity), MEMBER(SearchPush, candidateCapacity),
+        MEMBER(SearchPush, budget), MEMBER(SearchPush, width)}},
+      {"CollectPush", sizeof(CollectPush), {MEMBER(CollectPush, round), MEMBER(CollectPush, taskCapacity), MEMBER(CollectPush, isLast)}},
+      {"FilterPush", sizeof(FilterPush), {MEMBER(FilterPush, candidateCapacity)}},
+      {"ResolvePush", sizeof(ResolvePush), {MEMBER(ResolvePush, sensors), MEMBER(ResolvePush, unresolvedCapacity)}},
   };
-  std::set<std::string> seen;
-  for (const auto& [shader, spirv] : kShaders) {
-    const Layouts layouts = layoutsOf(spirv);
-    for (const Expected& one : expected) {
-      if (layouts.offsets.count(one.structure) == 0) continue;
-      CAPTURE(shader, one.structure);
-      seen.insert(one.structure);
-      const auto& found = layouts.offsets.at(one.structure);
-      CHECK(found.size() == one.members.size());
-      for (const auto& [member, offset] : one.members) {
-        CAPTURE(member);
-        REQUIRE(found.count(member) == 1);
-        CHECK(found.at(member) == offset);
-      }
-      REQUIRE(layouts.strides.count(one.structure) == 1);
-      CHECK(layouts.strides.at(one.structure) == one.size);
-    }
-  }
-  for (const Expected& one : expected) CHECK(seen.count(one.structure) == 1);
+  return all;
 }
 
-TEST_CASE("what uses doubles has a variant without") {
-  constexpr uint32_t kOpTypeFloat = 22;
-  for (const auto& [shader, spirv] : kShaders) {
+// radar/result.glsl has it for hosts, too.
+const Expected& publicResult() {
+  using radar::Result;
+  static const Expected result{
+      "RadarResult",
+      sizeof(Result),
+      {MEMBER(Result, status), MEMBER(Result, tier), MEMBER(Result, detected), MEMBER(Result, resolution),
+       MEMBER(Result, t), MEMBER(Result, lo), MEMBER(Result, hi), MEMBER(Result, fraction), MEMBER(Result, object),
+       MEMBER(Result, triB), MEMBER(Result, triA), MEMBER(Result, flags), MEMBER(Result, point), MEMBER(Result, normal),
+       MEMBER(Result, paperMinL)}};
+  return result;
+}
+
+// Where the module has the struct. The stride is 0 where it has no array of it.
+void checkLayout(const Layouts& layouts, const Expected& one) {
+  const auto& found = layouts.offsets.at(one.structure);
+  CHECK(found.size() == one.members.size());
+  for (const auto& [member, offset] : one.members) {
+    CAPTURE(member);
+    REQUIRE(found.count(member) == 1);
+    CHECK(found.at(member) == offset);
+  }
+  if (layouts.strides.count(one.structure) == 1) CHECK(layouts.strides.at(one.structure) == one.size);
+}
+
+std::set<std::string> structsIn(const char* header) {
+  std::ifstream stream(std::string(RADAR_SHADERS) + "/" + header);
+  REQUIRE(stream);
+  const std::regex definition("^struct (\\w+) \\{");
+  std::set<std::string> names;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_search(line, match, definition)) names.insert(match[1]);
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("every shared struct has the offsets and the stride that the shaders use") {
+  const bool doubles = GENERATE(true, false);
+  const Layouts layouts =
+      layoutsOf(doubles ? std::span<const uint32_t>(k_shared_structs_comp) : k_shared_structs_comp_RADAR_NO_DOUBLES);
+  for (const Expected& one : sharedStructs()) {
+    CAPTURE(doubles, one.structure);
+    // The self-test of doubles does not run without them.
+    if (!doubles && (one.structure == "Sum" || one.structure == "SumResult")) continue;
+    REQUIRE(layouts.strides.count(one.structure) == 1);
+    checkLayout(layouts, one);
+  }
+}
+
+TEST_CASE("no shared struct is left out of the comparison") {
+  std::set<std::string> declared = structsIn("interop.h"), compared;
+  declared.merge(structsIn("contact/interop.h"));
+  for (const Expected& one : sharedStructs()) compared.insert(one.structure);
+  CHECK(declared.size() > 20);
+  CHECK(declared == compared);
+}
+
+TEST_CASE("the engine's own shaders lay shared structs and results out as C++ does") {
+  std::set<std::string> seen;
+  for (const auto& [shader, spirv] : kEngineShaders) {
+    const Layouts layouts = layoutsOf(spirv);
+    const auto check = [&, name = std::string(shader)](const Expected& one) {
+      if (layouts.offsets.count(one.structure) == 0) return;
+      CAPTURE(name, one.structure);
+      seen.insert(one.structure);
+      checkLayout(layouts, one);
+    };
+    for (const Expected& one : sharedStructs()) check(one);
+    check(publicResult());
+  }
+  for (const char* name : {"RadarResult", "SearchCounts", "SearchPush", "Contender", "Placement", "MeshNode", "View"}) {
+    CAPTURE(name);
+    CHECK(seen.count(name) == 1);
+  }
+}
+
+TEST_CASE("what shaders read as texels is made of whole ones, as many as they count") {
+  constexpr size_t kTexel = 4 * sizeof(float);
+  CHECK(sizeof(Placement) == kPlacementTexels * kTexel);
+  CHECK(sizeof(Sensor) == kSensorTexels * kTexel);
+  CHECK(offsetof(Sensor, placement) == 0);
+  CHECK(sizeof(MeshNode) == 3 * kTexel);
+  CHECK(sizeof(ObjectNode) == 2 * kTexel);
+  CHECK(sizeof(Vertex) == kTexel);
+  CHECK(sizeof(Triangle) == kTexel);
+}
+
+TEST_CASE("what uses doubles has a variant without, or is made only where a device has them") {
+  const std::set<std::string> onlyWithDoubles{"contact/refine.comp", "doubles.comp"};
+  const std::string suffix = ":RADAR_NO_DOUBLES";
+  std::map<std::string, bool> doubles;
+  for (const auto& [shader, spirv] : kEngineShaders) doubles[shader] = hasDoubles(spirv);
+  for (const auto& [shader, uses] : doubles) {
     CAPTURE(shader);
-    bool doubles = false;
-    for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
-      doubles = doubles || ((spirv[at] & 0xffff) == kOpTypeFloat && spirv[at + 2] == 64);
+    if (shader.ends_with(suffix)) {
+      CHECK_FALSE(uses);
+      CHECK(doubles.at(shader.substr(0, shader.size() - suffix.size())));
+    } else {
+      CHECK(uses == (doubles.count(shader + suffix) == 1 || onlyWithDoubles.count(shader) == 1));
     }
-    const bool hasVariant =
-        std::any_of(std::begin(kShaders), std::end(kShaders),
-                    [name = std::string(shader)](auto& s) { return s.first == name + " without doubles"; });
-    CHECK(doubles == hasVariant);
   }
 }

@@ -1,11 +1,11 @@
-// The scene: ids, contracts, boxes and the hierarchy.
+// The scene: ids, contracts, boxes and frames.
 #include <catch2/catch.hpp>
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "scene/hierarchy.h"
-#include "sweep/frame.h"
+#include "scene/frame.h"
+#include "scene/scene.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -115,52 +115,4 @@ TEST_CASE("axes along a direction are orthonormal, right-handed, and exact along
       for (double c : axis) CHECK((c == 0 || std::abs(c) == 1));
     }
   }
-}
-
-TEST_CASE("the hierarchy names every object whose placed vertices reach into a prism, as the scene changes") {
-  tools::Random random(11);
-  Scene scene;
-  const MeshId mesh = addBox(scene);
-  Hierarchy hierarchy;
-  std::vector<ObjectId> objects;
-  const auto randomPose = [&] {
-    return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, random.inBox({-20, -20, -20}, {20, 20, 20}));
-  };
-  size_t named = 0, inside = 0;
-  for (int round = 0; round < 60; ++round) {
-    // Grow, move some, remove some.
-    for (int i = 0; i < 10; ++i) objects.push_back(scene.addObject({mesh, randomPose(), ~0u}));
-    for (int i = 0; i < 5; ++i) scene.setPose(objects[random.below(uint32_t(objects.size()))], randomPose());
-    if (round % 3 == 2) {
-      scene.removeObject(objects.back());
-      objects.pop_back();
-    }
-    hierarchy.update(scene.impl());
-    const Prism prism{random.inBox({-20, -20, -20}, {20, 20, 20}),
-                      axesAlong(random.direction()),
-                      {{-2, -1, 0}, {2, 1, random.uniform(0, 30)}}};
-    std::vector<ObjectId> collected;
-    hierarchy.collect(prism, collected);
-    std::sort(collected.begin(), collected.end());
-    CHECK(std::adjacent_find(collected.begin(), collected.end()) == collected.end());
-    named += collected.size();
-    for (ObjectId id : objects) {
-      const Mesh& m = scene.impl().meshes[mesh];
-      bool reaches = false;
-      for (uint32_t v : m.indices) {
-        std::array<double, 3> p = place(scene.object(id).worldFromMesh, &m.positions[3 * size_t{v}]);
-        bool in = true;
-        for (int k = 0; k < 3; ++k) p[k] -= prism.origin[k];
-        for (int k = 0; k < 3; ++k) {
-          const double c = dot(prism.axes[k], p);
-          in = in && c >= prism.box.lo[k] && c <= prism.box.hi[k];
-        }
-        reaches = reaches || in;
-      }
-      inside += reaches;
-      if (reaches) CHECK(std::binary_search(collected.begin(), collected.end(), id));
-    }
-  }
-  CHECK(inside > 50);
-  CHECK(named < 4 * inside);
 }

@@ -63,7 +63,7 @@ const char* nameOf(Status status) {
 }
 
 const char* nameOf(Tier tier) {
-  constexpr std::array<const char*, 5> kNames{"select", "sampled", "bounded", "contact", "reference"};
+  constexpr std::array<const char*, 4> kNames{"select", "sampled", "contact", "reference"};
   return kNames[static_cast<size_t>(tier)];
 }
 

@@ -263,16 +263,15 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 }
 
 const char* nameOf(AnswerMode mode) {
-  constexpr const char* kNames[] = {"sampled", "bounded", "contact", "reference"};
+  constexpr const char* kNames[] = {"sampled", "contact", "reference"};
   return kNames[static_cast<size_t>(mode)];
 }
 
 AnswerMode modeFrom(std::string_view name) {
-  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::bounded, AnswerMode::contact, AnswerMode::reference}) {
+  for (AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
     if (name == nameOf(mode)) return mode;
   }
-  throw std::invalid_argument("expected mode sampled, bounded, contact or reference, got \"" + std::string(name) +
-                              "\"");
+  throw std::invalid_argument("expected mode sampled, contact or reference, got \"" + std::string(name) + "\"");
 }
 
 }  // namespace radar::tools

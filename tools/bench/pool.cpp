@@ -39,10 +39,10 @@ struct Scenario {
 
 void overhead(const Device& device, const Scene& scene, std::vector<Query> queries, const Scenario& scenario) {
   for (Query& query : queries) query.mode = scenario.mode;
-  Sweeper sweeper(device, scene, {.select = scenario.select});
+  Sweeper sweeper(device, scene, {.select = scenario.select, .cpuBatch = 0});
   std::vector<double> plain, pooled;
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
-  Pool pool({&device, 1}, scene, {.select = scenario.select});
+  Pool pool({&device, 1}, scene, {.select = scenario.select, .cpuBatch = 0});
   for (int i = 0; i < 16; ++i) {
     const double one = timed([&] { sweeper.run(queries); });
     const double other = timed([&] { pool.submit(queries).get(); });

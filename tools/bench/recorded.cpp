@@ -20,7 +20,7 @@ using namespace radar;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kRepeats = 15;
-constexpr Capacity kRoom{.queries = 64, .clusters = 1u << 18, .clusterPairs = 1u << 20, .contenders = 1024};
+constexpr Capacity kRoom{.queries = 64, .candidates = 1u << 16, .openPairs = 1u << 14};
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());

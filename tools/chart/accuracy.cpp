@@ -6,7 +6,7 @@
 
 namespace radar::tools {
 
-Told toldBy(const Result& result, Mode mode) {
+Told toldBy(const Result& result) {
   switch (result.status) {
     case Status::hit:
     case Status::overlap:
@@ -14,7 +14,7 @@ Told toldBy(const Result& result, Mode mode) {
     case Status::clear:
       return {Told::Kind::none, NAN, NAN, NAN};
     case Status::undecided:
-      return {mode == Mode::sampled ? Told::Kind::unseen : Told::Kind::bounded, NAN, result.lo, NAN};
+      return {Told::Kind::unseen, NAN, NAN, NAN};
     case Status::invalid:
       break;
   }
@@ -62,12 +62,6 @@ void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth
       case Told::Kind::unseen:
         cell.misses += contact;
         break;
-      case Told::Kind::bounded:
-        if (!contact) break;
-        ++cell.undecided;
-        errors.push_back(inSizes(truth[i].t - told[i].lo, sizes[i]));
-        cell.violations += told[i].lo > truth[i].hi;
-        break;
     }
   }
   cell.errorMedian = quantile(errors, 0.5);
@@ -87,9 +81,6 @@ void countTiers(Cell& cell, std::span<const Result> results) {
         break;
       case Tier::sampled:
         cell.settledSampled += each;
-        break;
-      case Tier::bounded:
-        cell.settledBounded += each;
         break;
       case Tier::contact:
         cell.settledContact += each;

@@ -13,15 +13,14 @@ struct Told {
   enum class Kind {
     contact,  ///< at t
     none,     ///< not within D
-    unseen,   ///< nothing was seen, and nothing is promised
-    bounded   ///< not before lo, for certain; whether later is not known
+    unseen    ///< nothing was seen, and nothing is promised
   };
   Kind kind = Kind::none;
   double t = NAN, lo = NAN, hi = NAN;  ///< bounds that it vouches for; NaN: it does not
 };
 
-/// The engine's word: undecided answers of mode sampled are `unseen`, of mode bounded `bounded`.
-Told toldBy(const Result& result, Mode mode);
+/// The engine's word.
+Told toldBy(const Result& result);
 
 /// Fills the accuracy columns of a cell whose `certified` is set, but for the shares by tier. `truth` is the
 /// reference's.

@@ -132,15 +132,11 @@ std::vector<Case> growthCases(Extent extent) {
 
 std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32_t threads) {
   std::vector<Method> methods;
-  const std::vector<uint32_t> all = resolutions(extent);
   if (section == "front") {
-    for (const char* family : {"sampled", "bounded"}) {
-      for (const uint32_t resolution : all) methods.push_back({family, resolution});
-    }
+    for (const uint32_t resolution : resolutions(extent)) methods.push_back({"sampled", resolution});
   } else {
     if (section == "table1") methods.push_back({"drawing all", kGrowthSize});
     methods.push_back({"sampled", kGrowthSize});
-    methods.push_back({"bounded", kGrowthSize});
   }
   methods.push_back({"contact"});
   methods.push_back({"reference", 0, 1});

@@ -32,7 +32,7 @@ std::vector<Case> growthCases(Extent extent);
 inline constexpr uint32_t kGrowthSize = 64;
 
 struct Method {
-  std::string family;    ///< sampled, bounded, contact, reference, "drawing all", or a peer's row
+  std::string family;    ///< sampled, contact, reference, "drawing all", or a peer's row
   uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
   uint32_t threads = 0;  ///< 0: as many as the device takes
   std::string peer;      ///< whose row this is; empty: ours

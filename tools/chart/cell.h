@@ -32,12 +32,11 @@ struct Cell {
   uint32_t found = 0;       ///< contacts for which a distance was told
   uint32_t misses = 0;      ///< contacts told as none, or not seen
   uint32_t falseHits = 0;   ///< no contact in truth, one told
-  uint32_t undecided = 0;   ///< contacts for which only a certain lower bound was told
   uint32_t violations = 0;  ///< bounds, and certain "none"s, that do not hold
   bool certified = false;   ///< the method tells a bracket, and "none" only where that is certain
-  double errorMedian = NAN, error99 = NAN, errorWorst = NAN;  ///< of what was found, and of the bound of the undecided
+  double errorMedian = NAN, error99 = NAN, errorWorst = NAN;  ///< of what was found
   double widthMedian = NAN, width99 = NAN, widthWorst = NAN;  ///< of the brackets of what was found
-  double settledSelect = 0, settledSampled = 0, settledBounded = 0, settledContact = 0, settledReference = 0;
+  double settledSelect = 0, settledSampled = 0, settledContact = 0, settledReference = 0;
 };
 
 /// Calls visit(name, member) for each column, in the order of the file.
@@ -63,7 +62,6 @@ void eachColumn(SomeCell& cell, const Visit& visit) {
   visit("found", cell.found);
   visit("misses", cell.misses);
   visit("false_hits", cell.falseHits);
-  visit("undecided", cell.undecided);
   visit("violations", cell.violations);
   visit("certified", cell.certified);
   visit("error_median", cell.errorMedian);
@@ -74,7 +72,6 @@ void eachColumn(SomeCell& cell, const Visit& visit) {
   visit("width_worst", cell.widthWorst);
   visit("settled_select", cell.settledSelect);
   visit("settled_sampled", cell.settledSampled);
-  visit("settled_bounded", cell.settledBounded);
   visit("settled_contact", cell.settledContact);
   visit("settled_reference", cell.settledReference);
   visit("key", cell.key);

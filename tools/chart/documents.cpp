@@ -68,16 +68,21 @@ std::string timesOf(const Record& record, const std::string& method) {
   return inWords(us.least) + " to " + inWords(us.most) + " us a query";
 }
 
-// On how many workloads the mode is on the front beside methods that sample, and on which.
-std::string frontsOf(const Record& record, const std::string& family) {
+// On how many workloads, and on which, mode contact is on the front beside methods that sample.
+std::string frontsOf(const Record& record) {
   std::string on;
-  int number = 0;
+  size_t number = 0;
   for (const WorkloadNote& workload : record.workloads) {
-    if (besideSampling(shownCells(record, "front", workload.name), family).onFront.empty()) continue;
+    const BesideSampling beside = besideSampling(shownCells(record, "front", workload.name));
+    if (beside.contact == nullptr || beside.better != nullptr) continue;
     ++number;
     on += (on.empty() ? "" : ", ") + workload.name;
   }
-  return print("%d of %zu workloads", number, record.workloads.size()) + (number > 0 ? " (" + on + ")" : "");
+  return print("%zu of %zu workloads", number, record.workloads.size()) + (number > 0 ? " (" + on + ")." : ".") +
+         (number < record.workloads.size()
+              ? " Elsewhere such a method takes less time and happens to answer these queries without a miss, but "
+                "certifies none of them; by how much stands under each chart."
+              : "");
 }
 
 // Mode by mode, with the run's numbers: of what it measured.
@@ -89,11 +94,6 @@ std::vector<std::string> adviceOf(const Record& record) {
                    print("; worst error over all workloads %.2g of the sensor's size. Use it for time of impact, "
                          "placement, clearance.",
                          spreadOf(record, "contact", worst).most));
-  advice.push_back("**A bound, or \"is it clear?\": mode `bounded`**. At 64 pixels " + timesOf(record, "bounded 64") +
-                   print("; worst error %.2g of the sensor's size or less, and the bracket always holds. Use it where "
-                         "a bracket suffices, "
-                         "with `--tolerance`; where the charts show mode `contact` to be faster, take that.",
-                         spreadOf(record, "bounded 64", worst).most));
   advice.push_back(
       "**The paper's method: mode `sampled`**. At 64 pixels " + timesOf(record, "sampled 64") +
       print(
@@ -106,12 +106,8 @@ std::vector<std::string> adviceOf(const Record& record) {
                    "`contact` the sentences under each chart say by how much.");
   advice.push_back(
       "**Beside methods that sample** (pixels of mode sampled, rays of Embree, steps of FCL and ODE), mode `contact` "
-      "is "
-      "on the front on " +
-      frontsOf(record, "contact") + ", mode `bounded` on " + frontsOf(record, "bounded") +
-      ". Elsewhere bounds, a pixel or more wide, cost more than rays or steps through trees on the CPU, which happen "
-      "to "
-      "answer these queries without a miss and certify none of them; by how much stands under each chart.");
+      "is on the front on " +
+      frontsOf(record));
   return advice;
 }
 
@@ -124,8 +120,7 @@ std::string accuracyDocument(const Record& record, const std::string& charts) {
                      "/chart.html). This file is made from them, anew by the same command with `--render`.\n\n";
   text +=
       "Lengths are in sizes of the sensor, the greatest extent of its box. An answer is *missed* if there is a contact "
-      "and the method tells none, or sees none; a *false hit* if it tells one where there is none; *only bounded* if "
-      "mode bounded tells a certain lower bound and no more, which then counts as its answer. " +
+      "and the method tells none, or sees none; a *false hit* if it tells one where there is none. " +
       std::string(kFrontInWords) +
       " Running the command again gives the same columns to the last digit, on the same driver.\n\n## Which mode for "
       "what\n\n" +

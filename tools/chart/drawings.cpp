@@ -18,7 +18,6 @@ struct Look {
 };
 constexpr std::array kLooks{Look{"sampled", 0, Mark::circle, true},
                             Look{"drawing all", 0, Mark::square, true},
-                            Look{"bounded", 2, Mark::square, true},
                             Look{"contact", 1, Mark::diamond, true},
                             Look{"reference", 6, Mark::triangle, true},
                             Look{"Embree rays", 3, Mark::circle, false},
@@ -109,7 +108,7 @@ std::vector<Drawing> resolutionDrawings(const Record& record, const WorkloadNote
   chart.xName = "pixels, or rays, of the longer side";
   chart.yName = "microseconds a query";
   for (const Cell* cell : shownCells(record, "front", workload.name)) {
-    const bool hasPixels = cell->family == "sampled" || cell->family == "bounded" || cell->family == "Embree rays";
+    const bool hasPixels = cell->family == "sampled" || cell->family == "Embree rays";
     if (!hasPixels || cell->size == 0) continue;
     auto line = std::find_if(chart.lines.begin(), chart.lines.end(),
                              [&](const ChartLine& one) { return one.name == cell->family; });

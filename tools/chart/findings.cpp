@@ -51,26 +51,16 @@ const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& m
   return found == cells.end() ? nullptr : *found;
 }
 
-std::string sizesOf(const std::vector<const Cell*>& cells) {
-  std::string text;
-  for (const Cell* cell : cells) text += print(text.empty() ? "%u" : "/%u", cell->size);
-  return text;
-}
-
-// "mode bounded is, at 16/64 pixels", or what keeps it off the front.
-std::string standingOf(const std::vector<const Cell*>& cells, const std::string& family) {
-  const BesideSampling beside = besideSampling(cells, family);
-  if (!beside.onFront.empty()) {
-    const bool one = beside.onFront[0]->size == 0;
-    return "mode " + family + " is" + (one ? "" : ", at " + sizesOf(beside.onFront) + " pixels");
-  }
-  if (beside.nearest == nullptr) return "mode " + family + " was not measured";
-  const Cell &nearest = *beside.nearest, &better = *beside.better;
+// "is", or what keeps it off the front.
+std::string standingOf(const std::vector<const Cell*>& cells) {
+  const auto [contact, better] = besideSampling(cells);
+  if (contact == nullptr) return "was not measured";
+  if (better == nullptr) return "is";
   const auto errorOf = [](const Cell& cell) { return std::isnan(cell.errorWorst) ? 0 : cell.errorWorst; };
-  return "mode " + family + " is not: " + nearest.method + ", which comes nearest, takes " + timeOf(nearest.us) +
-         print(", %.3g times as long as ", nearest.us / better.us) + better.method +
+  return "is not: it takes " + timeOf(contact->us) + print(", %.3g times as long as ", contact->us / better->us) +
+         better->method +
          print(", with a worst error of %.2g against %.2g (%.2g%% of those are wrong, none is certified)",
-               errorOf(nearest), errorOf(better), 100 * wrongShare(better));
+               errorOf(*contact), errorOf(*better), 100 * wrongShare(*better));
 }
 
 // The fastest member of each family that is faster, by how much, and how many of its answers are wrong.
@@ -153,30 +143,15 @@ bool isSampling(const Cell& cell) {
   return cell.family == "sampled" || cell.family.starts_with("Embree") || cell.family.ends_with("steps");
 }
 
-BesideSampling besideSampling(std::span<const Cell* const> cells, const std::string& family) {
-  std::vector<const Cell*> sampling, members;
-  for (const Cell* cell : cells) {
-    if (isSampling(*cell)) sampling.push_back(cell);
-    if (cell->family == family) members.push_back(cell);
-  }
-  std::vector<const Cell*> both = sampling;
-  both.insert(both.end(), members.begin(), members.end());
+BesideSampling besideSampling(std::span<const Cell* const> cells) {
   BesideSampling beside;
-  for (const Cell* cell : frontOf(both)) {
-    if (cell->family == family) beside.onFront.push_back(cell);
+  for (const Cell* cell : cells) {
+    if (cell->family == "contact") beside.contact = cell;
   }
-  std::sort(beside.onFront.begin(), beside.onFront.end(),
-            [](const Cell* a, const Cell* b) { return a->size < b->size; });
-  if (!beside.onFront.empty()) return beside;
-  for (const Cell* member : members) {
-    const Cell* better = nullptr;
-    for (const Cell* cell : sampling) {
-      const bool asRight = rankOf(*cell) <= rankOf(*member);
-      if (asRight && (better == nullptr || cell->us < better->us)) better = cell;
-    }
-    if (beside.nearest != nullptr && member->us / better->us >= beside.nearest->us / beside.better->us) continue;
-    beside.nearest = member;
-    beside.better = better;
+  if (beside.contact == nullptr) return beside;
+  for (const Cell* cell : cells) {
+    const bool asGood = isSampling(*cell) && cell->us <= beside.contact->us && rankOf(*cell) <= rankOf(*beside.contact);
+    if (asGood && (beside.better == nullptr || cell->us < beside.better->us)) beside.better = cell;
   }
   return beside;
 }
@@ -224,8 +199,8 @@ std::vector<std::string> frontFindings(const Record& record, const std::string& 
   findings.push_back("Neither a miss nor a false hit: " + listOf(namesOf(right)) +
                      ". With a certificate: " + listOf(namesOf(certain)) + ".");
   findings.push_back("On the front: " + listOf(namesOf(frontOf(cells))) + ".");
-  findings.push_back("On the front beside methods that sample pixels, rays or steps: " + standingOf(cells, "contact") +
-                     "; " + standingOf(cells, "bounded") + ".");
+  findings.push_back("On the front beside methods that sample pixels, rays or steps: mode contact " +
+                     standingOf(cells) + ".");
   const Cell* contact = methodIn(cells, "contact");
   if (contact == nullptr) return findings;
   const auto fastest =

@@ -28,9 +28,8 @@ std::vector<const Cell*> failedCells(const Record& record, const std::string& se
 inline constexpr const char* kFrontInWords =
     "The front holds the methods to which no other is both as fast and as right. A wrong answer is an error that no "
     "smaller one makes up for: fewer of them are better, whatever the errors; of equal shares, the lesser worst error. "
-    "Modes bounded and contact, which certify what they say, are each also held against the methods that sample "
-    "pixels, "
-    "rays or steps of the motion, without each other.";
+    "Mode contact, which certifies what it says, is also held against the methods that sample pixels, rays or steps of "
+    "the motion alone.";
 
 /// Those to which no other is both as fast and as right, by rising time. Fewer wrong answers are better; of equal
 /// shares, a lesser worst error, down to kErrorFloor.
@@ -39,13 +38,12 @@ std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
 /// Whether the method looks at pixels, rays or steps only, and so sees samples of the shapes or of the motion.
 bool isSampling(const Cell& cell);
 
-/// One family (mode bounded, or contact) beside the methods that sample, not beside other certain ones.
+/// Mode contact beside the methods that sample, not beside other certain ones.
 struct BesideSampling {
-  std::vector<const Cell*> onFront;  ///< its members on the front of both, by rising size
-  const Cell* nearest = nullptr;     ///< if none is: the member that loses least time
-  const Cell* better = nullptr;      ///< to this method, the fastest of those that are as right
+  const Cell* contact = nullptr;  ///< null: not measured
+  const Cell* better = nullptr;   ///< of those as fast and as right, the fastest; null: mode contact is on the front
 };
-BesideSampling besideSampling(std::span<const Cell* const> cells, const std::string& family);
+BesideSampling besideSampling(std::span<const Cell* const> cells);
 
 struct Point {
   double x = 0, y = 0;

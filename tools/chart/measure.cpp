@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "chart/in_child.h"
-#include "reference/reference.h"
+#include "radar/cpu_sweeper.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -97,7 +97,6 @@ void inThreads(uint32_t threads, size_t count, const Body& body) {
 Query asked(const QuerySpec& spec, Mode mode, uint32_t resolution) {
   Query query = toQuery(spec, mode, resolution);
   query.decide = false;
-  query.tolerance = 0;
   return query;
 }
 
@@ -168,17 +167,18 @@ std::vector<double> castAll(const Case& which, const Method& method, const PeerR
 
 Truth truthOf(const Workload& workload) {
   ScenePlayer player(workload);
-  reference::Reference exact(player.scene());
+  CpuSweeper exact(player.scene());
   Truth truth;
   truth.results.resize(workload.queries.size());
   truth.sizes.resize(workload.queries.size());
   for (const Batch& batch : batchesOf(workload)) {
     player.show(batch.scene);
-    for (const uint32_t i : batch.queries) {
-      const Query query = asked(workload.queries[i], Mode::contact, 0);
-      truth.results[i] = exact.answer(query);
-      const double size = sensorSize(player.scene(), query);
-      truth.sizes[i] = size > 0 ? size : 1;
+    const std::vector<Query> queries = queriesOf(workload, batch, Mode::contact, 0);
+    const std::vector<Result> results = exact.run(queries);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      truth.results[batch.queries[i]] = results[i];
+      const double size = sensorSize(player.scene(), queries[i]);
+      truth.sizes[batch.queries[i]] = size > 0 ? size : 1;
     }
   }
   return truth;
@@ -227,9 +227,7 @@ Cell Bench::cellOf(const Method& method) const {
 
 Cell Bench::measureEngine(const Method& method) {
   const Workload& workload = which_.workload;
-  const Mode mode = method.family == "contact"   ? Mode::contact
-                    : method.family == "bounded" ? Mode::bounded
-                                                 : Mode::sampled;
+  const Mode mode = method.family == "contact" ? Mode::contact : Mode::sampled;
   Cell cell = cellOf(method);
   cell.certified = mode != Mode::sampled;
   const bool select = method.family != "drawing all";
@@ -248,7 +246,7 @@ Cell Bench::measureEngine(const Method& method) {
                 for (size_t i = 0; i < part.size(); ++i) results[batch.queries[i]] = part[i];
               }});
   std::vector<Told> told;
-  for (const Result& result : results) told.push_back(toldBy(result, mode));
+  for (const Result& result : results) told.push_back(toldBy(result));
   judge(cell, told, truth_.results, truth_.sizes);
   countTiers(cell, results);
   return cell;
@@ -261,25 +259,21 @@ Cell Bench::measureReference(const Method& method) {
   const Clock::time_point start = Clock::now();
   ScenePlayer player(workload);
   player.show(0);
-  std::vector<std::unique_ptr<reference::Reference>> exact;
-  exact.push_back(std::make_unique<reference::Reference>(player.scene()));
-  exact[0]->sync();
+  CpuSweeper exact(player.scene(), method.threads);
+  exact.sync();
   cell.prepareMs = msSince(start);
-  while (exact.size() < method.threads) exact.push_back(std::make_unique<reference::Reference>(player.scene()));
   std::vector<Result> results(workload.queries.size());
   timePasses(cell, workload, timing_,
              {[&](uint32_t scene) {
                 player.show(scene);
-                for (const auto& one : exact) one->sync();
+                exact.sync();
               },
               [&](const Batch& batch) {
-                inThreads(method.threads, batch.queries.size(), [&](uint32_t thread, size_t i) {
-                  const uint32_t query = batch.queries[i];
-                  results[query] = exact[thread]->answer(asked(workload.queries[query], Mode::contact, 0));
-                });
+                const std::vector<Result> part = exact.run(queriesOf(workload, batch, Mode::contact, 0));
+                for (size_t i = 0; i < part.size(); ++i) results[batch.queries[i]] = part[i];
               }});
   std::vector<Told> told;
-  for (const Result& result : results) told.push_back(toldBy(result, Mode::contact));
+  for (const Result& result : results) told.push_back(toldBy(result));
   judge(cell, told, truth_.results, truth_.sizes);
   countTiers(cell, results);
   return cell;

@@ -37,10 +37,10 @@ class Bench {
  private:
   struct Engine;
 
-  /// Modes sampled, bounded and contact, and "drawing all", which is mode sampled without select. What one prepares
+  /// Modes sampled and contact, and "drawing all", which is mode sampled without select. What one prepares
   /// serves all that take the same.
   Cell measureEngine(const Method& method);
-  /// In method.threads threads, each with a Reference of its own.
+  /// The CPU's exact search, on method.threads threads.
   Cell measureReference(const Method& method);
   /// In method.threads threads of a process of its own, each with a Peer of its own. Where the library ends the
   /// process, Cell::failed says how.

@@ -21,7 +21,6 @@ std::string tiersOf(const Cell& cell) {
   };
   add("select", cell.settledSelect);
   add("sampled", cell.settledSampled);
-  add("bounded", cell.settledBounded);
   add("contact", cell.settledContact);
   add("reference", cell.settledReference);
   return text.empty() ? "-" : text;
@@ -62,14 +61,13 @@ std::string inWords(double value) {
 }
 
 Table accuracyTable(const Record& record, const std::string& workload) {
-  Table table{{"method", "contacts", "found", "missed", "false hits", "only bounded", "certificate", "error, median",
-               "99%", "worst", "bracket, median", "99%", "worst", "settled by"}};
+  Table table{{"method", "contacts", "found", "missed", "false hits", "certificate", "error, median", "99%", "worst",
+               "bracket, median", "99%", "worst", "settled by"}};
   for (const Cell* cell : shownCells(record, "front", workload)) {
     table.push_back({cell->method, std::to_string(cell->contacts), std::to_string(cell->found),
-                     std::to_string(cell->misses), std::to_string(cell->falseHits), std::to_string(cell->undecided),
-                     certificateOf(*cell), inWords(cell->errorMedian), inWords(cell->error99),
-                     inWords(cell->errorWorst), inWords(cell->widthMedian), inWords(cell->width99),
-                     inWords(cell->widthWorst), tiersOf(*cell)});
+                     std::to_string(cell->misses), std::to_string(cell->falseHits), certificateOf(*cell),
+                     inWords(cell->errorMedian), inWords(cell->error99), inWords(cell->errorWorst),
+                     inWords(cell->widthMedian), inWords(cell->width99), inWords(cell->widthWorst), tiersOf(*cell)});
   }
   return table;
 }

@@ -22,23 +22,16 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
   }
 }
 
-// Modes of the engine, and of answers found by it.
-constexpr std::pair<AnswerMode, Mode> kSwept[] = {
-    {AnswerMode::sampled, Mode::sampled}, {AnswerMode::bounded, Mode::bounded}, {AnswerMode::contact, Mode::contact}};
-
-Mode engineModeOf(AnswerMode mode) {
-  return std::find_if(std::begin(kSwept), std::end(kSwept), [&](const auto& m) { return m.first == mode; })->second;
-}
-
+// Of answers found by the engine.
 AnswerMode answerModeOf(Mode mode) {
-  return std::find_if(std::begin(kSwept), std::end(kSwept), [&](const auto& m) { return m.second == mode; })->first;
+  return mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
 }
 
 }  // namespace
 
 Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     : workload_(workload), player_(workload) {
-  bool needsDevice = false, needsReference = false;
+  bool needsDevice = false, needsCpu = false;
   for (const Batch& batch : batchesOf(workload)) {
     Group& group = groups_.emplace_back();
     group.scene = batch.scene;
@@ -46,14 +39,15 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
       const QuerySpec& spec = workload.queries[number];
       const AnswerMode mode = spec.mode.value_or(options.mode);
       const bool swept = mode != AnswerMode::reference;
-      (swept ? needsDevice : needsReference) = true;
-      Part& part = swept ? group.swept : group.referred;
+      (swept ? needsDevice : needsCpu) = true;
+      Part& part = swept ? group.swept : group.onCpu;
       part.numbers.push_back(number);
-      part.queries.push_back(toQuery(spec, swept ? engineModeOf(mode) : Mode::contact, options.resolution));
-      part.queries.back().tolerance = spec.tolerance.value_or(options.tolerance);
+      part.queries.push_back(
+          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options.resolution));
     }
   }
-  const SweeperOptions sweeperOptions{.timestamps = options.timestamps};
+  const SweeperOptions sweeperOptions{
+      .timestamps = options.timestamps, .cpuBatch = options.cpuBatch, .cpuThreads = options.threads};
   if (needsDevice && options.pool) {
     devices_ = openDevices(*options.pool);
     pool_.emplace(devices_, player_.scene(), sweeperOptions);
@@ -61,7 +55,7 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     devices_.push_back(Device::open({.index = options.device}));
     sweeper_.emplace(devices_[0], player_.scene(), sweeperOptions);
   }
-  if (needsReference) reference_ = std::make_unique<reference::Reference>(player_.scene());
+  if (needsCpu) cpu_.emplace(player_.scene(), options.threads);
 }
 
 void Answering::show(uint32_t scene) {
@@ -76,7 +70,7 @@ double Answering::setUp() {
   const auto start = Clock::now();
   if (!groups_.empty()) show(groups_.front().scene);
   if (sweeper_) sweeper_->sync();
-  if (reference_) reference_->sync();
+  if (cpu_) cpu_->sync();
   return millisecondsSince(start);
 }
 
@@ -84,18 +78,13 @@ Answering::Pass Answering::run(const std::string& label) {
   Pass pass;
   pass.answers.resize(workload_.queries.size());
   Progress progress(label, workload_.queries.size());
-  const uint64_t pairsBefore = reference_ ? reference_->pairs() : 0;
   const auto start = Clock::now();
   for (const Group& group : groups_) {
     show(group.scene);
     sweep(group.swept, pass, progress);
-    refer(group.referred, pass, progress);
+    answerOnCpu(group.onCpu, pass, progress);
   }
   pass.ms = millisecondsSince(start);
-  if (reference_) {
-    pass.pairs += reference_->pairs() - pairsBefore;
-    pass.cpuPairs += reference_->pairs() - pairsBefore;
-  }
   return pass;
 }
 
@@ -119,7 +108,7 @@ void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
 void Answering::share(const Part& part, Pass& pass, Progress& progress) {
   const PoolAnswers answers = pool_->submit(part.queries).get();
   for (size_t i = 0; i < answers.results.size(); ++i) {
-    const AnswerMode mode = part.queries[i].mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
+    const AnswerMode mode = answerModeOf(part.queries[i].mode);
     const auto reason = answers.reasons.find(i);
     pass.answers[part.numbers[i]] = {answers.results[i], mode, reason == answers.reasons.end() ? "" : reason->second};
   }
@@ -129,13 +118,14 @@ void Answering::share(const Part& part, Pass& pass, Progress& progress) {
   progress.add(answers.results.size());
 }
 
-void Answering::refer(const Part& part, Pass& pass, Progress& progress) {
+void Answering::answerOnCpu(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
   const auto start = Clock::now();
-  for (size_t i = 0; i < part.queries.size(); ++i) {
-    pass.answers[part.numbers[i]] = {reference_->answer(part.queries[i]), AnswerMode::reference, {}};
-    progress.add(1);
-  }
+  const std::vector<Result> results = cpu_->run(part.queries);
+  for (size_t i = 0; i < results.size(); ++i) pass.answers[part.numbers[i]] = {results[i], AnswerMode::reference, {}};
+  pass.pairs += cpu_->stats().pairs;
+  pass.cpuPairs += cpu_->stats().pairs;
+  progress.add(results.size());
   addStage(pass.stages, {"reference", millisecondsSince(start)});
 }
 

@@ -1,4 +1,4 @@
-// A workload answered: the one place where the program meets the engine and the reference.
+// A workload answered: the one place where the program meets the engine.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cyber_radar/progress.h"
+#include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
-#include "reference/reference.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -16,11 +16,12 @@ namespace radar::tools {
 struct AnsweringOptions {
   AnswerMode mode = AnswerMode::contact;  ///< of queries that do not choose one
   uint32_t resolution = 0;                ///< 0: chosen per sensor
-  double tolerance = 0;                   ///< of queries that have none, world units
   uint32_t device = kNone;                ///< kNone: the best
   /// These devices share the work, instead of `device`; empty: all that are usable.
   std::optional<std::vector<uint32_t>> pool;
-  bool timestamps = false;  ///< measure each stage
+  bool timestamps = false;    ///< measure each stage
+  uint32_t cpuBatch = kNone;  ///< SweeperOptions::cpuBatch
+  uint32_t threads = 0;       ///< of the CPU's exact search; 0: one for each core
 };
 
 struct Answer {
@@ -40,7 +41,7 @@ class Answering {
   struct Pass {
     std::vector<Answer> answers;  ///< in the workload's order
     double ms = 0;                ///< from handing over the queries to having the answers, scene changes included
-    uint64_t pairs = 0;           ///< triangle pairs that reached a box test, or were nominated by pixels
+    uint64_t pairs = 0;           ///< pairs of triangles or leaves that were looked at, or were nominated by pixels
     uint64_t cpuPairs = 0;        ///< those of them decided on the CPU
     std::vector<StageTime> stages;
   };
@@ -48,7 +49,7 @@ class Answering {
   Pass run(const std::string& label);
 
   size_t batchCount() const { return groups_.size(); }
-  /// Those opened: none where the reference answers everything.
+  /// Those opened: none where the CPU answers everything.
   std::span<const Device> devices() const { return devices_; }
   /// Empty without a pool.
   std::vector<PoolDevice> poolDevices() const { return pool_ ? pool_->devices() : std::vector<PoolDevice>(); }
@@ -60,12 +61,12 @@ class Answering {
   };
   struct Group {
     uint32_t scene = 0;
-    Part swept, referred;
+    Part swept, onCpu;
   };
   void show(uint32_t scene);
   void sweep(const Part& part, Pass& pass, Progress& progress);
   void share(const Part& part, Pass& pass, Progress& progress);
-  void refer(const Part& part, Pass& pass, Progress& progress);
+  void answerOnCpu(const Part& part, Pass& pass, Progress& progress);
 
   const Workload& workload_;
   std::vector<Group> groups_;
@@ -73,7 +74,7 @@ class Answering {
   std::vector<Device> devices_;
   std::optional<Sweeper> sweeper_;
   std::optional<Pool> pool_;
-  std::unique_ptr<reference::Reference> reference_;
+  std::optional<CpuSweeper> cpu_;
 };
 
 }  // namespace radar::tools

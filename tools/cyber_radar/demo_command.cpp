@@ -83,7 +83,7 @@ std::vector<std::string> drawHits(const std::filesystem::path& folder, const std
     writeScopePicture(folder / name,
                       rows[i].query.id + ":  d = " + inDigits(scopes.d) + ",  t = " + inDigits(scopes.result.t) +
                           ",  min(L) = " + inDigits(scopes.result.paperMinL),
-                      scopes.width, scopes.height, panelsOf(scopes));
+                      scopes, panelsOf(scopes));
     files.push_back(name);
   }
   return files;

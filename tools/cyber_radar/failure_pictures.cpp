@@ -6,7 +6,7 @@
 
 #include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
-#include "reference/reference.h"
+#include "radar/cpu_sweeper.h"
 #include "workloads/stability.h"
 
 namespace radar::tools {
@@ -50,7 +50,7 @@ StabilityPicture draw(const Device& device, const Kind& kind, const TellingCase&
   Sweeper sweeper(device, scene);
   const Query query = toQuery(workload.queries[0], Mode::sampled, kTellingResolution);
   const Scopes scopes = sweeper.scopes(query);
-  const Result exact = reference::Reference(scene).answer(query);
+  const Result exact = CpuSweeper(scene).run({&query, 1})[0];
   const bool contact = exact.status != Status::clear;
   const double value = family->values[telling.number % family->values.size()];
   const std::string numbers =
@@ -58,7 +58,7 @@ StabilityPicture draw(const Device& device, const Kind& kind, const TellingCase&
       "):  D = " + inDigits(query.distance) + ",  exact t = " + (contact ? inDigits(exact.t) : "none") +
       ",  min(L) = " + (std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL));
   const std::string file = std::string("stability/") + kind.file + ".png";
-  writeScopePicture(folder / file, numbers, scopes.width, scopes.height, panelsOf(scopes));
+  writeScopePicture(folder / file, numbers, scopes, panelsOf(scopes));
   return {file, kind.title, std::string(kind.why) + " Here, " + numbers + "."};
 }
 

@@ -52,14 +52,18 @@ void EngineOptions::addTo(CLI::App& command) {
       .add_option(
           "--mode", mode,
           "How to answer: reference, exact on the CPU; on a Vulkan device: sampled, the paper's method, an upper "
-          "bound of the distance; bounded, a bracket of it; contact, exact")
-      ->type_name("sampled|bounded|contact|reference")
+          "bound of the distance; contact, exact")
+      ->type_name("sampled|contact|reference")
       ->capture_default_str();
   addResolutionTo(command);
   command
-      .add_option("--tolerance", tolerance,
-                  "A bracket this wide is answer enough, in the meshes' units; for queries that give none themselves")
-      ->type_name("T")
+      .add_option("--cpu-batch", cpuBatch,
+                  "In mode contact, batches of fewer queries are answered on the CPU, with the same answers; 0: none; "
+                  "else chosen from the device")
+      ->type_name("N");
+  command.add_option("--threads", threads, "Threads of the exact search on the CPU; 0: one for each core")
+      ->check(CLI::Range(0u, 4096u))
+      ->type_name("N")
       ->capture_default_str();
 }
 
@@ -67,8 +71,8 @@ void EngineOptions::addResolutionTo(CLI::App& command) {
   command
       .add_option(
           "--resolution", resolution,
-          "Pixels of the longer side of a sensor's window in modes sampled and bounded; pixels are square; auto "
-          "chooses from the size of the sensor and of its triangles, or refines from 64 to 256 in mode bounded")
+          "Pixels of the longer side of a sensor's window in mode sampled; pixels are square; auto chooses from the "
+          "size of the sensor and of its triangles")
       ->type_name("N|auto")
       ->capture_default_str();
   command
@@ -79,9 +83,6 @@ void EngineOptions::addResolutionTo(CLI::App& command) {
 }
 
 AnsweringOptions EngineOptions::checked() const {
-  if (!(tolerance >= 0 && std::isfinite(tolerance))) {
-    throw InputError("--tolerance", "", "expected a finite number of 0 or more, got " + std::to_string(tolerance));
-  }
   AnsweringOptions options;
   try {
     options.mode = modeFrom(mode);
@@ -89,7 +90,8 @@ AnsweringOptions EngineOptions::checked() const {
     throw InputError("--mode", "", error.what());
   }
   options.resolution = resolutionFrom(resolution);
-  options.tolerance = tolerance;
+  options.cpuBatch = cpuBatch.value_or(kNone);
+  options.threads = threads;
   if (device.empty()) return options;
   const std::vector<uint32_t> devices = devicesFrom(device);
   if (devices.size() == 1) {

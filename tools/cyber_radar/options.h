@@ -11,11 +11,12 @@
 
 namespace radar::tools {
 
-/// --mode, --resolution, --device, --tolerance.
+/// --mode, --resolution, --device, --cpu-batch, --threads.
 struct EngineOptions {
   std::string mode = "contact", resolution = "auto", device;
+  std::optional<uint32_t> cpuBatch;
+  uint32_t threads = 0;
   bool severalDevices = false;  ///< --device may name more than one
-  double tolerance = 0;
 
   void addTo(CLI::App& command);
   void addResolutionTo(CLI::App& command);

@@ -11,7 +11,7 @@ namespace radar::tools {
 namespace {
 
 constexpr double kSide = 512;  // what the longer side of a small scope is enlarged towards
-constexpr double kMargin = 16, kTitle = 34, kPanelTitle = 22, kCaption = 40, kLine = 16;
+constexpr double kMargin = 16, kTitle = 34, kPanelTitle = 22, kCaption = 40;
 constexpr double kBarGap = 12, kBarWidth = 18, kBarText = 96;
 constexpr double kLeastWidth = 330;  // of a panel's picture, so that titles and captions find room
 constexpr int kTicks = 5;
@@ -91,29 +91,19 @@ struct Layout {
   double pixel, width, height, panelWidth;
 };
 
-Layout layoutOf(uint32_t width, uint32_t height) {
-  const double longer = std::max({width, height, 1u});
+Layout layoutOf(const Scopes& scopes) {
+  const double longer = std::max({scopes.width, scopes.height, 1u});
   Layout layout;
   layout.pixel = std::max(1.0, std::floor(kSide / longer));
-  layout.width = layout.pixel * width;
-  layout.height = layout.pixel * height;
+  layout.width = layout.pixel * scopes.width;
+  layout.height = layout.pixel * scopes.height;
   layout.panelWidth = std::max(layout.width, kLeastWidth) + kBarGap + kBarWidth + kBarText;
   return layout;
 }
 
-/// What the colours mean, a line each from `y` on.
-void drawKinds(const Canvas& canvas, const std::vector<PixelKind>& kinds, double x, double y) {
-  for (const PixelKind& kind : kinds) {
-    canvas.colour(kind.colour);
-    canvas.fill(x, y - 10, 12, 12);
-    canvas.text(x + 18, y, 12, kind.meaning);
-    y += kLine;
-  }
-}
-
-void drawPanel(const Canvas& canvas, const ScopePanel& panel, uint32_t width, const Layout& layout, double x,
+void drawPanel(const Canvas& canvas, const Scopes& scopes, const ScopePanel& panel, const Layout& layout, double x,
                double y) {
-  const std::vector<float>& values = panel.values;
+  const std::vector<float>& values = *panel.values;
   const Range range = rangeOf(values);
   canvas.text(x, y + 15, 15, panel.title);
   y += kPanelTitle;
@@ -121,9 +111,8 @@ void drawPanel(const Canvas& canvas, const ScopePanel& panel, uint32_t width, co
   const double span = range.high > range.low ? range.high - range.low : 1;
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    canvas.colour(panel.kinds.empty() ? viridis(range.high > range.low ? (values[i] - range.low) / span : 0.5)
-                                      : panel.kinds[static_cast<size_t>(values[i])].colour);
-    const size_t column = i % width, row = i / width;
+    canvas.colour(viridis(range.high > range.low ? (values[i] - range.low) / span : 0.5));
+    const size_t column = i % scopes.width, row = i / scopes.width;
     canvas.fill(x + layout.pixel * double(column), y + layout.height - layout.pixel * double(row + 1), layout.pixel,
                 layout.pixel);
   }
@@ -133,22 +122,13 @@ void drawPanel(const Canvas& canvas, const ScopePanel& panel, uint32_t width, co
     canvas.text(x, below, 12, "no pixel has a value: " + panel.noValue);
     return;
   }
-  if (panel.contact) {
-    const auto& [across, up] = *panel.contact;
-    drawMark(canvas, x + layout.pixel * across, y + layout.height - layout.pixel * up, layout.pixel);
-  }
-  if (!panel.kinds.empty()) {
-    canvas.text(x, below, 12, "hatched: " + panel.noValue + (panel.contact ? "; ringed: the first contact" : ""));
-    drawKinds(canvas, panel.kinds, x, below + kLine);
-    return;
-  }
   drawBar(canvas, range, x + layout.width + kBarGap, y, layout.height);
   canvas.text(x, below, 12, "world units; hatched: " + panel.noValue);
   if (panel.markMinimum) {
-    const size_t column = range.lowest % width, row = range.lowest / width;
+    const size_t column = range.lowest % scopes.width, row = range.lowest / scopes.width;
     drawMark(canvas, x + layout.pixel * (double(column) + 0.5), y + layout.height - layout.pixel * (double(row) + 0.5),
              layout.pixel);
-    canvas.text(x, below + kLine, 12,
+    canvas.text(x, below + 16, 12,
                 "least value " + inDigits(range.low) + " at pixel (" + std::to_string(column) + ", " +
                     std::to_string(row) + "), ringed");
   }
@@ -157,52 +137,20 @@ void drawPanel(const Canvas& canvas, const ScopePanel& panel, uint32_t width, co
 }  // namespace
 
 std::vector<ScopePanel> panelsOf(const Scopes& scopes) {
-  return {{"R: from the back plane to the scene", "nothing there", scopes.R, false, {}, {}},
-          {"M: from the far end back to the sensor", "no sensor there", scopes.M, false, {}, {}},
-          {"L = R + M - d: free distance", "sensor or scene missing", scopes.L, true, {}, {}}};
+  return {{"R: from the back plane to the scene", "nothing there", &scopes.R, false},
+          {"M: from the far end back to the sensor", "no sensor there", &scopes.M, false},
+          {"L = R + M - d: free distance", "sensor or scene missing", &scopes.L, true}};
 }
 
-std::vector<ScopePanel> panelsOf(const OuterScopes& scopes, double latest, const Result& contact) {
-  // Okabe and Ito's colours, told apart by everybody.
-  std::vector<PixelKind> kinds{{{0.34, 0.71, 0.91}, "certainly no contact up to " + inDigits(latest)},
-                               {{0.9, 0.62, 0}, "candidate: a contact may come before"},
-                               {{0.84, 0.37, 0}, "undecided: the bound is 0"}};
-  ScopePanel settled{"What the bound settles", "nothing can meet", {}, false, std::move(kinds), {}};
-  for (const float bound : scopes.bound) {
-    const float kind = bound == 0 ? 2 : bound <= latest ? 1 : 0;
-    settled.values.push_back(std::isnan(bound) ? bound : kind);
-  }
-  if (!std::isnan(contact.point[0])) {
-    double across = 0, up = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      across += (contact.point[k] - scopes.origin[k]) * scopes.right[k] / scopes.pixel;
-      up += (contact.point[k] - scopes.origin[k]) * scopes.up[k] / scopes.pixel;
-    }
-    settled.contact = {across, up};
-  }
-  const char* none = "nothing that could meet";
-  return {{"S: the sensor's nearest", none, scopes.sensorNearest, false, {}, {}},
-          {"M: the sensor's farthest", none, scopes.sensorFarthest, false, {}, {}},
-          {"Bound: R - M, or 0", none, scopes.bound, true, {}, {}},
-          {"R: the scene's nearest", none, scopes.sceneNearest, false, {}, {}},
-          {"F: the scene's farthest", "nothing there", scopes.sceneFarthest, false, {}, {}},
-          std::move(settled)};
-}
-
-void writeScopePicture(const std::filesystem::path& file, const std::string& title, uint32_t width, uint32_t height,
+void writeScopePicture(const std::filesystem::path& file, const std::string& title, const Scopes& scopes,
                        const std::vector<ScopePanel>& panels) {
-  constexpr size_t kInARow = 3;
-  const Layout layout = layoutOf(width, height);
-  const size_t columns = std::min(panels.size(), kInARow), rows = (panels.size() + kInARow - 1) / kInARow;
-  size_t kinds = 0;
-  for (const ScopePanel& panel : panels) kinds = std::max(kinds, panel.kinds.size());
-  const double stepX = layout.panelWidth + kMargin;
-  const double stepY = kPanelTitle + layout.height + kCaption + kLine * double(kinds);
-  const Canvas canvas(kMargin + stepX * double(columns), 2 * kMargin + kTitle + stepY * double(rows));
+  const Layout layout = layoutOf(scopes);
+  const double panelStep = layout.panelWidth + kMargin;
+  const Canvas canvas(kMargin + panelStep * double(panels.size()),
+                      2 * kMargin + kTitle + kPanelTitle + layout.height + kCaption);
   canvas.text(kMargin, kMargin + 17, 17, title);
   for (size_t i = 0; i < panels.size(); ++i) {
-    drawPanel(canvas, panels[i], width, layout, kMargin + stepX * double(i % kInARow),
-              kMargin + kTitle + stepY * double(i / kInARow));
+    drawPanel(canvas, scopes, panels[i], layout, kMargin + panelStep * double(i), kMargin + kTitle);
   }
   canvas.write(file);
 }

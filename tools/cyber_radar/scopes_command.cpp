@@ -20,8 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar scopes batch.json --query ring/0 --out pictures
   cyber-radar scopes ring.obj peg.stl --direction 0 0 1 --distance 8 --out pictures --raw
 
-Writes R.png, M.png, L.png and scopes.png, which holds all three; and outer.png: the outer scopes of mode bounded, the
-bound of every pixel, what it leaves open, and the exact contact. With --raw also R.f32, M.f32 and L.f32: the values as
+Writes R.png, M.png, L.png and scopes.png, which holds all three. With --raw also R.f32, M.f32 and L.f32: the values as
 little-endian 32-bit floats, row by row from the window's lower left corner, NaN where a pixel has no value; and
 scopes.json, which gives width, height, the side of a pixel, d, the sensor's length along the motion, the window's
 corner and axes in the world, and the answer.)";
@@ -93,26 +92,6 @@ void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const
   writeWhole(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
-/// One look in mode bounded, and the exact contact in it.
-void drawOuter(const std::filesystem::path& file, const QuerySpec& query, Query asked, Sweeper& sweeper) {
-  asked.mode = radar::Mode::bounded;
-  const OuterScopes outer = sweeper.outerScopes(asked);
-  asked.mode = radar::Mode::contact;
-  const Result contact = sweeper.run({&asked, 1})[0];
-  const Result& bracket = outer.result;
-  std::string told = "certainly clear";
-  double latest = query.distance;
-  if (bracket.status == Status::undecided) told = "no contact before " + inDigits(bracket.lo);
-  if (!std::isnan(bracket.hi)) {
-    latest = bracket.hi;
-    told = "contact in [" + inDigits(bracket.lo) + ", " + inDigits(bracket.hi) + "]";
-  }
-  writeScopePicture(
-      file,
-      query.id + ":  outer scopes,  " + told + ",  exact: " + (std::isnan(contact.t) ? "none" : inDigits(contact.t)),
-      outer.width, outer.height, panelsOf(outer, latest, contact));
-}
-
 void drawScopes(Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   const Workload workload = load(options);
@@ -134,26 +113,21 @@ void drawScopes(Options& options) {
                             ",  min(L) = " + leastL + ",  " + std::to_string(scopes.width) + " x " +
                             std::to_string(scopes.height) + " pixels of " + inDigits(scopes.pixel);
   const std::vector<ScopePanel> panels = panelsOf(scopes);
-  const auto write = [&](const char* name, const std::vector<ScopePanel>& drawn) {
-    writeScopePicture(folder / name, title, scopes.width, scopes.height, drawn);
-  };
-  write("R.png", {panels[0]});
-  write("M.png", {panels[1]});
-  write("L.png", {panels[2]});
-  write("scopes.png", panels);
-  drawOuter(folder / "outer.png", query, asked, sweeper);
+  writeScopePicture(folder / "R.png", title, scopes, {panels[0]});
+  writeScopePicture(folder / "M.png", title, scopes, {panels[1]});
+  writeScopePicture(folder / "L.png", title, scopes, {panels[2]});
+  writeScopePicture(folder / "scopes.png", title, scopes, panels);
   if (options.raw) writeRaw(folder, query, scopes);
   std::cout << title << "\n"
             << inWords(workload, query, {scopes.result, AnswerMode::sampled, {}})
-            << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png, outer.png"
+            << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png"
             << (options.raw ? "; values: R.f32, M.f32, L.f32, scopes.json" : "") << "\n";
 }
 
 }  // namespace
 
 void addScopesCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("scopes", "Draws the paper's scopes R, M and L of one query, and its outer scopes");
+  CLI::App* command = app.add_subcommand("scopes", "Draws the paper's scopes R, M and L of one query");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
   command->add_option("FILES", options->files, "A query file; or two mesh files, scene and sensor")

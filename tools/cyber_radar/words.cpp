@@ -28,15 +28,9 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
   return text;
 }
 
-std::string certaintyInWords(const Answer& answer) {
-  switch (answer.result.tier) {
-    case Tier::sampled:
-      return "certainly no later; mode sampled does not say how much earlier";
-    case Tier::bounded:
-      return "certainly no later, and no earlier than " + inDigits(answer.result.lo);
-    default:
-      return "exact, to rounding";
-  }
+std::string certaintyInWords(const Result& result) {
+  return result.tier == Tier::sampled ? "certainly no later; mode sampled does not say how much earlier"
+                                      : "exact, to rounding";
 }
 
 }  // namespace
@@ -57,17 +51,13 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
   switch (result.status) {
     case Status::hit:
       return "hit: first contact after " + inDigits(result.t) + " of " + distance + " (" +
-             inDigits(100 * result.fraction) + "% of the way)\n  how     " + certaintyInWords(answer) + "\n" +
+             inDigits(100 * result.fraction) + "% of the way)\n  how     " + certaintyInWords(result) + "\n" +
              contactInWords(workload, query, result);
     case Status::overlap:
       return "overlap: the surfaces meet at the start already\n" + contactInWords(workload, query, result);
     case Status::clear:
       return "clear: certainly no contact within " + distance + "\n";
     case Status::undecided:
-      if (answer.mode == AnswerMode::bounded) {
-        return "undecided: certainly no contact before " + inDigits(result.lo) + " of " + distance +
-               "; a higher --resolution may find one, --mode contact knows\n";
-      }
       return std::string("undecided: ") +
              (result.detected == Detected::no ? "no pixel saw anything in the way" : "no pixel found a contact") +
              " within " + distance +

@@ -117,7 +117,7 @@ class Bench {
  private:
   std::unique_ptr<Pool> poolOf(std::span<const Device> devices, const std::vector<uint32_t>& set, bool timestamps) {
     return std::make_unique<Pool>(devices.subspan(set.front(), set.size()), player_->scene(),
-                                  SweeperOptions{.select = settings_.select, .timestamps = timestamps});
+                                  SweeperOptions{.select = settings_.select, .timestamps = timestamps, .cpuBatch = 0});
   }
 
   const ScaleSettings& settings_;

@@ -11,7 +11,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr std::array kAsked{Method::sampled, Method::bounded, Method::contact};
+constexpr std::array kAsked{Method::sampled, Method::contact};
 
 /// The answer to a way from the answers to its two parts, `first` long the first.
 Result joined(const Result& one, const Result& two, double first) {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "reference/reference.h"
+#include "radar/cpu_sweeper.h"
 #include "stability/promises.h"
 #include "workloads/workload.h"
 
@@ -49,9 +49,6 @@ Verdict judge(Method method, const Scene& scene, const Query& query, const Resul
     case Method::sampled:
       verdict = judgeSampled(query, result, exact);
       break;
-    case Method::bounded:
-      verdict = judgeBracket(query, result, exact);
-      break;
     case Method::contact:
       verdict = judgeContact(scene, query, result, exact);
       break;
@@ -64,7 +61,7 @@ class Measuring {
  public:
   Measuring(const Device& device, const StabilitySettings& settings, StabilityReport& report,
             const std::function<void(const std::string&)>& onWrong)
-      : sweeper_(device, scene_), reference_(scene_), settings_(settings), report_(report), onWrong_(onWrong) {}
+      : sweeper_(device, scene_, {.cpuBatch = 0}), exact_(scene_), settings_(settings), report_(report), onWrong_(onWrong) {}
 
   void run(const StabilityFamily& family, uint64_t cases, const std::function<void(uint64_t)>& onProgress);
 
@@ -78,7 +75,7 @@ class Measuring {
 
   Scene scene_;
   Sweeper sweeper_;
-  reference::Reference reference_;
+  CpuSweeper exact_;
   const StabilitySettings& settings_;
   StabilityReport& report_;
   const std::function<void(const std::string&)>& onWrong_;
@@ -163,12 +160,11 @@ void Measuring::askScene(uint64_t first, uint32_t number) {
   sweeper_.sync();
   std::vector<Query> queries;
   for (const QuerySpec& spec : workload.queries) queries.push_back(toQuery(spec, Mode::contact));
-  const std::vector<Result> exact = reference_.run(queries);
+  const std::vector<Result> exact = exact_.run(queries);
   const uint64_t scene = first / kCasesPerScene;
   for (const uint32_t resolution : settings_.resolutions) {
     if (scene % strideOf(resolution) != 0) continue;
     ask(queries, exact, Method::sampled, resolution, first);
-    ask(queries, exact, Method::bounded, resolution, first);
   }
   ask(queries, exact, Method::contact, 0, first);
 }

@@ -24,7 +24,7 @@ struct StabilityRow {
   double late = 0;         ///< greatest t - t*
   double early = 0;        ///< greatest t* - t
   double width = 0;        ///< median of hi - lo; NaN without one
-  uint64_t bySelect = 0, byPictures = 0, byContact = 0;  ///< settled by: select; sampled or bounded; contact
+  uint64_t bySelect = 0, byPictures = 0, byContact = 0;  ///< settled by: select; sampled; contact
   uint64_t undecided = 0;
   double microseconds = 0;  ///< a query, median over the batches
 

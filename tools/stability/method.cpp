@@ -7,13 +7,13 @@
 namespace radar::tools {
 
 const char* nameOf(Method method) {
-  constexpr std::array<const char*, kMethods> kNames{"paper", "sampled", "bounded", "contact"};
+  constexpr std::array<const char*, kMethods> kNames{"paper", "sampled", "contact"};
   return kNames[static_cast<size_t>(method)];
 }
 
 std::vector<Query> asked(std::vector<Query> queries, Method method, uint32_t resolution) {
   for (Query& query : queries) {
-    query.mode = method == Method::contact ? Mode::contact : method == Method::bounded ? Mode::bounded : Mode::sampled;
+    query.mode = method == Method::contact ? Mode::contact : Mode::sampled;
     query.resolution = method == Method::contact ? 0 : resolution;
   }
   return queries;

@@ -10,8 +10,8 @@
 namespace radar::tools {
 
 /// `paper` is the paper's literal min(L), which mode sampled tells beside its own answer.
-enum class Method { paper, sampled, bounded, contact };
-inline constexpr size_t kMethods = 4;
+enum class Method { paper, sampled, contact };
+inline constexpr size_t kMethods = 3;
 const char* nameOf(Method method);
 
 /// The queries in the method's mode; `resolution` is 0 in mode contact.

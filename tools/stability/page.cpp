@@ -25,12 +25,12 @@ constexpr const char* kReading = R"(
 How to read the tables:
 
 - **tier, pixels**: `paper` is the paper's literal min(L), which mode `sampled` tells beside its own answer: contact
-  after min(L) if that is within D, now if it is negative. `sampled`, `bounded` and `contact` are the modes of the engine. The number is
+  after min(L) if that is within D, now if it is negative. `sampled` and `contact` are the modes of the engine. The number is
   the pixels of the scope's longer side. The larger the scope, the fewer of the cases are asked: *cases* counts them.
 - **missed**: there is a contact within D, and the answer is that there is none; for `paper` and `sampled` also that
   none was seen. Mode `sampled` then says `undecided`, never `clear`. **false**: a contact is told where there is none within D.
 - **late**, **early**: the most that the t told lies after or before the exact one. **width**: the median of hi - lo. All three in units of
-  the greater of the sensor's size and t. In modes `sampled` and `bounded` t is the upper end of the bracket.
+  the greater of the sensor's size and t. In mode `sampled` t is the upper end of the bracket.
 - **brackets**: brackets that do not hold the exact t. **otherwise**: other promises broken (no answer, wrong status, triangles, point or
   normal). The paper's min(L) has no bracket.
 - **select**, **pict.**, **contact %**: the share of cases settled by the hierarchy alone, by pictures, by the exact search;
@@ -59,28 +59,27 @@ std::string originOf(const StabilityOrigin& origin) {
 }
 
 std::string summaryOf(const StabilityReport& report) {
-  uint64_t bounded = 0, contact = 0, missed = 0, falseHits = 0, brackets = 0, otherwise = 0, undecided = 0;
+  uint64_t contact = 0, missed = 0, falseHits = 0, brackets = 0, otherwise = 0, undecided = 0;
   double error = 0;
   for (const StabilityRow& row : report.rows) {
-    if (row.method == Method::paper || row.method == Method::sampled) continue;
-    (row.method == Method::bounded ? bounded : contact) += row.cases;
+    if (row.method != Method::contact) continue;
+    contact += row.cases;
     missed += row.missed;
     falseHits += row.falseHits;
     brackets += row.brackets;
     otherwise += row.otherwise;
-    if (row.method != Method::contact) continue;
     undecided += row.undecided;
     error = std::max({error, row.late, row.early});
   }
   const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
   const std::string t = error == 0 ? "the reference's to the bit" : print("within %.1e of the reference's", error);
   return print(
-             "Modes `bounded` (%llu answers) and `contact` (%llu): %llu missed, %llu false, %llu brackets violated, "
-             "%llu promises\nbroken otherwise. Mode `contact` left %llu undecided, and its t was ",
-             number(bounded), number(contact), number(missed), number(falseHits), number(brackets), number(otherwise),
+             "Mode `contact` (%llu answers): %llu missed, %llu false, %llu brackets violated, %llu promises broken "
+             "otherwise,\n%llu undecided. Its t was ",
+             number(contact), number(missed), number(falseHits), number(brackets), number(otherwise),
              number(undecided)) +
          t +
-         " in every family,\nthose whose input is ill-conditioned among them: both decide about the same placed "
+         " in every family, those whose input is ill-conditioned among them: both\ndecide about the same placed "
          "vertices, without rounding.\n";
 }
 

@@ -137,7 +137,7 @@ Verdict judgeContact(const Scene& scene, const Query& query, const Result& resul
   return verdict;
 }
 
-Verdict judgeBracket(const Query& query, const Result& result, const Result& exact) {
+Verdict judgeSampled(const Query& query, const Result& result, const Result& exact) {
   Verdict verdict;
   const bool contact = exact.status == Status::hit || exact.status == Status::overlap;
   const bool found = result.status == Status::hit || result.status == Status::overlap;
@@ -148,16 +148,8 @@ Verdict judgeBracket(const Query& query, const Result& result, const Result& exa
   verdict.wrongStatus = (result.status == Status::overlap && exact.status != Status::overlap) ||
                         (found && result.detected != Detected::yes);
   // The reference's own bracket is a few roundings wide.
-  const bool low = result.lo >= 0 && result.lo <= query.distance && !(contact && result.lo > exact.hi);
-  const bool high =
-      found ? result.hi >= exact.lo && result.hi <= query.distance && result.lo <= result.hi : std::isnan(result.hi);
-  verdict.bracket = !low || !high || !(query.decide || !found || result.t == result.hi);
-  return verdict;
-}
-
-Verdict judgeSampled(const Query& query, const Result& result, const Result& exact) {
-  Verdict verdict = judgeBracket(query, result, exact);
-  if (result.status != Status::clear && result.lo != 0) verdict.bracket = true;
+  const bool high = found ? result.hi >= exact.lo && result.hi <= query.distance : std::isnan(result.hi);
+  verdict.bracket = result.lo != 0 || !high || !(query.decide || !found || result.t == result.hi);
   return verdict;
 }
 

@@ -29,10 +29,8 @@ struct Verdict {
 /// `exact` is the reference's answer.
 Verdict judgeContact(const Scene& scene, const Query& query, const Result& result, const Result& exact);
 
-/// The same for mode bounded: `late`, `wrongPair`, `point` and `normal` are not judged, and undecided is an answer.
-Verdict judgeBracket(const Query& query, const Result& result, const Result& exact);
-
-/// The same for mode sampled, whose `lo` is 0 and which may see nothing: then `unanswered` is not set either.
+/// The same for mode sampled, whose `lo` is 0: `late`, `wrongPair`, `point` and `normal` are not judged, and undecided
+/// is an answer.
 Verdict judgeSampled(const Query& query, const Result& result, const Result& exact);
 
 }  // namespace radar::tools

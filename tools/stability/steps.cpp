@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/reference.h"
+#include "radar/cpu_sweeper.h"
 #include "stability/promises.h"
 #include "workloads/stability.h"
 #include "workloads/workload.h"
@@ -36,8 +36,8 @@ void count(StepRow& row, const Result& before, const Result& after, const Result
 std::vector<StepRow> measureSteps(const Device& device, const StepSettings& settings,
                                   const std::function<void(uint64_t)>& onProgress) {
   Scene scene;
-  Sweeper sweeper(device, scene);
-  reference::Reference reference(scene);
+  Sweeper sweeper(device, scene, {.cpuBatch = 0});
+  CpuSweeper cpu(scene);
   std::vector<StepRow> rows;
   for (const StabilityFamily& family : stabilityFamilies()) {
     const size_t firstRow = rows.size();
@@ -55,7 +55,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
         const Vec3 step = scaled(random.direction(), settings.size * sensorSize(scene, query));
         appendSteps(queries, query, step, settings.steps);
       }
-      const std::vector<Result> exact = reference.run(queries);
+      const std::vector<Result> exact = cpu.run(queries);
       for (size_t m = 0; m < kMethods; ++m) {
         const std::vector<Result> results = answersBy(static_cast<Method>(m), sweeper, queries, settings.resolution);
         for (size_t i = 1; i < queries.size(); ++i) {

@@ -216,6 +216,26 @@ Workload makeWorkload(const OneMesh& options) {
   return workload;
 }
 
+Workload makeWorkload(const Sheets& options) {
+  Random random(options.seed);
+  Workload workload;
+  workload.meshes = {makeBox({1, 1, 1}), makeSheet(100, 0.05, random)};
+  Clearance clearance(3);
+  workload.scenes.push_back({"boxes", {}, randomBoxes(random, options.boxes, kCubeSide, 0.3, 1.5, clearance), {}});
+  for (uint32_t i = 0; i < options.sensors; ++i) {
+    QuerySpec query;
+    query.id = "sensor/" + std::to_string(i);
+    const auto rotation = random.rotation();
+    // Across the sheet, towards the cube's middle.
+    query.direction = {-rotation[2], -rotation[5], -rotation[8]};
+    const double half = 0.5 * kCubeSide;
+    query.sensor = {1, makePose(rotation, {half, half, half}, {2 * half * rotation[2], 2 * half * rotation[5], 2 * half * rotation[8]})};
+    query.distance = 2 * kCubeSide;
+    workload.queries.push_back(std::move(query));
+  }
+  return workload;
+}
+
 Workload makeWorkload(const Soups& options) {
   Workload workload;
   Random random(options.seed);

@@ -38,7 +38,7 @@ struct Figure7 {
 Workload makeWorkload(const Figure7& options);
 
 /// Boxes at one density (that of Table 1 at 10,000) in a cube that grows with their number, 1,000 to 1,000,000, and one
-/// batch of 1 to 4,096 sensors, as in Table 1.
+/// batch of sensors, as in Table 1.
 struct Scale {
   uint32_t boxes = 100'000;
   uint32_t sensors = 64;
@@ -56,6 +56,15 @@ struct OneMesh {
   uint64_t seed = 19;
 };
 Workload makeWorkload(const OneMesh& options);
+
+/// Few large sensors: wavy sheets of 20,000 triangles, as wide as the cube of Table 1, that come at its `boxes` boxes from
+/// outside, each from its own side. One batch.
+struct Sheets {
+  uint32_t boxes = 30'000;
+  uint32_t sensors = 4;
+  uint64_t seed = 31;
+};
+Workload makeWorkload(const Sheets& options);
 
 /// Random triangle soups (of each kind in turn, or of one kind) in random affine poses with scales of 0.3 to 2, mirrors
 /// among them, that overlap, interlock and miss: one scene, one batch. `origin` moves everything along x, y and z.

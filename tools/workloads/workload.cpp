@@ -24,7 +24,6 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.mask = spec.mask;
   query.decide = spec.decide;
   query.resolution = resolution;
-  query.tolerance = spec.tolerance.value_or(0);
   return query;
 }
 

@@ -40,7 +40,7 @@ struct SceneSpec {
 };
 
 /// How an answer is found.
-enum class AnswerMode { sampled, bounded, contact, reference };
+enum class AnswerMode { sampled, contact, reference };
 
 struct QuerySpec {
   std::string id;
@@ -54,7 +54,7 @@ struct QuerySpec {
   bool decide = false;
   std::optional<AnswerMode> mode;   ///< overrides the command's
   std::optional<double> speed;      ///< units per second
-  std::optional<double> tolerance;  ///< world units; overrides the command's
+  std::optional<double> tolerance;  ///< world units; every exact answer meets it
 };
 
 struct Workload {
@@ -66,8 +66,7 @@ struct Workload {
   uint32_t objectCount(uint32_t scene) const;
 };
 
-/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers; without a
-/// tolerance of its own it has none.
+/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
 Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
 
 /// Greatest extent of the placed sensor's box.

@@ -1,7 +1,7 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// The public interface, with pool.h for several devices and recorder.h for a host's own command buffers. Units: any one
-// unit of length, used throughout; angles never appear. Coordinates are left- or right-handed; meshes are two-sided
+// The public interface, with cpu_sweeper.h for the CPU alone, pool.h for several devices and recorder.h for a host's own
+// command buffers. Units: any one unit of length, used throughout; angles never appear. Coordinates are left- or right-handed; meshes are two-sided
 // triangle soups, winding is ignored, nothing has to be closed or connected.
 //
 // Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
@@ -88,8 +88,8 @@ struct Object {
   uint32_t mask = ~0u;  ///< takes part in a query when it shares a bit with the query's mask
 };
 
-/// Meshes, and objects that place them. Plain data on the CPU: a scene knows no device, and any number of sweepers and
-/// references may read it. Copies everything it is given.
+/// Meshes, and objects that place them. Plain data on the CPU: a scene knows no device, and any number of
+/// sweepers may read it. Copies everything it is given.
 class RADAR_API Scene {
  public:
   Scene();
@@ -140,8 +140,7 @@ class RADAR_API Scene {
 /// How far the tiers go: the cheapest that settles a query answers it, none beyond this one is asked.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
-  bounded,  ///< select, then outer scopes: a bracket that holds, without looking at pairs of triangles for `lo`
-  contact   ///< select, then the exact search on the device: never undecided
+  contact   ///< the exact search, on the device or on the CPU: never undecided
 };
 
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
@@ -154,12 +153,8 @@ struct Query {
   bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
-  /// Pixels of the window's longer side, up to kMaxResolution. 0, in mode sampled: chosen from the meshes; in mode
-  /// bounded: 64, then doubled up to 256 while neither clear, overlap, `decide` nor `tolerance` settles the query.
+  /// Of mode sampled: pixels of the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
   uint32_t resolution = 0;
-  /// World units, at least 0: a bracket with hi - lo <= tolerance is answer enough. Looked at between tiers only: mode
-  /// contact with a tolerance takes one look at outer scopes first; once begun, contact ends at t*.
-  double tolerance = 0;
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;
@@ -173,7 +168,7 @@ enum class Status : uint32_t {
 };
 
 /// The stage that settled an answer.
-enum class Tier : uint32_t { select, sampled, bounded, contact, reference };
+enum class Tier : uint32_t { select, sampled, contact, reference };
 
 /// The paper's first step: is there anything in the target volume?
 enum class Detected : uint32_t {
@@ -183,23 +178,22 @@ enum class Detected : uint32_t {
 };
 
 /// Why a Recorder (radar/recorder.h) has left a query without an answer: bits of Result::flags.
-inline constexpr uint32_t kFlagOpen = 1;      ///< pairs of triangles too close for the device: Recorder::read() decides
-inline constexpr uint32_t kFlagClusters = 2;  ///< Capacity::clusters was too small
-inline constexpr uint32_t kFlagClusterPairs = 4;  ///< Capacity::clusterPairs was
-inline constexpr uint32_t kFlagContenders = 8;    ///< Capacity::contenders was
-inline constexpr uint32_t kFlagDispatches = 16;   ///< Capacity::dispatches was
-inline constexpr uint32_t kFlagBounds = 32;  ///< a vertex or an object of HostGeometry has left its declared bounds
+inline constexpr uint32_t kFlagOpen = 1;  ///< pairs of triangles too close for the device: Recorder::read() decides
+inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates was too small
+inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was
+inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene's coordinates, or the sensor beside them
+inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of HostGeometry has left its declared bounds
 
-/// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 1: 120 bytes, natural alignment.
+/// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 2: 120 bytes, natural alignment.
 ///
 /// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
-/// normal do not exist; lo and hi still hold t*, more loosely; only the status is independent of order and culling.
+/// normal do not exist; where it is hit, lo is 0 and hi at most D (in mode contact: D).
 struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
   uint32_t resolution = 0;       ///< pixels of the window's longer side; 0 where no picture was drawn
-  double t;                      ///< best estimate of t*, world units; tiers sampled and bounded: hi
+  double t;                      ///< best estimate of t*, world units; tier sampled: hi
   double lo, hi;                 ///< the certified bracket, world units
   double fraction;               ///< t / D (0 where D is 0)
   ObjectId object = kNone;       ///< what is touched
@@ -211,7 +205,7 @@ struct RADAR_API Result {
   double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
 };
-inline constexpr uint32_t kResultVersion = 1;
+inline constexpr uint32_t kResultVersion = 2;
 static_assert(sizeof(Result) == 120);
 
 /// Checks what Scene and Query promise of their numbers. Return an empty string, or what is wrong and what was
@@ -309,11 +303,16 @@ class RADAR_API Device {
 };
 
 struct SweeperOptions {
-  bool select = true;       ///< false: draw every object for every sensor, the naive baseline; the answers are the same
+  /// Of mode sampled; false: draw every object for every sensor, the naive baseline. The answers are the same.
+  bool select = true;
   bool timestamps = false;  ///< measure each stage; costs a little
   /// Upper bound on device memory for the pictures of one submission, bytes; a batch that needs more is split. What is
   /// kept from one submission to the next takes at most twice as much.
   uint64_t pictureBytes = 256ull << 20;
+  /// Batches of fewer queries of mode contact are answered on the CPU, with the same answers. 0: none is. kNone: 16,
+  /// but all of them where the device itself runs on the CPU (lavapipe): its search is slower there.
+  uint32_t cpuBatch = kNone;
+  uint32_t cpuThreads = 0;  ///< of the CPU's search; 0: one for each core
 };
 
 /// Time of one stage, summed over the submissions of the last run(), milliseconds.
@@ -327,11 +326,11 @@ struct SweepStats {
   uint32_t submissions = 0;
   uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
-  uint64_t pairs = 0;             ///< triangle pairs: nominated (sampled), or that reached a box test (contact)
-  uint64_t cpuPairs = 0;          ///< pairs decided on the CPU
-  uint64_t clusters = 0;          ///< clusters in reach of either side, summed over sensors (contact)
-  uint64_t clusterPairs = 0;      ///< cluster pairs whose boxes can meet (contact)
-  uint64_t solves = 0;            ///< triangle pairs solved (contact)
+  uint64_t pairs = 0;             ///< pairs: of triangles that were nominated (sampled), of leaves (contact)
+  uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
+  uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
+  uint64_t nodePairs = 0;         ///< pairs of nodes of both meshes' trees looked at on the device (contact)
+  uint64_t solves = 0;            ///< pairs of triangles solved on the device (contact)
   std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps (then CPU stages too)
 };
 
@@ -351,23 +350,10 @@ struct Scopes {
   Result result;  ///< the answer to the same query
 };
 
-/// What one look in mode bounded sees of a query, as pictures laid out like Scopes. Depths along the motion from the
-/// sensor's centre, world units: the extremes of what may lie anywhere in a pixel; NaN where there is nothing that
-/// could meet something of the other side.
-struct OuterScopes {
-  uint32_t width = 0, height = 0;  ///< both 0 where nothing is in reach
-  double pixel = 0;                ///< side of a pixel, world units
-  std::vector<float> sensorNearest, sensorFarthest, sceneNearest, sceneFarthest;
-  std::vector<float> bound;  ///< nothing in the pixel meets before; NaN: nothing in it can meet
-  /// worldFromWindow as in Scopes, from the window's corner at the depth of the sensor's centre.
-  std::array<double, 3> origin{}, right{}, up{}, forward{};
-  Result result;  ///< the answer that this look gives
-};
-
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
-  /// Creates the pipelines. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
+  /// Creates the pipelines of mode contact; those of mode sampled are made when first used. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;
@@ -377,17 +363,15 @@ class RADAR_API Sweeper {
   /// the cost.
   void sync();
 
-  /// Answers each query as its mode says, in the order given: any number of queries. A
-  /// batch that fits the device's layers and memory is one upload, one command buffer, one readback; a larger one is
-  /// split. The answer to a query does not depend on its batch. Throws if a query breaks its contract, naming it,
+  /// Answers each query as its mode says, in the order given: any number of queries. Those that go to the device are one
+  /// upload, one command buffer, one readback for each mode, or several where they are too many for the device's layers
+  /// or memory, or more than 16,384. The answer to a query does not depend on its batch. Throws if a query breaks its contract, naming it,
   /// before anything is submitted. Blocks until the answers are here.
   std::vector<Result> run(std::span<const Query> queries);
 
-  /// The pictures behind the answer to `query`: in mode sampled, and of one look in mode bounded, at the query's
-  /// resolution (0: chosen from the meshes; 64). Throws Error where they do not fit the device, or float cannot tell
-  /// the pixels apart.
+  /// The pictures behind the answer to `query` in mode sampled, at the query's resolution. Throws Error where they do
+  /// not fit the device.
   Scopes scopes(const Query& query);
-  OuterScopes outerScopes(const Query& query);
 
   const SweepStats& stats() const;
   /// Why the i-th answer of the last run() is invalid; empty if it is not.

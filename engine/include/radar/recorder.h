@@ -8,25 +8,23 @@
 
 namespace radar {
 
-/// Room for what is recorded at a time: nothing is done again with more. What goes beyond leaves its query
-/// Status::invalid with the flag named, and no other.
+/// Room for what is recorded at a time: nothing is done again with more. A query that exceeds a limit becomes
+/// Status::invalid with the flag named; other queries are unaffected, unless they share what ran out.
 struct Capacity {
   uint32_t queries = 64;  ///< more make record() throw
-  /// Clusters, of at most 64 triangles, of sensors and of what is in their reach, in all: kFlagClusters. What a host
-  /// deforms or moves counts whole where its bounds are in reach.
-  uint32_t clusters = 1u << 14;
-  /// Pairs of a sensor's cluster and a scene's whose boxes can meet, in all: kFlagClusterPairs.
-  uint32_t clusterPairs = 1u << 18;
-  /// Pairs of triangles that may be first, or have been, of each query: kFlagContenders.
-  uint32_t contenders = 256;
-  /// Dispatches that a search may take; one that has ended costs the next ones next to nothing: kFlagDispatches.
-  uint32_t dispatches = 6;
-  /// Pairs of triangles left open, in all. Where there are more, read() decides none: kFlagOpen stays.
+  /// Pairs of triangles that may be first as far as floats can tell, of all queries together, while the search goes on:
+  /// some 10 a query among boxes, 30 among meshes, hundreds where shapes interlock. kFlagCandidates.
+  uint32_t candidates = 1u << 14;
+  /// Dispatches that the search is cut into, each of a few milliseconds at most; those behind the last one that is needed
+  /// cost next to nothing. An even number up to 64: kFlagRounds.
+  uint32_t rounds = 16;
+  /// Pairs of triangles left open, in all. Where a query's have no room, read() cannot decide them: kFlagOpen stays.
   uint32_t openPairs = 1u << 12;
 };
 
 /// Records batches of mode contact. The host makes one for each of its frames in flight, while loading: each has a copy
-/// of the scene on the device, its own lists, and pipelines from HostDevice::pipelineCache.
+/// of the scene on the device and its own lists; pipelines are the device's, made with the first of them. It, and the
+/// Device, stay until what it recorded has been executed: destructors do not wait.
 class RADAR_API Recorder {
  public:
   /// `device` and `scene` outlive it. Throws where the device's buffers cannot hold `capacity`, naming the member.
@@ -35,16 +33,14 @@ class RADAR_API Recorder {
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;
 
-  /// What recording `queries` now would take: queries, clusters and clusterPairs (an upper bound) are computed, the
-  /// other members are the defaults. Throws as record() does if a query cannot be recorded.
-  Capacity need(std::span<const Query> queries);
-
   /// Records the search into `commands`, a primary or secondary command buffer of HostDevice::queueFamily in the
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` here and not later, the host's
   /// buffers that `geometry` names when the commands are executed. Query i's answer goes to results(),
   /// i * sizeof(Result) bytes from its start: to the bit that of Sweeper::run, except where the flag kFlagOpen says
   /// that pairs are too close for the device: then the status is undecided, `hi` does not exist, and nothing meets
-  /// before `lo`.
+  /// before `lo`. Queries whose numbers floats cannot hold are Status::invalid with
+  /// kFlagRange: coordinates beyond 2^80 (of one object: all queries), sizes below 2^-80, sizes of sensor and object that
+  /// differ by more than 10^12 times.
   ///
   /// Where something in the host's buffers is out of its bounds, or not finite, every answer is Status::invalid with
   /// kFlagBounds.
@@ -55,11 +51,10 @@ class RADAR_API Recorder {
   /// - Afterwards: the commands are submitted once or never; if never, reset() comes before the next record(). Whoever
   ///   reads the answers waits for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
-  /// - Allocates device memory only where scene or geometry have grown since the last call.
+  /// - Allocates device memory only where scene, geometry or the lists of excluded objects have grown since.
   ///
-  /// Throws before it records anything if a query breaks its contract, is not of mode contact, or has a tolerance; if
-  /// there are more than Capacity::queries; if `geometry` breaks its contract; and if something does not fit the
-  /// device.
+  /// Throws before it records anything if a query breaks its contract or is not of mode contact; if there are more than
+  /// Capacity::queries; if `geometry` breaks its contract; and if something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// What was recorded last has not been executed and will not be.
   void reset();

@@ -41,7 +41,7 @@ const uint RADAR_UNDECIDED = 3;
 const uint RADAR_INVALID = 4;
 
 const uint RADAR_TIER_SELECT = 0;
-const uint RADAR_TIER_CONTACT = 3;
+const uint RADAR_TIER_CONTACT = 2;
 
 const uint RADAR_NOT_DETECTED = 0;
 const uint RADAR_DETECTED = 1;
@@ -50,11 +50,10 @@ const uint RADAR_NOT_LOOKED = 2;
 const uint RADAR_NONE = 0xffffffffu;
 
 const uint RADAR_OPEN = 1;
-const uint RADAR_TOO_MANY_CLUSTERS = 2;
-const uint RADAR_TOO_MANY_CLUSTER_PAIRS = 4;
-const uint RADAR_TOO_MANY_CONTENDERS = 8;
-const uint RADAR_TOO_LONG = 16;
-const uint RADAR_OUT_OF_BOUNDS = 32;
+const uint RADAR_TOO_MANY_CANDIDATES = 2;
+const uint RADAR_TOO_LONG = 4;
+const uint RADAR_OUT_OF_RANGE = 8;
+const uint RADAR_OUT_OF_BOUNDS = 16;
 
 // The float next to a double, towards 0; of its bits, low word first.
 float radarFloat(uvec2 bits) {

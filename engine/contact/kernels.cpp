@@ -1,0 +1,42 @@
+#include "contact/kernels.h"
+
+#include <algorithm>
+#include <array>
+
+#include "gpu/requirements.h"
+#include "spirv/contact_collect_comp.h"
+#include "spirv/contact_filter_comp.h"
+#include "spirv/contact_link_comp.h"
+#include "spirv/contact_refine_comp.h"
+#include "spirv/contact_resolve_comp.h"
+#include "spirv/contact_resolve_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/contact_search_comp.h"
+
+namespace radar {
+
+namespace {
+
+std::array<uint32_t, 3> searchConstants(const Device::Impl& device, const SearchShape& shape) {
+  const uint32_t lanes = device.subgroupSize;
+  uint32_t queue = std::max(shape.queue != 0 ? shape.queue : std::max(8 * lanes, 128u), 6 * lanes);
+  while (queue > 6 * lanes && gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
+    queue -= lanes;
+  }
+  return {lanes, queue, std::max(shape.stack, 4u)};
+}
+
+}  // namespace
+
+ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& shape)
+    : lanes(device.subgroupSize),
+      stack(searchConstants(device, shape)[2]),
+      search(device, k_contact_search_comp, "search", searchConstants(device, shape), gpu::Subgroups::full),
+      collect(device, k_contact_collect_comp, "collect"),
+      filter(device, k_contact_filter_comp, "filter"),
+      link(device, k_contact_link_comp, "link"),
+      resolve(device, device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
+              "resolve") {
+  if (device.doubles) refine.emplace(device, k_contact_refine_comp, "refine");
+}
+
+}  // namespace radar

@@ -1,0 +1,252 @@
+#include "contact/pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <thread>
+
+#include "gpu/barrier.h"
+
+// pass      reads                                  writes                        barrier behind it
+// --------- -------------------------------------- ----------------------------- ------------------------------
+// upload    staging                                scene, sensors, sweeps,       uploadToRead,
+//                                                  states, tasks, counts,        transferToComputeReadWrite
+//                                                  excluded, results; heads
+// search    scene, sensors, excluded, tasks        states, counts, candidates,   computeWriteToComputeReadWrite
+//                                                  the other list of tasks
+// collect   tasks                                  counts, states, the other     computeWriteToComputeReadWrite
+//   (rounds of both)                               list of tasks
+//                                                                                computeWriteToIndirect
+// filter    states, counts, candidates             counts, contenders            computeWriteToComputeReadWrite
+// refine    scene, sweeps, counts                  contenders, states            computeWriteToComputeReadWrite
+//   (where the device has doubles)
+// link      states, counts                         contenders, heads             computeWriteToComputeReadWrite
+// resolve   scene, sweeps, states, heads,          counts, results, unresolved   (the caller's)
+//           contenders
+
+namespace radar {
+
+using gpu::bytesOf;
+using gpu::Residence;
+using gpu::Upload;
+
+namespace {
+
+constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+// Tasks that lists have room for beside those of the sensors, at most, where nothing is asked: 20 bytes each, twice.
+constexpr uint32_t kMostTasks = 1u << 21;
+// Candidates, of 20 bytes and once more 56: some 10 a sensor among boxes, 30 of meshes, hundreds where shapes interlock.
+// Where nothing is known of a batch, so many for each and in all; and at most.
+constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
+// Pairs that are left to the host, 184 bytes each: for each sensor, where nothing is known; and at most.
+constexpr uint32_t kUnresolved = 4, kMostUnresolved = 1u << 20;
+
+// A device that runs on the processor has as many lanes at work as it has threads, times the width of a vector.
+bool isProcessor(const Device::Impl& device) {
+  return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+}  // namespace
+
+ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::shared_ptr<const ContactKernels> kernels,
+                         const SearchRoom& room)
+    : device_(&device),
+      scene_(scene),
+      kernels_(std::move(kernels)),
+      room_(room),
+      upload_(device),
+      sensors_(device, "sensors", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_SFLOAT),
+      sweeps_(device, "sweeps", Residence::device, kUploaded),
+      states_(device, "search states", Residence::device, kUploaded),
+      heads_(device, "contender lists", Residence::device, kUploaded),
+      excluded_(device, "excluded objects", Residence::device, kUploaded),
+      tasks_(device, "search tasks", Residence::device, kUploaded),
+      spilled_(device, "spilled search tasks", Residence::device),
+      candidates_(device, "pair candidates", Residence::device),
+      contenders_(device, "contenders", Residence::device),
+      counts_(device, "search counts", Residence::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
+      results_(device, "results", Residence::device, kReadBack),
+      unresolved_(device, "unresolved pairs", Residence::readback),
+      search_{gpu::KernelArguments(kernels_->search), gpu::KernelArguments(kernels_->search)},
+      collect_{gpu::KernelArguments(kernels_->collect), gpu::KernelArguments(kernels_->collect)},
+      filter_(kernels_->filter),
+      link_(kernels_->link),
+      resolve_(kernels_->resolve) {
+  if (room_.budget == 0) room_.budget = kMostBudget;
+  if (room_.width == 0) {
+    room_.width = isProcessor(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
+  }
+  if (kernels_->refine) refine_.emplace(*kernels_->refine);
+}
+
+uint32_t ContactPass::groupsFor(uint32_t sensors) const {
+  if (room_.groups != 0) return room_.groups;
+  return isProcessor(*device_) ? std::max(32u, sensors / 256) : 4096;
+}
+
+void ContactPass::reserveLists(uint32_t sensors) {
+  const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
+  const uint64_t all = uint64_t{groupsFor(sensors)} * kernels_->lanes * (kernels_->stack + 1);
+  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
+  const uint64_t candidates = room_.candidates != 0
+                                  ? room_.candidates
+                                  : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
+  const uint32_t unresolved = room_.unresolved != 0
+                                  ? room_.unresolved
+                                  : std::clamp(std::max(kUnresolved * sensors, wantedUnresolved_), 4096u, kMostUnresolved);
+  taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
+  candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::Contender)));
+  unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
+  tasks_.reserve(taskRoom_);
+  spilled_.reserve(taskRoom_);
+  candidates_.reserve(candidateRoom_);
+  contenders_.reserve(candidateRoom_);
+  unresolved_.reserve(unresolvedRoom_);
+}
+
+void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded) {
+  sensors_.reserve(sensors);
+  sweeps_.reserve(sensors);
+  states_.reserve(sensors);
+  heads_.reserve(sensors);
+  excluded_.reserve(excluded);
+  results_.reserve(results);
+  counts_.reserve(1);
+  reserveLists(sensors);
+  reservedBytes_ = Upload::aligned(sensors * sizeof(gpu::Sensor)) + Upload::aligned(sensors * sizeof(gpu::Sweep)) +
+                   Upload::aligned(sensors * sizeof(gpu::SearchState)) +
+                   Upload::aligned(sensors * sizeof(gpu::SearchTask)) + Upload::aligned(excluded * sizeof(uint32_t)) +
+                   Upload::aligned(results * sizeof(Result)) + Upload::aligned(sizeof(gpu::SearchCounts));
+}
+
+void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene) {
+  sensorCount_ = batch.count();
+  const VkDeviceSize sceneBytes = scene_.prepare(scene);
+  const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
+  reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
+  stateList_.clear();
+  taskList_.clear();
+  const uint32_t root = sensorCount_ == 0 ? 0 : scene.objectTree().nodes()[0].link;
+  for (uint32_t i = 0; i < sensorCount_; ++i) {
+    gpu::Sensor& sensor = batch.sensors[i];
+    sensor.placement.root = scene_.record(sensor.placement.mesh).firstNode;
+    stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0});
+    taskList_.push_back({i, gpu::kNobody, gpu::kNobody, root, 0.0f});
+  }
+  gpu::SearchCounts counts{};
+  counts.rounds[0].tasks = sensorCount_;
+  upload_.begin(sceneBytes + reservedBytes_);
+  scene_.upload(scene, upload_);
+  upload_.add(batch.sensors.data(), bytesOf(batch.sensors), sensors_);
+  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
+  upload_.add(stateList_.data(), bytesOf(stateList_), states_);
+  upload_.add(taskList_.data(), bytesOf(taskList_), tasks_);
+  upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
+  upload_.add(known.data(), known.size_bytes(), results_);
+  upload_.add(&counts, sizeof(counts), counts_);
+  setArguments();
+}
+
+void ContactPass::stageMore(const gpu::SearchCounts& before) {
+  gpu::SearchCounts counts = before;
+  counts.contenders = counts.unresolved = 0;
+  const uint32_t tasks = tasksLeft(before);
+  std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
+  counts.rounds[0].tasks = tasks;
+  upload_.begin(Upload::aligned(sizeof(counts)));
+  upload_.add(&counts, sizeof(counts), counts_);
+}
+
+void ContactPass::setArguments() {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = scene_.buffers();
+  for (int i = 0; i < 2; ++i) {
+    const Array<SearchTask>&from = i == 0 ? tasks_ : spilled_, &to = i == 0 ? spilled_ : tasks_;
+    search_[i].set({{kSlotMeshNodes, scene.meshNodes},
+                    {kSlotObjectNodes, scene.objectNodes},
+                    {kSlotVertices, scene.vertices},
+                    {kSlotTriangles, scene.triangles},
+                    {kSlotPlacements, scene.placements},
+                    {kSlotSensors, sensors_},
+                    {kSlotStates, states_},
+                    {kSlotCounts, counts_},
+                    {kSlotTasks, from},
+                    {kSlotSpilled, to},
+                    {kSlotPairCandidates, candidates_},
+                    {kSlotExcluded, excluded_}});
+    collect_[i].set({{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
+  }
+  filter_.set({{kSlotStates, states_},
+               {kSlotCounts, counts_},
+               {kSlotPairCandidates, candidates_},
+               {kSlotContenders, contenders_}});
+  if (refine_) {
+    refine_->set({{kSlotStates, states_},
+                  {kSlotCounts, counts_},
+                  {kSlotContenders, contenders_},
+                  {kSlotVertices, scene.vertices},
+                  {kSlotTriangles, scene.triangles},
+                  {kSlotSweeps, sweeps_},
+                  {kSlotObjects, scene.objects}});
+  }
+  link_.set({{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotContenders, contenders_}});
+  resolve_.set({{kSlotStates, states_},
+                {kSlotHeads, heads_},
+                {kSlotCounts, counts_},
+                {kSlotContenders, contenders_},
+                {kSlotVertices, scene.vertices},
+                {kSlotTriangles, scene.triangles},
+                {kSlotSweeps, sweeps_},
+                {kSlotObjects, scene.objects},
+                {kSlotResults, results_},
+                {kSlotUnresolved, unresolved_}});
+}
+
+void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& stage) {
+  stage("upload");
+  upload_.record(commands);
+  commands->CmdFillBuffer(commands, heads_.get(), 0, VK_WHOLE_SIZE, gpu::kNobody);
+  gpu::uploadToRead(commands);
+  gpu::transferToComputeReadWrite(commands);
+}
+
+void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast) {
+  rounds_ = rounds;
+  if (sensorCount_ == 0) return;
+  stage("search");
+  for (uint32_t round = 0; round < rounds; ++round) {
+    const gpu::SearchPush push{round, taskRoom_, candidateRoom_, room_.budget, room_.width};
+    search_[round % 2].dispatch(commands, groupsFor(sensorCount_), push);
+    gpu::computeWriteToComputeReadWrite(commands);
+    const bool givesUp = isLast && round + 1 == rounds;
+    collect_[round % 2].dispatch(commands, gpu::kCollectGroups, gpu::CollectPush{round, taskRoom_, givesUp ? 1u : 0u});
+    gpu::computeWriteToComputeReadWrite(commands);
+  }
+  stage("solve");
+  gpu::computeWriteToIndirect(commands);
+  filter_.dispatchIndirect(commands, counts_, 0, gpu::FilterPush{candidateRoom_});
+  gpu::computeWriteToComputeReadWrite(commands);
+  if (refine_) {
+    refine_->dispatchIndirect(commands, counts_, 0);
+    gpu::computeWriteToComputeReadWrite(commands);
+  }
+  link_.dispatchIndirect(commands, counts_, 0);
+  gpu::computeWriteToComputeReadWrite(commands);
+  stage("resolve");
+  resolve_.dispatch(commands, gpu::groupsFor(sensorCount_, gpu::kContactGroup),
+                    gpu::ResolvePush{sensorCount_, unresolvedRoom_});
+}
+
+std::span<const gpu::UnresolvedPair> ContactPass::unresolved(const gpu::SearchCounts& counts) const {
+  return {unresolved_.mapped(), std::min(counts.unresolved, unresolvedRoom_)};
+}
+
+bool ContactPass::learn(const gpu::SearchCounts& counts) {
+  if (counts.unresolved > unresolvedRoom_) wantedUnresolved_ = 2 * counts.unresolved;
+  // Searches that had no room ended there: how much they would have taken is not known.
+  if (counts.candidates <= candidateRoom_ || candidateRoom_ >= kMostCandidates || room_.candidates != 0) return false;
+  wantedCandidates_ = std::min(4 * candidateRoom_, kMostCandidates);
+  return true;
+}
+
+}  // namespace radar

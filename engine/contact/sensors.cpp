@@ -1,0 +1,96 @@
+#include "contact/sensors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exact/contact.h"
+#include "scene/frame.h"
+#include "scene/placement.h"
+#include "scene/rounding.h"
+
+namespace radar {
+
+namespace {
+
+// A sensor smaller than this, beside what it may travel through, is scaled to less than 1: distances stay below 2^40.
+constexpr double kLeastShare = 0x1p-38;
+// What floats hold of a distance.
+constexpr double kMostDistance = 0x1p100;
+
+// Sums of axes of: how far the farthest point of the scene is from `centre`.
+double farthestOf(const Box& world, const Vector& centre) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += std::max(std::abs(world.lo[k] - centre[k]), std::abs(world.hi[k] - centre[k]));
+  return sum;
+}
+
+// The sensor's box in the world, with room for what its place loses in float, and for what a direction's component loses
+// that is raised above 0 (search.comp), over the whole way.
+void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farthest) {
+  for (int k = 0; k < 3; ++k) {
+    out.centre[k] = static_cast<float>(box.middle(k) - anchor[k]);
+    const double half = 0.5 * (box.hi[k] - box.lo[k]) + 0x1p-50 * (std::abs(box.lo[k]) + std::abs(box.hi[k]));
+    out.halfExtent[k] = roundUp(half + 0x1p-23 * std::abs(out.centre[k]) + 0x1p-37 * farthest);
+  }
+}
+
+}  // namespace
+
+void SensorBatch::clear() {
+  sensors.clear();
+  sweeps.clear();
+  excluded.clear();
+}
+
+Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
+                  const ObjectTree& tree) {
+  if (!tree.inRange()) return Planned::outOfRange;
+  if (tree.nodes().empty()) return Planned::clear;
+  const Vector direction = scaledDirection(query.direction);
+  if (std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})) != 0) {
+    return Planned::outOfRange;
+  }
+  const Mesh& mesh = scene.meshes[query.mesh];
+  gpu::Sensor sensor{};
+  sensor.placement = placementOf(mesh, query.worldFromMesh);
+  if (!isInRange(sensor.placement)) return Planned::outOfRange;
+  const Box box = boxOf(mesh, query.worldFromMesh.m);
+  const Vector centre{box.middle(0), box.middle(1), box.middle(2)};
+  const double farthest = farthestOf(tree.worldBox(), centre);
+  const double size = std::max(double{sensor.placement.size}, kLeastShare * farthest);
+  if (!(size >= 1 / kMostCoordinate && farthest <= 8 * kMostCoordinate)) return Planned::outOfRange;
+  const double scale = std::ldexp(1.0, -std::ilogb(size));
+
+  const std::array<Vector, 3> axes = axesAlong(query.direction);
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) sensor.frame[4 * row + k] = static_cast<float>(axes[row][k]);
+    sensor.direction[row] = static_cast<float>(axes[2][row]);
+  }
+  sensor.placement.mesh = query.mesh;
+  sensor.scale = static_cast<float>(scale);
+  sensor.unscale = static_cast<float>(1 / scale);
+  // Whatever lies beyond is out of reach, too.
+  sensor.distance = roundUp(std::min(query.distance * scale, kMostDistance));
+  sensor.enough = query.decide ? roundDown(std::min(query.distance * scale, kMostDistance)) : -1.0f;
+  setBox(sensor, box, tree.anchor(), farthest);
+  sensor.mask = query.mask;
+  sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
+  batch.excluded.insert(batch.excluded.end(), query.exclude.begin(), query.exclude.end());
+  std::sort(batch.excluded.begin() + sensor.firstExcluded, batch.excluded.end());
+  sensor.endExcluded = static_cast<uint32_t>(batch.excluded.size());
+
+  gpu::Sweep sweep{};
+  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
+  std::copy(direction.begin(), direction.end(), sweep.direction);
+  sweep.directionLength = exact::length(direction);
+  sweep.distance = query.distance;
+  sweep.decides = query.decide ? 1 : 0;
+  sweep.result = result;
+  sweep.scale = sensor.scale;
+  sweep.start = sensor.distance;
+  batch.sensors.push_back(sensor);
+  batch.sweeps.push_back(sweep);
+  return Planned::added;
+}
+
+}  // namespace radar

@@ -1,0 +1,83 @@
+#include "contact/submitter.h"
+
+#include "gpu/barrier.h"
+
+// pass     reads           writes   barrier behind it
+// -------- --------------- -------- -----------------
+// (contact/pass.cpp)                computeWriteToCopy
+// readback counts, results readback writtenToHost
+
+namespace radar {
+
+namespace {
+
+// Light searches end in the first, and what follows costs them a few microseconds.
+constexpr uint32_t kRounds = 8;
+// A batch whose searches take more submissions than this makes no progress.
+constexpr uint32_t kMostSubmissions = 1u << 20;
+
+uint64_t joined(uint32_t low, uint32_t high) {
+  return uint64_t{high} << 32 | low;
+}
+
+}  // namespace
+
+ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps,
+                                   std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room)
+    : scene_(scene),
+      submission_(device, timestamps),
+      pass_(device, scene, std::move(kernels), room),
+      readback_(device, "contact readback", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+const gpu::SearchCounts& ContactSubmitter::counts() const {
+  return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());
+}
+
+void ContactSubmitter::recordAndSubmit() {
+  const gpu::Commands commands = submission_.begin();
+  const auto stage = [this](const char* name) { submission_.stage(name); };
+  pass_.recordUpload(commands, stage);
+  pass_.record(commands, stage, kRounds, false);
+  gpu::computeWriteToCopy(commands);
+  stage("readback");
+  const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
+  const VkBufferCopy results{0, gpu::Upload::aligned(counts.size), pass_.sensorCount() * sizeof(Result)};
+  commands->CmdCopyBuffer(commands, pass_.counts().get(), readback_.get(), 1, &counts);
+  commands->CmdCopyBuffer(commands, pass_.results().get(), readback_.get(), 1, &results);
+  gpu::writtenToHost(commands);
+  submission_.submit();
+  ++submissions_;
+}
+
+void ContactSubmitter::submit(SensorBatch& batch, const Scene::Impl& scene) {
+  submissions_ = 0;
+  pass_.stage(batch, {}, scene);
+  readback_.reserve(gpu::Upload::aligned(sizeof(gpu::SearchCounts)) + batch.count() * sizeof(Result));
+  recordAndSubmit();
+}
+
+SearchAnswers ContactSubmitter::collect(const Scene::Impl& scene, std::vector<StageTime>& stages) {
+  submission_.wait();
+  scene_.confirm(scene);
+  submission_.addTimes(stages);
+  while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
+    if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
+    pass_.stageMore(counts());
+    recordAndSubmit();
+    submission_.wait();
+    submission_.addTimes(stages);
+  }
+  const gpu::SearchCounts& all = counts();
+  if (all.broken != 0) {
+    throw Error("the device runs a workgroup of the contact search as several subgroups", VK_ERROR_UNKNOWN);
+  }
+  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + gpu::Upload::aligned(sizeof(all)));
+  return {{results, pass_.sensorCount()},
+          pass_.unresolved(all),
+          pass_.learn(all),
+          joined(all.nodePairs, all.nodePairsHigh),
+          joined(all.trianglePairs, all.trianglePairsHigh),
+          joined(all.solves, all.solvesHigh)};
+}
+
+}  // namespace radar

@@ -1,0 +1,43 @@
+#include "radar/cpu_sweeper.h"
+
+#include "cpu/search.h"
+
+namespace radar {
+
+struct CpuSweeper::Impl {
+  const Scene& scene;
+  unsigned threads;
+  cpu::Search search;
+  CpuStats stats;
+};
+
+CpuSweeper::CpuSweeper(const Scene& scene, unsigned threads)
+    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}, {}})) {}
+CpuSweeper::~CpuSweeper() = default;
+CpuSweeper::CpuSweeper(CpuSweeper&&) noexcept = default;
+CpuSweeper& CpuSweeper::operator=(CpuSweeper&&) noexcept = default;
+
+void CpuSweeper::sync() {
+  impl_->scene.impl().objectTree();
+}
+
+std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (const std::string wrong = whatIsWrong(queries[i], impl_->scene); !wrong.empty()) {
+      throw Error("run: query " + std::to_string(i) + ": " + wrong);
+    }
+  }
+  std::vector<Result> results(queries.size());
+  const cpu::SearchStats before = impl_->search.stats();
+  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, results);
+  const cpu::SearchStats after = impl_->search.stats();
+  impl_->stats = {queries.size(), after.nodes - before.nodes, after.pairs - before.pairs,
+                  after.exactPairs - before.exactPairs};
+  return results;
+}
+
+const CpuStats& CpuSweeper::stats() const {
+  return impl_->stats;
+}
+
+}  // namespace radar

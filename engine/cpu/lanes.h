@@ -1,0 +1,109 @@
+// Four numbers at a time, floats or doubles. By the vector extension of GCC and Clang, so that 64-bit processors of
+// every make do it with the instructions that all of them have.
+#pragma once
+
+#include <cstdint>
+
+namespace radar::cpu {
+
+using FourFloats = float __attribute__((vector_size(16)));
+using TwoDoubles = double __attribute__((vector_size(16)));
+
+/// `min`, `max` and `select` compare x with y; where one of them is not a number they give the latter, y or q.
+template <class Real>
+struct Lanes;
+
+template <>
+struct Lanes<float> {
+  FourFloats v;
+  Lanes() = default;
+  Lanes(float x) : v{x, x, x, x} {}  // NOLINT: in all lanes
+  Lanes(FourFloats x) : v(x) {}      // NOLINT
+  float operator[](int i) const { return v[i]; }
+  FourFloats floats() const { return v; }
+
+  friend Lanes operator+(const Lanes& x, const Lanes& y) { return x.v + y.v; }
+  friend Lanes operator-(const Lanes& x, const Lanes& y) { return x.v - y.v; }
+  friend Lanes operator*(const Lanes& x, const Lanes& y) { return x.v * y.v; }
+  friend Lanes operator/(const Lanes& x, const Lanes& y) { return x.v / y.v; }
+  friend Lanes operator-(const Lanes& x) { return -x.v; }
+  friend Lanes min(const Lanes& x, const Lanes& y) { return x.v < y.v ? x.v : y.v; }
+  friend Lanes max(const Lanes& x, const Lanes& y) { return x.v > y.v ? x.v : y.v; }
+  /// p where x > y, else q.
+  friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) { return x.v > y.v ? p.v : q.v; }
+  friend Lanes abs(const Lanes& x) { return FourFloats(Bits(x.v) & ~kSign); }
+  /// x, with its sign changed where y is below 0.
+  friend Lanes withSignOf(const Lanes& x, const Lanes& y) { return FourFloats(Bits(x.v) ^ (Bits(y.v) & kSign)); }
+
+ private:
+  using Bits = uint32_t __attribute__((vector_size(16)));
+  static constexpr uint32_t kSign = 0x80000000u;
+};
+
+template <>
+struct Lanes<double> {
+  TwoDoubles low, high;
+  Lanes() = default;
+  Lanes(double x) : low{x, x}, high{x, x} {}  // NOLINT: in all lanes
+  Lanes(TwoDoubles x, TwoDoubles y) : low(x), high(y) {}
+  Lanes(FourFloats x) : low{x[0], x[1]}, high{x[2], x[3]} {}  // NOLINT
+  double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
+  /// The nearest.
+  FourFloats floats() const {
+    return FourFloats{static_cast<float>(low[0]), static_cast<float>(low[1]), static_cast<float>(high[0]),
+                      static_cast<float>(high[1])};
+  }
+
+  friend Lanes operator+(const Lanes& x, const Lanes& y) { return {x.low + y.low, x.high + y.high}; }
+  friend Lanes operator-(const Lanes& x, const Lanes& y) { return {x.low - y.low, x.high - y.high}; }
+  friend Lanes operator*(const Lanes& x, const Lanes& y) { return {x.low * y.low, x.high * y.high}; }
+  friend Lanes operator/(const Lanes& x, const Lanes& y) { return {x.low / y.low, x.high / y.high}; }
+  friend Lanes operator-(const Lanes& x) { return {-x.low, -x.high}; }
+  friend Lanes min(const Lanes& x, const Lanes& y) {
+    return {x.low < y.low ? x.low : y.low, x.high < y.high ? x.high : y.high};
+  }
+  friend Lanes max(const Lanes& x, const Lanes& y) {
+    return {x.low > y.low ? x.low : y.low, x.high > y.high ? x.high : y.high};
+  }
+  friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) {
+    return {x.low > y.low ? p.low : q.low, x.high > y.high ? p.high : q.high};
+  }
+  friend Lanes abs(const Lanes& x) { return {TwoDoubles(Bits(x.low) & ~kSign), TwoDoubles(Bits(x.high) & ~kSign)}; }
+  friend Lanes withSignOf(const Lanes& x, const Lanes& y) {
+    return {TwoDoubles(Bits(x.low) ^ (Bits(y.low) & kSign)), TwoDoubles(Bits(x.high) ^ (Bits(y.high) & kSign))};
+  }
+
+ private:
+  using Bits = uint64_t __attribute__((vector_size(16)));
+  static constexpr uint64_t kSign = uint64_t{1} << 63;
+};
+
+template <class Real>
+using LaneVec = Lanes<Real>[3];
+
+template <class Real>
+Lanes<Real> dot(const LaneVec<Real>& p, const LaneVec<Real>& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+template <class Real>
+void cross(const LaneVec<Real>& p, const LaneVec<Real>& q, LaneVec<Real>& out) {
+  out[0] = p[1] * q[2] - p[2] * q[1];
+  out[1] = p[2] * q[0] - p[0] * q[2];
+  out[2] = p[0] * q[1] - p[1] * q[0];
+}
+
+/// The columns of four rows.
+inline void transpose(const FourFloats (&rows)[4], FourFloats (&out)[4]) {
+  const auto& [x, y, z, w] = rows;
+  const FourFloats xyLow = __builtin_shufflevector(x, y, 0, 4, 1, 5),
+                   xyHigh = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  const FourFloats zwLow = __builtin_shufflevector(z, w, 0, 4, 1, 5),
+                   zwHigh = __builtin_shufflevector(z, w, 2, 6, 3, 7);
+  out[0] = __builtin_shufflevector(xyLow, zwLow, 0, 1, 4, 5);
+  out[1] = __builtin_shufflevector(xyLow, zwLow, 2, 3, 6, 7);
+  out[2] = __builtin_shufflevector(xyHigh, zwHigh, 0, 1, 4, 5);
+  out[3] = __builtin_shufflevector(xyHigh, zwHigh, 2, 3, 6, 7);
+}
+
+}  // namespace radar::cpu

@@ -1,0 +1,190 @@
+#include "cpu/leaf_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+/// The triangles of a leaf, in its mesh's normalised frame.
+template <class Real>
+struct Corners {
+  LaneVec<double> first;  ///< corner 0
+  LaneVec<Real> edge[3];
+
+  /// `alternate`: the lanes hold triangles 0 1 0 1, else 0 0 1 1.
+  Corners(const Mesh& mesh, const gpu::MeshNode& leaf, bool alternate) {
+    const uint32_t* order = &mesh.tree.order[leaf.link & gpu::kLinkItem];
+    const uint32_t* one = &mesh.indices[3 * size_t{order[0]}];
+    const uint32_t* two = (leaf.link & gpu::kLinkPair) != 0 ? &mesh.indices[3 * size_t{order[1]}] : one;
+    const auto scale = static_cast<float>(1 / mesh.unit);
+    FourFloats corner[3][3];
+    for (int i = 0; i < 3; ++i) {
+      const float* p = &mesh.positions[3 * size_t{one[i]}];
+      const float* q = &mesh.positions[3 * size_t{two[i]}];
+      for (int k = 0; k < 3; ++k) {
+        const FourFloats lanes = alternate ? FourFloats{p[k], q[k], p[k], q[k]} : FourFloats{p[k], p[k], q[k], q[k]};
+        corner[i][k] = (lanes - static_cast<float>(mesh.origin[k])) * scale;
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      first[k] = corner[0][k];
+      for (int i = 0; i < 3; ++i) edge[i][k] = Lanes<Real>(corner[(i + 1) % 3][k]) - Lanes<Real>(corner[i][k]);
+    }
+  }
+};
+
+unsigned lanesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) {
+  const unsigned ofA = (a.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0101;
+  return ofA & ((b.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0011);
+}
+
+/// What an axis is off by for as long as it matters, three times; and the least speed that keeps it so.
+template <class Real>
+struct Margin {
+  Lanes<Real> width, speed;
+  Margin(const Lanes<Real>& error, Real duration)
+      : width(Lanes<Real>(3) * error), speed(error * Lanes<Real>(1 / duration)) {}
+};
+
+/// Collects what the axes tell. They do it by numbers only: where one is not a number, it tells nothing.
+template <class Real>
+struct Collected {
+  Lanes<Real> from = -Real(INFINITY), to = Real(INFINITY), axis = Real(0);
+
+  /// The pairs meet only where speed t is within `half` of `middle`.
+  void add(const Lanes<Real>& middle, const Lanes<Real>& half, const Lanes<Real>& speed, const Margin<Real>& margin,
+           Axis number) {
+    const Lanes<Real> inverse = Lanes<Real>(1) / max(abs(speed), margin.speed);
+    const Lanes<Real> at = withSignOf(middle, speed) * inverse, wide = (half + margin.width) * inverse;
+    const Lanes<Real> start = at - wide;
+    axis = select(start, from, Lanes<Real>(Real(number)), axis);
+    from = max(start, from);
+    to = min(at + wide, to);
+  }
+  /// A bit for each lane that may meet by then.
+  unsigned possible(Real duration) const {
+    unsigned bits = 0;
+    for (int i = 0; i < 4; ++i) {
+      const bool never = from[i] > duration || from[i] > to[i] || to[i] < 0;
+      bits |= unsigned{!never} << i;
+    }
+    return bits;
+  }
+};
+
+template <class Real>
+Lanes<Real> rounded(const Lanes<double>& x) {
+  if constexpr (sizeof(Real) == sizeof(float)) {
+    return x.floats();
+  } else {
+    return x;
+  }
+}
+
+}  // namespace
+
+template <class Real>
+LeafTest<Real>::LeafTest(const Sight& sight) : matrix_(sight.matrix), offset_(sight.offset), travel_(sight.travel) {
+  double position = 0, edge = 0, travelSize = 0;
+  for (int k = 0; k < 3; ++k) {
+    travelSize += std::abs(travel_[k]);
+    edge = std::max(edge, 2 * sight.slack[k]);
+    position = std::max(position, 2 * sight.slack[k] + 16 * kUnit * sight.magnitude[k]);
+    usable_ = usable_ && sight.magnitude[k] + sight.slack[k] < kMostMagnitude<Real>;
+  }
+  if (!usable_) return;  // nor need the numbers fit a float
+  travelSize_ = static_cast<Real>(travelSize);
+  positionError_ = static_cast<Real>(1.01 * position);
+  edgeError_ = static_cast<Real>(1.01 * edge);
+}
+
+/// Triangles of two leaves in B's frame, as they are at some time.
+template <class Real>
+struct LeafTest<Real>::Triangles {
+  LaneVec<Real> edgeA[3], edgeB[3];
+  LaneVec<Real> gap, travel;  ///< from corner 0 of A's triangle to that of B's; of A in a unit of time
+  Lanes<Real> gapSize = Real(0);
+  Real sizeA, sizeB;  ///< bounds on the sum of an edge's absolute components
+
+  Triangles(const LeafTest& test, const Mesh& meshA, const gpu::MeshNode& a, const Mesh& meshB, const gpu::MeshNode& b,
+            Real begin)
+      : sizeA(4 * test.edgeError_), sizeB(4 * test.edgeError_) {
+    const Corners<Real> ofA(meshA, a, true), ofB(meshB, b, false);
+    for (int k = 0; k < 3; ++k) {
+      // In doubles, so that it is as precise as it is small.
+      using D = Lanes<double>;
+      const Vec& row = test.matrix_[k];
+      const double moved = test.offset_[k] + double(begin) * test.travel_[k];
+      gap[k] = rounded<Real>(
+          ofB.first[k] - (D(row[0]) * ofA.first[0] + D(row[1]) * ofA.first[1] + D(row[2]) * ofA.first[2] + D(moved)));
+      gapSize = gapSize + abs(gap[k]);
+      travel[k] = static_cast<Real>(test.travel_[k]);
+      LaneVec<Real> lanes;
+      for (int j = 0; j < 3; ++j) {
+        lanes[j] = static_cast<Real>(row[j]);
+        sizeA += 2 * static_cast<Real>(std::abs(row[j])) * a.halfExtent[j];
+      }
+      for (int i = 0; i < 3; ++i) {
+        edgeA[i][k] = dot<Real>(lanes, ofA.edge[i]);
+        edgeB[i][k] = ofB.edge[i][k];
+      }
+      sizeB += 2 * b.halfExtent[k];
+    }
+  }
+};
+
+template <class Real>
+LeafTimes<Real> LeafTest<Real>::operator()(const Mesh& meshA, const gpu::MeshNode& a, const Mesh& meshB,
+                                           const gpu::MeshNode& b, Real begin, Real end) const {
+  using L = Lanes<Real>;
+  LeafTimes<Real> out{{-Real(INFINITY), Real(INFINITY)}, Real(0), lanesOf(a, b)};
+  if (!usable_) return out;
+
+  const Triangles t(*this, meshA, a, meshB, b, begin);
+  const Real duration = std::max(Real(1 + 4 * kRounding<Real>) * (end - begin), Real(kLeastSpeed<Real>));
+  const L reach = t.gapSize + L(t.sizeA + t.sizeB + duration * travelSize_);
+  const L error = L(positionError_) + L(Real(32 * kRounding<Real>)) * reach;
+
+  LaneVec<Real> normalA, normalB, alpha, beta;
+  cross<Real>(t.edgeA[0], t.edgeA[1], normalA);
+  cross<Real>(t.edgeB[0], t.edgeB[1], normalB);
+  for (int k = 0; k < 3; ++k) {
+    alpha[k] = dot<Real>(t.edgeB[k], normalA);
+    beta[k] = dot<Real>(t.edgeA[k], normalB);
+  }
+  Collected<Real> collected;
+  const L zero = Real(0), half = Real(0.5);
+  const L lowB = min(zero, min(alpha[0], -alpha[2])), highB = max(zero, max(alpha[0], -alpha[2]));
+  const Margin<Real> marginA(L(t.sizeA) * (L(t.sizeA) * error + L(2 * edgeError_) * reach), duration);
+  collected.add(dot<Real>(normalA, t.gap) + half * (lowB + highB), half * (highB - lowB), dot<Real>(normalA, t.travel),
+                marginA, 0);
+  const L lowA = min(zero, min(beta[0], -beta[2])), highA = max(zero, max(beta[0], -beta[2]));
+  const Margin<Real> marginB(L(t.sizeB) * (L(t.sizeB) * error + L(2 * edgeError_) * reach), duration);
+  collected.add(dot<Real>(normalB, t.gap) - half * (lowA + highA), half * (highA - lowA), dot<Real>(normalB, t.travel),
+                marginB, 1);
+  out.possible &= collected.possible(duration);
+  if (out.possible == 0) return out;
+
+  const Margin<Real> margin(L(t.sizeA * t.sizeB) * error + L(edgeError_ * (t.sizeA + t.sizeB)) * reach, duration);
+  for (int i = 0; i < 3; ++i) {
+    LaneVec<Real> gapAcross, travelAcross;
+    cross<Real>(t.gap, t.edgeA[i], gapAcross);
+    cross<Real>(t.travel, t.edgeA[i], travelAcross);
+    for (int k = 0; k < 3; ++k) {
+      const L halfA = (i == 1 ? -half : half) * alpha[k], halfB = (k == 1 ? -half : half) * beta[i];
+      collected.add(dot<Real>(t.edgeB[k], gapAcross) + halfA + halfB, abs(halfA) + abs(halfB),
+                    dot<Real>(t.edgeB[k], travelAcross), margin, 2 + 3 * i + k);
+    }
+  }
+  out.times = {collected.from, collected.to};
+  out.axis = collected.axis;
+  out.possible &= collected.possible(duration);
+  return out;
+}
+
+template class LeafTest<float>;
+template class LeafTest<double>;
+
+}  // namespace radar::cpu

@@ -1,0 +1,215 @@
+#include "cpu/mesh_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+// Of two nodes whose sizes differ by less than this factor both are opened, else the larger one, two levels at once.
+constexpr float kSimilar = 4;
+// Floats are used where they round positions by no more than this part of a triangle's edge.
+constexpr double kFloatShare = 0.125;
+
+bool isLeaf(const gpu::MeshNode& node) {
+  return (node.link & gpu::kLinkLeaf) != 0;
+}
+
+uint32_t trianglesOf(const gpu::MeshNode& leaf) {
+  return (leaf.link & gpu::kLinkPair) != 0 ? 2 : 1;
+}
+
+float sizeOf(const gpu::MeshNode& node) {
+  return node.halfExtent[0] + node.halfExtent[1] + node.halfExtent[2];
+}
+
+exact::Triangle placed(const PlacedMesh& from, uint32_t triangle) {
+  exact::Triangle out;
+  for (int i = 0; i < 3; ++i) {
+    const uint32_t vertex = from.mesh.indices[3 * size_t{triangle} + i];
+    out[i] = radar::place(from.pose, &from.mesh.positions[3 * size_t{vertex}]);
+  }
+  return out;
+}
+
+bool floatsSuffice(const MeshPair& pair) {
+  double scale = 0, magnitude = 0;
+  for (int k = 0; k < 3; ++k) {
+    magnitude = std::max(magnitude, pair.fromOther.magnitude[k]);
+    for (double entry : pair.fromOther.matrix[k]) scale = std::max(scale, std::abs(entry));
+  }
+  const Mesh &a = pair.sensor.mesh, &b = pair.other.mesh;
+  const double edge = std::min(scale * a.meanEdge / a.unit, b.meanEdge / b.unit);
+  return 16 * kRounding<float> * magnitude <= kFloatShare * edge;
+}
+
+/// Opens pairs of nodes.
+class Opener {
+ public:
+  explicit Opener(const MeshPair& pair) : nodesA_(pair.sensor.mesh.tree.nodes), nodesB_(pair.other.mesh.tree.nodes) {
+    double scale = 0;
+    for (const Vec& row : pair.fromOther.matrix) scale += std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
+    scale_ = static_cast<float>(std::min(scale / 3, 0x1p100));
+  }
+
+  /// What (a, b), not both leaves, consists of: four pairs, of which `count` differ.
+  struct Parts {
+    uint32_t a[4], b[4];
+    unsigned valid;  ///< a bit for each that counts; the others are there already
+    uint32_t count;
+  };
+  Parts open(uint32_t placeA, uint32_t placeB) const {
+    Parts out;
+    const gpu::MeshNode &a = nodesA_[placeA], &b = nodesB_[placeB];
+    const bool leafA = isLeaf(a), leafB = isLeaf(b);
+    const float sizeA = scale_ * sizeOf(a), sizeB = sizeOf(b);
+    if (!leafA && !leafB && sizeA < kSimilar * sizeB && sizeB < kSimilar * sizeA) {
+      for (uint32_t i = 0; i < 4; ++i) {
+        out.a[i] = a.link + (i & 1);
+        out.b[i] = b.link + (i >> 1);
+      }
+      out.valid = 0b1111;
+      out.count = 4;
+    } else if (leafB || (!leafA && sizeA > sizeB)) {
+      std::fill_n(out.b, 4, placeB);
+      openTwice(nodesA_, a.link, out.a, out);
+    } else {
+      std::fill_n(out.a, 4, placeA);
+      openTwice(nodesB_, b.link, out.b, out);
+    }
+    return out;
+  }
+
+ private:
+  /// The children of the nodes `first` and `first` + 1, or those themselves where they have none.
+  static void openTwice(const std::vector<gpu::MeshNode>& nodes, uint32_t first, uint32_t (&places)[4], Parts& out) {
+    out.valid = 0;
+    out.count = 0;
+    for (uint32_t i = 0; i < 2; ++i) {
+      const bool leaf = isLeaf(nodes[first + i]);
+      places[2 * i] = leaf ? first + i : nodes[first + i].link;
+      places[2 * i + 1] = places[2 * i] + (leaf ? 0 : 1);
+      out.valid |= (leaf ? 0b01u : 0b11u) << (2 * i);
+      out.count += leaf ? 1 : 2;
+    }
+  }
+
+  const std::vector<gpu::MeshNode>&nodesA_, &nodesB_;
+  float scale_;  // of A's nodes, as B sees them
+};
+
+constexpr int32_t kNever = 0x7f800000;  // the bits of infinity
+
+/// A lane's number, below the bits of a float that is not above `from`, such that they order as numbers do.
+int32_t keyOf(float from, int lane) {
+  const auto bits = std::bit_cast<int32_t>(from);
+  return ((bits ^ (bits >> 31 & 0x7fffffff)) & ~3) | lane;
+}
+
+float nearOf(int32_t key) {
+  return std::bit_cast<float>(std::max(key, 0) & ~3);
+}
+
+/// Keys of the lanes, the nearest last, kNever and more where nothing meets. Of those that may meet at the start, where
+/// most do in shapes that interlock, the one that might have met longest ago comes first: it mostly is the deepest.
+template <class Real>
+std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
+  Lanes<Real> from = times.from;
+  if constexpr (sizeof(Real) > sizeof(float)) {
+    // Rounded down, whichever way the conversion goes, and within the range of floats.
+    from = from - abs(from) * Lanes<Real>(0x1p-23);
+    from = max(Lanes<Real>(-0x1p100), min(from, Lanes<Real>(0x1p100)));
+  }
+  from = select(max(times.from, Lanes<Real>(0)), times.to, Lanes<Real>(Real(INFINITY)), from);
+  const FourFloats floats = from.floats();
+  std::array<int32_t, 4> keys;
+  for (int i = 0; i < 4; ++i) keys[i] = (valid >> i & 1) != 0 ? keyOf(floats[i], i) : kNever | i;
+  const auto sort = [&](int i, int j) {
+    const int32_t more = std::max(keys[i], keys[j]), less = std::min(keys[i], keys[j]);
+    keys[i] = more;
+    keys[j] = less;
+  };
+  sort(0, 1);
+  sort(2, 3);
+  sort(0, 2);
+  sort(1, 3);
+  sort(1, 2);
+  return keys;
+}
+
+/// Shows `first` the pairs of triangles of two leaves, the earliest first.
+template <class Real>
+void meetLeaves(const MeshPair& pair, const LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b,
+                float near, FirstContact& first, SearchStats& stats) {
+  // Or later, by less than rounding to Real and back takes.
+  const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(first.latest())); };
+  const LeafTimes<Real> found = test(pair.sensor.mesh, a, pair.other.mesh, b, near, latest());
+  stats.pairs += trianglesOf(a) * trianglesOf(b);
+  for (unsigned open = found.possible; open != 0 && !first.isDecided();) {
+    int lane = std::countr_zero(open);
+    for (int i = lane + 1; i < 4; ++i) {
+      if ((open >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
+    }
+    open &= ~(1u << lane);
+    if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
+    const uint32_t triA = pair.sensor.mesh.tree.order[(a.link & gpu::kLinkItem) + (lane & 1)];
+    const uint32_t triB = pair.other.mesh.tree.order[(b.link & gpu::kLinkItem) + (lane >> 1)];
+    const uint64_t before = exact::exactDecisions();
+    first.consider({pair.object, triB, triA}, placed(pair.sensor, triA), placed(pair.other, triB),
+                   static_cast<Axis>(found.axis[lane]));
+    stats.exactPairs += exact::exactDecisions() != before;
+  }
+}
+
+}  // namespace
+
+void MeshSearch::run(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats) {
+  if (floatsSuffice(pair)) {
+    descend<float>(pair, near, first, stats);
+  } else {
+    descend<double>(pair, near, first, stats);
+  }
+}
+
+template <class Real>
+void MeshSearch::descend(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats) {
+  const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
+  const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
+  const LeafTest<Real> leafTimes(pair.fromOther);
+  const Opener opener(pair);
+  const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(first.latest())); };
+  float latest = latestNow();
+
+  open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
+  open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
+  Open* top = open_.data() + 1;
+  while (top != open_.data() && !first.isDecided()) {
+    const Open pairNow = *--top;
+    if (pairNow.near > latest) continue;
+    if (first.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
+    const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
+    if (isLeaf(a) && isLeaf(b)) {
+      meetLeaves(pair, leafTimes, a, b, pairNow.near, first, stats);
+      latest = latestNow();
+      continue;
+    }
+    const Opener::Parts parts = opener.open(pairNow.a, pairNow.b);
+    stats.nodes += parts.count;
+    FourNodes nodesA, nodesB;
+    for (int i = 0; i < 4; ++i) {
+      nodesA[i] = &treeA.nodes[parts.a[i]];
+      nodesB[i] = &treeB.nodes[parts.b[i]];
+    }
+    for (const int32_t key : inOrder(nodeTimes(nodesA, nodesB), parts.valid)) {
+      // Written one by one: the processor waits for what it reads back in other pieces.
+      top->near = nearOf(key);
+      top->a = parts.a[key & 3];
+      top->b = parts.b[key & 3];
+      top += top->near <= latest;
+    }
+  }
+}
+
+}  // namespace radar::cpu

@@ -1,0 +1,35 @@
+#include "cpu/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/frame.h"
+
+namespace radar::cpu {
+
+namespace {
+
+// Beyond, a length or a quotient may lose more than a rounding.
+constexpr double kLeastNormal = 0x1p-900;
+
+Vec normalized(Vec v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  for (double& c : v) c /= largest;
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  for (double& c : v) c /= length;
+  return v;
+}
+
+}  // namespace
+
+Motion::Motion(const Query& query)
+    : direction(scaledDirection(query.direction)),
+      unit(normalized(direction)),
+      length(exact::length(direction)),
+      distance(query.distance),
+      parameter(0) {
+  const double quotient = distance / length;
+  if (length > kLeastNormal && quotient > kLeastNormal) parameter = (1 - 8 * kUnit) * quotient;
+}
+
+}  // namespace radar::cpu

@@ -1,0 +1,149 @@
+#include "cpu/node_test.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace radar::cpu {
+
+namespace {
+
+// Slabs along normals are looked at where one is thinner than this part of its box.
+constexpr float kThin = 0.5f;
+
+/// Not below `x`, which is 0 or more, and no subnormal.
+template <class Real>
+Real upward(double x) {
+  return static_cast<Real>(x * (1 + 4 * kRounding<Real>));
+}
+
+template <class Real>
+void cut(Times<Real>& times, const Lanes<Real>& middle, const Lanes<Real>& half) {
+  times.from = max(times.from, middle - half);
+  times.to = min(times.to, middle + half);
+}
+
+template <class Real>
+bool anyPositive(const Lanes<Real>& x) {
+  return x[0] > 0 || x[1] > 0 || x[2] > 0 || x[3] > 0;
+}
+
+/// The place-th four floats of each node, one of them in each lane.
+void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
+  static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
+  FourFloats rows[4];
+  for (int i = 0; i < 4; ++i) {
+    std::memcpy(&rows[i], reinterpret_cast<const char*>(nodes[i]) + place * sizeof(FourFloats), sizeof(FourFloats));
+  }
+  transpose(rows, out);
+}
+
+}  // namespace
+
+template <class Real>
+NodeTest<Real>::Axes::Axes(const Sight& sight) {
+  for (int k = 0; k < 3; ++k) {
+    // A speed of 0 would tell nothing; the difference is slack.
+    const double used = std::copysign(std::max(std::abs(sight.travel[k]), double{kLeastSpeed<Real>}), sight.travel[k]);
+    const double wide = sight.slack[k] + std::abs(used - sight.travel[k]);
+    const double magnitude = sight.magnitude[k] + kLeastSpeed<Real>, inverse = 1 / used;
+    const bool usable = magnitude + wide < kMostMagnitude<Real>;
+    for (int j = 0; j < 3; ++j) {
+      const auto entry = usable ? static_cast<Real>(inverse * sight.matrix[k][j]) : Real(0);
+      matrix[k][j] = entry;
+      matrixSize[k][j] = std::abs(entry);
+    }
+    speed[k] = usable ? static_cast<Real>(used) : Real(0);
+    rate[k] = usable ? static_cast<Real>(inverse) : Real(0);
+    rateSize[k] = usable ? static_cast<Real>(std::abs(inverse)) : Real(0);
+    offset[k] = usable ? static_cast<Real>(inverse * sight.offset[k]) : Real(0);
+    const auto inTime = [&](double width) { return usable ? upward<Real>(std::abs(inverse) * width) : Real(INFINITY); };
+    slack[k] = inTime(wide + 16 * kRounding<Real> * magnitude);
+    normalSlack[k] = inTime(wide + 128 * kRounding<Real> * magnitude);
+    complete = complete && usable;
+  }
+}
+
+/// What the test reads of four nodes.
+template <class Real>
+struct NodeTest<Real>::Nodes {
+  LaneVec<Real> centre, half, normal;
+  Lanes<Real> slabMiddle, slabHalf;
+
+  void loadBoxes(const FourNodes& nodes) {
+    FourFloats lanes[4];
+    load(nodes, 0, lanes);
+    for (int k = 0; k < 3; ++k) centre[k] = lanes[k];
+    load(nodes, 1, lanes);
+    for (int k = 0; k < 3; ++k) half[k] = lanes[k];
+    slabMiddle = lanes[3];
+  }
+  void loadNormals(const FourNodes& nodes) {
+    FourFloats lanes[4];
+    load(nodes, 2, lanes);
+    for (int k = 0; k < 3; ++k) normal[k] = lanes[k];
+    slabHalf = lanes[3];
+  }
+  /// Above 0 where the slab is thin.
+  Lanes<Real> thinness() const {
+    return Lanes<Real>(Real(kThin)) * (abs(normal[0]) * half[0] + abs(normal[1]) * half[1] + abs(normal[2]) * half[2]) -
+           slabHalf;
+  }
+};
+
+template <class Real>
+[[gnu::always_inline]] inline void NodeTest<Real>::cutByBox(Times<Real>& times, const Nodes& own, const Nodes& other,
+                                                            const Axes& axes) {
+  for (int k = 0; k < 3; ++k) {
+    cut(times, axes.rate[k] * own.centre[k] - axes.offset[k] - dot(axes.matrix[k], other.centre),
+        axes.rateSize[k] * own.half[k] + axes.slack[k] + dot(axes.matrixSize[k], other.half));
+  }
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void NodeTest<Real>::cutByNormal(Times<Real>& times, const Nodes& own, const Nodes& other,
+                                                               const Axes& axes) {
+  LaneVec<Real> scaled, size, covector, rest, restSize;
+  for (int k = 0; k < 3; ++k) {
+    scaled[k] = own.normal[k] * axes.speed[k];
+    size[k] = abs(scaled[k]);
+  }
+  for (int j = 0; j < 3; ++j) {
+    covector[j] = scaled[0] * axes.matrix[0][j] + scaled[1] * axes.matrix[1][j] + scaled[2] * axes.matrix[2][j];
+  }
+  // The other's extent along the covector: by its own slab as far as its normal goes that way, by its box for the rest.
+  const Lanes<Real> along = dot(covector, other.normal);
+  for (int j = 0; j < 3; ++j) {
+    rest[j] = covector[j] - along * other.normal[j];
+    restSize[j] = abs(rest[j]);
+  }
+  const Lanes<Real> least = Real(kLeastSpeed<Real>);
+  const Lanes<Real> middle =
+      own.slabMiddle - dot(scaled, axes.offset) - along * other.slabMiddle - dot(rest, other.centre);
+  const Lanes<Real> half = own.slabHalf + dot(size, axes.normalSlack) + abs(along) * other.slabHalf +
+                           dot(restSize, other.half) + (least + least);
+  const Lanes<Real> speed = scaled[0] + scaled[1] + scaled[2], inverse = Lanes<Real>(1) / max(abs(speed), least);
+  cut(times, withSignOf(middle, speed) * inverse, half * inverse);
+}
+
+template <class Real>
+Times<Real> NodeTest<Real>::operator()(const FourNodes& nodesA, const FourNodes& nodesB) const {
+  Nodes a, b;
+  a.loadBoxes(nodesA);
+  b.loadBoxes(nodesB);
+  Times<Real> times{-Real(INFINITY), Real(1)};
+  cutByBox(times, a, b, alongA_);
+  cutByBox(times, b, a, alongB_);
+  if (!alongA_.complete || !alongB_.complete) return times;
+  a.loadNormals(nodesA);
+  b.loadNormals(nodesB);
+  const Lanes<Real> left = times.to - max(times.from, Lanes<Real>(0));
+  if (!anyPositive(min(left, max(a.thinness(), b.thinness())))) return times;
+  cutByNormal(times, a, b, alongA_);
+  cutByNormal(times, b, a, alongB_);
+  return times;
+}
+
+template class NodeTest<float>;
+template class NodeTest<double>;
+
+}  // namespace radar::cpu

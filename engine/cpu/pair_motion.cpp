@@ -1,0 +1,73 @@
+#include "cpu/pair_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+double dot(const Vec& p, const Vec& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/// Of `sizes`, which are not negative, weighted by |p|.
+double sizeAlong(const Vec& p, const Vec& sizes) {
+  return std::abs(p[0]) * sizes[0] + std::abs(p[1]) * sizes[1] + std::abs(p[2]) * sizes[2];
+}
+
+}  // namespace
+
+PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest) : span(latest) {
+  const Vec& unit = motion.unit;
+  int fastest = 0;
+  for (int k = 0; k < 3; ++k) {
+    gap[k] = a.origin[k] - b.origin[k];
+    if (std::abs(unit[k]) > std::abs(unit[fastest])) fastest = k;
+  }
+  // Once A has passed B along this axis, nothing meets any more.
+  const int f = fastest;
+  const double way = std::abs(gap[f]) + a.extent[f] + b.extent[f] + a.error[f] + b.error[f];
+  if (const double passed = 1.01 * way / std::abs(unit[f]); passed < span) span = passed;
+  for (int k = 0; k < 3; ++k) {
+    travel[k] = span * unit[k];
+    rounding[k] = a.error[k] + b.error[k] + 0x1p-1060 * (1 + span) +
+                  32 * kUnit * (a.extent[k] + b.extent[k] + std::abs(gap[k]) + std::abs(travel[k]));
+  }
+}
+
+Sight::Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side) {
+  for (int k = 0; k < 3; ++k) {
+    const Vec& n = own.rows[k];
+    offset[k] = side * dot(n, motion.gap);
+    travel[k] = side * dot(n, motion.travel);
+    slack[k] = sizeAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;
+    magnitude[k] = 2 + std::abs(offset[k]) + std::abs(travel[k]);
+    for (int j = 0; j < 3; ++j) {
+      matrix[k][j] = n[0] * other.linear[0][j] + n[1] * other.linear[1][j] + n[2] * other.linear[2][j];
+      magnitude[k] += 2 * std::abs(matrix[k][j]);
+    }
+  }
+}
+
+void narrow(TimeSpan& times, const Sight& sight, const gpu::MeshNode& own, const gpu::MeshNode& other) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(sight.magnitude[k] < 0x1p900)) continue;
+    double middle = own.centre[k] - sight.offset[k];
+    double half = own.halfExtent[k] + sight.slack[k] + 32 * kUnit * sight.magnitude[k];
+    for (int j = 0; j < 3; ++j) {
+      middle -= sight.matrix[k][j] * other.centre[j];
+      half += std::abs(sight.matrix[k][j]) * other.halfExtent[j];
+    }
+    const double speed = std::abs(sight.travel[k]), way = sight.travel[k] < 0 ? -middle : middle;
+    if (way - half > speed * times.to || way + half < speed * times.from) {
+      times = {1, 0};
+      return;
+    }
+    // Quotients of at most 1, whatever the speed.
+    if (way - half > speed * times.from) times.from = (way - half) / speed;
+    if (way + half < speed * times.to) times.to = (way + half) / speed;
+  }
+}
+
+}  // namespace radar::cpu

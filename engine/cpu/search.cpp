@@ -1,0 +1,61 @@
+#include "cpu/search.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "scene/parallel.h"
+
+namespace radar::cpu {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Starting a thread and waiting for it takes 15 to 30 us on Linux, a query among boxes 5 us.
+constexpr double kWorthThreads = 80e-6;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
+                 std::span<Result> results) {
+  const ObjectTree& tree = scene.objectTree();
+  const size_t count = queries.size(), workers = std::clamp<size_t>(count, 1, threadCount(threads));
+  if (searches_.size() < workers) searches_.resize(workers);
+  const auto answer = [&](unsigned worker, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      results[i] = searches_[worker].answer(queries[i], scene, tree);
+      results[i].tier = tier;
+    }
+  };
+  const Clock::time_point start = Clock::now();
+  // Alone, until it is known that threads are worth starting; mostly the last run tells.
+  size_t done = 0;
+  double each = secondsPerQuery_;
+  while (workers > 1 && done < count && each * static_cast<double>(count - done) < kWorthThreads) {
+    answer(0, done, done + 1);
+    ++done;
+    each = secondsSince(start) / static_cast<double>(done);
+  }
+  // Small enough for the threads to end together, large enough for them to share no line of results most of the time.
+  const size_t rest = count - done, chunk = std::clamp<size_t>(rest / (16 * workers), 1, 16);
+  parallelFor(rest, chunk, static_cast<unsigned>(workers),
+              [&](unsigned worker, size_t first, size_t last) { answer(worker, done + first, done + last); });
+  const double used = static_cast<double>(rest == 0 ? 1 : workers);
+  if (count > 0) secondsPerQuery_ = used * secondsSince(start) / static_cast<double>(count);
+}
+
+SearchStats Search::stats() const {
+  SearchStats sum;
+  for (const QuerySearch& search : searches_) {
+    sum.nodes += search.stats().nodes;
+    sum.pairs += search.stats().pairs;
+    sum.exactPairs += search.stats().exactPairs;
+  }
+  return sum;
+}
+
+}  // namespace radar::cpu

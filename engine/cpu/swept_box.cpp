@@ -1,0 +1,57 @@
+#include "cpu/swept_box.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar::cpu {
+
+namespace {
+
+TwoDoubles both(double x) {
+  return TwoDoubles{x, x};
+}
+
+}  // namespace
+
+SweptBox::SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree) {
+  const Box& world = tree.worldBox();
+  Vec middle, half, magnitude;
+  double latest = motion.distance;
+  for (int k = 0; k < 3; ++k) {
+    const double anchor = tree.anchor()[k], speed = std::abs(motion.unit[k]);
+    const double reach = 2 * std::max(std::abs(world.lo[k] - anchor), std::abs(world.hi[k] - anchor));
+    middle[k] = box.middle(k) - anchor;
+    half[k] = 0.5 * box.hi[k] - 0.5 * box.lo[k];
+    magnitude[k] = std::abs(box.middle(k)) + half[k] + std::abs(anchor) + reach;
+    // Once the box has passed all objects along an axis, it meets nothing any more.
+    if (const double passed = 1.01 * (std::abs(middle[k]) + half[k] + reach) / speed; speed > 0.5 && passed < latest) {
+      latest = passed;
+    }
+  }
+  latest = std::max(latest, 0x1p-1000);
+  for (int k = 0; k < 3; ++k) {
+    const double speed = motion.unit[k], rounding = 32 * kUnit * (magnitude[k] + latest * std::abs(speed)) + 0x1p-1000;
+    // A speed of 0 would tell nothing; the difference is slack.
+    const double used = std::copysign(std::max(std::abs(speed), rounding / latest), speed), rate = 1 / used;
+    const double wide = half[k] + rounding + latest * std::abs(used - speed);
+    const bool usable = (magnitude[k] + wide) * std::abs(rate) < 0x1p900;
+    rate_[k] = both(usable ? rate : 0);
+    rateSize_[k] = both(usable ? std::abs(rate) : 0);
+    offset_[k] = both(usable ? middle[k] * rate : 0);
+    half_[k] = both(usable ? wide * std::abs(rate) : INFINITY);
+  }
+}
+
+TwoDoubles SweptBox::operator()(const gpu::ObjectNode& first, const gpu::ObjectNode& second) const {
+  TwoDoubles from = both(0), to = both(INFINITY);
+  for (int k = 0; k < 3; ++k) {
+    const TwoDoubles middle = rate_[k] * TwoDoubles{first.centre[k], second.centre[k]} - offset_[k];
+    const TwoDoubles half = rateSize_[k] * TwoDoubles{first.halfExtent[k], second.halfExtent[k]} + half_[k];
+    const TwoDoubles begin = middle - half, end = middle + half;
+    from = begin > from ? begin : from;
+    to = end < to ? end : to;
+  }
+  return from <= to ? from : both(INFINITY);
+}
+
+}  // namespace radar::cpu

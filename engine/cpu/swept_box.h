@@ -1,0 +1,23 @@
+// When boxes of the tree over objects can be met by a box of the world in motion. The error bounds are derived in
+// docs/method.md.
+#pragma once
+
+#include "cpu/lanes.h"
+#include "cpu/motion.h"
+#include "scene/object_tree.h"
+
+namespace radar::cpu {
+
+class SweptBox {
+ public:
+  /// `tree` is in range.
+  SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree);
+
+  /// Lower bounds on the distances at which the boxes of two nodes are met; infinite where they are not.
+  TwoDoubles operator()(const gpu::ObjectNode& first, const gpu::ObjectNode& second) const;
+
+ private:
+  TwoDoubles rate_[3], rateSize_[3], offset_[3], half_[3];
+};
+
+}  // namespace radar::cpu

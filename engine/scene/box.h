@@ -1,0 +1,33 @@
+// Axis-aligned boxes in double precision.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+namespace radar {
+
+/// Empty while lo > hi.
+struct Box {
+  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+  void add(const std::array<double, 3>& p) {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], p[k]);
+      hi[k] = std::max(hi[k], p[k]);
+    }
+  }
+  void merge(const Box& b) {
+    add(b.lo);
+    add(b.hi);
+  }
+  double middle(int axis) const { return 0.5 * lo[axis] + 0.5 * hi[axis]; }
+};
+
+/// Whether two boxes, one of them widened by `slack`, have a point in common.
+inline bool overlap(const Box& a, const Box& b, double slack) {
+  for (int k = 0; k < 3; ++k) {
+    if (a.lo[k] > b.hi[k] + slack || a.hi[k] < b.lo[k] - slack) return false;
+  }
+  return true;
+}
+
+}  // namespace radar

@@ -1,0 +1,32 @@
+// A binary bounding-volume tree over boxes, built top down by the binned surface area heuristic, on all cores.
+// I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace radar {
+
+struct FloatBox {
+  std::array<float, 3> lo, hi;
+};
+
+struct BoxTree {
+  /// A leaf holds the items order[first] to order[first + count - 1]; so do all leaves below an inner node together.
+  struct Node {
+    FloatBox box;
+    uint32_t first = 0, count = 0;
+    uint32_t child = 0;  ///< the left one, the right one follows; 0: a leaf
+  };
+  std::vector<Node> nodes;      ///< the root first, children behind their parents; none without items
+  std::vector<uint32_t> order;  ///< numbers of the boxes, leaf by leaf
+  uint32_t depth = 0;           ///< nodes on the longest way from the root to a leaf
+};
+
+/// Leaves hold at most `leafSize` boxes, which are finite. Equal boxes give the same tree, whatever the number of
+/// threads; 0: one for each core.
+BoxTree buildBoxTree(std::span<const FloatBox> boxes, uint32_t leafSize, unsigned threads = 0);
+
+}  // namespace radar

@@ -1,0 +1,74 @@
+#include "scene/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace radar {
+
+namespace {
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector unit(Vector v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  for (double& x : v) x /= largest;
+  const double length = std::hypot(v[0], v[1], v[2]);
+  for (double& x : v) x /= length;
+  return v;
+}
+
+}  // namespace
+
+Vector scaledDirection(const Vector& direction) {
+  const int exponent = std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])}));
+  Vector out;
+  for (int k = 0; k < 3; ++k) {
+    out[k] = std::scalbn(direction[k], -exponent);
+    if (std::scalbn(out[k], exponent) != direction[k]) return direction;
+  }
+  return out;
+}
+
+double lengthOf(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+std::array<Vector, 3> axesAlong(const Vector& direction) {
+  const Vector forward = unit(direction);
+  int least = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(forward[k]) < std::abs(forward[least])) least = k;
+  }
+  Vector across{};
+  across[least] = 1;
+  const Vector up = unit(cross(forward, across));
+  return {cross(up, forward), up, forward};
+}
+
+Vector transform(const Pose& pose, const Vector& p) {
+  Vector out;
+  for (int k = 0; k < 3; ++k) {
+    const double* r = &pose.m[4 * k];
+    out[k] = ((r[0] * p[0] + r[1] * p[1]) + r[2] * p[2]) + r[3];
+  }
+  return out;
+}
+
+Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& pose,
+                          const Vector& centre) {
+  Vector offset = transform(pose, centre);
+  for (int k = 0; k < 3; ++k) offset[k] -= origin[k];
+  Affine out;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      out[4 * row + column] =
+          axes[row][0] * pose.m[column] + axes[row][1] * pose.m[4 + column] + axes[row][2] * pose.m[8 + column];
+    }
+    out[4 * row + 3] = dot(axes[row], offset);
+  }
+  return out;
+}
+
+}  // namespace radar

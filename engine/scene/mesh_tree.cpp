@@ -1,0 +1,127 @@
+#include "scene/mesh_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/box_tree.h"
+#include "scene/parallel.h"
+#include "scene/scene.h"
+
+namespace radar {
+
+namespace {
+
+// Leaves of one triangle, and of four, made searches slower.
+constexpr uint32_t kLeafTriangles = 2;
+// Larger nodes have no slab along their normal: hardly any is flat, and each level costs a look at all vertices.
+constexpr uint32_t kSlabTriangles = 1024;
+constexpr size_t kChunk = 4096;
+
+using Point = std::array<float, 3>;
+
+class Builder {
+ public:
+  explicit Builder(const Mesh& mesh) : mesh_(mesh) {}
+
+  MeshTree build() const {
+    std::vector<FloatBox> boxes(mesh_.triangleCount());
+    parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t t = first; t < last; ++t) boxes[t] = boxOf(static_cast<uint32_t>(t));
+    });
+    BoxTree tree = buildBoxTree(boxes, kLeafTriangles);
+    MeshTree out;
+    out.order = std::move(tree.order);
+    out.depth = tree.depth;
+    out.nodes.resize(tree.nodes.size());
+    out.below.resize(tree.nodes.size());
+    parallelFor(tree.nodes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) fill(out, tree.nodes[i], i);
+    });
+    for (size_t i = out.nodes.size(); i-- > 0;) {  // children stand behind their parents
+      const BoxTree::Node& node = tree.nodes[i];
+      if (node.child == 0) continue;
+      out.below[i].least = std::min(out.below[node.child].least, out.below[node.child + 1].least);
+    }
+    return out;
+  }
+
+ private:
+  Point corner(uint32_t triangle, int i) const {
+    const uint32_t vertex = mesh_.indices[3 * size_t{triangle} + i];
+    return {mesh_.normalised(vertex, 0), mesh_.normalised(vertex, 1), mesh_.normalised(vertex, 2)};
+  }
+
+  FloatBox boxOf(uint32_t triangle) const {
+    FloatBox box{corner(triangle, 0), corner(triangle, 0)};
+    for (int i = 1; i < 3; ++i) {
+      const Point p = corner(triangle, i);
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = std::min(box.lo[k], p[k]);
+        box.hi[k] = std::max(box.hi[k], p[k]);
+      }
+    }
+    return box;
+  }
+
+  void fill(MeshTree& tree, const BoxTree::Node& from, size_t i) const {
+    gpu::MeshNode& node = tree.nodes[i];
+    fitBox(from.box.lo, from.box.hi, node.centre, node.halfExtent);
+    tree.below[i] = {from.first, from.count, gpu::kNobody};
+    if (from.child == 0) {
+      node.link = gpu::kLinkLeaf | (from.count > 1 ? gpu::kLinkPair : 0) | from.first;
+      const auto first = tree.order.begin() + from.first;
+      tree.below[i].least = *std::min_element(first, first + from.count);
+    } else {
+      node.link = from.child;
+    }
+    if (from.count <= kSlabTriangles) fitSlab(tree, from, node);
+  }
+
+  // A slab across the triangles' mean normal: any normal would do, that one is thin.
+  void fitSlab(const MeshTree& tree, const BoxTree::Node& from, gpu::MeshNode& node) const {
+    std::array<double, 3> sum{};
+    for (uint32_t place = from.first; place < from.first + from.count; ++place) {
+      const uint32_t triangle = tree.order[place];
+      const Point a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
+      for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        sum[k] += (double(b[i]) - a[i]) * (double(c[j]) - a[j]) - (double(b[j]) - a[j]) * (double(c[i]) - a[i]);
+      }
+    }
+    const double length = std::hypot(sum[0], sum[1], sum[2]);
+    if (!(length > 0)) return;  // normal, middle and half extent are 0, which holds every vertex
+    for (int k = 0; k < 3; ++k) node.normal[k] = static_cast<float>(sum[k] / length);
+    double least = std::numeric_limits<double>::max(), most = -least;
+    for (uint32_t place = from.first; place < from.first + from.count; ++place) {
+      for (int i = 0; i < 3; ++i) {
+        const Point p = corner(tree.order[place], i);
+        const double at = double(node.normal[0]) * p[0] + double(node.normal[1]) * p[1] + double(node.normal[2]) * p[2];
+        least = std::min(least, at);
+        most = std::max(most, at);
+      }
+    }
+    node.slabMiddle = static_cast<float>(0.5 * (least + most));
+    // The sums round by 2^-51 of coordinates below 4.
+    const double half = std::max(most - node.slabMiddle, node.slabMiddle - least) + 0x1p-48;
+    node.slabHalf = std::nextafter(static_cast<float>(half), std::numeric_limits<float>::max());
+  }
+
+  const Mesh& mesh_;
+};
+
+}  // namespace
+
+void fitBox(const Point& lo, const Point& hi, float (&centre)[3], float (&half)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = 0.5f * lo[k] + 0.5f * hi[k];
+    const float reach = std::max(hi[k] - centre[k], centre[k] - lo[k]);
+    half[k] = std::nextafter(reach, std::numeric_limits<float>::max());
+  }
+}
+
+MeshTree buildMeshTree(const Mesh& mesh) {
+  return Builder(mesh).build();
+}
+
+}  // namespace radar

@@ -1,0 +1,100 @@
+#include "scene/placement.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "scene/rounding.h"
+
+namespace radar {
+
+namespace {
+
+// Below, and above its inverse, an entry of an inverse matrix is out of range, too.
+constexpr double kMostInverse = 0x1p100;
+
+// The leading 16 bits: the shader's products with numbers of 8 bits are exact.
+float leadingBits(double x) {
+  return std::bit_cast<float>(std::bit_cast<uint32_t>(static_cast<float>(x)) & 0xffffff00u);
+}
+
+using Matrix = std::array<double, 9>;
+
+// Any rows will do that are about the inverse's; what they are off is measured.
+Matrix inverseOf(const Matrix& m) {
+  const double a = m[4] * m[8] - m[5] * m[7], b = m[5] * m[6] - m[3] * m[8], c = m[3] * m[7] - m[4] * m[6];
+  const double inverse = 1 / (m[0] * a + m[1] * b + m[2] * c);
+  return {a * inverse,
+          (m[2] * m[7] - m[1] * m[8]) * inverse,
+          (m[1] * m[5] - m[2] * m[4]) * inverse,
+          b * inverse,
+          (m[0] * m[8] - m[2] * m[6]) * inverse,
+          (m[2] * m[3] - m[0] * m[5]) * inverse,
+          c * inverse,
+          (m[1] * m[6] - m[0] * m[7]) * inverse,
+          (m[0] * m[4] - m[1] * m[3]) * inverse};
+}
+
+// Returns whether floats hold the rows.
+bool setInverse(gpu::Placement& out, const Matrix& matrix) {
+  const Matrix inverse = inverseOf(matrix);
+  for (int row = 0; row < 3; ++row) {
+    float* n = &out.inverse[4 * row];
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(inverse[3 * row + k]) < kMostInverse)) return false;
+      n[k] = static_cast<float>(inverse[3 * row + k]);
+    }
+    double off = 0, sum = 0;
+    for (int j = 0; j < 3; ++j) {
+      double product = j == row ? -1 : 0, magnitude = 1;
+      for (int k = 0; k < 3; ++k) {
+        product += double(n[k]) * matrix[3 * k + j];
+        magnitude += std::abs(n[k] * matrix[3 * k + j]);
+      }
+      off += std::abs(product) * out.reach[j];
+      sum += magnitude * out.reach[j];
+    }
+    n[3] = roundUp(off + 0x1p-48 * sum);
+  }
+  return true;
+}
+
+}  // namespace
+
+gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh) {
+  gpu::Placement out{};
+  Matrix matrix;
+  double size = 0, magnitude = 0, most = 0;
+  for (int k = 0; k < 3; ++k) {
+    out.reach[k] = static_cast<float>(mesh.reach[k] / mesh.unit);
+    out.origin[k] = static_cast<float>(mesh.origin[k]);
+    magnitude = std::max(magnitude, std::abs(mesh.origin[k]));
+  }
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &worldFromMesh.m[4 * row];
+    double position = r[3], sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) {
+      matrix[3 * row + k] = r[k] * mesh.unit;
+      position += r[k] * mesh.origin[k];
+      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
+      size += std::abs(r[k]) * mesh.reach[k];
+      most = std::max(most, std::abs(matrix[3 * row + k]));
+      out.coarse[4 * row + k] = leadingBits(matrix[3 * row + k]);
+      out.fine[4 * row + k] = static_cast<float>(matrix[3 * row + k] - out.coarse[4 * row + k]);
+    }
+    magnitude = std::max(magnitude, sum);
+    out.coarse[4 * row + 3] = static_cast<float>(position);
+    out.fine[4 * row + 3] = static_cast<float>(position - out.coarse[4 * row + 3]);
+    // The sum of what placing, the position's parts and the shader's sums of them lose; and of fine parts.
+    out.error = std::max(out.error, roundUp(0x1p-44 * sum));
+  }
+  out.size = roundUp(size);
+  out.error = roundUp(double(out.error) + 0x1p-35 * size);
+  const bool inRange = magnitude <= kMostCoordinate && most <= kMostCoordinate && most >= 1 / kMostCoordinate &&
+                       mesh.unit <= kMostCoordinate && mesh.unit >= 1 / kMostCoordinate;
+  if (!inRange || !setInverse(out, matrix)) return {};
+  out.perUnit = static_cast<float>(1 / mesh.unit);
+  return out;
+}
+
+}  // namespace radar

@@ -1,0 +1,158 @@
+#include "sweep/contact_tier.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "scene/parallel.h"
+
+namespace radar {
+
+namespace {
+
+// Sensors of one submission, at most: what a device has in hand while the next ones are planned.
+constexpr size_t kMostSensors = 1u << 14;
+// Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
+// the batch (docs/benchmarks.md). On another, a submission takes the time in which a CPU answers some queries: an estimate,
+// as no such device has been measured.
+constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
+// Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
+constexpr size_t kMostDecided = 256;
+
+bool isDecidable(std::span<const gpu::UnresolvedPair* const> pairs) {
+  return !pairs.empty() && pairs.size() <= kMostDecided;
+}
+
+uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
+  if (options.cpuBatch != kNone) return options.cpuBatch;
+  return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? kCpuBatchOnCpu : kCpuBatchElsewhere;
+}
+
+}  // namespace
+
+ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+                         GpuScene& resident, std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room,
+                         Asked& batch)
+    : device_(device),
+      scene_(scene),
+      options_(options),
+      resident_(resident),
+      kernels_(std::move(kernels)),
+      room_(room),
+      batch_(batch) {}
+
+void ContactTier::answerOnCpu(std::span<const size_t> which) {
+  if (which.empty()) return;
+  const Clock::time_point start = Clock::now();
+  const Scene::Impl& scene = scene_.impl();
+  const size_t first = which.front(), count = which.size();
+  if (which.back() - first + 1 == count) {  // ascending, and so without gaps
+    cpu_.run(batch_.asked.subspan(first, count), scene, Tier::contact, options_.cpuThreads,
+             batch_.answers.subspan(first, count));
+  } else {
+    std::vector<Query> queries;
+    queries.reserve(count);
+    for (const size_t i : which) queries.push_back(batch_.asked[i]);
+    std::vector<Result> results(count);
+    cpu_.run(queries, scene, Tier::contact, options_.cpuThreads, results);
+    for (size_t k = 0; k < count; ++k) batch_.answers[which[k]] = results[k];
+  }
+  batch_.stats.cpuQueries += count;
+  batch_.addCpuTime("cpu", msSince(start));
+}
+
+void ContactTier::run(std::span<const size_t> which) {
+  if (which.empty()) return;
+  if (which.size() < cpuBatchOf(options_, device_)) return answerOnCpu(which);
+  // An exception may have left some of the last batch.
+  planned_.clear();
+  sensors_.clear();
+  const Scene::Impl& scene = scene_.impl();
+  const Clock::time_point begun = Clock::now();
+  const ObjectTree& tree = scene.objectTree();
+  batch_.addCpuTime("select", msSince(begun));
+  std::vector<size_t> outOfRange;
+  Clock::time_point start = Clock::now();
+  for (const size_t i : which) {
+    const Planned planned =
+        addSensor(sensors_, batch_.asked[i], static_cast<uint32_t>(planned_.size()), scene, tree);
+    if (planned == Planned::added) planned_.push_back(i);
+    if (planned == Planned::clear) batch_.answers[i] = clearAnswer();
+    if (planned == Planned::outOfRange) outOfRange.push_back(i);
+    if (planned_.size() < kMostSensors) continue;
+    batch_.addCpuTime("encode", msSince(start));
+    submit();
+    start = Clock::now();
+  }
+  batch_.addCpuTime("encode", msSince(start));
+  submit();
+  answerOnCpu(outOfRange);
+}
+
+void ContactTier::submit() {
+  if (planned_.empty()) return;
+  land();
+  flying_.swap(planned_);
+  try {
+    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
+    submitter_->submit(sensors_, scene_.impl());
+  } catch (const Error& error) {
+    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
+  }
+  sensors_.clear();
+}
+
+void ContactTier::finish() {
+  land();
+  while (!cramped_.empty()) {
+    const std::vector<size_t> again = std::exchange(cramped_, {});
+    run(again);
+    land();
+  }
+}
+
+void ContactTier::land() {
+  const std::vector<size_t> landing = std::exchange(flying_, {});
+  if (landing.empty()) return;
+  try {
+    const SearchAnswers found = submitter_->collect(scene_.impl(), batch_.stats.stages);
+    batch_.deviceDone = Clock::now();
+    batch_.stats.submissions += submitter_->submissions();
+    batch_.stats.nodePairs += found.nodePairs;
+    batch_.stats.pairs += found.trianglePairs;
+    batch_.stats.solves += found.solves;
+    decode(found, landing);
+    batch_.addCpuTime("decode", msSince(batch_.deviceDone));
+  } catch (const Error& error) {
+    for (const size_t query : landing) batch_.giveUp(query, error);
+  }
+}
+
+void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> landing) {
+  const UnresolvedPairs unresolved(found.unresolved);
+  std::vector<uint32_t> open;
+  std::vector<size_t> left;
+  for (uint32_t i = 0; i < landing.size(); ++i) {
+    const Result& result = found.results[i];
+    if (result.flags == 0 && result.status != Status::invalid) {
+      batch_.answers[landing[i]] = result;
+    } else if (result.flags == 0) {
+      throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+    } else if (result.flags == kFlagOpen && isDecidable(unresolved.of(i))) {
+      open.push_back(i);
+    } else if (found.roomier && result.flags == kFlagCandidates) {
+      cramped_.push_back(landing[i]);
+    } else {
+      left.push_back(landing[i]);
+    }
+  }
+  parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
+    for (size_t k = first; k < last; ++k) {
+      const size_t query = landing[open[k]];
+      batch_.answers[query] = decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query]);
+    }
+  });
+  for (const uint32_t i : open) batch_.stats.cpuPairs += unresolved.of(i).size();
+  answerOnCpu(left);
+}
+
+}  // namespace radar

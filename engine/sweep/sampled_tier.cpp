@@ -1,0 +1,172 @@
+#include "sweep/sampled_tier.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "sweep/decode.h"
+
+namespace radar {
+
+SampledTier::SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+                         GpuScene& resident, Asked& batch)
+    : device_(device),
+      scene_(scene),
+      options_(options),
+      batch_(batch),
+      recorder_(device, resident, options.pictureBytes, options.timestamps) {
+  // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
+  bufferBytes_ = std::min<uint64_t>(device.properties.limits.maxStorageBufferRange, 256ull << 20);
+  maxItems_ = std::min<uint64_t>(bufferBytes_ / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
+}
+
+void SampledTier::Load::add(const ViewPlan& plan) {
+  ++views;
+  resolution = plan.view.resolution;
+  draws += 1 + plan.inReach.size() + plan.others.size();
+  items += plan.items;
+}
+
+bool SampledTier::fits(const Load& load) const {
+  const uint64_t layer = 2ull * load.resolution * load.resolution * sizeof(float);
+  return load.views <= device_.maxLayers && load.views * layer <= options_.pictureBytes &&
+         load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_;
+}
+
+std::string SampledTier::tooLarge(const ViewPlan& plan) const {
+  Load load;
+  load.add(plan);
+  if (load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_)
+    return {};  // too large a picture is drawn alone
+  const uint64_t bytes = std::max(load.draws * sizeof(gpu::Draw), load.items * sizeof(gpu::Item));
+  return "capacity: the objects in reach need a buffer of " + std::to_string(bytes) + " bytes, the device allows " +
+         std::to_string(bufferBytes_);
+}
+
+ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
+  return encode(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
+}
+
+void SampledTier::submit(std::span<Pending> part) {
+  if (part.empty()) return;
+  land();
+  const Clock::time_point start = Clock::now();
+  std::vector<const ViewPlan*> plans;
+  for (const Pending& pending : part) {
+    plans.push_back(&pending.plan);
+    flying_.push_back(pending.query);
+  }
+  fill(drawn_, plans);
+  batch_.addCpuTime("encode", msSince(start));
+  ++batch_.stats.submissions;
+  batch_.stats.drawnObjects += drawn_.objects;
+  batch_.stats.drawnTriangles += drawn_.triangles;
+  try {
+    recorder_.submit(drawn_, scene_.impl());
+  } catch (const Error& error) {
+    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
+  }
+}
+
+void SampledTier::land() {
+  const std::vector<size_t> landing = std::exchange(flying_, {});
+  if (landing.empty()) return;
+  try {
+    const Answers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages);
+    batch_.deviceDone = Clock::now();
+    for (size_t i = 0; i < landing.size(); ++i) {
+      const size_t query = landing[i];
+      batch_.answers[query] =
+          decode(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs), batch_.asked[query],
+                 scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
+      batch_.stats.pairs += found.answers[i].pairs;
+    }
+    batch_.addCpuTime("decode", msSince(batch_.deviceDone));
+  } catch (const Error& error) {
+    for (const size_t query : landing) batch_.giveUp(query, error);
+  }
+}
+
+// Cuts a slice into submissions that fit.
+void SampledTier::flush(std::vector<Pending>& slice) {
+  std::stable_sort(slice.begin(), slice.end(),
+                   [](const Pending& a, const Pending& b) { return a.plan.view.resolution < b.plan.view.resolution; });
+  size_t first = 0;
+  Load load;
+  for (size_t i = 0; i < slice.size(); ++i) {
+    Load next = load;
+    next.add(slice[i].plan);
+    if (i > first && !fits(next)) {
+      submit(std::span(slice).subspan(first, i - first));
+      first = i;
+      next = {};
+      next.add(slice[i].plan);
+    }
+    load = next;
+  }
+  submit(std::span(slice).subspan(first));
+  slice.clear();
+}
+
+void SampledTier::run(std::span<const size_t> which) {
+  // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
+  // stays bounded however many queries there are.
+  std::vector<Pending> slice;
+  Load load;
+  for (const size_t i : which) {
+    const Clock::time_point start = Clock::now();
+    ViewPlan plan = planOf(batch_.asked[i], options_.select ? Drawn::inReach : Drawn::everything);
+    batch_.addCpuTime("select", msSince(start));
+    if (plan.inReach.empty()) {
+      batch_.answers[i] = decodeClear();
+      continue;
+    }
+    if (std::string reason = tooLarge(plan); !reason.empty()) {
+      batch_.reasons[i] = std::move(reason);
+      continue;
+    }
+    load.add(plan);
+    slice.push_back({i, std::move(plan)});
+    if (slice.size() >= device_.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes_ || load.items > maxItems_) {
+      flush(slice);
+      load = {};
+    }
+  }
+  flush(slice);
+}
+
+Scopes SampledTier::scopes(const Query& query) {
+  const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
+  if (std::string reason = tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
+  const ViewPlan* plans[] = {&plan};
+  fill(drawn_, plans);
+  StoredScopes stored;
+  recorder_.submit(drawn_, scene_.impl(), true);
+  const Answers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
+
+  Scopes out;
+  out.result = plan.inReach.empty() ? decodeClear()
+                                    : decode(found.answers[0], found.openPairs, query, scene_.impl(),
+                                             plan.view.resolution, batch_.stats.cpuPairs);
+  out.width = plan.view.width;
+  out.height = plan.view.height;
+  out.pixel = plan.pixel;
+  out.d = plan.d;
+  out.length = plan.length;
+  out.origin = plan.corner;
+  out.right = plan.axes[0];
+  out.up = plan.axes[1];
+  out.forward = plan.axes[2];
+  const float null = std::numeric_limits<float>::quiet_NaN();
+  for (size_t i = 0; i < stored.range.size(); ++i) {
+    const bool hasR = stored.range[i] < 1, hasM = stored.mask[i] < 1;
+    const float R = plan.view.rangeScale * stored.range[i];
+    const float sensor = plan.view.maskBase - plan.view.maskScale * stored.mask[i];
+    out.R.push_back(hasR ? R : null);
+    out.M.push_back(hasM ? static_cast<float>(plan.d - sensor) : null);
+    out.L.push_back(hasR && hasM ? R - sensor : null);
+  }
+  return out;
+}
+
+}  // namespace radar

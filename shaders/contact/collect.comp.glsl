@@ -1,0 +1,40 @@
+// Between two rounds of the search: what was left behind comes first in the next one, since it is deepest in the trees, so that
+// few tasks are open at a time; then what nobody has taken.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "contact/interop.h"
+#include "workgroup.glsl"
+
+layout(local_size_x = kContactGroup) in;
+
+layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
+layout(scalar, binding = kSlotTasks) readonly restrict buffer Tasks { SearchTask tasks[]; };
+layout(scalar, binding = kSlotSpilled) restrict buffer Spilled { SearchTask spilled[]; };
+layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
+
+layout(push_constant) uniform PushConstants { CollectPush push; };
+
+void main() {
+  const SearchRound round = counts.rounds[push.round];
+  const uint taken = min(round.taken, round.tasks), left = round.tasks - taken, kept = min(round.spilled, push.taskCapacity);
+  const uint me = gl_GlobalInvocationID.x;
+  const uint step = kContactGroup * kCollectGroups;
+  if (push.isLast != 0) {
+    for (uint i = me; i < left; i += step) atomicOr(states[tasks[taken + i].sensor].flags, kSearchUnfinished);
+    for (uint i = me; i < kept; i += step) atomicOr(states[spilled[i].sensor].flags, kSearchUnfinished);
+  } else {
+    for (uint i = me; i < left; i += step) {
+      if (kept + i < push.taskCapacity) {
+        spilled[kept + i] = tasks[taken + i];
+      } else {
+        atomicOr(states[tasks[taken + i].sensor].flags, kSearchLost);
+      }
+    }
+  }
+  if (me != 0) return;
+  counts.rounds[push.round + 1].tasks = min(kept + left, push.taskCapacity);
+  const uvec3 rows = workgroupRows((counts.candidates + kContactGroup - 1) / kContactGroup);
+  counts.filterGroups = uint[3](rows.x, rows.y, rows.z);
+}

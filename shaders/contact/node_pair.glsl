@@ -1,0 +1,124 @@
+// When two nodes may meet: slabs along both meshes' axes, then along both nodes' normals (docs/method.md, "Pairs of nodes").
+// A slab along any axis bounds the parameters at which two boxes, one of them moving, can overlap there; what all slabs leave
+// is an interval. Margins hold all that rounding can do to it.
+
+// A sensor's mesh A seen from an object's mesh B, and the other way round. Parameters are scaled distances.
+struct MeshPair {
+  mat3 fromA, fromB;          // B's normalised coordinates from A's, A's from B's
+  vec3 offsetA, offsetB;      // where the other's origin is, in B's and in A's
+  vec3 inverseA, inverseB;    // 1 / velocity of A in B's coordinates and in A's
+  vec3 slackA, slackB;
+  vec3 velocityA, velocityB;
+  float farthest;             // nothing of the two meets beyond
+  float leastA, leastB;       // velocities along normals below this are taken for it
+  bool inRange;
+};
+// A size or a distance so many times the sensor's overflows in products of three.
+const float kMostRatio = 1.0e12;
+
+MeshPair meshPairOf(uint sensor, uint object) {
+  const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
+  const vec4 fa0 = sensorTexel(sensor, kTexelFine), fa1 = sensorTexel(sensor, kTexelFine + 1),
+             fa2 = sensorTexel(sensor, kTexelFine + 2);
+  const vec4 na0 = sensorTexel(sensor, kTexelInverse), na1 = sensorTexel(sensor, kTexelInverse + 1),
+             na2 = sensorTexel(sensor, kTexelInverse + 2);
+  const vec4 b0 = objectTexel(object, 0), b1 = objectTexel(object, 1), b2 = objectTexel(object, 2);
+  const vec4 fb0 = objectTexel(object, kTexelFine), fb1 = objectTexel(object, kTexelFine + 1),
+             fb2 = objectTexel(object, kTexelFine + 2);
+  const vec4 nb0 = objectTexel(object, kTexelInverse), nb1 = objectTexel(object, kTexelInverse + 1),
+             nb2 = objectTexel(object, kTexelInverse + 2);
+  const vec4 sizesA = sensorTexel(sensor, kTexelError), sizesB = objectTexel(object, kTexelError);
+  const vec4 direction = sensorTexel(sensor, kTexelDirection);
+  const float scale = direction.w, unscale = sensorTexel(sensor, kTexelMask).w;
+  const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
+
+  const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
+  const vec3 apart = (high + low) * scale, lost = 4.0 * kUnit * scale * (abs(high) + abs(low));
+  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * scale;
+  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * scale;
+  const mat3 inverseA = rows(na0.xyz, na1.xyz, na2.xyz) * unscale, inverseB = rows(nb0.xyz, nb1.xyz, nb2.xyz) * unscale;
+  const mat3 sizeA = abs3(inverseA), sizeB = abs3(inverseB);
+  const vec3 sumA = sizeA * vec3(1.0), sumB = sizeB * vec3(1.0);
+
+  MeshPair p;
+  p.fromA = inverseB * matrixA;
+  p.fromB = inverseA * matrixB;
+  p.offsetA = -(inverseB * apart);
+  p.offsetB = inverseA * apart;
+  p.velocityA = inverseB * direction.xyz;
+  p.velocityB = inverseA * direction.xyz;
+  const float error = scale * (sizesA.x + sizesB.x);
+  const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
+  p.farthest = max(1.00001 * min(sensorTexel(sensor, kTexelCentre).w, most), 9.5367432e-7);
+  // The sum of all that is added up along an axis.
+  const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
+             spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));
+  p.slackA = vec3(nb0.w, nb1.w, nb2.w) + sumB * error + sizeB * lost + 64.0 * kUnit * spanB +
+             16.0 * kUnit * p.farthest * sumB + 1e-18;
+  p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * lost + 64.0 * kUnit * spanA +
+             16.0 * kUnit * p.farthest * sumA + 1e-18;
+  const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA, vec3(9.5367432e-7)),
+             leastB = 9.5367432e-7 / p.farthest * max(reachA + abs3(p.fromB) * reachB, vec3(9.5367432e-7));
+  const vec3 wayA = awayFromZero(p.velocityA, leastA), wayB = awayFromZero(p.velocityB, leastB);
+  p.slackA += p.farthest * abs(wayA - p.velocityA);
+  p.slackB += p.farthest * abs(wayB - p.velocityB);
+  p.inverseA = 1.0 / wayA;
+  p.inverseB = 1.0 / wayB;
+  p.leastA = max3(leastA);
+  p.leastB = max3(leastB);
+  // Where floats cannot hold an object, its perUnit is 0.
+  const bool held = objectTexel(object, kTexelOrigin).w > 0.0;
+  p.inRange = held && max(max3(sumA), max3(sumB)) < kMostRatio && most < kMostRatio;
+  return p;
+}
+
+// A lower bound of the parameters at which two nodes meet, and how large both are beside each other.
+struct Approach {
+  float gap;  // kMiss: they do not meet
+  float sizeA, sizeB;
+};
+const float kMiss = 3.0e38;
+
+// Adds the slab across the normal of a node of one side, as `own` has it: `other` is the node of the other side, whose
+// coordinates `fromOther` takes to this side's, about `offset`, and which moves by `velocity` against it.
+void addNormalSlab(inout float enter, inout float leave, Node own, Node other, mat3 fromOther, vec3 offset, vec3 velocity,
+                   vec3 slack, float least, float farthest) {
+  // In the other's coordinates, as a multiple of its own normal and a rest.
+  const vec3 n = own.normal * fromOther;
+  const float along = dot(n, other.normal);
+  const vec3 rest = n - along * other.normal;
+  const float between = dot(own.normal, offset) - own.middle;
+  const float middle = along * other.middle + dot(rest, other.centre);
+  const float extent = abs(along) * other.slab + dot(abs(rest), other.halfExtent) + own.slab;
+  const float added = abs(along * other.middle) + dot(abs(rest), abs(other.centre)) + extent;
+  const float way = dot(own.normal, velocity);
+  const float held = way < 0.0 ? min(way, -least) : max(way, least);
+  const float margin = dot(abs(own.normal), slack) + farthest * abs(held - way) + 64.0 * kUnit * added;
+  const float gap = between + middle, reach = extent + margin, inverse = 1.0 / held;
+  enter = max(enter, gap * inverse - reach * abs(inverse));
+  leave = min(leave, gap * inverse + reach * abs(inverse));
+}
+
+Approach approachOf(MeshPair p, Node a, Node b, float limit) {
+  // The boxes' distances and extents along B's axes and along A's.
+  const vec3 gapA = b.centre - (p.fromA * a.centre + p.offsetA), gapB = p.fromB * b.centre + p.offsetB - a.centre;
+  const vec3 spanA = abs3(p.fromA) * a.halfExtent, spanB = abs3(p.fromB) * b.halfExtent;
+  const vec3 middleA = gapA * p.inverseA, middleB = gapB * p.inverseB;
+  const vec3 reachA = (b.halfExtent + spanA + p.slackA) * abs(p.inverseA),
+             reachB = (a.halfExtent + spanB + p.slackB) * abs(p.inverseB);
+  float enter = max(max3(middleA - reachA), max3(middleB - reachB));
+  float leave = min(min3(middleA + reachA), min3(middleB + reachB));
+  // A stands still in its own coordinates, and B comes against the motion there; the other way round in B's.
+  addNormalSlab(enter, leave, a, b, p.fromB, p.offsetB, p.velocityB, p.slackB, p.leastB, p.farthest);
+  addNormalSlab(enter, leave, b, a, p.fromA, p.offsetA, -p.velocityA, p.slackA, p.leastA, p.farthest);
+  const bool meets = enter <= leave && leave >= 0.0 && enter <= limit;
+  return Approach(meets ? max(enter, 0.0) : kMiss, sum3(spanA), sum3(b.halfExtent));
+}
+
+// Whether the boxes of two whole meshes come near each other at all: where they do not, the products above may overflow.
+bool mayMeet(MeshPair p, Node a, Node b) {
+  const vec3 gapA = b.centre - (p.fromA * a.centre + p.offsetA), gapB = p.fromB * b.centre + p.offsetB - a.centre;
+  const vec3 spanA = abs3(p.fromA) * a.halfExtent, spanB = abs3(p.fromB) * b.halfExtent;
+  return all(lessThanEqual(abs(gapA), b.halfExtent + spanA + p.slackA + 1.001 * p.farthest / abs(p.inverseA))) &&
+         all(lessThanEqual(abs(gapB), a.halfExtent + spanB + p.slackB + 1.001 * p.farthest / abs(p.inverseB)));
+}

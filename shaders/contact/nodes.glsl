@@ -1,0 +1,61 @@
+// The trees, and what places their meshes.
+layout(binding = kSlotMeshNodes) uniform textureBuffer meshNodeTexels;
+layout(binding = kSlotObjectNodes) uniform textureBuffer objectNodeTexels;
+layout(binding = kSlotPlacements) uniform textureBuffer placementTexels;
+layout(binding = kSlotSensors) uniform textureBuffer sensorTexels;
+
+// MeshNode.
+struct Node {
+  vec3 centre;
+  uint link;
+  vec3 halfExtent;
+  float middle;
+  vec3 normal;
+  float slab;
+};
+
+Node nodeAt(uint i) {
+  const int t = int(3 * i);
+  const vec4 x = texelFetch(meshNodeTexels, t), y = texelFetch(meshNodeTexels, t + 1), z = texelFetch(meshNodeTexels, t + 2);
+  return Node(x.xyz, floatBitsToUint(x.w), y.xyz, y.w, z.xyz, z.w);
+}
+
+bool isLeaf(uint link) { return (link & kLinkLeaf) != 0; }
+
+// Texels of a Placement.
+const int kTexelFine = 3, kTexelInverse = 6, kTexelReach = 9, kTexelOrigin = 10, kTexelError = 11;
+vec4 objectTexel(uint object, int texel) { return texelFetch(placementTexels, int(kPlacementTexels * object) + texel); }
+
+// Texels of a Sensor, its placement's first.
+const int kTexelFrame = 12, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
+vec4 sensorTexel(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
+
+// Rows x, y, z.
+mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }
+float sum3(vec3 v) { return v.x + v.y + v.z; }
+float max3(vec3 v) { return max(v.x, max(v.y, v.z)); }
+float min3(vec3 v) { return min(v.x, min(v.y, v.z)); }
+mat3 abs3(mat3 m) { return mat3(abs(m[0]), abs(m[1]), abs(m[2])); }
+
+vec3 awayFromZero(vec3 v, vec3 least) { return mix(max(v, least), min(v, -least), lessThan(v, vec3(0.0))); }
+
+// A sensor's box in the world, about the anchor of the tree over objects.
+struct SensorBox {
+  vec3 centre, halfExtent, inverseDirection;
+};
+
+SensorBox sensorBoxOf(uint sensor) {
+  // `halfExtent` has room for what a velocity is raised by.
+  return SensorBox(sensorTexel(sensor, kTexelCentre).xyz, sensorTexel(sensor, kTexelHalfExtent).xyz,
+                   1.0 / awayFromZero(sensorTexel(sensor, kTexelDirection).xyz, vec3(9.0949470e-13)));
+}
+
+// The distances at which it meets an ObjectNode's; x > y: never.
+vec2 meetsBox(SensorBox box, vec4 middle, vec4 extent) {
+  const vec3 gap = middle.xyz - box.centre, at = gap * box.inverseDirection;
+  const vec3 reach = ((extent.xyz + box.halfExtent) * 1.00001 + 1e-6 * abs(gap)) * abs(box.inverseDirection);
+  return vec2(max(max3(at - reach), 0.0), min3(at + reach));
+}
+
+// Half an ulp of 1; an operation may be off by twice that, since Vulkan does not say which way floats are rounded.
+const float kUnit = 5.9604645e-8;

@@ -1,0 +1,436 @@
+// The search for first contact. A workgroup is one subgroup, whose lanes walk the trees, each for a sensor: down the tree over
+// objects, then down both meshes' trees together, nearest first, the rest on a stack. Pairs of leaves go into a queue that the
+// lanes share, and pairs of triangles that may meet into another, so that all lanes work on what is dear. What a lane has not
+// done when its time is up becomes tasks for the next round; so does what does not fit its stack. Nothing is lost.
+//
+// All loops are left by all lanes at once, so that `work` counts what lavapipe counts: it ends loops silently after 65,535
+// iterations of a subgroup in all.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_vote : require
+#define RADAR_NO_DOUBLES
+#include "contact/interop.h"
+#include "contact.glsl"
+#include "contact/scene.glsl"
+#include "contact/nodes.glsl"
+#include "workgroup.glsl"
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 0) const uint kLanes = 32;
+layout(constant_id = 1) const uint kQueue = 256;     // pairs in each queue: at least 6 times the lanes
+layout(constant_id = 2) const uint kStack = 40;      // entries of a lane: at least 4
+
+layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
+layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
+layout(scalar, binding = kSlotTasks) readonly restrict buffer Tasks { SearchTask tasks[]; };
+layout(scalar, binding = kSlotSpilled) writeonly restrict buffer Spilled { SearchTask spilled[]; };
+layout(scalar, binding = kSlotPairCandidates) writeonly restrict buffer Candidates { PairCandidate candidates[]; };
+layout(scalar, binding = kSlotExcluded) readonly restrict buffer Excluded { uint excluded[]; };
+
+layout(push_constant) uniform PushConstants { SearchPush push; };
+
+#include "contact/node_pair.glsl"
+#include "contact/triangle_pair.glsl"
+
+// Lanes that must be at work in a loop for it to go on while the others could fetch work: fewer leave it.
+const uint kFew = (kLanes + 1) / 2;
+// Iterations of a loop over nodes before the queues are looked at.
+const uint kObjectSteps = 16, kNodeSteps = 24;
+// Pairs of leaves that make it worth while to look at triangles.
+const uint kEnough = kQueue / 4;
+// Iterations of a lane while there are too few tasks for the device, so that there are soon more.
+const uint kSplitBudget = 48;
+
+shared uvec4 leafQueue[kQueue];      // link of a, link of b, object, sensor
+shared float leafGaps[kQueue];
+shared uvec4 pairQueue[kQueue];      // slot of a, slot of b, object, sensor
+shared SearchTask gifts[kLanes];     // from lanes that have more than they can do to those that have nothing
+
+// The same in all lanes.
+uint leafHead, leafTail, pairHead, pairTail, work;
+bool tasksLeft;
+
+// Of a lane.
+uint sensor, object;
+float limit;                         // nothing beyond counts, scaled
+uvec3 stack[kStack];                 // as SearchTask's a, b, gap; of the tree over objects: kNobody, link, gap
+uint depth, objectDepth;             // entries in use; those of the tree over objects come first
+uvec3 current;                       // the pair to try next; x is kNobody: none
+MeshPair meshes;
+uint nodePairs, trianglePairs, solves;
+// Of its sensor.
+SensorBox box;
+float scale, unscale, enough;
+
+uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
+uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
+
+// Nothing beyond counts. Where only a decision is asked, a certain contact ends the search; so does what makes it fail.
+float limitOf(uint s, float enoughOfS) {
+  const SearchState state = states[s];
+  const float hi = uintBitsToFloat(state.hi);
+  return hi < enoughOfS || state.flags != 0 ? -1.0 : hi;
+}
+
+void pushLeaves(bool has, Node a, Node b, float gap) {
+  const uvec4 who = subgroupBallot(has);
+  const uint at = (leafTail + rankOf(who)) % kQueue;
+  if (has) {
+    leafQueue[at] = uvec4(a.link, b.link, object, sensor);
+    leafGaps[at] = gap;
+  }
+  leafTail += subgroupBallotBitCount(who);
+}
+
+void pushPair(bool has, uint slotA, uint slotB, uint objectB, uint sensorA) {
+  const uvec4 who = subgroupBallot(has);
+  if (has) pairQueue[(pairTail + rankOf(who)) % kQueue] = uvec4(slotA, slotB, objectB, sensorA);
+  pairTail += subgroupBallotBitCount(who);
+}
+
+// Of a pair of nodes that are not both leaves: the larger is descended.
+uvec3 entryOf(uint ia, Node a, uint ib, Node b, Approach approach) {
+  const bool intoA = isLeaf(b.link) || (!isLeaf(a.link) && approach.sizeA > approach.sizeB);
+  const uint gap = floatBitsToUint(approach.gap);
+  return intoA ? uvec3(a.link | kLinkLeaf, ib, gap) : uvec3(ia, b.link, gap);
+}
+
+bool isIdle() { return current.x == kNobody && depth == 0; }
+
+// ---- tasks -------------------------------------------------------------------------------------------------------------
+
+void loadSensor() {
+  box = sensorBoxOf(sensor);
+  scale = sensorTexel(sensor, kTexelDirection).w;
+  unscale = sensorTexel(sensor, kTexelMask).w;
+  enough = sensorTexel(sensor, kTexelHalfExtent).w;
+}
+
+// Begins a task; returns the object whose meshes' nodes it names, or kNobody.
+uint begin(SearchTask task) {
+  sensor = task.sensor;
+  loadSensor();
+  if (task.gap > limitOf(sensor, enough)) return kNobody;
+  if (task.object == kNobody) {
+    stack[0] = uvec3(kNobody, task.b, floatBitsToUint(task.gap));
+    depth = objectDepth = 1;
+    return kNobody;
+  }
+  current = uvec3(task.a, task.b, floatBitsToUint(task.gap));
+  depth = objectDepth = 0;
+  return task.object;
+}
+
+// Gives idle lanes tasks, as long as there are any; returns the object of one that names nodes.
+uint takeTasks() {
+  const bool idle = isIdle();
+  const uvec4 who = subgroupBallot(idle && tasksLeft);
+  const uint wanted = subgroupBallotBitCount(who);
+  uint first = 0;
+  if (subgroupElect() && wanted != 0) first = atomicAdd(counts.rounds[push.round].taken, wanted);
+  first = subgroupBroadcastFirst(first);
+  const uint at = first + rankOf(who), count = counts.rounds[push.round].tasks;
+  uint named = kNobody;
+  if (idle && tasksLeft && at < count) named = begin(tasks[at]);
+  tasksLeft = tasksLeft && first + wanted < count;
+  return named;
+}
+
+// Lanes with more than one entry give their oldest, which is the largest, to lanes without any.
+uint shareTasks(uint named) {
+  const bool idle = isIdle() && !tasksLeft, gives = !tasksLeft && depth > 0 && depth + (current.x != kNobody ? 1 : 0) > 1;
+  const uvec4 idleLanes = subgroupBallot(idle), givers = subgroupBallot(gives);
+  const uint gifted = min(subgroupBallotBitCount(idleLanes), subgroupBallotBitCount(givers));
+  if (gives && rankOf(givers) < gifted) {
+    const uvec3 entry = stack[0];
+    gifts[rankOf(givers)] =
+        SearchTask(sensor, objectDepth > 0 ? kNobody : object, entry.x, entry.y, uintBitsToFloat(entry.z));
+    // The last entry of each kind moves into the gap.
+    if (objectDepth > 0) {
+      stack[0] = stack[objectDepth - 1];
+      stack[objectDepth - 1] = stack[depth - 1];
+      --objectDepth;
+    } else {
+      stack[0] = stack[depth - 1];
+    }
+    --depth;
+  }
+  subgroupBarrier();
+  if (idle && rankOf(idleLanes) < gifted) named = begin(gifts[rankOf(idleLanes)]);
+  subgroupBarrier();
+  return named;
+}
+
+// What is pending becomes tasks of the next round.
+void spill() {
+  while (countOf(!isIdle()) != 0) {
+    const bool has = !isIdle();
+    uvec3 entry = current;
+    uint named = object;
+    if (current.x == kNobody && has) {
+      entry = stack[--depth];
+      if (depth < objectDepth) {
+        named = kNobody;
+        objectDepth = depth;
+      }
+    }
+    current.x = kNobody;
+    const bool keeps = has && uintBitsToFloat(entry.z) <= limit;
+    const uvec4 who = subgroupBallot(keeps);
+    uint first = 0;
+    if (subgroupElect()) first = atomicAdd(counts.rounds[push.round].spilled, subgroupBallotBitCount(who));
+    first = subgroupBroadcastFirst(first);
+    const uint at = first + rankOf(who);
+    if (keeps && at < push.taskCapacity) {
+      spilled[at] = SearchTask(sensor, named, entry.x, entry.y, uintBitsToFloat(entry.z));
+    } else if (keeps) {
+      atomicOr(states[sensor].flags, kSearchLost);
+    }
+  }
+}
+
+// ---- nodes -------------------------------------------------------------------------------------------------------------
+
+// Lanes without an object walk the tree over objects until they find the next one.
+uint findObjects(uint named) {
+  for (uint step = 0; step < kObjectSteps; ++step) {
+    const bool searching =
+        named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < kStack;
+    const uint count = countOf(searching);
+    if (count == 0 || (count < kFew && step > 0)) break;
+    ++work;
+    if (searching) {
+      const uvec3 entry = stack[--depth];
+      const bool near = uintBitsToFloat(entry.z) <= limit, leaf = isLeaf(entry.y);
+      if (near && leaf) named = entry.y & kLinkItem;
+      const int t = near && !leaf ? int(2 * entry.y) : 0;
+      const vec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
+      const vec2 at0 = meetsBox(box, x0, texelFetch(objectNodeTexels, t + 1)), at1 = meetsBox(box, x1, texelFetch(objectNodeTexels, t + 3));
+      const float most = limit * unscale;
+      const bool meets0 = near && !leaf && at0.x <= at0.y && at0.x <= most, meets1 = near && !leaf && at1.x <= at1.y && at1.x <= most;
+      const bool swap = meets1 && (!meets0 || at1.x < at0.x);
+      const uvec3 entry0 = uvec3(kNobody, floatBitsToUint(x0.w), floatBitsToUint(at0.x * scale)),
+                  entry1 = uvec3(kNobody, floatBitsToUint(x1.w), floatBitsToUint(at1.x * scale));
+      if (meets0 && meets1) stack[depth++] = swap ? entry0 : entry1;
+      if (meets0 || meets1) stack[depth++] = swap ? entry1 : entry0;
+      objectDepth = depth;
+    }
+  }
+  return named;
+}
+
+bool takesPart(uint named) {
+  const uvec4 asks = floatBitsToUint(sensorTexel(sensor, kTexelMask));
+  // What is excluded is in ascending order.
+  uint first = asks.y, end = asks.z;
+  while (countOf(first < end) != 0) {
+    ++work;
+    const uint middle = (first + end) / 2;
+    if (first < end) {
+      if (excluded[middle] < named) {
+        first = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+  }
+  const bool isExcluded = first < asks.z && excluded[first] == named;
+  return !isExcluded && (floatBitsToUint(objectTexel(named, kTexelError).z) & asks.x) != 0;
+}
+
+// Lanes that have been given an object, with nodes (`current`) or without, begin with it.
+void enterObjects(uint named) {
+  bool leaves = false;
+  Node a, b;
+  Approach approach;
+  ++work;
+  // All lanes go through the loop over what is excluded.
+  const bool enters = takesPart(named == kNobody ? 0 : named) && named != kNobody;
+  if (enters) {
+    object = named;
+    meshes = meshPairOf(sensor, object);
+    if (!meshes.inRange) atomicOr(states[sensor].flags, kSearchOutOfRange);
+    if (current.x == kNobody && meshes.inRange) {
+      const uint rootA = floatBitsToUint(sensorTexel(sensor, kTexelReach).w), rootB = floatBitsToUint(objectTexel(object, kTexelReach).w);
+      a = nodeAt(rootA);
+      b = nodeAt(rootB);
+      approach = approachOf(meshes, a, b, limit);
+      const bool meets = mayMeet(meshes, a, b) && approach.gap < kMiss;
+      leaves = meets && isLeaf(a.link & b.link);
+      if (meets && !leaves) current = entryOf(rootA, a, rootB, b, approach);
+    }
+  }
+  pushLeaves(leaves, a, b, approach.gap);
+}
+
+// Both meshes' trees: tries the two children of one node with the other node.
+void descend() {
+  // Whether lanes that leave could find something to do.
+  const bool more = countOf(current.x == kNobody && (depth > 0 || tasksLeft)) != 0;
+  for (uint step = 0; step < kNodeSteps; ++step) {
+    if (current.x == kNobody && depth > objectDepth) current = stack[--depth];
+    const bool tries = current.x != kNobody && depth < kStack;
+    const uint count = countOf(tries);
+    if (count == 0 || leafTail - leafHead + 2 * kLanes > kQueue || (count < kFew && step > 0 && more)) break;
+    ++work;
+    bool leaves0 = false, leaves1 = false;
+    Node a0, a1, b0, b1;
+    Approach at0, at1;
+    const bool near = tries && uintBitsToFloat(current.z) <= limit;
+    if (near) {
+      ++nodePairs;
+      const bool intoA = isLeaf(current.x);
+      const uint child = intoA ? current.x & kLinkItem : current.y, other = intoA ? current.y : current.x;
+      const Node child0 = nodeAt(child), child1 = nodeAt(child + 1), stays = nodeAt(other);
+      if (intoA) {
+        a0 = child0;
+        a1 = child1;
+        b0 = b1 = stays;
+      } else {
+        a0 = a1 = stays;
+        b0 = child0;
+        b1 = child1;
+      }
+      at0 = approachOf(meshes, a0, b0, limit);
+      at1 = approachOf(meshes, a1, b1, limit);
+      leaves0 = at0.gap < kMiss && isLeaf(a0.link & b0.link);
+      leaves1 = at1.gap < kMiss && isLeaf(a1.link & b1.link);
+      const bool goes0 = at0.gap < kMiss && !leaves0, goes1 = at1.gap < kMiss && !leaves1;
+      const bool swap = goes1 && (!goes0 || at1.gap < at0.gap);
+      const uvec3 entry0 = entryOf(intoA ? child : other, a0, intoA ? other : child, b0, at0),
+                  entry1 = entryOf(intoA ? child + 1 : other, a1, intoA ? other : child + 1, b1, at1);
+      if (goes0 && goes1) stack[depth++] = swap ? entry0 : entry1;
+      current = swap ? entry1 : entry0;
+      if (!goes0 && !goes1) current.x = kNobody;
+    } else if (tries) {
+      current.x = kNobody;
+    }
+    pushLeaves(leaves0, a0, b0, at0.gap);
+    pushLeaves(leaves1, a1, b1, at1.gap);
+  }
+}
+
+// ---- triangles ---------------------------------------------------------------------------------------------------------
+
+// Up to two triangles a leaf: what may meet of them goes into the queue of pairs. `all`: until no leaf is left.
+void tryLeaves(bool all) {
+  while ((leafTail - leafHead >= kLanes || (all && leafTail != leafHead)) && pairTail - pairHead + 4 * kLanes <= kQueue) {
+    ++work;
+    const uint at = leafHead + gl_SubgroupInvocationID;
+    bool meets[4] = bool[4](false, false, false, false);
+    uvec4 entry = uvec4(0);
+    if (at < leafTail) {
+      entry = leafQueue[at % kQueue];
+      const float bound = limitOf(entry.w, sensorTexel(entry.w, kTexelHalfExtent).w);
+      if (leafGaps[at % kQueue] <= bound) {
+        ++trianglePairs;
+        const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
+        const bool twoA = (entry.x & kLinkPair) != 0, twoB = (entry.y & kLinkPair) != 0;
+        const PairFrame f = pairFrameOf(entry.w, entry.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
+        const PlacedTriangle a0 = placedA(f, slotA), a1 = placedA(f, slotA + (twoA ? 1 : 0)), b0 = placedB(f, slotB),
+                             b1 = placedB(f, slotB + (twoB ? 1 : 0));
+        meets = bool[4](mayMeet(a0, b0, bound), twoB && mayMeet(a0, b1, bound), twoA && mayMeet(a1, b0, bound),
+                        twoA && twoB && mayMeet(a1, b1, bound));
+      }
+    }
+    const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
+    pushPair(meets[0], slotA, slotB, entry.z, entry.w);
+    pushPair(meets[1], slotA, slotB + 1, entry.z, entry.w);
+    pushPair(meets[2], slotA + 1, slotB, entry.z, entry.w);
+    pushPair(meets[3], slotA + 1, slotB + 1, entry.z, entry.w);
+    leafHead = min(leafHead + kLanes, leafTail);
+  }
+}
+
+void keepCandidate(bool keeps, uvec4 pair, float low) {
+  const uvec4 who = subgroupBallot(keeps);
+  uint first = 0;
+  if (subgroupElect()) first = atomicAdd(counts.candidates, subgroupBallotBitCount(who));
+  const uint at = subgroupBroadcastFirst(first) + rankOf(who);
+  if (keeps && at < push.candidateCapacity) {
+    candidates[at] = PairCandidate(pair.w, pair.z, pair.x, pair.y, low);
+  } else if (keeps) {
+    atomicOr(states[pair.w].flags, kSearchLost);
+  }
+}
+
+// Solves pairs in float: lowers what is certainly met, and keeps what may be first.
+void solvePairs(bool all) {
+  while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
+    ++work;
+    const uint at = pairHead + gl_SubgroupInvocationID;
+    bool keeps = false;
+    float low = 0.0;
+    uvec4 pair = uvec4(0);
+    if (at < pairTail) {
+      ++solves;
+      pair = pairQueue[at % kQueue];
+      const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(pair.x).x), vertexAt(triangleAt(pair.y).x));
+      const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
+      const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
+      low = max(min(m.earliest, m.unknown), 0.0);
+      float bound = limitOf(pair.w, sensorTexel(pair.w, kTexelHalfExtent).w);
+      const float by = m.ahead ? max(m.by, 0.0) : kMiss;
+      if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
+      bound = min(bound, by);
+      keeps = m.latest >= 0.0 && low <= bound;
+    }
+    keepCandidate(keeps, pair, low);
+    pairHead = min(pairHead + kLanes, pairTail);
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------------------------
+
+void tellStats() {
+  const uint before0 = atomicAdd(counts.nodePairs, nodePairs), before1 = atomicAdd(counts.trianglePairs, trianglePairs),
+             before2 = atomicAdd(counts.solves, solves);
+  if (before0 + nodePairs < before0) atomicAdd(counts.nodePairsHigh, 1);
+  if (before1 + trianglePairs < before1) atomicAdd(counts.trianglePairsHigh, 1);
+  if (before2 + solves < before2) atomicAdd(counts.solvesHigh, 1);
+}
+
+void main() {
+  if (gl_NumSubgroups != 1) {
+    counts.broken = 1;
+    return;
+  }
+  const uint count = counts.rounds[push.round].tasks;
+  // What all of them may leave behind has room: of few tasks' room few workgroups take part.
+  const uint room = (push.taskCapacity - count) / ((kStack + 1) * kLanes);
+  if (count == 0 || workgroupIndex() >= max(room, 1u)) return;
+  const uint budget = count < push.width ? min(push.budget, kSplitBudget) : push.budget;
+  leafHead = leafTail = pairHead = pairTail = work = 0;
+  tasksLeft = true;
+  sensor = object = depth = objectDepth = 0;
+  current = uvec3(kNobody, 0, 0);
+  limit = scale = unscale = enough = 0.0;
+  nodePairs = trianglePairs = solves = 0;
+  bool last = false;
+  while (!last) {
+    bool idle = false;
+    do {
+      ++work;
+      uint named = takeTasks();
+      named = shareTasks(named);
+      limit = limitOf(sensor, enough);
+      named = findObjects(named);
+      enterObjects(named);
+      descend();
+      idle = subgroupAll(isIdle()) && !tasksLeft;
+      last = idle || work >= budget || subgroupAny(depth + 2 > kStack);
+    } while (!last && leafTail - leafHead < kEnough);
+    subgroupBarrier();
+    do {
+      tryLeaves(last);
+      subgroupBarrier();
+      solvePairs(last);
+      subgroupBarrier();
+    } while (last && (leafTail != leafHead || pairTail != pairHead));
+  }
+  spill();
+  tellStats();
+}

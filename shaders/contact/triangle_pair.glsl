@@ -1,0 +1,139 @@
+// Pairs of triangles in the sensor's frame, in float: placed about points near them, so that neither the size of their
+// meshes nor the distance between these costs precision, and what may be first among them (docs/method.md, "Pairs of
+// triangles in float").
+
+// Where the triangles of a leaf of each side are: at turned * (q - anchor), the scene's + offset.
+struct PairFrame {
+  mat3 turnedA, turnedB;
+  vec3 anchorA, anchorB;  // normalised, of 8 bits
+  vec3 offset;
+  vec3 originA, originB;  // q = (vertex - origin) * perUnit
+  float perUnitA, perUnitB;
+  vec3 columnsA, columnsB;  // of the scaled matrices: sums of absolute values
+  float errorA, errorB;     // how far a vertex is off on any axis, beside what is due to its distance from the anchor
+};
+
+// high + low = p + q, but for what a device may round off the low part.
+void addExactly(inout float high, inout float low, float q) {
+  precise float s = high + q;
+  precise float part = s - high;
+  precise float rest = (high - (s - part)) + (q - part);
+  high = s;
+  low += rest;
+}
+
+// One row of B's anchor less A's. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
+float rowApart(vec4 coarseA, vec4 fineA, vec3 anchorA, vec4 coarseB, vec4 fineB, vec3 anchorB) {
+  float high = coarseB.w, low = 0.0;
+  addExactly(high, low, -coarseA.w);
+  for (int k = 0; k < 3; ++k) {
+    addExactly(high, low, coarseB[k] * anchorB[k]);
+    addExactly(high, low, -coarseA[k] * anchorA[k]);
+  }
+  precise float sum = high + (low + ((fineB.w - fineA.w) + (dot(fineB.xyz, anchorB) - dot(fineA.xyz, anchorA))));
+  return sum;
+}
+
+vec3 normalised(vec3 vertex, vec3 origin, float perUnit) { return (vertex - origin) * perUnit; }
+vec3 anchorOf(vec3 q) { return floor(q * 128.0 + 0.5) * 0.0078125; }
+
+// `vertexA` and `vertexB`: of the leaves.
+PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
+  const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
+  const vec4 fa0 = sensorTexel(sensor, kTexelFine), fa1 = sensorTexel(sensor, kTexelFine + 1),
+             fa2 = sensorTexel(sensor, kTexelFine + 2);
+  const vec4 b0 = objectTexel(object, 0), b1 = objectTexel(object, 1), b2 = objectTexel(object, 2);
+  const vec4 fb0 = objectTexel(object, kTexelFine), fb1 = objectTexel(object, kTexelFine + 1),
+             fb2 = objectTexel(object, kTexelFine + 2);
+  const vec4 originA = sensorTexel(sensor, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
+  const mat3 frame = rows(sensorTexel(sensor, kTexelFrame).xyz, sensorTexel(sensor, kTexelFrame + 1).xyz,
+                          sensorTexel(sensor, kTexelFrame + 2).xyz);
+  const float scale = sensorTexel(sensor, kTexelDirection).w;
+  PairFrame f;
+  f.originA = originA.xyz;
+  f.perUnitA = originA.w;
+  f.originB = originB.xyz;
+  f.perUnitB = originB.w;
+  f.anchorA = anchorOf(normalised(vertexA, f.originA, f.perUnitA));
+  f.anchorB = anchorOf(normalised(vertexB, f.originB, f.perUnitB));
+  const vec3 apart = vec3(rowApart(a0, fa0, f.anchorA, b0, fb0, f.anchorB), rowApart(a1, fa1, f.anchorA, b1, fb1, f.anchorB),
+                          rowApart(a2, fa2, f.anchorA, b2, fb2, f.anchorB)) * scale;
+  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * scale;
+  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * scale;
+  f.turnedA = frame * matrixA;
+  f.turnedB = frame * matrixB;
+  f.offset = frame * apart;
+  f.columnsA = vec3(1.0) * abs3(matrixA);
+  f.columnsB = vec3(1.0) * abs3(matrixB);
+  f.errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30;
+  f.errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
+  return f;
+}
+
+struct PlacedTriangle {
+  vec3 corners[3];
+  float error;
+};
+
+PlacedTriangle placedTriangle(uint slot, mat3 turned, vec3 origin, float perUnit, vec3 anchor, vec3 offset, vec3 columns,
+                              float error) {
+  const uvec4 corner = triangleAt(slot);
+  const vec3 q0 = normalised(vertexAt(corner.x), origin, perUnit) - anchor,
+             q1 = normalised(vertexAt(corner.y), origin, perUnit) - anchor,
+             q2 = normalised(vertexAt(corner.z), origin, perUnit) - anchor;
+  PlacedTriangle t;
+  t.corners = vec3[3](turned * q0 + offset, turned * q1 + offset, turned * q2 + offset);
+  t.error = error + 24.0 * kUnit * dot(columns, max(abs(q0), max(abs(q1), abs(q2))));
+  return t;
+}
+PlacedTriangle placedA(PairFrame f, uint slot) {
+  return placedTriangle(slot, f.turnedA, f.originA, f.perUnitA, f.anchorA, vec3(0.0), f.columnsA, f.errorA);
+}
+PlacedTriangle placedB(PairFrame f, uint slot) {
+  return placedTriangle(slot, f.turnedB, f.originB, f.perUnitB, f.anchorB, f.offset, f.columnsB, f.errorB);
+}
+
+// Differences of coordinates of the two sides are off by this, at most.
+float differenceError(PlacedTriangle a, PlacedTriangle b) { return 2.0 * (a.error + b.error); }
+
+// Whether an edge certainly has the whole other triangle on its outer side, seen along the motion. `turn`: the sign of the
+// area of the edge's own triangle, 0 where that is not certain.
+bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float error) {
+  const vec2 e = to - from, d0 = other.corners[0].xy - from, d1 = other.corners[1].xy - from, d2 = other.corners[2].xy - from;
+  const float s0 = turn * (e.x * d0.y - e.y * d0.x), s1 = turn * (e.x * d1.y - e.y * d1.x), s2 = turn * (e.x * d2.y - e.y * d2.x);
+  const float edge = abs(e.x) + abs(e.y);
+  const float farthest = max(abs(d0.x) + abs(d0.y), max(abs(d1.x) + abs(d1.y), abs(d2.x) + abs(d2.y)));
+  const float margin = 1.0001 * error * (edge + farthest + 2.0 * error) + 6.0 * kUlp * edge * farthest + 4.0 * kFlushed;
+  return max(s0, max(s1, s2)) < -margin;
+}
+
+// Whether the other triangle certainly stays beyond `limit` of the plane of x and y, or behind it: g0, g1, g2 lead from the
+// sensor's side to the scene's, from or to its corners.
+bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g2, float error, float limit) {
+  const vec3 n = cross(x, y);
+  const float turn = float(signOf(area));
+  const float h0 = turn * dot(g0, n), h1 = turn * dot(g1, n), h2 = turn * dot(g2, n);
+  const float nx = norm1(x), ny = norm1(y), g = max(norm1(g0), max(norm1(g1), norm1(g2)));
+  const float margin = 1.0001 * error * (nx * ny + g * (nx + ny) + 2.0 * error * (g + nx + ny) + 6.0 * error * error) +
+                       12.0 * kUlp * g * nx * ny + kFlushed * (6.0 + 6.0 * g);
+  const float reached = 1.00001 * limit * (abs(area.value) + area.error) + margin;
+  return turn != 0.0 && (min(h0, min(h1, h2)) > reached || max(h0, max(h1, h2)) < -margin);
+}
+
+// Whether a pair may meet at or before `limit`: cheap, and right where it says no.
+bool mayMeet(PlacedTriangle a, PlacedTriangle b, float limit) {
+  const float error = differenceError(a, b);
+  const vec3 a0 = a.corners[0], a1 = a.corners[1], a2 = a.corners[2], b0 = b.corners[0], b1 = b.corners[1], b2 = b.corners[2];
+  const vec3 lowA = min(a0, min(a1, a2)), highA = max(a0, max(a1, a2)), lowB = min(b0, min(b1, b2)), highB = max(b0, max(b1, b2));
+  // Comparing rounds nothing; the sums round by less than `error` is larger than it need be.
+  const bool near = all(lessThanEqual(lowA.xy, highB.xy + error)) && all(lessThanEqual(lowB.xy, highA.xy + error)) &&
+                    highB.z + error >= lowA.z && lowB.z - highA.z - error <= limit;
+  const vec3 xA = a1 - a0, yA = a2 - a0, xB = b1 - b0, yB = b2 - b0;
+  const BoundedFloat areaA = faceOf(xA, yA, error), areaB = faceOf(xB, yB, error);
+  const float turnA = float(signOf(areaA)), turnB = float(signOf(areaB));
+  const bool apart = edgeSeparates(a0.xy, a1.xy, turnA, b, error) || edgeSeparates(a1.xy, a2.xy, turnA, b, error) ||
+                     edgeSeparates(a2.xy, a0.xy, turnA, b, error) || edgeSeparates(b0.xy, b1.xy, turnB, a, error) ||
+                     edgeSeparates(b1.xy, b2.xy, turnB, a, error) || edgeSeparates(b2.xy, b0.xy, turnB, a, error);
+  return near && !apart && !planeKeepsApart(xA, yA, areaA, b0 - a0, b1 - a0, b2 - a0, error, limit) &&
+         !planeKeepsApart(xB, yB, areaB, b0 - a0, b0 - a1, b0 - a2, error, limit);
+}

@@ -1,0 +1,26 @@
+// Typed binding numbers, declared once for C++ and GLSL.
+#ifndef RADAR_SLOT_H
+#define RADAR_SLOT_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace radar::gpu {
+
+/// The number of a binding whose buffer has elements of type T (see gpu/kernel.h).
+template <class T>
+struct Slot {
+  uint32_t number;
+};
+
+/// The T of a slot for an image with its sampler.
+struct SampledImage;
+
+}  // namespace radar::gpu
+// A Slot<type> in C++, a number in GLSL for `layout(binding = name)`.
+#define INTEROP_SLOT(name, number, type) \
+  inline constexpr ::radar::gpu::Slot<type> name { number }
+#else
+#define INTEROP_SLOT(name, number, type) const uint name = number
+#endif
+
+#endif

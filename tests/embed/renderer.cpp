@@ -1,0 +1,84 @@
+#include "embed/renderer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "spirv/read_results_comp.h"
+#include "workloads/shapes.h"
+
+void recordQueries(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries);
+
+namespace radar::test {
+
+Renderer::Renderer(const Device& device)
+    : device_(device.impl()),
+      submission_(device_, false),
+      bindings_(
+          device_,
+          std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
+          sizeof(uint32_t)),
+      pipeline_(gpu::computePipeline(device_, bindings_.layout(), k_read_results_comp, "host's pass")),
+      seen_(device_, "what the host sees", gpu::Residence::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
+  seen_.reserve(4096 * sizeof(Seen));
+  bindings_.setBuffer(1, seen_);
+}
+
+void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool withBarrier) {
+  const gpu::Commands commands = submission_.begin();
+  if (withBarrier) {
+    recordQueries(commands, recorder, queries);
+  } else {
+    recorder.record(commands, queries);
+  }
+  const VkDescriptorBufferInfo results{recorder.results(), 0, VK_WHOLE_SIZE};
+  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                   .dstSet = bindings_.set(),
+                                   .dstBinding = 0,
+                                   .descriptorCount = 1,
+                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                   .pBufferInfo = &results};
+  device_.vk.UpdateDescriptorSets(device_.device(), 1, &write, 0, nullptr);
+  const auto count = static_cast<uint32_t>(queries.size());
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+  bindings_.bind(commands);
+  commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(count), &count);
+  commands->CmdDispatch(commands, (count + 63) / 64, 1, 1);
+}
+
+bool isSeen(const Renderer::Seen& seen, const Result& expected) {
+  if (seen.flags == kFlagOpen) {
+    CHECK(seen.status == static_cast<uint32_t>(Status::undecided));
+    CHECK(std::isnan(seen.t));
+    return true;
+  }
+  CHECK(seen.flags == 0);
+  CHECK(seen.status == static_cast<uint32_t>(expected.status));
+  CHECK(seen.object == expected.object);
+  if (std::isnan(expected.t)) {
+    CHECK(std::isnan(seen.t));
+  } else {
+    CHECK(std::abs(seen.t) <= std::abs(expected.t));
+    CHECK(seen.t == Approx(expected.t).epsilon(3e-7).margin(1e-37));
+  }
+  return false;
+}
+
+Row::Row(uint32_t sensors) {
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  mesh = scene.addMesh(box.positions, box.indices);
+  for (uint32_t i = 0; i < 8; ++i) {
+    scene.addObject({mesh, {{1, 0, 0, 1.1 * i, 0, 1, 0, 0.2, 0, 0, 1, 4.0 + i}}, ~0u});
+  }
+  for (uint32_t i = 0; i < sensors; ++i) {
+    const Pose pose{{0.9, 0.1, 0.2, 0.7 * i - 1.2, -0.1, 0.9, 0.3, 0.1, -0.2, -0.3, 0.9, 0.01 * i}};
+    queries.push_back({.mesh = mesh, .worldFromMesh = pose, .direction = {0, 0.01, 1}, .distance = 20});
+  }
+}
+
+std::vector<Query> queriesOf(const tools::Workload& workload) {
+  std::vector<Query> queries;
+  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
+  return queries;
+}
+
+}  // namespace radar::test

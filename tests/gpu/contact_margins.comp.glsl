@@ -1,0 +1,45 @@
+// What the search's bounds say of pairs that are known to touch.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "tests/gpu/contact_margins_interop.h"
+#include "shaders/contact.glsl"
+#include "shaders/contact/scene.glsl"
+#include "shaders/contact/nodes.glsl"
+#include "shaders/contact/node_pair.glsl"
+#include "shaders/contact/triangle_pair.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(scalar, binding = kSlotTouches) readonly restrict buffer Touches { Touch touches[]; };
+layout(scalar, binding = kSlotTold) writeonly restrict buffer Tellings { Told tellings[]; };
+
+layout(push_constant) uniform PushConstants { uint count; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= count) return;
+  const Touch t = touches[i];
+  Told told;
+  const int node = int(2 * t.objectNode);
+  const vec2 box = meetsBox(sensorBoxOf(t.sensor), texelFetch(objectNodeTexels, node), texelFetch(objectNodeTexels, node + 1));
+  told.boxGap = box.x;
+  told.boxEnd = box.y;
+  const MeshPair meshes = meshPairOf(t.sensor, t.object);
+  told.inRange = meshes.inRange ? 1 : 0;
+  const Node nodeA = nodeAt(t.nodeA), nodeB = nodeAt(t.nodeB);
+  told.gap = mayMeet(meshes, nodeA, nodeB) ? approachOf(meshes, nodeA, nodeB, t.limit).gap : kMiss;
+  const PairFrame f = pairFrameOf(t.sensor, t.object, vertexAt(triangleAt(t.slotA).x), vertexAt(triangleAt(t.slotB).x));
+  const PlacedTriangle a = placedA(f, t.slotA), b = placedB(f, t.slotB);
+  told.anchorA = f.anchorA;
+  told.cornersA = a.corners;
+  told.cornersB = b.corners;
+  told.errorA = a.error;
+  told.errorB = b.error;
+  told.mayMeet = mayMeet(a, b, t.limit) ? 1 : 0;
+  const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
+  told.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
+  tellings[i] = told;
+}

@@ -1,0 +1,40 @@
+// What contact_margins_test and its shader agree on.
+#ifndef RADAR_CONTACT_MARGINS_INTEROP_H
+#define RADAR_CONTACT_MARGINS_INTEROP_H
+
+#include "shaders/contact/interop.h"
+
+#ifdef __cplusplus
+namespace radar::test {
+using uint = uint32_t;
+using Point = gpu::Point;
+#endif
+
+// A pair of triangles that touch, a node of each mesh's tree above them, and a leaf of the tree over objects.
+struct Touch {
+  uint sensor, object;
+  uint nodeA, nodeB, slotA, slotB;
+  uint objectNode;
+  float limit;  // scaled: how far the sensor moves until they do, rounded up
+};
+
+struct Told {
+  Point anchorA;
+  float errorA;
+  Point cornersA[3];
+  float errorB;
+  Point cornersB[3];
+  float gap;        // of the nodes
+  float boxGap, boxEnd;
+  uint mayMeet;     // of the triangles
+  float pairGap;    // of the triangles, once solved
+  uint inRange;
+};
+
+INTEROP_SLOT(kSlotTouches, 20, Touch);
+INTEROP_SLOT(kSlotTold, 21, Told);
+
+#ifdef __cplusplus
+}  // namespace radar::test
+#endif
+#endif

@@ -1,0 +1,241 @@
+// A scene's copy on the device is what the scene is, after any change, and only what changed is brought there.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+#include "scene/gpu_scene.h"
+#include "scene/placement.h"
+#include "support/buffer_words.h"
+#include "support/test_device.h"
+#include "workloads/shapes.h"
+
+namespace {
+
+using namespace radar;
+using test::elementsOf;
+
+template <class T>
+bool sameBits(const std::vector<T>& p, const std::vector<T>& q) {
+  return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size() * sizeof(T)) == 0);
+}
+
+std::vector<gpu::MeshNode> nodesOf(const Mesh& mesh, const gpu::MeshRecord& record) {
+  std::vector<gpu::MeshNode> nodes = mesh.tree.nodes;
+  for (gpu::MeshNode& node : nodes) {
+    node.link += (node.link & gpu::kLinkLeaf) != 0 ? record.firstTriangle : record.firstNode;
+  }
+  return nodes;
+}
+
+void checkMesh(const Mesh& mesh, const gpu::MeshRecord& record, const GpuScene::Buffers& buffers) {
+  CHECK(record.unit == mesh.unit);
+  CHECK(record.perUnit * record.unit == 1);
+  for (int k = 0; k < 3; ++k) {
+    CHECK(record.origin[k] == mesh.origin[k]);
+    CHECK(double{record.lo[k]} <= mesh.box.lo[k]);
+    CHECK(double{record.hi[k]} >= mesh.box.hi[k]);
+  }
+  std::vector<gpu::Vertex> vertices(mesh.vertexCount());
+  for (size_t v = 0; v < vertices.size(); ++v) std::copy_n(&mesh.positions[3 * v], 3, vertices[v].position);
+  CHECK(sameBits(elementsOf(buffers.vertices, record.firstVertex, mesh.vertexCount()), vertices));
+  std::vector<gpu::Triangle> triangles;
+  for (const uint32_t id : mesh.tree.order) {
+    gpu::Triangle triangle{{}, id};
+    for (size_t i = 0; i < 3; ++i) triangle.corners[i] = record.firstVertex + mesh.indices[3 * size_t{id} + i];
+    triangles.push_back(triangle);
+  }
+  CHECK(sameBits(elementsOf(buffers.triangles, record.firstTriangle, mesh.triangleCount()), triangles));
+  CHECK(sameBits(elementsOf(buffers.meshNodes, record.firstNode, mesh.tree.nodes.size()), nodesOf(mesh, record)));
+}
+
+void checkObject(const Scene::Impl& scene, ObjectId id, const GpuScene& copy) {
+  const Object& object = scene.objects[id].object;
+  gpu::Placement placement = placementOf(scene.meshes[object.mesh], object.worldFromMesh);
+  placement.root = copy.record(object.mesh).firstNode;
+  placement.mask = object.mask;
+  placement.mesh = object.mesh;
+  CHECK(sameBits(elementsOf(copy.buffers().placements, id, 1), {placement}));
+  const gpu::ObjectRecord record = elementsOf(copy.buffers().objects, id, 1)[0];
+  CHECK(record.mesh == object.mesh);
+  CHECK(std::equal(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), record.pose));
+}
+
+// The device has all that the scene has.
+void checkCopy(const GpuScene& copy, const Scene& scene) {
+  const Scene::Impl& inner = scene.impl();
+  for (MeshId id = 0; id < scene.meshLimit(); ++id) {
+    if (!scene.hasMesh(id)) continue;
+    CAPTURE(id);
+    const gpu::MeshRecord record = elementsOf(copy.buffers().meshes, id, 1)[0];
+    CHECK(std::memcmp(&record, &copy.record(id), sizeof(record)) == 0);
+    checkMesh(inner.meshes[id], record, copy.buffers());
+  }
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    CAPTURE(id);
+    if (scene.hasObject(id)) checkObject(inner, id, copy);
+  }
+  const std::vector<gpu::ObjectNode>& nodes = inner.objectTree().nodes();
+  CHECK(sameBits(elementsOf(copy.buffers().objectNodes, 0, nodes.size()), nodes));
+}
+
+Pose randomPose(tools::Random& random) {
+  return tools::randomAffine(random, random.inBox({-20, -20, -20}, {20, 20, 20}));
+}
+
+MeshId addSoup(Scene& scene, tools::Random& random, uint32_t triangles) {
+  const tools::MeshData soup = tools::makeSoup(tools::kSoups[random.below(tools::kSoups.size())], triangles, random);
+  return scene.addMesh(soup.positions, soup.indices);
+}
+
+struct Filled {
+  explicit Filled(uint64_t seed) : random(seed), copy(test::device().impl()) {
+    for (uint32_t i = 0; i < 3; ++i) meshes.push_back(addSoup(scene, random, 20 + 30 * i));
+    for (uint32_t i = 0; i < 12; ++i) objects.push_back(scene.addObject({meshes[i % 3], randomPose(random), i + 1}));
+  }
+  VkDeviceSize staged() { return copy.prepare(scene.impl()); }
+  tools::Random random;
+  Scene scene;
+  std::vector<MeshId> meshes;
+  std::vector<ObjectId> objects;
+  GpuScene copy;
+};
+
+}  // namespace
+
+TEST_CASE("the device's copy follows every change of a scene") {
+  Filled filled(3);
+  for (int round = 0; round < 24; ++round) {
+    tools::Random& random = filled.random;
+    const auto any = [&] { return filled.objects[random.below(uint32_t(filled.objects.size()))]; };
+    switch (round % 6) {
+      case 0:
+        for (int i = 0; i < 3; ++i) filled.scene.setPose(any(), randomPose(random));
+        break;
+      case 1:  // the objects' buffers grow
+        for (int i = 0; i < round; ++i) {
+          filled.objects.push_back(filled.scene.addObject({filled.meshes[0], randomPose(random), 3u}));
+        }
+        break;
+      case 2: {
+        const ObjectId gone = any();
+        filled.scene.removeObject(gone);
+        std::erase(filled.objects, gone);
+        filled.scene.removeObject(filled.objects.back());
+        filled.objects.back() = filled.scene.addObject({filled.meshes[1], randomPose(random), ~0u});
+        break;
+      }
+      case 3:  // what comes later moves in the buffers, and so do the nodes that placements name
+        addSoup(filled.scene, random, 100);
+        filled.meshes.push_back(addSoup(filled.scene, random, 7));
+        filled.objects.push_back(filled.scene.addObject({filled.meshes.back(), randomPose(random), ~0u}));
+        break;
+      case 4:
+        filled.scene.setBounds(any(), {{-9, -9, -9}, {30, 30, 30}});
+        break;
+      default:  // a mesh without objects goes, and another takes its id
+        for (MeshId id = 0; id < filled.scene.meshLimit(); ++id) {
+          if (filled.scene.hasMesh(id) && std::count(filled.meshes.begin(), filled.meshes.end(), id) == 0) {
+            filled.scene.removeMesh(id);
+            break;
+          }
+        }
+        if (round % 2 == 0) addSoup(filled.scene, random, 50);
+    }
+    CAPTURE(round);
+    filled.copy.sync(filled.scene.impl());
+    checkCopy(filled.copy, filled.scene);
+  }
+}
+
+TEST_CASE("only what changed is staged") {
+  Filled filled(4);
+  const VkDeviceSize all = filled.staged();
+  CHECK(all > 10'000);
+  filled.copy.sync(filled.scene.impl());
+  CHECK(filled.staged() == 0);
+  filled.scene.setPose(filled.objects[5], randomPose(filled.random));
+  const VkDeviceSize objectBytes = sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement);
+  const VkDeviceSize treeBytes = filled.scene.impl().objectTree().nodes().size() * sizeof(gpu::ObjectNode);
+  CHECK(filled.staged() == objectBytes + treeBytes);
+  filled.copy.sync(filled.scene.impl());
+  CHECK(filled.staged() == 0);
+  // All of a mesh more is all meshes, and all objects, whose placements name nodes.
+  addSoup(filled.scene, filled.random, 1);
+  CHECK(filled.staged() > all - treeBytes);
+}
+
+TEST_CASE("what has not arrived is staged again") {
+  Filled filled(5);
+  const VkDeviceSize all = filled.staged();
+  CHECK(filled.staged() == all);
+  filled.copy.sync(filled.scene.impl());
+  filled.scene.setPose(2, randomPose(filled.random));
+  const VkDeviceSize one = filled.staged();
+  CHECK(one > 0);
+  CHECK(filled.staged() == one);  // as after a submission that failed
+  filled.copy.forget();
+  CHECK(filled.staged() == all);
+  filled.copy.sync(filled.scene.impl());
+  checkCopy(filled.copy, filled.scene);
+}
+
+TEST_CASE("a scene that is moved into another's place is brought to the device whole") {
+  Filled filled(6), other(7);
+  filled.copy.sync(filled.scene.impl());
+  filled.scene = std::move(other.scene);
+  filled.copy.sync(filled.scene.impl());
+  checkCopy(filled.copy, filled.scene);
+}
+
+TEST_CASE("what a host has overwritten is staged once it no longer does") {
+  Filled filled(8);
+  const auto sync = [&](const GpuScene::Overwritten& next) {
+    filled.copy.willOverwrite(next);
+    const VkDeviceSize bytes = filled.staged();
+    filled.copy.sync(filled.scene.impl());
+    return bytes;
+  };
+  sync({});
+  CHECK(sync({.meshes = {1}, .objects = {7, 2}}) == 0);
+  CHECK(sync({.meshes = {1}, .objects = {2, 7}}) == 0);
+  const VkDeviceSize objectBytes = sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement);
+  CHECK(sync({.meshes = {1}, .objects = {2}}) == objectBytes);
+  const Mesh& mesh = filled.scene.impl().meshes[1];
+  CHECK(sync({}) == objectBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
+                        mesh.triangleCount() * sizeof(gpu::Triangle) + mesh.tree.nodes.size() * sizeof(gpu::MeshNode));
+  CHECK(sync({}) == 0);
+}
+
+TEST_CASE("indices for drawing are there where they are needed, in the order of the triangles") {
+  Filled filled(9);
+  filled.copy.sync(filled.scene.impl());
+  filled.copy.needIndices();
+  for (int round = 0; round < 2; ++round) {
+    filled.copy.sync(filled.scene.impl());
+    for (const MeshId id : filled.meshes) {
+      const gpu::MeshRecord& record = filled.copy.record(id);
+      const uint32_t count = filled.scene.mesh(id).triangleCount();
+      const std::vector<uint32_t> indices =
+          elementsOf(filled.copy.buffers().indices, 3 * size_t{record.firstTriangle}, 3 * size_t{count});
+      const std::vector<gpu::Triangle> triangles =
+          elementsOf(filled.copy.buffers().triangles, record.firstTriangle, count);
+      for (size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] != triangles[i / 3].corners[i % 3]) FAIL("index " << i << " of mesh " << id);
+      }
+    }
+    filled.meshes.push_back(addSoup(filled.scene, filled.random, 11));
+  }
+}
+
+TEST_CASE("a scene without objects, or without meshes, has a copy") {
+  GpuScene copy(test::device().impl());
+  Scene scene;
+  copy.sync(scene.impl());
+  checkCopy(copy, scene);
+  tools::Random random(2);
+  addSoup(scene, random, 5);
+  copy.sync(scene.impl());
+  checkCopy(copy, scene);
+  CHECK(test::takeValidationMessages().empty());
+}

@@ -1,0 +1,34 @@
+// The kernels of the tests, shared as the engine's are, and a way to run them.
+#pragma once
+
+#include <functional>
+
+#include "gpu/barrier.h"
+#include "gpu/kernel.h"
+#include "gpu/kernel_interop.h"
+#include "gpu/submission.h"
+#include "support/test_device.h"
+
+namespace radar::test {
+
+struct Kernels {
+  explicit Kernels(const Device::Impl& device);
+  gpu::Kernel scale;         ///< 64 lanes
+  gpu::Kernel scaleAndAdd5;  ///< one lane, offset 5
+  gpu::Kernel fillNodes, sumTexels, countGroups, readDepth;
+};
+
+inline const Device::Impl& impl() {
+  return device().impl();
+}
+inline const Kernels& kernels() {
+  return impl().shared<Kernels>();
+}
+
+/// Submits what `record` records, and waits; the host may then read what compute shaders wrote.
+void run(const std::function<void(const gpu::Commands&)>& record);
+
+/// `count` numbers that the host and the device see: 0, 1, 2, ...
+gpu::Array<uint32_t> numbers(const char* name, uint32_t count);
+
+}  // namespace radar::test

@@ -1,0 +1,106 @@
+// Texel arrays hold what was uploaded or written as storage, also after they grew.
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+#include "gpu/kernel_fixture.h"
+
+namespace {
+
+using namespace radar;
+using namespace radar::test;
+using gpu::Array;
+using gpu::Commands;
+using gpu::KernelArguments;
+using gpu::Residence;
+using gpu::TexelArray;
+
+TexelArray<Node> makeNodes() {
+  return {impl(), "nodes", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_FORMAT_R32G32B32A32_UINT};
+}
+
+// Of a node whose words count on from `first`.
+uint32_t sumFrom(uint32_t first) {
+  return 8 * first + 28;
+}
+
+bool sumsAre(const Array<uint32_t>& sums, uint32_t count, uint32_t first) {
+  for (uint32_t i = 0; i < count; ++i) {
+    if (sums.mapped()[i] != sumFrom(first + 8 * i)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("texels are what was uploaded, also after the array has grown") {
+  TexelArray<Node> nodes = makeNodes();
+  KernelArguments arguments(kernels().sumTexels);
+  gpu::Upload upload(impl());
+  for (const uint32_t count : {1u, 63u, 64u, 65u, 1234u}) {
+    CAPTURE(count);
+    std::vector<Node> uploaded(count);
+    std::iota(uploaded[0].word, uploaded[0].word + 8 * count, 1000u);
+    nodes.reserve(count);
+    CHECK(nodes.capacity() >= count);
+    const Array<uint32_t> sums = numbers("sums", count);
+    arguments.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
+    upload.begin(gpu::Upload::aligned(gpu::bytesOf(uploaded)));
+    upload.add(uploaded.data(), gpu::bytesOf(uploaded), nodes);
+    run([&](const Commands& commands) {
+      upload.record(commands);
+      gpu::uploadToRead(commands);
+      arguments.dispatch(commands, count);
+    });
+    CHECK(sumsAre(sums, count, 1000));
+  }
+}
+
+TEST_CASE("texels are what a kernel wrote as storage, and without its barrier that is a hazard") {
+  constexpr uint32_t kCount = 100;
+  TexelArray<Node> nodes = makeNodes();
+  nodes.reserve(kCount);
+  KernelArguments fill(kernels().fillNodes), sum(kernels().sumTexels);
+  const Array<uint32_t> sums = numbers("sums", kCount);
+  fill.set({{kSlotNodes, nodes}});
+  sum.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
+  run([&](const Commands& commands) {
+    for (const uint32_t first : {5u, 17u}) {
+      fill.dispatch(commands, kCount, first);
+      gpu::computeWriteToComputeReadWrite(commands);
+      sum.dispatch(commands, kCount);
+      gpu::computeWriteToComputeReadWrite(commands);
+    }
+  });
+  CHECK(sumsAre(sums, kCount, 17));
+  CHECK(takeValidationMessages().empty());
+  {
+    gpu::Submission submission(impl(), false);  // recorded, and never submitted
+    const Commands commands = submission.begin();
+    fill.dispatch(commands, kCount, 1u);
+    sum.dispatch(commands, kCount);
+  }
+  const std::vector<std::string> messages = takeValidationMessages();
+  REQUIRE_FALSE(messages.empty());
+  CHECK_THAT(messages[0], Catch::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
+}
+
+TEST_CASE("a texel array larger than the device can see is refused with both numbers, and stays as it was") {
+  TexelArray<uint32_t> words(impl(), "words", Residence::device, 0, VK_FORMAT_R32_UINT);
+  const VkBufferView view = words.view();
+  const uint64_t most = impl().properties.limits.maxTexelBufferElements;
+  CHECK_THROWS_WITH(words.reserve(most + 1), "words: " + std::to_string(most + 1) +
+                                                 " texels, but the device's maxTexelBufferElements is " +
+                                                 std::to_string(most));
+  CHECK(words.view() == view);
+  TexelArray<Node> nodes = makeNodes();
+  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), Catch::StartsWith("nodes: " + std::to_string(2 * (most / 2 + 1))));
+}
+
+TEST_CASE("an element is made of whole texels, of a format that every device reads") {
+  using Triple = uint32_t[3];
+  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", Residence::device, 0, VK_FORMAT_R32G32_UINT),
+                    "triples: elements of 12 bytes are not whole texels of 8");
+  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", Residence::device, 0, VK_FORMAT_R32G32B32_UINT),
+                    "triples: not every device reads texels of VkFormat 104");
+}

@@ -1,0 +1,31 @@
+// What is in a buffer on the device.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "gpu/array.h"
+
+namespace radar::test {
+
+/// The first words of a storage buffer of the tests' device, which is idle.
+std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count);
+
+/// Elements `first` to `first + count - 1`.
+template <class T>
+std::vector<T> elementsOf(const gpu::Buffer& buffer, size_t first, size_t count) {
+  const std::vector<uint32_t> words = wordsOf(buffer, (first + count) * sizeof(T) / 4);
+  std::vector<T> elements(count);
+  if (count != 0) std::memcpy(elements.data(), &words[first * sizeof(T) / 4], count * sizeof(T));
+  return elements;
+}
+template <class T>
+std::vector<T> elementsOf(const gpu::Array<T>& array, size_t first, size_t count) {
+  return elementsOf<T>(array.buffer(), first, count);
+}
+template <class T>
+std::vector<T> elementsOf(const gpu::TexelArray<T>& array, size_t first, size_t count) {
+  return elementsOf<T>(array.buffer(), first, count);
+}
+
+}  // namespace radar::test

@@ -1,0 +1,177 @@
+// The tree over boxes: every box in one leaf, every node's box as large as what is below and no larger, and the same
+// tree on any number of threads.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstring>
+
+#include "scene/box_tree.h"
+#include "workloads/random.h"
+
+namespace {
+
+using namespace radar;
+using tools::Random;
+
+FloatBox boxAt(const std::array<double, 3>& middle, const std::array<double, 3>& half) {
+  FloatBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = static_cast<float>(middle[k] - half[k]);
+    box.hi[k] = static_cast<float>(middle[k] + half[k]);
+  }
+  return box;
+}
+
+std::vector<FloatBox> randomBoxes(size_t count, uint64_t seed) {
+  Random random(seed);
+  std::vector<FloatBox> boxes;
+  for (size_t i = 0; i < count; ++i) {
+    boxes.push_back(boxAt(random.inBox({-100, -100, -1}, {100, 100, 1}), random.inBox({0, 0, 0}, {1, 2, 0.1})));
+  }
+  return boxes;
+}
+
+// What any tree must be, whatever is in it.
+class Checked {
+ public:
+  Checked(const std::vector<FloatBox>& boxes, uint32_t leafSize, unsigned threads = 0)
+      : boxes_(boxes), leafSize_(leafSize), tree_(buildBoxTree(boxes, leafSize, threads)) {
+    std::vector<bool> seen(boxes.size());
+    REQUIRE(tree_.order.size() == boxes.size());
+    for (const uint32_t item : tree_.order) {
+      REQUIRE(item < boxes.size());
+      REQUIRE_FALSE(seen[item]);
+      seen[item] = true;
+    }
+    REQUIRE(tree_.nodes[0].first == 0);
+    REQUIRE(tree_.nodes[0].count == boxes.size());
+    walk();
+    CHECK(depth_ == tree_.depth);
+    CHECK(visited_ == tree_.nodes.size());
+  }
+  const BoxTree& tree() const { return tree_; }
+
+ private:
+  struct Open {
+    uint32_t node, depth;
+  };
+
+  void walk() {
+    std::vector<Open> open{{0, 1}};
+    while (!open.empty()) {
+      const Open next = open.back();
+      open.pop_back();
+      ++visited_;
+      depth_ = std::max(depth_, next.depth);
+      const BoxTree::Node& node = tree_.nodes[next.node];
+      if (node.count == 0) FAIL("node " << next.node << " is empty");
+      if (!isBoxOfItems(node)) FAIL("the box of node " << next.node << " is not that of its items");
+      if (node.child == 0) {
+        if (node.count > leafSize_) FAIL("leaf " << next.node << " holds " << node.count);
+        continue;
+      }
+      const BoxTree::Node &left = tree_.nodes.at(node.child), &right = tree_.nodes.at(node.child + 1);
+      if (node.child <= next.node) FAIL("the children of node " << next.node << " stand before it");
+      if (left.first != node.first || right.first != left.first + left.count ||
+          left.count + right.count != node.count) {
+        FAIL("the children of node " << next.node << " do not share its items");
+      }
+      open.push_back({node.child, next.depth + 1});
+      open.push_back({node.child + 1, next.depth + 1});
+    }
+  }
+
+  bool isBoxOfItems(const BoxTree::Node& node) const {
+    FloatBox around = boxes_[tree_.order[node.first]];
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const FloatBox& box = boxes_[tree_.order[i]];
+      for (int k = 0; k < 3; ++k) {
+        around.lo[k] = std::min(around.lo[k], box.lo[k]);
+        around.hi[k] = std::max(around.hi[k], box.hi[k]);
+      }
+    }
+    return around.lo == node.box.lo && around.hi == node.box.hi;
+  }
+
+  const std::vector<FloatBox>& boxes_;
+  uint32_t leafSize_, depth_ = 0;
+  size_t visited_ = 0;
+  BoxTree tree_;
+};
+
+bool equal(const BoxTree& p, const BoxTree& q) {
+  return p.order == q.order && p.depth == q.depth && p.nodes.size() == q.nodes.size() &&
+         std::memcmp(p.nodes.data(), q.nodes.data(), p.nodes.size() * sizeof(BoxTree::Node)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("every box is in one leaf, and every node's box is that of what is below") {
+  const uint32_t leafSize = GENERATE(1u, 2u, 5u);
+  for (const size_t count : {1u, 2u, 3u, 63u, 64u, 65u, 1234u}) {
+    CAPTURE(leafSize, count);
+    const std::vector<FloatBox> boxes = randomBoxes(count, count);
+    const Checked checked(boxes, leafSize);
+    CHECK(checked.tree().nodes.size() <= 2 * count - 1);
+    CHECK(checked.tree().depth <= 1 + 3 * std::log2(double(count)));
+  }
+}
+
+TEST_CASE("without boxes there is no node") {
+  const BoxTree tree = buildBoxTree({}, 2);
+  CHECK(tree.nodes.empty());
+  CHECK(tree.order.empty());
+  CHECK(tree.depth == 0);
+}
+
+TEST_CASE("boxes that no cut tells apart are halved") {
+  const FloatBox one = boxAt({3, 4, 5}, {1, 1, 1}), point = boxAt({3, 4, 5}, {0, 0, 0});
+  for (const FloatBox& box : {one, point}) {
+    const std::vector<FloatBox> boxes(1000, box);
+    CHECK(Checked(boxes, 1).tree().depth == 11);
+  }
+  // Middles that coincide, boxes that do not.
+  std::vector<FloatBox> nested;
+  for (int i = 1; i <= 256; ++i) nested.push_back(boxAt({0, 0, 0}, {double(i), double(i), double(i)}));
+  CHECK(Checked(nested, 1).tree().depth == 9);
+}
+
+TEST_CASE("boxes of every size that floats have, at any distance, make a tree") {
+  std::vector<FloatBox> boxes;
+  for (int exponent = -149; exponent <= 127; ++exponent) {
+    const float at = std::ldexp(1.0f, exponent);
+    boxes.push_back({{at, 0, 0}, {at, 0, 0}});
+    boxes.push_back({{-at, -at, -at}, {at, at, at}});
+  }
+  boxes.push_back({{-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}});
+  boxes.push_back({{3e38f, 3e38f, 3e38f}, {3.1e38f, 3.1e38f, 3.1e38f}});
+  boxes.push_back({{-3.1e38f, 0, 0}, {-3e38f, 0, 0}});
+  CHECK(Checked(boxes, 1).tree().depth < 300);
+}
+
+TEST_CASE("what lies apart is cut apart first") {
+  // Two heaps, one of many boxes and one of few, at a distance along each axis in turn.
+  for (int axis = 0; axis < 3; ++axis) {
+    Random random(7);
+    std::vector<FloatBox> boxes;
+    for (int i = 0; i < 100; ++i) {
+      std::array<double, 3> at = random.inBox({0, 0, 0}, {10, 10, 10});
+      if (i % 10 == 0) at[axis] += 500;
+      boxes.push_back(boxAt(at, {0.5, 0.5, 0.5}));
+    }
+    const BoxTree tree = buildBoxTree(boxes, 1);
+    const BoxTree::Node &left = tree.nodes[1], &right = tree.nodes[2];
+    CHECK(left.count == 90);
+    CHECK(right.count == 10);
+    CHECK(right.box.lo[axis] > 400);
+  }
+}
+
+TEST_CASE("a tree is the same on any number of threads") {
+  const std::vector<FloatBox> boxes = randomBoxes(200'000, 5);  // several times what is worth a thread
+  const BoxTree alone = Checked(boxes, 2, 1).tree();
+  for (const unsigned threads : {2u, 3u, 8u, 0u}) {
+    CAPTURE(threads);
+    CHECK(equal(Checked(boxes, 2, threads).tree(), alone));
+  }
+}

@@ -1,0 +1,62 @@
+// The search on the CPU's cores held against itself: on one thread and on several, by a sweeper that has followed the
+// scene and by a new one, with and without `decide`. Brute force is its truth elsewhere.
+#pragma once
+
+#include <cstring>
+
+#include "radar/cpu_sweeper.h"
+#include "soups.h"
+#include "workloads/workload.h"
+
+namespace agreement {
+
+inline bool sameBits(const radar::Result& p, const radar::Result& q) {
+  return std::memcmp(&p, &q, sizeof p) == 0;
+}
+
+/// Sweepers of several numbers of threads that follow one scene.
+class Sides {
+ public:
+  explicit Sides(const radar::Scene& scene) : scene_(scene), one_(scene, 1), two_(scene, 2), five_(scene, 5) {}
+
+  void check(std::vector<radar::Query> queries) {
+    const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries);
+    compare(queries, exact);
+    for (radar::Query& query : queries) query.decide = true;
+    const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries);
+    compare(queries, decided);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      INFO("query " << i << " of " << queries.size() << ", decide");
+      const bool meets = exact[i].status != radar::Status::clear;
+      REQUIRE(decided[i].status == (meets ? radar::Status::hit : radar::Status::clear));
+      if (!meets) continue;
+      REQUIRE(decided[i].lo == 0);
+      REQUIRE(decided[i].hi == queries[i].distance);
+    }
+  }
+
+ private:
+  void compare(const std::vector<radar::Query>& queries, const std::vector<radar::Result>& expected) {
+    for (radar::CpuSweeper* sweeper : {&one_, &two_, &five_}) {
+      const std::vector<radar::Result> results = sweeper->run(queries);
+      REQUIRE(results.size() == queries.size());
+      for (size_t i = 0; i < queries.size(); ++i) {
+        INFO("query " << i << " of " << queries.size());
+        REQUIRE(sameBits(results[i], expected[i]));
+      }
+    }
+  }
+
+  const radar::Scene& scene_;
+  radar::CpuSweeper one_, two_, five_;
+};
+
+inline std::vector<radar::Query> queriesOf(const radar::tools::Workload& workload, uint32_t scene = 0) {
+  std::vector<radar::Query> queries;
+  for (const radar::tools::QuerySpec& spec : workload.queries) {
+    if (spec.scene == scene) queries.push_back(radar::tools::toQuery(spec, radar::Mode::contact));
+  }
+  return queries;
+}
+
+}  // namespace agreement

@@ -1,0 +1,158 @@
+// The search on the CPU's cores follows its scene, and its interface keeps its promises.
+#include "cpu_agreement.h"
+
+using namespace radar;
+using soups::Random;
+
+namespace {
+
+std::vector<Query> queriesThrough(Random& random, const std::vector<MeshId>& meshes) {
+  std::vector<Query> queries(20);
+  for (Query& query : queries) {
+    query.mesh = meshes[static_cast<size_t>(random.integer(0, static_cast<int>(meshes.size()) - 1))];
+    query.worldFromMesh = random.pose(random.uniform(0.3, 1), random.inBall());
+    for (size_t k = 0; k < 3; ++k) query.worldFromMesh.m[4 * k + 3] *= 5;
+    query.direction = random.inBall();
+    query.distance = random.uniform(0, 10);
+  }
+  return queries;
+}
+
+Pose somewhere(Random& random) {
+  auto at = random.inBall();
+  for (double& c : at) c *= 4;
+  return random.pose(random.uniform(0.3, 1.5), at);
+}
+
+MeshId addSoup(Random& random, Scene& scene) {
+  return add(scene, soups::soup(random, random.integer(1, 30), random.uniform(0.1, 0.7), 0.1));
+}
+
+}  // namespace
+
+TEST_CASE("the CPU's answers follow objects that are moved, added and removed, and meshes that come and go") {
+  Random random(11);
+  Scene scene;
+  std::vector<MeshId> meshes;
+  for (int i = 0; i < 4; ++i) meshes.push_back(addSoup(random, scene));
+  agreement::Sides sides(scene);
+  for (int round = 0; round < 120; ++round) {
+    INFO("round " << round);
+    for (int edits = random.integer(0, 6); edits-- > 0;) {
+      const auto id = static_cast<ObjectId>(random.integer(0, static_cast<int>(scene.objectLimit())));
+      const int what = random.integer(0, 9);
+      if (!scene.hasObject(id)) {
+        scene.addObject({meshes[static_cast<size_t>(random.integer(0, static_cast<int>(meshes.size()) - 1))],
+                         somewhere(random), random.chance(0.1) ? 2u : ~0u});
+      } else if (what < 6) {
+        scene.setPose(id, somewhere(random));
+      } else if (what < 8) {
+        scene.removeObject(id);
+      } else {
+        // A mesh is exchanged for another, which gets its id.
+        const MeshId mesh = scene.object(id).mesh;
+        for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
+          if (scene.hasObject(other) && scene.object(other).mesh == mesh) scene.removeObject(other);
+        }
+        scene.removeMesh(mesh);
+        REQUIRE(addSoup(random, scene) == mesh);
+      }
+    }
+    sides.check(queriesThrough(random, meshes));
+  }
+}
+
+TEST_CASE("the CPU's answers follow a scene that is moved into another's place") {
+  Random random(12);
+  Scene scene;
+  std::vector<MeshId> meshes{addSoup(random, scene), addSoup(random, scene)};
+  for (int i = 0; i < 5; ++i) scene.addObject({meshes[0], somewhere(random)});
+  CpuSweeper sweeper(scene, 2);
+  sweeper.run(queriesThrough(random, meshes));
+  for (int round = 0; round < 10; ++round) {
+    Scene other;
+    meshes = {addSoup(random, other), addSoup(random, other), addSoup(random, other)};
+    for (int i = random.integer(0, 8); i-- > 0;) {
+      other.addObject({meshes[static_cast<size_t>(random.integer(0, 2))], somewhere(random)});
+    }
+    if (random.chance(0.5)) CpuSweeper(other, 1).sync();
+    scene = std::move(other);
+    const std::vector<Query> queries = queriesThrough(random, meshes);
+    const std::vector<Result> results = sweeper.run(queries), exact = CpuSweeper(scene).run(queries);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      INFO("round " << round << " query " << i);
+      REQUIRE(agreement::sameBits(results[i], exact[i]));
+    }
+  }
+}
+
+TEST_CASE("the CPU's answers follow an object that leaves the range of the tree over objects, and comes back") {
+  Random random(13);
+  Scene scene;
+  const std::vector<MeshId> meshes{addSoup(random, scene), addSoup(random, scene)};
+  for (int i = 0; i < 6; ++i) scene.addObject({meshes[0], somewhere(random)});
+  agreement::Sides sides(scene);
+  for (const double far : {0.0, 1e30, 1e200, 0.0}) {
+    INFO("far " << far);
+    Pose pose = somewhere(random);
+    pose.m[3] += far;
+    scene.setPose(2, pose);
+    sides.check(queriesThrough(random, meshes));
+  }
+}
+
+TEST_CASE("the CPU finds what it meets among boxes that overflow") {
+  // Each vertex is finite, but the box of the mesh, placed, has corners that are not.
+  Scene scene;
+  const MeshId mesh =
+      scene.addMesh(std::array{0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 1.0f, 1.0f, 1.0f}, std::array<uint32_t, 3>{0, 1, 2});
+  const MeshId box = add(scene, soups::box(0.25, 0.25, 0.25));
+  Pose pose;
+  pose.m = {1.5e308, -1.5e308, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  scene.addObject({mesh, pose});
+  Query query;
+  query.mesh = box;
+  query.worldFromMesh = soups::at(0, 0.5, -4);
+  query.direction = {0, 0, 1};
+  query.distance = 100;
+  const Result result = CpuSweeper(scene, 1).run({&query, 1})[0];
+  REQUIRE(result.status == Status::hit);
+  soups::check(scene, query, result);
+}
+
+TEST_CASE("the CPU meets meshes that are so small that no float holds the inverse of their size") {
+  Scene scene;
+  soups::Mesh small = soups::box(1, 1, 1);
+  for (float& c : small.positions) c *= 0x1p-140f;
+  const MeshId mesh = add(scene, small);
+  Pose large;
+  large.m = {0x1p140, 0, 0, 0, 0, 0x1p140, 0, 0, 0, 0, 0x1p140, 5};
+  scene.addObject({mesh, large});
+  large.m[11] = 0;
+  Query query;
+  query.mesh = mesh;
+  query.worldFromMesh = large;
+  query.direction = {0, 0, 1};
+  query.distance = 10;
+  const Result result = CpuSweeper(scene, 1).run({&query, 1})[0];
+  REQUIRE(result.status == Status::hit);
+  REQUIRE(result.t == 3);
+}
+
+TEST_CASE("the CPU answers no query where one breaks its contract, and names it") {
+  Scene scene;
+  const MeshId box = add(scene, soups::box(1, 1, 1));
+  std::vector<Query> queries(3);
+  for (Query& query : queries) {
+    query.mesh = box;
+    query.direction = {1, 0, 0};
+  }
+  queries[1].distance = -1;
+  CpuSweeper sweeper(scene);
+  REQUIRE_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 1: distance"));
+  queries[1].distance = 1;
+  REQUIRE(sweeper.run(queries).size() == 3);
+  REQUIRE(sweeper.stats().queries == 3);
+  REQUIRE(sweeper.run({}).empty());
+  REQUIRE(sweeper.stats().queries == 0);
+}

@@ -1,0 +1,56 @@
+// The CPU's search on the workloads of the tools: its answers have the same bits on any number of threads.
+#include "cpu_agreement.h"
+#include "support/answer.h"
+#include "workloads/families.h"
+#include "workloads/generate.h"
+#include "workloads/interlocking.h"
+
+using namespace radar;
+using namespace radar::tools;
+
+namespace {
+
+void check(const Workload& workload) {
+  Scene scene;
+  replaceBy(workload, 0, scene);
+  agreement::Sides(scene).check(agreement::queriesOf(workload));
+}
+
+/// The same with D at the contact, one rounding less and one more, and with objects left out.
+void checkVariants(const Workload& workload, uint64_t seed) {
+  Scene scene;
+  replaceBy(workload, 0, scene);
+  CpuSweeper sweeper(scene);
+  std::vector<Query> queries = agreement::queriesOf(workload);
+  tools::Random random(seed);
+  for (Query& query : queries) {
+    const Result exact = test::answer(sweeper, query);
+    if (exact.status == Status::clear) continue;
+    const uint32_t which = random.below(5);
+    if (which < 3) query.distance = which == 0 ? exact.t : std::nextafter(exact.t, which == 1 ? 0 : INFINITY);
+    if (which == 3) query.exclude = {exact.object};
+    if (which == 4) query.mask = 1u << random.below(32);
+  }
+  agreement::Sides(scene).check(queries);
+}
+
+}  // namespace
+
+TEST_CASE("the CPU's answers are the same on any number of threads, in all families") {
+  for (const Family family : kFamilies) {
+    for (uint64_t seed = 1; seed <= 2; ++seed) {
+      INFO("family " << nameOf(family) << ", seed " << seed);
+      const Workload workload = makeWorkload(FamilyScene{.family = family, .queries = 64, .seed = 100 + seed});
+      check(workload);
+      checkVariants(workload, seed);
+    }
+  }
+}
+
+TEST_CASE("the CPU's answers are the same on any number of threads where shapes interlock, and over one large mesh") {
+  for (const Interlocking kind : kInterlocking) {
+    INFO(nameOf(kind));
+    check(makeWorkload(InterlockingPairs{.kind = kind, .sensors = 4}));
+  }
+  check(makeWorkload(OneMesh{.triangles = 20'000, .sensors = 40, .shape = SensorShape::teapot}));
+}

@@ -1,0 +1,204 @@
+// One place beside touching, and what must never change an answer.
+#include <bit>
+
+#include "soups.h"
+
+using namespace radar;
+using soups::add;
+using soups::at;
+using soups::Random;
+
+namespace {
+
+using Vec = std::array<double, 3>;
+
+Query sweep(MeshId mesh, const Pose& pose, const Vec& direction, double distance) {
+  Query query;
+  query.mesh = mesh;
+  query.worldFromMesh = pose;
+  query.direction = direction;
+  query.distance = distance;
+  return query;
+}
+
+Result alone(const soups::Mesh& a, const Pose& poseA, const soups::Mesh& b, const Pose& poseB, const Vec& direction,
+             double distance) {
+  Scene scene;
+  const MeshId sensor = add(scene, a);
+  scene.addObject({add(scene, b), poseB});
+  return test::answer(scene, sweep(sensor, poseA, direction, distance));
+}
+
+void requireSameBits(const Result& p, const Result& q) {
+  REQUIRE(p.status == q.status);
+  for (const auto& [x, y] : {std::pair{p.t, q.t}, {p.lo, q.lo}, {p.hi, q.hi}, {p.fraction, q.fraction}}) {
+    REQUIRE(std::bit_cast<uint64_t>(x) == std::bit_cast<uint64_t>(y));
+  }
+}
+
+/// Calls body(sign, order) for the eight octants and the six orders of the axes.
+template <class Body>
+void everyWay(const Body& body) {
+  for (int octant = 0; octant < 8; ++octant) {
+    std::array<int, 3> order{0, 1, 2};
+    do {
+      body(Vec{octant & 1 ? -1.0 : 1.0, octant & 2 ? -1.0 : 1.0, octant & 4 ? -1.0 : 1.0}, order);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+}
+
+Vec turned(const Vec& v, const Vec& sign, const std::array<int, 3>& order) {
+  Vec out;
+  for (size_t k = 0; k < 3; ++k) out[static_cast<size_t>(order[k])] = v[k] * sign[k];
+  return out;
+}
+
+Pose at(const Vec& v) {
+  return soups::at(v[0], v[1], v[2]);
+}
+
+}  // namespace
+
+TEST_CASE("boxes that slide past each other touch at gap zero and not one place apart") {
+  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  everyWay([&](const Vec& sign, const std::array<int, 3>& order) {
+    const Vec ahead = turned({0, 0, 1}, sign, order);
+    for (double side : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
+      // 1 - ulp / 2 is placed on -1/2 + 1: the boxes have sides one place apart exactly where it exceeds 1.
+      const Result result = alone(box, Pose{}, box, at(turned({side, 0.25, 4}, sign, order)), ahead, 10);
+      REQUIRE(result.status == (side > 1 ? Status::clear : Status::hit));
+      if (side <= 1) REQUIRE(result.t == 3);
+    }
+  });
+}
+
+TEST_CASE("edges and vertices that graze touch at gap zero and not one place apart") {
+  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  const Vec direction{1, 2, 4};
+  // Box b at w is met while w_k - 1 <= s d_k <= w_k + 1 for each k. Contact begins in x and ends in y at s = 3: edge on
+  // edge. With z it begins or ends there too: vertex on vertex.
+  for (double z : {12.0, 13.0, 11.0}) {
+    const Vec graze{4, 5, z};
+    everyWay([&](const Vec& sign, const std::array<int, 3>& order) {
+      const Vec d = turned(direction, sign, order);
+      const Result touch = alone(box, Pose{}, box, at(turned(graze, sign, order)), d, 100);
+      REQUIRE(touch.status == Status::hit);
+      REQUIRE(touch.lo <= 3 * std::sqrt(21.0));
+      REQUIRE(touch.hi >= 3 * std::sqrt(21.0));
+      for (int k = 0; k < 3; ++k) {
+        for (double way : {-100.0, 100.0}) {
+          Vec w = graze;
+          w[static_cast<size_t>(k)] = std::nextafter(w[static_cast<size_t>(k)], way);
+          // Apart if contact begins later in x (or z = 13), or ends earlier in y (or z = 11).
+          const bool apart = (k == 0 && way > 0) || (k == 1 && way < 0) || (k == 2 && z == 13 && way > 0) ||
+                             (k == 2 && z == 11 && way < 0);
+          const Result result = alone(box, Pose{}, box, at(turned(w, sign, order)), d, 100);
+          REQUIRE(result.status == (apart ? Status::clear : Status::hit));
+        }
+      }
+    });
+  }
+}
+
+TEST_CASE("contact at D and one place before D are told apart where |direction| is rational") {
+  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  for (const auto& [direction, length] : {std::pair{Vec{2, 3, 6}, 7.0}, {Vec{1, 4, 8}, 9.0}, {Vec{0, 3, -4}, 5.0}}) {
+    // b begins to be met at s = 3 in the largest component, and well inside in the others.
+    Vec w;
+    for (size_t k = 0; k < 3; ++k) w[k] = 3 * direction[k];
+    const size_t largest = 2;
+    w[largest] += direction[largest] > 0 ? 1 : -1;
+    const double t = 3 * length;
+    const Result touch = alone(box, Pose{}, box, at(w), direction, t);
+    REQUIRE(touch.status == Status::hit);
+    REQUIRE(touch.t == t);
+    REQUIRE(touch.hi == t);
+    REQUIRE(alone(box, Pose{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
+  }
+}
+
+TEST_CASE("lattice soups moved by single places equal brute force") {
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    Scene scene;
+    const MeshId sensor = add(scene, soups::lattice(random, random.integer(1, 8), 3));
+    for (int i = random.integer(1, 3); i-- > 0;) {
+      Pose pose = soups::at(random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 8));
+      double& c = pose.m[static_cast<size_t>(4 * random.integer(0, 2) + 3)];
+      if (random.chance(0.7)) c = std::nextafter(c, random.chance(0.5) ? 100 : -100);
+      scene.addObject({add(scene, soups::lattice(random, random.integer(1, 8), 3)), pose});
+    }
+    CpuSweeper sweeper(scene);
+    Query query = sweep(sensor, Pose{}, {}, random.integer(0, 12));
+    while (query.direction == Vec{}) {
+      for (double& c : query.direction) c = random.chance(0.4) ? 0 : random.integer(-3, 3);
+    }
+    INFO("seed " << seed);
+    soups::check(scene, query, test::answer(sweeper, query));
+  }
+}
+
+TEST_CASE("swapping the roles and reversing the direction keeps every bit of t") {
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    INFO("seed " << seed);
+    const bool grid = seed % 2 == 0;
+    const auto mesh = [&] { return grid ? soups::lattice(random, 8, 3) : soups::soup(random, 8, 0.6, 0.3); };
+    const auto pose = [&](double z) {
+      return grid ? soups::at(random.integer(-1, 1), random.integer(-1, 1), z) : random.pose(1, {0.1, 0.2, 0.6 * z});
+    };
+    const soups::Mesh a = mesh(), b = mesh();
+    const Pose poseA = pose(0), poseB = pose(random.integer(0, 6));
+    const Vec d = grid ? Vec{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
+                       : Vec{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
+    requireSameBits(alone(a, poseA, b, poseB, d, 20), alone(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
+  }
+}
+
+TEST_CASE("the order of triangles and vertices changes no bit of t") {
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    INFO("seed " << seed);
+    const bool grid = seed % 2 == 0;
+    const auto mesh = [&] { return grid ? soups::lattice(random, 9, 3) : soups::soup(random, 9, 0.6, 0.3); };
+    const auto shuffled = [&](const soups::Mesh& in) {
+      soups::Mesh out = in;
+      const int triangles = static_cast<int>(in.indices.size() / 3);
+      for (int t = triangles; t-- > 1;) {
+        const int other = random.integer(0, t);
+        for (int k = 0; k < 3; ++k) {
+          std::swap(out.indices[static_cast<size_t>(3 * t + k)], out.indices[static_cast<size_t>(3 * other + k)]);
+        }
+      }
+      for (int t = 0; t < triangles; ++t) {
+        const auto first = out.indices.begin() + 3 * t;
+        std::rotate(first, first + random.integer(0, 2), first + 3);
+        if (random.chance(0.5)) std::swap(first[0], first[1]);
+      }
+      return out;
+    };
+    const soups::Mesh a = mesh(), b = mesh();
+    const Pose poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
+    const Vec d = grid ? Vec{random.integer(-1, 1) + 0.0, 0, 2} : Vec{random.uniform(-0.2, 0.2), 0.1, 1};
+    requireSameBits(alone(a, Pose{}, b, poseB, d, 20), alone(shuffled(a), Pose{}, shuffled(b), poseB, d, 20));
+  }
+}
+
+TEST_CASE("a shift that keeps every coordinate exact changes no bit of t") {
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    INFO("seed " << seed);
+    // Coordinates are multiples of 2^-10 below 8, so shifts up to 2^39 keep them.
+    const auto mesh = [&] {
+      soups::Mesh out = soups::soup(random, 8, 0.6, 0.2);
+      for (float& c : out.positions) c = std::round(c * 1024) / 1024;
+      return out;
+    };
+    const soups::Mesh a = mesh(), b = mesh();
+    const Vec d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
+    const double z = random.integer(0, 3), size = std::ldexp(1, random.integer(0, 39));
+    const Vec shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
+    requireSameBits(alone(a, Pose{}, b, soups::at(0, 0, z), d, 20),
+                    alone(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
+  }
+}

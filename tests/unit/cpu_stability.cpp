@@ -1,0 +1,39 @@
+// The truth of tests/stability held against brute force in exact integers, by another way than the engine's.
+#include "soups.h"
+#include "workloads/stability.h"
+
+using namespace radar;
+using namespace radar::tools;
+
+namespace {
+
+constexpr uint64_t kMostPairs = 1000;  // brute force is slow
+
+uint64_t pairsOf(const StabilityCase& made) {
+  uint64_t pairs = 0;
+  for (const PlacedMesh& object : made.objects) pairs += object.mesh.triangleCount();
+  return pairs * made.sensor.mesh.triangleCount();
+}
+
+}  // namespace
+
+TEST_CASE("the CPU equals brute force where methods fail") {
+  uint32_t families = 0;
+  for (const StabilityFamily& family : stabilityFamilies()) {
+    uint32_t checked = 0;
+    for (uint64_t number = 0; number < 96 && checked < 20; ++number) {
+      const StabilityCase made = stabilityCase(family, number, 23);
+      if (pairsOf(made) > kMostPairs) continue;
+      INFO(family.name << ", case " << number);
+      const Workload workload = workloadOf({made});
+      Scene scene;
+      replaceBy(workload, 0, scene);
+      const Query query = toQuery(workload.queries[0], Mode::contact);
+      soups::check(scene, query, test::answer(scene, query));
+      ++checked;
+    }
+    families += checked >= 6;
+  }
+  // Rings, cups and the teapot have too many triangles.
+  CHECK(families >= 20);
+}

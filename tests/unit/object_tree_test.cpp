@@ -1,0 +1,262 @@
+// The tree over a scene's objects holds all of them, wherever they are and whatever has changed.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exact/dyadic.h"
+#include "scene/scene.h"
+#include "workloads/shapes.h"
+
+namespace {
+
+using namespace radar;
+using exact::Dyadic;
+using tools::Random;
+
+Pose at(double x, double y, double z) {
+  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
+}
+
+// Exactly.
+bool holds(const gpu::ObjectNode& node, const std::array<double, 3>& anchor, const std::array<double, 3>& p) {
+  for (int k = 0; k < 3; ++k) {
+    const Dyadic offset = Dyadic(p[k]) - Dyadic(anchor[k]) - Dyadic(node.centre[k]), half(node.halfExtent[k]);
+    if ((half - offset).sign() < 0 || (half + offset).sign() < 0) return false;
+  }
+  return true;
+}
+
+struct Walked {
+  std::vector<uint32_t> leaves;  // how often each object is in one
+  uint32_t depth = 0;
+  size_t nodes = 0;
+};
+
+// Returns the objects below.
+std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, Walked& walked) {
+  const gpu::ObjectNode& node = tree.nodes().at(at);
+  ++walked.nodes;
+  walked.depth = std::max(walked.depth, level);
+  std::vector<ObjectId> below;
+  if ((node.link & gpu::kLinkLeaf) != 0) {
+    below.push_back(node.link & gpu::kLinkItem);
+    ++walked.leaves.at(below[0]);
+  } else {
+    if (node.link <= at) FAIL("the children of node " << at << " stand before it");
+    below = walk(tree, node.link, level + 1, walked);
+    for (const ObjectId id : walk(tree, node.link + 1, level + 1, walked)) below.push_back(id);
+  }
+  for (const ObjectId id : below) {
+    const Box& box = tree.boxOf(id);
+    if (!holds(node, tree.anchor(), box.lo) || !holds(node, tree.anchor(), box.hi)) {
+      FAIL("node " << at << " does not hold object " << id);
+    }
+  }
+  return below;
+}
+
+// Each object of the scene in one leaf, in a box that holds its placed vertices.
+void checkTree(const Scene& scene) {
+  const ObjectTree& tree = scene.impl().objectTree();
+  Walked walked{std::vector<uint32_t>(scene.objectLimit())};
+  if (!tree.nodes().empty()) walk(tree, 0, 1, walked);
+  CHECK(walked.depth == tree.depth());
+  CHECK(walked.nodes == tree.nodes().size());
+  CHECK(tree.inRange());
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    CAPTURE(id);
+    CHECK(walked.leaves[id] == (scene.hasObject(id) ? 1 : 0));
+    if (!scene.hasObject(id)) continue;
+    const Object& object = scene.object(id);
+    const MeshView mesh = scene.mesh(object.mesh);
+    const Box &box = tree.boxOf(id), &world = tree.worldBox();
+    for (const uint32_t vertex : mesh.indices) {
+      const std::array<double, 3> p = place(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+      for (int k = 0; k < 3; ++k) {
+        if (p[k] < box.lo[k] || p[k] > box.hi[k]) FAIL("the box of object " << id << " leaves out a vertex");
+        if (p[k] < world.lo[k] || p[k] > world.hi[k]) FAIL("the world's box leaves out a vertex of object " << id);
+      }
+    }
+  }
+}
+
+// Sum of the nodes' half areas, which is what walking the tree costs.
+double costOf(const ObjectTree& tree) {
+  double sum = 0;
+  for (const gpu::ObjectNode& node : tree.nodes()) {
+    const double x = node.halfExtent[0], y = node.halfExtent[1], z = node.halfExtent[2];
+    sum += x * y + y * z + z * x;
+  }
+  return sum;
+}
+
+struct Boxes {
+  explicit Boxes(uint64_t seed) : random(seed) {
+    const tools::MeshData box = tools::makeBox({1, 2, 3});
+    mesh = scene.addMesh(box.positions, box.indices);
+  }
+  Pose anywhere(double reach, double away = 0) {
+    const std::array<double, 3> lo{away - reach, away - reach, -reach}, hi{away + reach, away + reach, reach};
+    return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, random.inBox(lo, hi));
+  }
+  Random random;
+  Scene scene;
+  MeshId mesh;
+};
+
+}  // namespace
+
+TEST_CASE("the tree holds all objects as they come, move and go") {
+  Boxes boxes(3);
+  const double away = GENERATE(0.0, 1e6, 1e12);
+  std::vector<ObjectId> objects;
+  CHECK(boxes.scene.impl().objectTree().nodes().empty());
+  for (int round = 0; round < 40; ++round) {
+    for (int i = 0; i < (round % 4 == 0 ? 10 : 0); ++i) {
+      objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u}));
+    }
+    for (int i = 0; i < 5; ++i) {
+      boxes.scene.setPose(objects[boxes.random.below(uint32_t(objects.size()))], boxes.anywhere(20, away));
+    }
+    if (round % 8 == 7) {
+      for (int i = 0; i < 4; ++i) {
+        const uint32_t which = boxes.random.below(uint32_t(objects.size()));
+        boxes.scene.removeObject(objects[which]);
+        objects.erase(objects.begin() + which);
+      }
+    }
+    checkTree(boxes.scene);
+  }
+  for (const ObjectId id : objects) boxes.scene.removeObject(id);
+  checkTree(boxes.scene);
+  CHECK(boxes.scene.impl().objectTree().nodes().empty());
+  boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u});
+  checkTree(boxes.scene);
+  CHECK(boxes.scene.impl().objectTree().nodes().size() == 1);
+}
+
+TEST_CASE("a small move changes boxes and not the tree, and its version says so") {
+  Boxes boxes(4);
+  for (int i = 0; i < 100; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(50), ~0u});
+  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  const std::vector<gpu::ObjectNode> before = tree.nodes();
+  uint64_t version = tree.version();
+  CHECK(boxes.scene.impl().objectTree().version() == version);
+  Pose pose = boxes.scene.object(7).worldFromMesh;
+  pose.m[3] += 0.25;
+  boxes.scene.setPose(7, pose);
+  checkTree(boxes.scene);
+  CHECK(tree.version() > version);
+  REQUIRE(tree.nodes().size() == before.size());
+  for (size_t i = 0; i < before.size(); ++i) CHECK(tree.nodes()[i].link == before[i].link);
+}
+
+TEST_CASE("objects that a host may move are held wherever they may be") {
+  Boxes boxes(5);
+  for (int i = 0; i < 20; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
+  const Bounds bounds{{-70, -3, -3}, {-60, 3, 90}};
+  boxes.scene.setBounds(11, bounds);
+  checkTree(boxes.scene);
+  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  for (int k = 0; k < 3; ++k) {
+    CHECK(tree.boxOf(11).lo[k] <= bounds.lo[k]);
+    CHECK(tree.boxOf(11).hi[k] >= bounds.hi[k]);
+    CHECK(tree.worldBox().lo[k] <= bounds.lo[k]);
+  }
+  // They end with the object.
+  boxes.scene.removeObject(11);
+  CHECK(boxes.scene.addObject({boxes.mesh, at(0, 0, 0), ~0u}) == 11);
+  checkTree(boxes.scene);
+  CHECK(tree.boxOf(11).lo[0] > -2);
+}
+
+TEST_CASE("far from the origin, boxes are hardly larger than objects") {
+  Boxes boxes(6);
+  const double away = 1e12;
+  for (int i = 0; i < 50; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u});
+  const auto checkSizes = [&] {
+    const ObjectTree& tree = boxes.scene.impl().objectTree();
+    for (const gpu::ObjectNode& node : tree.nodes()) {
+      if ((node.link & gpu::kLinkLeaf) == 0) continue;
+      const Box& box = tree.boxOf(node.link & gpu::kLinkItem);
+      // Doubles at 10^12 are 10^-4 apart; floats would be 65,536.
+      for (int k = 0; k < 3; ++k) CHECK(node.halfExtent[k] < 0.5 * (box.hi[k] - box.lo[k]) + 0.01);
+    }
+  };
+  checkSizes();
+  // All of them travel on together.
+  for (ObjectId id = 0; id < 50; ++id) boxes.scene.setPose(id, boxes.anywhere(20, -3 * away));
+  checkTree(boxes.scene);
+  checkSizes();
+}
+
+TEST_CASE("a tree that moves have made bad is built anew") {
+  Boxes boxes(7), fresh(8);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 300; ++i) {
+    // In a row, so that a tree of neighbours is much better than any other.
+    boxes.scene.addObject({boxes.mesh, at(10 * i, 0, 0), ~0u});
+    poses.push_back(at(10 * ((7 * i) % 300), 0, 0));
+  }
+  const double before = costOf(boxes.scene.impl().objectTree());
+  for (ObjectId id = 0; id < 300; ++id) {
+    boxes.scene.setPose(id, poses[id]);
+    fresh.scene.addObject({fresh.mesh, poses[id], ~0u});
+  }
+  checkTree(boxes.scene);
+  CHECK(costOf(boxes.scene.impl().objectTree()) == Approx(costOf(fresh.scene.impl().objectTree())));
+  CHECK(costOf(boxes.scene.impl().objectTree()) < 1.5 * before);
+}
+
+TEST_CASE("what floats cannot hold is out of range, until it is back") {
+  Boxes boxes(9);
+  for (int i = 0; i < 5; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
+  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  const auto inRange = [&] { return boxes.scene.impl().objectTree().inRange(); };
+  const auto scaled = [](double s) { return Pose{{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}}; };
+  CHECK(inRange());
+  for (const Pose& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e300, 0, 0), scaled(1e300)}) {
+    boxes.scene.setPose(2, pose);
+    CHECK_FALSE(inRange());
+    CHECK(tree.nodes().empty());
+    boxes.scene.setPose(2, at(0, 0x1p79, 0));
+    checkTree(boxes.scene);
+  }
+  // A step that hardly changes the tree's boxes.
+  boxes.scene.setPose(2, at(0, 0.99 * 0x1p80, 0));
+  CHECK(inRange());
+  boxes.scene.setPose(2, at(0, 1.01 * 0x1p80, 0));
+  CHECK_FALSE(inRange());
+  CHECK(tree.nodes().empty());
+  boxes.scene.setPose(2, at(0, 0, 0));
+  boxes.scene.setBounds(2, {{-1, -1, -1}, {1, 0x1p81, 1}});
+  CHECK_FALSE(inRange());
+  boxes.scene.removeObject(2);
+  checkTree(boxes.scene);
+  // Also from one that has never been in range.
+  Boxes other(10);
+  const ObjectId far = other.scene.addObject({other.mesh, at(1e200, 0, 0), ~0u});
+  other.scene.addObject({other.mesh, at(1, 0, 0), ~0u});
+  CHECK_FALSE(other.scene.impl().objectTree().inRange());
+  other.scene.setPose(far, at(5, 0, 0));
+  checkTree(other.scene);
+}
+
+TEST_CASE("an object whose coordinates overflow puts the scene out of range, and nothing else") {
+  // Vertices of 10^30 and a pose of 10^300: sums of infinities that are no numbers.
+  Scene scene;
+  std::vector<float> corners;
+  for (const float x : {1e30f, 2e30f, 1.5e30f}) corners.insert(corners.end(), {x, x, 0});
+  corners[5] = 1e30f;
+  const MeshId huge = scene.addMesh(corners, std::vector<uint32_t>{0, 1, 2});
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  scene.addObject({mesh, at(1, 2, 3), ~0u});
+  const ObjectId object = scene.addObject({huge, {{1e300, -1e300, 0, 0, 1e300, 1e300, 0, 0, 0, 0, 1e300, 0}}, ~0u});
+  CHECK_FALSE(scene.impl().objectTree().inRange());
+  scene.setPose(object, {{1e300, -1e300, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}});
+  CHECK_FALSE(scene.impl().objectTree().inRange());
+  scene.removeObject(object);
+  checkTree(scene);
+}

@@ -1,0 +1,118 @@
+// Loops on all cores: each index once, no worker twice at a time, errors in the caller's hands.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "scene/parallel.h"
+
+namespace {
+
+using radar::parallelFor;
+using radar::threadCount;
+
+// Gives up after some seconds, so that a loop on one thread is a failure and no test without end.
+template <class Condition>
+void waitFor(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!condition() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+}
+
+}  // namespace
+
+TEST_CASE("a parallel loop visits each index once, in chunks of the size asked for") {
+  const unsigned threads = GENERATE(0u, 1u, 2u, 5u);
+  for (const size_t count : {0u, 1u, 63u, 64u, 65u, 1234u}) {
+    for (const size_t chunk : {1u, 7u, 64u, 5000u}) {
+      std::vector<std::atomic<int>> visits(count);
+      std::atomic<size_t> wrongChunks = 0;
+      parallelFor(count, chunk, threads, [&](unsigned, size_t first, size_t last) {
+        const bool right = first < last && first % chunk == 0 && last == std::min(count, first + chunk);
+        wrongChunks += !right;
+        for (size_t i = first; i < std::min(last, count); ++i) ++visits[i];
+      });
+      CAPTURE(threads, count, chunk);
+      CHECK(wrongChunks == 0);
+      CHECK(std::all_of(visits.begin(), visits.end(), [](const auto& n) { return n == 1; }));
+    }
+  }
+}
+
+TEST_CASE("a worker's number is below that of the threads, and no two calls with one run at a time") {
+  for (const unsigned threads : {1u, 2u, 4u, 0u}) {
+    std::vector<std::atomic<bool>> busy(threadCount(threads));
+    std::atomic<int> wrong = 0;
+    parallelFor(400, 1, threads, [&](unsigned worker, size_t, size_t) {
+      if (worker >= busy.size() || busy[worker].exchange(true)) {
+        ++wrong;
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+      busy[worker] = false;
+    });
+    CAPTURE(threads);
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("one thread is the caller's own, and takes the chunks in their order") {
+  std::vector<size_t> firsts;
+  const auto caller = std::this_thread::get_id();
+  parallelFor(100, 10, 1, [&](unsigned worker, size_t first, size_t) {
+    CHECK(worker == 0);
+    CHECK(std::this_thread::get_id() == caller);
+    firsts.push_back(first);
+  });
+  CHECK(firsts == std::vector<size_t>{0, 10, 20, 30, 40, 50, 60, 70, 80, 90});
+}
+
+TEST_CASE("several threads work at the same time, the caller's among them") {
+  // Each of four calls waits until all four are there.
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  std::atomic<size_t> there = 0;
+  parallelFor(4, 1, 4, [&](unsigned, size_t, size_t) {
+    {
+      const std::lock_guard lock(mutex);
+      threads.insert(std::this_thread::get_id());
+    }
+    ++there;
+    waitFor([&] { return there == 4; });
+  });
+  CHECK(threads.size() == 4);
+  CHECK(threads.count(std::this_thread::get_id()) == 1);
+}
+
+TEST_CASE("what a call throws is thrown to the caller, when no call runs any more") {
+  const bool inCaller = GENERATE(true, false);
+  std::atomic<int> running = 0;
+  std::atomic<bool> othersAreThere = false;
+  const auto caller = std::this_thread::get_id();
+  const auto loop = [&] {
+    parallelFor(64, 1, 3, [&](unsigned, size_t, size_t) {
+      ++running;
+      if (std::this_thread::get_id() == caller) {
+        waitFor([&] { return othersAreThere.load(); });
+      } else {
+        othersAreThere = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      --running;
+      if ((std::this_thread::get_id() == caller) == inCaller) throw std::runtime_error("thrown");
+    });
+  };
+  CHECK_THROWS_WITH(loop(), "thrown");
+  CHECK(running == 0);
+}
+
+TEST_CASE("no number of threads stands for one for each core") {
+  CHECK(threadCount(0) >= 1);
+  CHECK(threadCount(0) == std::max(1u, std::thread::hardware_concurrency()));
+  CHECK(threadCount(3) == 3);
+}

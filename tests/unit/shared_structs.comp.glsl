@@ -1,0 +1,43 @@
+// Every struct that C++ and GLSL share, as a buffer's elements, so that all have a layout: some are only ever read as
+// texels, or pushed.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/contact/interop.h"
+
+layout(scalar, binding = 0) readonly buffer B0 { MeshNode b0[]; };
+layout(scalar, binding = 1) readonly buffer B1 { ObjectNode b1[]; };
+layout(scalar, binding = 2) readonly buffer B2 { Vertex b2[]; };
+layout(scalar, binding = 3) readonly buffer B3 { Triangle b3[]; };
+layout(scalar, binding = 4) readonly buffer B4 { Placement b4[]; };
+layout(scalar, binding = 5) readonly buffer B5 { MeshRecord b5[]; };
+layout(scalar, binding = 6) readonly buffer B6 { ObjectRecord b6[]; };
+layout(scalar, binding = 7) readonly buffer B7 { View b7[]; };
+layout(scalar, binding = 8) readonly buffer B8 { Draw b8[]; };
+layout(scalar, binding = 9) readonly buffer B9 { Item b9[]; };
+layout(scalar, binding = 10) readonly buffer B10 { Candidate b10[]; };
+layout(scalar, binding = 11) readonly buffer B11 { Answer b11[]; };
+layout(scalar, binding = 12) readonly buffer B12 { OpenPair b12[]; };
+layout(scalar, binding = 13) readonly buffer B13 { Stray b13[]; };
+layout(scalar, binding = 14) readonly buffer B14 { Moved b14[]; };
+layout(scalar, binding = 15) readonly buffer B15 { Sensor b15[]; };
+layout(scalar, binding = 16) readonly buffer B16 { Sweep b16[]; };
+layout(scalar, binding = 17) readonly buffer B17 { SearchState b17[]; };
+layout(scalar, binding = 18) readonly buffer B18 { SearchTask b18[]; };
+layout(scalar, binding = 19) readonly buffer B19 { PairCandidate b19[]; };
+layout(scalar, binding = 20) readonly buffer B20 { Contender b20[]; };
+layout(scalar, binding = 21) readonly buffer B21 { UnresolvedPair b21[]; };
+layout(scalar, binding = 22) readonly buffer B22 { SearchRound b22[]; };
+layout(scalar, binding = 23) readonly buffer B23 { SearchCounts b23[]; };
+layout(scalar, binding = 24) readonly buffer B24 { SearchPush b24[]; };
+layout(scalar, binding = 25) readonly buffer B25 { CollectPush b25[]; };
+layout(scalar, binding = 26) readonly buffer B26 { FilterPush b26[]; };
+layout(scalar, binding = 27) readonly buffer B27 { ResolvePush b27[]; };
+#ifndef RADAR_NO_DOUBLES
+layout(scalar, binding = 28) readonly buffer B28 { Sum b28[]; };
+layout(scalar, binding = 29) readonly buffer B29 { SumResult b29[]; };
+#endif
+
+layout(local_size_x = 1) in;
+
+void main() {}

@@ -1,0 +1,147 @@
+// What a shader expects to be bound and pushed is read from its SPIR-V.
+#include <catch2/catch.hpp>
+
+#include <vector>
+
+#include "gpu/spirv.h"
+#include "radar/radar.h"
+#include "shaders/contact/interop.h"
+#include "spirv/all_kinds_comp.h"
+#include "spirv/all_kinds_comp_DESCRIPTOR_ARRAY.h"
+#include "spirv/all_kinds_comp_OTHER_SET.h"
+#include "spirv/all_kinds_comp_SAME_BINDING.h"
+#include "spirv/all_kinds_comp_STORAGE_IMAGE.h"
+#include "spirv/all_kinds_comp_UNIFORM_BUFFER.h"
+#include "spirv/contact_collect_comp.h"
+#include "spirv/contact_resolve_comp.h"
+#include "spirv/contact_search_comp.h"
+#include "spirv/depth_vert.h"
+#include "spirv/doubles_comp.h"
+#include "spirv/reduce_comp.h"
+
+namespace {
+
+using namespace radar;
+using namespace radar::gpu;
+
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                           kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                           kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+
+bool equal(const Descriptor& a, const Descriptor& b) {
+  return a.binding == b.binding && a.name == b.name && a.type == b.type && a.stride == b.stride &&
+         a.arrayOffset == b.arrayOffset && a.bytes == b.bytes;
+}
+
+void checkDescriptors(std::span<const uint32_t> spirv, const std::vector<Descriptor>& expected) {
+  const std::vector<Descriptor> found = reflectCompute(spirv, "found").descriptors;
+  REQUIRE(found.size() == expected.size());
+  for (size_t i = 0; i < found.size(); ++i) {
+    CAPTURE(i, found[i].binding, found[i].name, found[i].type, found[i].stride, found[i].arrayOffset, found[i].bytes);
+    CHECK(equal(found[i], expected[i]));
+  }
+}
+
+const Descriptor& descriptorAt(const ComputeInterface& found, uint32_t binding) {
+  for (const Descriptor& descriptor : found.descriptors) {
+    if (descriptor.binding == binding) return descriptor;
+  }
+  throw std::runtime_error("no binding " + std::to_string(binding));
+}
+
+// The SPIR-V with word `word` of the first instruction `op` whose word `keyWord` is `key` set to `value`.
+std::vector<uint32_t> changed(std::span<const uint32_t> spirv, uint32_t op, size_t keyWord, uint32_t key, size_t word,
+                              uint32_t value) {
+  std::vector<uint32_t> copy(spirv.begin(), spirv.end());
+  for (size_t at = 5; at < copy.size(); at += copy[at] >> 16) {
+    if ((copy[at] & 0xffff) != op || copy[at + keyWord] != key) continue;
+    copy[at + word] = value;
+    return copy;
+  }
+  throw std::runtime_error("no instruction " + std::to_string(op));
+}
+
+}  // namespace
+
+TEST_CASE("every kind of descriptor is found, in the order of bindings") {
+  checkDescriptors(k_all_kinds_comp, {{1, "positions", kTexels},
+                                      {2, "counted", kStorage, 12, 16, 0},
+                                      {3, "Plain", kStorage, 0, 0, 32},
+                                      {4, "Words", kStorage, 4, 0, 0},
+                                      {5, "depth", kImage},
+                                      {9, "texels", kTexels}});
+}
+
+TEST_CASE("the size of push constants is that of the same struct in C++") {
+  struct Pair {
+    float weight;
+    double value;
+  };
+  struct Push {
+    uint32_t window[2];
+    Pair pairs[2];
+    float scale[3];
+  };
+  CHECK(reflectCompute(k_all_kinds_comp, "all kinds").pushBytes == sizeof(Push));
+  CHECK(sizeof(Push) == 56);
+  CHECK(reflectCompute(k_contact_search_comp, "search").pushBytes == sizeof(SearchPush));
+  CHECK(reflectCompute(k_doubles_comp, "doubles").pushBytes == 0);
+}
+
+TEST_CASE("the engine's own shaders take what the shared structs say") {
+  checkDescriptors(k_doubles_comp, {{kSlotSums.number, "Sums", kStorage, sizeof(Sum)},
+                                    {kSlotSumResults.number, "Results", kStorage, sizeof(SumResult)}});
+  checkDescriptors(k_contact_collect_comp, {{kSlotStates.number, "States", kStorage, sizeof(SearchState)},
+                                            {kSlotCounts.number, "Counts", kStorage, 0, 0, sizeof(SearchCounts)},
+                                            {kSlotTasks.number, "Tasks", kStorage, sizeof(SearchTask)},
+                                            {kSlotSpilled.number, "Spilled", kStorage, sizeof(SearchTask)}});
+  const ComputeInterface search = reflectCompute(k_contact_search_comp, "search");
+  CHECK(descriptorAt(search, kSlotMeshNodes.number).type == kTexels);
+  CHECK(descriptorAt(search, kSlotPairCandidates.number).stride == sizeof(PairCandidate));
+  const ComputeInterface resolve = reflectCompute(k_contact_resolve_comp, "resolve");
+  CHECK(descriptorAt(resolve, kSlotUnresolved.number).stride == sizeof(UnresolvedPair));
+  CHECK(descriptorAt(resolve, kSlotResults.number).stride == sizeof(Result));
+  const ComputeInterface reduce = reflectCompute(k_reduce_comp, "reduce");
+  CHECK(descriptorAt(reduce, kSlotRange.number).type == kImage);
+  CHECK(descriptorAt(reduce, kSlotMask.number).type == kImage);
+}
+
+TEST_CASE("a texel buffer is one in SPIR-V before 1.6, too, where it is a sampled image") {
+  // The image with a sampler becomes one whose dimension is Buffer (5, from 2D: 1).
+  const std::vector<uint32_t> older = changed(k_all_kinds_comp, 25, 3, 1, 3, 5);
+  CHECK(descriptorAt(reflectCompute(older, "older"), 5).type == kTexels);
+}
+
+TEST_CASE("what is not understood is named") {
+  const auto reflect = [](std::span<const uint32_t> spirv) { reflectCompute(spirv, "x"); };
+  CHECK_THROWS_WITH(reflect(k_all_kinds_comp_UNIFORM_BUFFER),
+                    "shader \"x\": binding 6 (Refused) is a uniform buffer, or a storage buffer of SPIR-V before 1.3");
+  CHECK_THROWS_WITH(
+      reflect(k_all_kinds_comp_STORAGE_IMAGE),
+      "shader \"x\": binding 6 (refused) is not a storage buffer, a uniform texel buffer or an image with "
+      "its sampler");
+  CHECK_THROWS_WITH(reflect(k_all_kinds_comp_DESCRIPTOR_ARRAY),
+                    "shader \"x\": binding 6 (refused) is an array of descriptors");
+  CHECK_THROWS_WITH(reflect(k_all_kinds_comp_OTHER_SET),
+                    "shader \"x\": binding 6 (Refused) is in descriptor set 1, not 0");
+  CHECK_THROWS_WITH(reflect(k_all_kinds_comp_SAME_BINDING),
+                    "shader \"x\": binding 4 is declared twice: Words and Refused");
+  CHECK_THROWS_WITH(reflect(k_depth_vert), "shader \"x\": expected one entry point, a compute shader's \"main\"");
+}
+
+TEST_CASE("what is not a module is refused, wherever it ends") {
+  const auto reflect = [](std::span<const uint32_t> spirv) { reflectCompute(spirv, "x"); };
+  const std::span<const uint32_t> whole = k_all_kinds_comp;
+  CHECK_THROWS_WITH(reflect({}), "shader \"x\": not SPIR-V");
+  CHECK_THROWS_WITH(reflect(whole.subspan(1)), "shader \"x\": not SPIR-V");
+  // From a copy of its own, so that a sanitizer sees a read beyond it.
+  for (size_t words = 0; words < whole.size(); ++words) {
+    const std::vector<uint32_t> part(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(words));
+    try {
+      reflect(part);
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  CHECK_NOTHROW(reflect(whole));
+}

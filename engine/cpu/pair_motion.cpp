@@ -31,7 +31,7 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
   if (const double passed = 1.01 * way / std::abs(unit[f]); passed < span) span = passed;
   for (int k = 0; k < 3; ++k) {
     travel[k] = span * unit[k];
-    rounding[k] = a.error[k] + b.error[k] + 0x1p-1060 * (1 + span) +
+    rounding[k] = a.error[k] + b.error[k] + 0x1p-1000 * (1 + span) +
                   32 * kUnit * (a.extent[k] + b.extent[k] + std::abs(gap[k]) + std::abs(travel[k]));
   }
 }

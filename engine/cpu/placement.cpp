@@ -48,7 +48,7 @@ Placement::Placement(const Mesh& mesh, const Pose& worldFromMesh) {
       magnitude += std::abs(row[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
     }
     origin[i] = ((row[0] * mesh.origin[0] + row[1] * mesh.origin[1]) + row[2] * mesh.origin[2]) + row[3];
-    error[i] = 16 * kUnit * magnitude + 0x1p-1060;
+    error[i] = 16 * kUnit * magnitude + 0x1p-1000;
   }
 }
 

@@ -47,7 +47,7 @@ int crossSign(const Difference& v, const Difference& w, int axis);
 // fast robust geometric predicates", 1997, section 4, has this kind of bound.)
 inline constexpr double kRelative = 16 * 0x1p-53;
 // Each product may lose less than 2^-1070 to underflow, and is then multiplied by a component of w.
-inline constexpr double kUnderflow = 0x1p-1060;
+inline constexpr double kUnderflow = 0x1p-1000;
 
 /// The determinant of three differences whose components were rounded once. `floor` is at least kUnderflow (1 + |w|).
 inline Estimate estimate(const Vec& w, const Vec& x, const Vec& y, double floor) {

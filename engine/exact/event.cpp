@@ -12,7 +12,8 @@ namespace radar::exact {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+// Covers what underflows, with room; subnormal numbers would be slow.
+constexpr double kLeast = 0x1p-1000;
 
 Determinant numerator(const Event& e) {
   return {{e.from, e.to}, {e.x0, e.x1}, {e.y0, e.y1}};

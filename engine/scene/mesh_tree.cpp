@@ -116,7 +116,9 @@ void fitBox(const Point& lo, const Point& hi, float (&centre)[3], float (&half)[
   for (int k = 0; k < 3; ++k) {
     centre[k] = 0.5f * lo[k] + 0.5f * hi[k];
     const float reach = std::max(hi[k] - centre[k], centre[k] - lo[k]);
-    half[k] = std::nextafter(reach, std::numeric_limits<float>::max());
+    // Flat boxes stay flat: subnormal numbers are slow, and devices flush them.
+    constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
+    half[k] = reach == 0 ? 0 : std::max(std::nextafter(reach, kMost), kLeast);
   }
 }
 

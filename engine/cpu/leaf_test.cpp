@@ -86,7 +86,8 @@ Lanes<Real> rounded(const Lanes<double>& x) {
 }  // namespace
 
 template <class Real>
-LeafTest<Real>::LeafTest(const Sight& sight) : matrix_(sight.matrix), offset_(sight.offset), travel_(sight.travel) {
+LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const Sight& sight)
+    : meshA_(meshA), meshB_(meshB), matrix_(sight.matrix), offset_(sight.offset), travel_(sight.travel) {
   double position = 0, edge = 0, travelSize = 0;
   for (int k = 0; k < 3; ++k) {
     travelSize += std::abs(travel_[k]);
@@ -100,82 +101,88 @@ LeafTest<Real>::LeafTest(const Sight& sight) : matrix_(sight.matrix), offset_(si
   edgeError_ = static_cast<Real>(1.01 * edge);
 }
 
-/// Triangles of two leaves in B's frame, as they are at some time.
 template <class Real>
-struct LeafTest<Real>::Triangles {
-  LaneVec<Real> edgeA[3], edgeB[3];
-  LaneVec<Real> gap, travel;  ///< from corner 0 of A's triangle to that of B's; of A in a unit of time
-  Lanes<Real> gapSize = Real(0);
-  Real sizeA, sizeB;  ///< bounds on the sum of an edge's absolute components
-
-  Triangles(const LeafTest& test, const Mesh& meshA, const gpu::MeshNode& a, const Mesh& meshB, const gpu::MeshNode& b,
-            Real begin)
-      : sizeA(4 * test.edgeError_), sizeB(4 * test.edgeError_) {
-    const Corners<Real> ofA(meshA, a, true), ofB(meshB, b, false);
-    for (int k = 0; k < 3; ++k) {
-      // In doubles, so that it is as precise as it is small.
-      using D = Lanes<double>;
-      const Vec& row = test.matrix_[k];
-      const double moved = test.offset_[k] + double(begin) * test.travel_[k];
-      gap[k] = rounded<Real>(
-          ofB.first[k] - (D(row[0]) * ofA.first[0] + D(row[1]) * ofA.first[1] + D(row[2]) * ofA.first[2] + D(moved)));
-      gapSize = gapSize + abs(gap[k]);
-      travel[k] = static_cast<Real>(test.travel_[k]);
-      LaneVec<Real> lanes;
-      for (int j = 0; j < 3; ++j) {
-        lanes[j] = static_cast<Real>(row[j]);
-        sizeA += 2 * static_cast<Real>(std::abs(row[j])) * a.halfExtent[j];
-      }
-      for (int i = 0; i < 3; ++i) {
-        edgeA[i][k] = dot<Real>(lanes, ofA.edge[i]);
-        edgeB[i][k] = ofB.edge[i][k];
-      }
-      sizeB += 2 * b.halfExtent[k];
+void LeafTest<Real>::showA(const gpu::MeshNode& leaf) {
+  if (a_.leaf == &leaf) return;
+  a_.leaf = &leaf;
+  a_.size = 4 * edgeError_;
+  const Corners<Real> own(meshA_, leaf, true);
+  for (int k = 0; k < 3; ++k) {
+    // In doubles, so that the difference of two corners is as precise as it is small.
+    using D = Lanes<double>;
+    const Vec& row = matrix_[k];
+    a_.corner[k] = D(row[0]) * own.first[0] + D(row[1]) * own.first[1] + D(row[2]) * own.first[2];
+    LaneVec<Real> lanes;
+    for (int j = 0; j < 3; ++j) {
+      lanes[j] = static_cast<Real>(row[j]);
+      a_.size += 2 * static_cast<Real>(std::abs(row[j])) * leaf.halfExtent[j];
     }
+    for (int i = 0; i < 3; ++i) a_.edge[i][k] = dot<Real>(lanes, own.edge[i]);
   }
-};
+  cross<Real>(a_.edge[0], a_.edge[1], a_.normal);
+}
 
 template <class Real>
-LeafTimes<Real> LeafTest<Real>::operator()(const Mesh& meshA, const gpu::MeshNode& a, const Mesh& meshB,
-                                           const gpu::MeshNode& b, Real begin, Real end) const {
+void LeafTest<Real>::showB(const gpu::MeshNode& leaf) {
+  if (b_.leaf == &leaf) return;
+  b_.leaf = &leaf;
+  b_.size = 4 * edgeError_;
+  const Corners<Real> own(meshB_, leaf, false);
+  for (int k = 0; k < 3; ++k) {
+    b_.corner[k] = own.first[k];
+    for (int i = 0; i < 3; ++i) b_.edge[i][k] = own.edge[i][k];
+    b_.size += 2 * leaf.halfExtent[k];
+  }
+  cross<Real>(b_.edge[0], b_.edge[1], b_.normal);
+}
+
+template <class Real>
+LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::MeshNode& b, Real begin, Real end) {
   using L = Lanes<Real>;
   LeafTimes<Real> out{{-Real(INFINITY), Real(INFINITY)}, Real(0), lanesOf(a, b)};
   if (!usable_) return out;
 
-  const Triangles t(*this, meshA, a, meshB, b, begin);
+  showA(a);
+  showB(b);
+  LaneVec<Real> gap, travel;  // from corner 0 of A's triangle to that of B's; of A in a unit of time
+  L gapSize = Real(0);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes<double> moved = offset_[k] + double(begin) * travel_[k];
+    gap[k] = rounded<Real>(b_.corner[k] - (a_.corner[k] + moved));
+    gapSize = gapSize + abs(gap[k]);
+    travel[k] = static_cast<Real>(travel_[k]);
+  }
   const Real duration = std::max(Real(1 + 4 * kRounding<Real>) * (end - begin), Real(kLeastSpeed<Real>));
-  const L reach = t.gapSize + L(t.sizeA + t.sizeB + duration * travelSize_);
+  const L reach = gapSize + L(a_.size + b_.size + duration * travelSize_);
   const L error = L(positionError_) + L(Real(32 * kRounding<Real>)) * reach;
 
-  LaneVec<Real> normalA, normalB, alpha, beta;
-  cross<Real>(t.edgeA[0], t.edgeA[1], normalA);
-  cross<Real>(t.edgeB[0], t.edgeB[1], normalB);
+  LaneVec<Real> alpha, beta;
   for (int k = 0; k < 3; ++k) {
-    alpha[k] = dot<Real>(t.edgeB[k], normalA);
-    beta[k] = dot<Real>(t.edgeA[k], normalB);
+    alpha[k] = dot<Real>(b_.edge[k], a_.normal);
+    beta[k] = dot<Real>(a_.edge[k], b_.normal);
   }
   Collected<Real> collected;
   const L zero = Real(0), half = Real(0.5);
   const L lowB = min(zero, min(alpha[0], -alpha[2])), highB = max(zero, max(alpha[0], -alpha[2]));
-  const Margin<Real> marginA(L(t.sizeA) * (L(t.sizeA) * error + L(2 * edgeError_) * reach), duration);
-  collected.add(dot<Real>(normalA, t.gap) + half * (lowB + highB), half * (highB - lowB), dot<Real>(normalA, t.travel),
+  const Margin<Real> marginA(L(a_.size) * (L(a_.size) * error + L(2 * edgeError_) * reach), duration);
+  collected.add(dot<Real>(a_.normal, gap) + half * (lowB + highB), half * (highB - lowB), dot<Real>(a_.normal, travel),
                 marginA, 0);
   const L lowA = min(zero, min(beta[0], -beta[2])), highA = max(zero, max(beta[0], -beta[2]));
-  const Margin<Real> marginB(L(t.sizeB) * (L(t.sizeB) * error + L(2 * edgeError_) * reach), duration);
-  collected.add(dot<Real>(normalB, t.gap) - half * (lowA + highA), half * (highA - lowA), dot<Real>(normalB, t.travel),
+  const Margin<Real> marginB(L(b_.size) * (L(b_.size) * error + L(2 * edgeError_) * reach), duration);
+  collected.add(dot<Real>(b_.normal, gap) - half * (lowA + highA), half * (highA - lowA), dot<Real>(b_.normal, travel),
                 marginB, 1);
   out.possible &= collected.possible(duration);
   if (out.possible == 0) return out;
 
-  const Margin<Real> margin(L(t.sizeA * t.sizeB) * error + L(edgeError_ * (t.sizeA + t.sizeB)) * reach, duration);
+  const Margin<Real> margin(L(a_.size * b_.size) * error + L(edgeError_ * (a_.size + b_.size)) * reach, duration);
   for (int i = 0; i < 3; ++i) {
     LaneVec<Real> gapAcross, travelAcross;
-    cross<Real>(t.gap, t.edgeA[i], gapAcross);
-    cross<Real>(t.travel, t.edgeA[i], travelAcross);
+    cross<Real>(gap, a_.edge[i], gapAcross);
+    cross<Real>(travel, a_.edge[i], travelAcross);
     for (int k = 0; k < 3; ++k) {
       const L halfA = (i == 1 ? -half : half) * alpha[k], halfB = (k == 1 ? -half : half) * beta[i];
-      collected.add(dot<Real>(t.edgeB[k], gapAcross) + halfA + halfB, abs(halfA) + abs(halfB),
-                    dot<Real>(t.edgeB[k], travelAcross), margin, 2 + 3 * i + k);
+      collected.add(dot<Real>(b_.edge[k], gapAcross) + halfA + halfB, abs(halfA) + abs(halfB),
+                    dot<Real>(b_.edge[k], travelAcross), margin, 2 + 3 * i + k);
     }
   }
   out.times = {collected.from, collected.to};

@@ -141,11 +141,11 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
 
 /// Shows `first` the pairs of triangles of two leaves, the earliest first.
 template <class Real>
-void meetLeaves(const MeshPair& pair, const LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b,
+void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b,
                 float near, FirstContact& first, SearchStats& stats) {
   // Or later, by less than rounding to Real and back takes.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(first.latest())); };
-  const LeafTimes<Real> found = test(pair.sensor.mesh, a, pair.other.mesh, b, near, latest());
+  const LeafTimes<Real> found = test(a, b, near, latest());
   stats.pairs += trianglesOf(a) * trianglesOf(b);
   for (unsigned open = found.possible; open != 0 && !first.isDecided();) {
     int lane = std::countr_zero(open);
@@ -177,7 +177,7 @@ template <class Real>
 void MeshSearch::descend(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats) {
   const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
   const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
-  const LeafTest<Real> leafTimes(pair.fromOther);
+  LeafTest<Real> leafTimes(pair.sensor.mesh, pair.other.mesh, pair.fromOther);
   const Opener opener(pair);
   const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(first.latest())); };
   float latest = latestNow();

@@ -70,7 +70,7 @@ void checkNodes(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
 
 template <class Real>
 void checkLeaves(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
-  const LeafTest<Real> test(pair.fromB);
+  LeafTest<Real> test(pair.a, pair.b, pair.fromB);
   const auto leafOf = [](const MeshTree& tree, uint32_t triangle) {
     size_t node = 0;
     while ((tree.nodes[node].link & gpu::kLinkLeaf) == 0) {
@@ -88,7 +88,7 @@ void checkLeaves(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
   for (const Real begin : {Real(0), Real(0.5) * below, below}) {
     for (const Real end : {above, Real(1)}) {
       INFO("from " << begin << " to " << end);
-      REQUIRE((test(pair.a, a, pair.b, b, begin, std::max(begin, end)).possible >> (iA + 2 * iB) & 1) == 1);
+      REQUIRE((test(a, b, begin, std::max(begin, end)).possible >> (iA + 2 * iB) & 1) == 1);
     }
   }
 }

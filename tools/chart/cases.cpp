@@ -139,6 +139,7 @@ std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32
     methods.push_back({"sampled", kGrowthSize});
   }
   methods.push_back({"contact"});
+  methods.push_back({"contact on device"});
   methods.push_back({"reference", 0, 1});
   if (threads > 1) methods.push_back({"reference", 0, threads});
   return methods;

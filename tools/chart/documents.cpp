@@ -100,10 +100,9 @@ std::vector<std::string> adviceOf(const Record& record) {
           "; up to %.1f%% of its answers on a workload miss a contact, at 256 pixels up to %.1f%%. Use it to see what "
           "the paper's method sees.",
           spreadOf(record, "sampled 64", missed).most, spreadOf(record, "sampled 256", missed).most));
-  advice.push_back("**No device, or shapes that keep their form and few queries: mode `reference`**. " +
-                   timesOf(record, "reference") +
-                   ", exact, from trees on the CPU. Where it is faster than mode "
-                   "`contact` the sentences under each chart say by how much.");
+  advice.push_back("**No device: mode `reference`**. " + timesOf(record, "reference") +
+                   ", the exact search on the CPU. Mode `contact` takes it, too, where the device itself runs on the "
+                   "CPU; *contact on device* is the device's own search.");
   advice.push_back(
       "**Beside methods that sample** (pixels of mode sampled, rays of Embree, steps of FCL and ODE), mode `contact` "
       "is on the front on " +

@@ -18,6 +18,7 @@ struct Look {
 };
 constexpr std::array kLooks{Look{"sampled", 0, Mark::circle, true},
                             Look{"drawing all", 0, Mark::square, true},
+                            Look{"contact on device", 2, Mark::diamond, true},
                             Look{"contact", 1, Mark::diamond, true},
                             Look{"reference", 6, Mark::triangle, true},
                             Look{"Embree rays", 3, Mark::circle, false},

@@ -185,8 +185,8 @@ Truth truthOf(const Workload& workload) {
 }
 
 struct Bench::Engine {
-  Engine(const Workload& workload, const Device& device, bool withSelect)
-      : select(withSelect), player(workload), sweeper(device, shown(), {.select = withSelect}) {
+  Engine(const Workload& workload, const Device& device, const SweeperOptions& given)
+      : options(given), player(workload), sweeper(device, shown(), given) {
     sweeper.sync();
     prepareMs = msSince(start);
   }
@@ -197,7 +197,7 @@ struct Bench::Engine {
 
   Clock::time_point start = Clock::now();
   double prepareMs = 0;
-  bool select;
+  SweeperOptions options;
   ScenePlayer player;
   Sweeper sweeper;
 };
@@ -227,11 +227,14 @@ Cell Bench::cellOf(const Method& method) const {
 
 Cell Bench::measureEngine(const Method& method) {
   const Workload& workload = which_.workload;
-  const Mode mode = method.family == "contact" ? Mode::contact : Mode::sampled;
+  const Mode mode = method.family.starts_with("contact") ? Mode::contact : Mode::sampled;
   Cell cell = cellOf(method);
   cell.certified = mode != Mode::sampled;
-  const bool select = method.family != "drawing all";
-  if (!engine_ || engine_->select != select) engine_ = std::make_unique<Engine>(workload, device_, select);
+  const SweeperOptions options{.select = method.family != "drawing all",
+                               .cpuBatch = method.family == "contact on device" ? 0 : kNone};
+  if (!engine_ || engine_->options.select != options.select || engine_->options.cpuBatch != options.cpuBatch) {
+    engine_ = std::make_unique<Engine>(workload, device_, options);
+  }
   cell.prepareMs = engine_->prepareMs;
   ScenePlayer& player = engine_->player;
   Sweeper& sweeper = engine_->sweeper;

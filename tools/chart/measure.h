@@ -37,8 +37,8 @@ class Bench {
  private:
   struct Engine;
 
-  /// Modes sampled and contact, and "drawing all", which is mode sampled without select. What one prepares
-  /// serves all that take the same.
+  /// Modes sampled and contact; "drawing all", which is mode sampled without select; "contact on device", whatever the
+  /// batch. What one prepares serves all that take the same.
   Cell measureEngine(const Method& method);
   /// The CPU's exact search, on method.threads threads.
   Cell measureReference(const Method& method);

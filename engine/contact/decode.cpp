@@ -17,8 +17,8 @@ UnresolvedPairs::UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs) {
 }
 
 std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor) const {
-  const auto first = std::partition_point(ordered_.begin(), ordered_.end(),
-                                          [&](const auto* pair) { return pair->sensor < sensor; });
+  const auto first =
+      std::partition_point(ordered_.begin(), ordered_.end(), [&](const auto* pair) { return pair->sensor < sensor; });
   const auto end =
       std::partition_point(first, ordered_.end(), [&](const auto* pair) { return pair->sensor == sensor; });
   return {first, end};

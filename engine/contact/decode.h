@@ -21,8 +21,8 @@ class UnresolvedPairs {
 };
 
 /// The answer where the device's own has the flag kFlagOpen and `pairs` are all that may be first; of a query that only
-/// asks for a decision no more are decided than it takes. Throws Error with VK_ERROR_UNKNOWN if the search met something
-/// that is not among them.
+/// asks for a decision no more are decided than it takes. Throws Error with VK_ERROR_UNKNOWN if the search met
+/// something that is not among them.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query);
 
 /// Of a query that has nothing to meet.

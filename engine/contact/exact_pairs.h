@@ -4,8 +4,8 @@
 #include <compare>
 
 #include "exact/contact.h"
-#include "scene/scene.h"
 #include "scene/frame.h"
+#include "scene/scene.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {

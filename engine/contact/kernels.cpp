@@ -19,7 +19,8 @@ namespace {
 std::array<uint32_t, 3> searchConstants(const Device::Impl& device, const SearchShape& shape) {
   const uint32_t lanes = device.subgroupSize;
   uint32_t queue = std::max(shape.queue != 0 ? shape.queue : std::max(8 * lanes, 128u), 6 * lanes);
-  while (queue > 6 * lanes && gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
+  while (queue > 6 * lanes &&
+         gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
     queue -= lanes;
   }
   return {lanes, queue, std::max(shape.stack, 4u)};
@@ -34,8 +35,10 @@ ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& sh
       collect(device, k_contact_collect_comp, "collect"),
       filter(device, k_contact_filter_comp, "filter"),
       link(device, k_contact_link_comp, "link"),
-      resolve(device, device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
-              "resolve") {
+      resolve(
+          device,
+          device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
+          "resolve") {
   if (device.doubles) refine.emplace(device, k_contact_refine_comp, "refine");
 }
 

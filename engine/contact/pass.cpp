@@ -35,8 +35,8 @@ constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // Tasks that lists have room for beside those of the sensors, at most, where nothing is asked: 20 bytes each, twice.
 constexpr uint32_t kMostTasks = 1u << 21;
-// Candidates, of 20 bytes and once more 56: some 10 a sensor among boxes, 30 of meshes, hundreds where shapes interlock.
-// Where nothing is known of a batch, so many for each and in all; and at most.
+// Candidates, of 20 bytes and once more 56: some 10 a sensor among boxes, 30 of meshes, hundreds where shapes
+// interlock. Where nothing is known of a batch, so many for each and in all; and at most.
 constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
 // Pairs that are left to the host, 184 bytes each: for each sensor, where nothing is known; and at most.
 constexpr uint32_t kUnresolved = 4, kMostUnresolved = 1u << 20;
@@ -74,7 +74,8 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
       resolve_(kernels_->resolve) {
   if (room_.budget == 0) room_.budget = kMostBudget;
   if (room_.width == 0) {
-    room_.width = isProcessor(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
+    room_.width =
+        isProcessor(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
   }
   if (kernels_->refine) refine_.emplace(*kernels_->refine);
 }
@@ -88,12 +89,11 @@ void ContactPass::reserveLists(uint32_t sensors) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
   const uint64_t all = uint64_t{groupsFor(sensors)} * kernels_->lanes * (kernels_->stack + 1);
   const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
-  const uint64_t candidates = room_.candidates != 0
-                                  ? room_.candidates
-                                  : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
-  const uint32_t unresolved = room_.unresolved != 0
-                                  ? room_.unresolved
-                                  : std::clamp(std::max(kUnresolved * sensors, wantedUnresolved_), 4096u, kMostUnresolved);
+  const uint64_t candidates =
+      room_.candidates != 0 ? room_.candidates : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
+  const uint32_t unresolved =
+      room_.unresolved != 0 ? room_.unresolved
+                            : std::clamp(std::max(kUnresolved * sensors, wantedUnresolved_), 4096u, kMostUnresolved);
   taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
   candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::Contender)));
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));

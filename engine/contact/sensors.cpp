@@ -24,8 +24,8 @@ double farthestOf(const Box& world, const Vector& centre) {
   return sum;
 }
 
-// The sensor's box in the world, with room for what its place loses in float, and for what a direction's component loses
-// that is raised above 0 (search.comp), over the whole way.
+// The sensor's box in the world, with room for what its place loses in float, and for what a direction's component
+// loses that is raised above 0 (search.comp), over the whole way.
 void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farthest) {
   for (int k = 0; k < 3; ++k) {
     out.centre[k] = static_cast<float>(box.middle(k) - anchor[k]);

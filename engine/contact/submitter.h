@@ -9,7 +9,7 @@ namespace radar {
 
 /// What the device says of a batch: valid until the next submit().
 struct SearchAnswers {
-  std::span<const Result> results;       ///< one a sensor
+  std::span<const Result> results;  ///< one a sensor
   std::span<const gpu::UnresolvedPair> unresolved;
   bool roomier = false;  ///< the next batch has more room for candidates, of which this one had too little
   uint64_t nodePairs = 0, trianglePairs = 0, solves = 0;

@@ -18,8 +18,8 @@ struct LeafTimes {
   unsigned possible;  ///< a bit for each lane that holds a pair that may meet
 };
 
-/// Tests leaves of a mesh A, in motion, and of a mesh B. One thread at a time: what it has worked out of a leaf serves the
-/// next test of that leaf.
+/// Tests leaves of a mesh A, in motion, and of a mesh B. One thread at a time: what it has worked out of a leaf serves
+/// the next test of that leaf.
 template <class Real>
 class LeafTest {
  public:

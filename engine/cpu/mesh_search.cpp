@@ -141,8 +141,8 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
 
 /// Shows `first` the pairs of triangles of two leaves, the earliest first.
 template <class Real>
-void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b,
-                float near, FirstContact& first, SearchStats& stats) {
+void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
+                FirstContact& first, SearchStats& stats) {
   // Or later, by less than rounding to Real and back takes.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(first.latest())); };
   const LeafTimes<Real> found = test(a, b, near, latest());

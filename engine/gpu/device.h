@@ -36,7 +36,7 @@ struct Device::Impl {
   uint32_t maxLayers = 0;
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may ask for a size; else all have the same
-  bool doubles = false;  ///< shaders may calculate with them
+  bool doubles = false;              ///< shaders may calculate with them
 
   VkDevice device() const { return host.device; }
   /// Throws, in the name of `who`, where the host gave no queue to submit to.

@@ -41,8 +41,8 @@ class Bindings {
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants = {}, bool fullSubgroups = false);
 
-/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0, each `stride` bytes after
-/// the last; viewport and scissor are dynamic; a fragment survives if its depth is less.
+/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0, each `stride` bytes
+/// after the last; viewport and scissor are dynamic; a fragment survives if its depth is less.
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
                        std::span<const uint32_t> spirv, const char* name, uint32_t stride);
 

@@ -10,10 +10,10 @@ namespace radar::gpu {
 
 /// What the engine looks at of a physical device; filled from Vulkan, or by a test.
 struct SubgroupFacts {
-  uint32_t size = 0;         ///< that full subgroups get: the device's own, or less where that is large and can be chosen
-  bool canChoose = false;    ///< a compute pipeline may ask for a size
-  bool isFixed = false;      ///< all subgroups of compute pipelines have `size` invocations, or can be made to
-  bool ballots = false;      ///< votes and ballots in compute shaders
+  uint32_t size = 0;       ///< that full subgroups get: the device's own, or less where that is large and can be chosen
+  bool canChoose = false;  ///< a compute pipeline may ask for a size
+  bool isFixed = false;    ///< all subgroups of compute pipelines have `size` invocations, or can be made to
+  bool ballots = false;    ///< votes and ballots in compute shaders
 };
 SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device);
 
@@ -32,8 +32,8 @@ struct DeviceFacts {
 
 DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device);
 
-/// Shared memory that a workgroup of the search needs at least (shaders/contact/search.comp.glsl): 6 entries of both queues
-/// for each lane, and a task.
+/// Shared memory that a workgroup of the search needs at least (shaders/contact/search.comp.glsl): 6 entries of both
+/// queues for each lane, and a task.
 constexpr uint32_t searchSharedBytes(uint32_t lanes, uint32_t queue = 0) {
   return (queue != 0 ? queue : 6 * lanes) * 36 + lanes * 20;
 }

@@ -56,8 +56,7 @@ Vector transform(const Pose& pose, const Vector& p) {
   return out;
 }
 
-Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& pose,
-                          const Vector& centre) {
+Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& pose, const Vector& centre) {
   Vector offset = transform(pose, centre);
   for (int k = 0; k < 3; ++k) offset[k] -= origin[k];
   Affine out;

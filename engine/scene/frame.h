@@ -28,7 +28,7 @@ double lengthOf(const Vector& v);
 /// frameFromMesh for a mesh whose vertices are given relative to `centre`: axes * (pose(centre + q) - origin), with the
 /// difference taken in the world, before turning.
 Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& worldFromMesh,
-                          const Vector& centre);
+                      const Vector& centre);
 
 /// worldFromMesh applied to a double-precision point.
 Vector transform(const Pose& worldFromMesh, const Vector& p);

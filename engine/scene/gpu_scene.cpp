@@ -39,16 +39,14 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
 
 GpuScene::GpuScene(const Device::Impl& device)
     : device_(&device),
-      buffers_{
-          {device, "vertices", Residence::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kFloats},
-          {device, "triangles", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT},
-          {device, "mesh nodes", Residence::device, kUploaded, kFloats},
-          {device, "meshes", Residence::device, kUploaded},
-          {device, "objects", Residence::device, kUploaded},
-          {device, "placements", Residence::device, kUploaded, kFloats},
-          {device, "object nodes", Residence::device, kUploaded, kFloats},
-          {device, "indices", Residence::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
-
+      buffers_{{device, "vertices", Residence::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kFloats},
+               {device, "triangles", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT},
+               {device, "mesh nodes", Residence::device, kUploaded, kFloats},
+               {device, "meshes", Residence::device, kUploaded},
+               {device, "objects", Residence::device, kUploaded},
+               {device, "placements", Residence::device, kUploaded, kFloats},
+               {device, "object nodes", Residence::device, kUploaded, kFloats},
+               {device, "indices", Residence::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
 
 void GpuScene::willOverwrite(Overwritten next) {
   next_ = std::move(next);
@@ -157,8 +155,8 @@ void GpuScene::uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, Uploa
   triangles.reserve(mesh.triangleCount());
   for (const uint32_t id : mesh.tree.order) {
     const uint32_t* corner = &mesh.indices[3 * size_t{id}];
-    triangles.push_back({{record.firstVertex + corner[0], record.firstVertex + corner[1], record.firstVertex + corner[2]},
-                         id});
+    triangles.push_back(
+        {{record.firstVertex + corner[0], record.firstVertex + corner[1], record.firstVertex + corner[2]}, id});
   }
   std::vector<gpu::MeshNode> nodes = mesh.tree.nodes;
   for (gpu::MeshNode& node : nodes) {

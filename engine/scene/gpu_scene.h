@@ -27,6 +27,7 @@ class GpuScene {
 
   /// From the next prepare() on the buffer of indices is there, too.
   void needIndices() { hasIndices_ = true; }
+  bool hasIndices() const { return hasIndices_; }
 
   /// Meshes and objects that commands behind the next upload overwrite. What those behind the last one have
   /// overwritten, and these do not, is staged as the scene has it.

@@ -24,15 +24,9 @@ using Matrix = std::array<double, 9>;
 Matrix inverseOf(const Matrix& m) {
   const double a = m[4] * m[8] - m[5] * m[7], b = m[5] * m[6] - m[3] * m[8], c = m[3] * m[7] - m[4] * m[6];
   const double inverse = 1 / (m[0] * a + m[1] * b + m[2] * c);
-  return {a * inverse,
-          (m[2] * m[7] - m[1] * m[8]) * inverse,
-          (m[1] * m[5] - m[2] * m[4]) * inverse,
-          b * inverse,
-          (m[0] * m[8] - m[2] * m[6]) * inverse,
-          (m[2] * m[3] - m[0] * m[5]) * inverse,
-          c * inverse,
-          (m[1] * m[6] - m[0] * m[7]) * inverse,
-          (m[0] * m[4] - m[1] * m[3]) * inverse};
+  return {a * inverse, (m[2] * m[7] - m[1] * m[8]) * inverse, (m[1] * m[5] - m[2] * m[4]) * inverse,
+          b * inverse, (m[0] * m[8] - m[2] * m[6]) * inverse, (m[2] * m[3] - m[0] * m[5]) * inverse,
+          c * inverse, (m[1] * m[6] - m[0] * m[7]) * inverse, (m[0] * m[4] - m[1] * m[3]) * inverse};
 }
 
 // Returns whether floats hold the rows.

@@ -6,7 +6,8 @@
 
 namespace radar {
 
-/// All members but `mask`, `root` and `mesh`. Where floats cannot hold the mesh or its pose (kMostCoordinate), perUnit is 0.
+/// All members but `mask`, `root` and `mesh`. Where floats cannot hold the mesh or its pose (kMostCoordinate), perUnit
+/// is 0.
 gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh);
 
 /// Whether floats hold it.

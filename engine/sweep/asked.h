@@ -18,7 +18,7 @@ inline double msSince(Clock::time_point start) {
 
 struct Asked {
   std::span<const Query> asked;
-  std::span<Result> answers;             ///< one for each query
+  std::span<Result> answers;  ///< one for each query
   SweepStats stats;
   std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its place
   std::optional<Error> failure;           ///< the first Vulkan call that failed

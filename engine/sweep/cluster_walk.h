@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/scene.h"
 #include "scene/frame.h"
+#include "scene/scene.h"
 
 namespace radar {
 

@@ -12,8 +12,8 @@ namespace {
 // Sensors of one submission, at most: what a device has in hand while the next ones are planned.
 constexpr size_t kMostSensors = 1u << 14;
 // Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
-// the batch (docs/benchmarks.md). On another, a submission takes the time in which a CPU answers some queries: an estimate,
-// as no such device has been measured.
+// the batch (docs/benchmarks.md). On another, a submission takes the time in which a CPU answers some queries: an
+// estimate, as no such device has been measured.
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
 // Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
@@ -60,6 +60,10 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
   batch_.addCpuTime("cpu", msSince(start));
 }
 
+bool ContactTier::isOnCpu() const {
+  return cpuBatchOf(options_, device_) == kNone;
+}
+
 void ContactTier::run(std::span<const size_t> which) {
   if (which.empty()) return;
   if (which.size() < cpuBatchOf(options_, device_)) return answerOnCpu(which);
@@ -73,8 +77,7 @@ void ContactTier::run(std::span<const size_t> which) {
   std::vector<size_t> outOfRange;
   Clock::time_point start = Clock::now();
   for (const size_t i : which) {
-    const Planned planned =
-        addSensor(sensors_, batch_.asked[i], static_cast<uint32_t>(planned_.size()), scene, tree);
+    const Planned planned = addSensor(sensors_, batch_.asked[i], static_cast<uint32_t>(planned_.size()), scene, tree);
     if (planned == Planned::added) planned_.push_back(i);
     if (planned == Planned::clear) batch_.answers[i] = clearAnswer();
     if (planned == Planned::outOfRange) outOfRange.push_back(i);

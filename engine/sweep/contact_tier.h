@@ -13,6 +13,8 @@ class ContactTier {
   ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, Asked& batch);
 
+  /// Whether all batches are answered on the CPU, so that the device needs no scene.
+  bool isOnCpu() const;
   /// Plans these queries and submits them; on return the last submission may still be with the device.
   void run(std::span<const size_t> which);
   /// Waits for it, and sees to what the device had no room or range for.

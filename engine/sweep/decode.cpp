@@ -1,7 +1,7 @@
 #include "sweep/decode.h"
 
-#include "sweep/contact_point.h"
 #include "contact/exact_pairs.h"
+#include "sweep/contact_point.h"
 
 namespace radar {
 

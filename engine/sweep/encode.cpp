@@ -152,8 +152,7 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
   return std::bit_ceil(static_cast<uint32_t>(std::clamp(wanted, 64.0, 512.0)));
 }
 
-ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits,
-                Drawn drawn) {
+ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn) {
   ViewPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   const SensorWindow window = lookAlong(query, sensor);

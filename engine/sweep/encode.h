@@ -49,8 +49,7 @@ struct ViewPlan {
 };
 
 /// `subPixelBits`: of the device.
-ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits,
-                Drawn drawn);
+ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn);
 
 /// The window's longer side, pixels, where the query leaves it open: four pixels to the sensor's mean triangle edge, so
 /// that a triangle is seen by some pixel centres, in powers of two from 64 to 512.

@@ -152,8 +152,8 @@ void HostGeometryPass::listNodes(const Scene::Impl& scene) {
     }
     levels_.resize(std::max(levels_.size(), byDepth.size()));
     for (size_t depth = 0; depth < byDepth.size(); ++depth) {
-      levels_[depth].push_back({deformed.mesh, static_cast<uint32_t>(nodeList_.size()),
-                                static_cast<uint32_t>(byDepth[depth].size())});
+      levels_[depth].push_back(
+          {deformed.mesh, static_cast<uint32_t>(nodeList_.size()), static_cast<uint32_t>(byDepth[depth].size())});
       nodeList_.insert(nodeList_.end(), byDepth[depth].begin(), byDepth[depth].end());
     }
   }
@@ -192,7 +192,8 @@ GpuScene::Overwritten HostGeometryPass::overwritten() const {
 void HostGeometryPass::setArguments() {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = resident_.buffers();
-  deform_.set({{kSlotVertices, scene.vertices}, {kSlotMeshes, scene.meshes}, {kSlotStray, stray_}, {kSlotWords, words_}});
+  deform_.set(
+      {{kSlotVertices, scene.vertices}, {kSlotMeshes, scene.meshes}, {kSlotStray, stray_}, {kSlotWords, words_}});
   refit_.set({{kSlotVertices, scene.vertices},
               {kSlotTriangles, scene.triangles},
               {kSlotMeshes, scene.meshes},
@@ -230,8 +231,7 @@ void HostGeometryPass::record(const gpu::Commands& commands) {
   }
 }
 
-void HostGeometryPass::recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results,
-                                     uint32_t count) {
+void HostGeometryPass::recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count) {
   gpu::computeWriteToComputeReadWrite(commands);
   refuse_.set({{gpu::kSlotResults, results}, {gpu::kSlotStray, stray_}});
   refuse_.dispatch(commands, gpu::groupsFor(count, kGroup), count);

@@ -62,8 +62,8 @@ Box tightBox(const Mesh& mesh, const Affine& m) {
 }
 
 // Objects in the swept prism, by id.
-std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene,
-                                    const Prism& prism, double& farthest) {
+std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene, const Prism& prism,
+                                    double& farthest) {
   thread_local std::vector<ObjectId> ids;
   ids.clear();
   selectObjects(scene, prism, ids);

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sweep/select.h"
 #include "scene/frame.h"
+#include "sweep/select.h"
 
 namespace radar {
 

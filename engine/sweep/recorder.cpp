@@ -59,7 +59,7 @@ struct Recorder::Impl {
   GpuScene copy;
   HostGeometryPass geometry;
   ContactPass pass;
-  gpu::Buffer readback;  ///< counts, then results
+  gpu::Buffer readback;      ///< counts, then results
   std::vector<Query> asked;  ///< in the last record(); none if it failed
   SensorBatch sensors;
   std::vector<Result> known;

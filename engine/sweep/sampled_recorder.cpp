@@ -44,8 +44,7 @@ struct SampledKernels {
 
 }  // namespace
 
-SampledRecorder::SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
-                                 bool timestamps)
+SampledRecorder::SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps)
     : device_(&device),
       pictureBytes_(pictureBytes),
       resident_(resident),

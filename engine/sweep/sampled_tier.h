@@ -1,5 +1,5 @@
-// Mode sampled: slices of a batch, planned on the CPU, in as few submissions as fit. One of them is with the device at a
-// time; it lands before the next is staged.
+// Mode sampled: slices of a batch, planned on the CPU, in as few submissions as fit. One of them is with the device at
+// a time; it lands before the next is staged.
 #pragma once
 
 #include "sweep/asked.h"

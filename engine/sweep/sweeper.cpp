@@ -54,7 +54,11 @@ void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {
 }
 
 void Sweeper::Impl::sync() {
-  copy->sync(scene.impl());
+  if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
+    scene.impl().objectTree();
+  } else {
+    copy->sync(scene.impl());
+  }
 }
 
 void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/answer.h"
 #include "stability/promises.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 #include "workloads/workload.h"
 

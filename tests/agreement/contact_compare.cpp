@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "agreement/compare.h"
-#include "support/answer.h"
 #include "stability/promises.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 
 namespace radar::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "agreement/real_meshes.h"
-#include "support/answer.h"
 #include "stability/promises.h"
+#include "support/answer.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
 

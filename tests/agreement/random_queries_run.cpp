@@ -57,8 +57,8 @@ int main(int argc, char** argv) {
   const uint64_t each = (queries + families.size() - 1) / families.size();
   for (const std::string& family : families) {
     const auto onWrong = [&](uint64_t query, const std::string& words) {
-      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1\n", words.c_str(),
-                  family.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(query));
+      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1\n", words.c_str(), family.c_str(),
+                  static_cast<unsigned long long>(seed), static_cast<unsigned long long>(query));
     };
     const auto onProgress = [&](uint64_t done) {
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),

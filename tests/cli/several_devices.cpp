@@ -15,8 +15,8 @@ TEST_CASE("query on all devices, or on named ones, writes the answers of one dev
   const Run one = runProgram(folder, "query w/queries.json --mode contact --device 0");
   REQUIRE(one.status == 0);
   for (const char* devices : {"all", "0,1", "1,0"}) {
-    const Run run =
-        runProgram(folder, std::string("query w/queries.json --mode contact --cpu-batch 0 --stats s.json --device ") + devices);
+    const Run run = runProgram(
+        folder, std::string("query w/queries.json --mode contact --cpu-batch 0 --stats s.json --device ") + devices);
     CHECK(run.status == 0);
     CHECK(run.out == one.out);
     const auto stats = nlohmann::json::parse(folder.read("s.json"));

@@ -44,7 +44,8 @@ MeshId add(Scene& scene, const tools::MeshData& mesh) {
 
 }  // namespace
 
-TEST_CASE("in mode contact a batch of any size gives the same bits as one query at a time, on the device and beside it") {
+TEST_CASE(
+    "in mode contact a batch of any size gives the same bits as one query at a time, on the device and beside it") {
   Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
   const uint32_t cpuBatch = GENERATE(kOnDevice, 500u, kNone);
   CAPTURE(cpuBatch);

@@ -24,10 +24,10 @@ struct Told {
   Point cornersA[3];
   float errorB;
   Point cornersB[3];
-  float gap;        // of the nodes
+  float gap;  // of the nodes
   float boxGap, boxEnd;
-  uint mayMeet;     // of the triangles
-  float pairGap;    // of the triangles, once solved
+  uint mayMeet;   // of the triangles
+  float pairGap;  // of the triangles, once solved
   uint inRange;
 };
 

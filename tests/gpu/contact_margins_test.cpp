@@ -63,8 +63,8 @@ struct Case {
   Query query;
   ObjectId object;
   uint32_t triangleA, triangleB;
-  Real contact;    ///< distance at which it touches, give or take
-  Real doubt;      ///< this: what placing in double precision may lose
+  Real contact;  ///< distance at which it touches, give or take
+  Real doubt;    ///< this: what placing in double precision may lose
 };
 
 class Margins {
@@ -101,7 +101,8 @@ class Margins {
   Pose poseOf(double size, double far) {
     Pose pose = tools::makePose(random_.rotation(), {1, 1, 1}, {});
     if (random_.oneIn(2)) pose = tools::randomAffine(random_, {});
-    if (random_.oneIn(6)) pose = tools::makePose(random_.rotation(), {1, magnitude(random_, 14), magnitude(random_, 14)}, {});
+    if (random_.oneIn(6))
+      pose = tools::makePose(random_.rotation(), {1, magnitude(random_, 14), magnitude(random_, 14)}, {});
     if (random_.oneIn(4)) pose = Pose();
     for (int row = 0; row < 3; ++row) {
       for (int k = 0; k < 3; ++k) pose.m[4 * row + k] *= size;
@@ -249,9 +250,9 @@ void Margins::check() {
     std::copy(from.begin(), from.end(), array.mapped());
     return array;
   };
-  const auto sensors = upload(batch.sensors,
-                              gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::Residence::upload, 0,
-                                                           VK_FORMAT_R32G32B32A32_SFLOAT));
+  const auto sensors = upload(
+      batch.sensors,
+      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::Residence::upload, 0, VK_FORMAT_R32G32B32A32_SFLOAT));
   const auto asked = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::Residence::upload));
   gpu::Array<Told> answers(test::impl(), "told", gpu::Residence::readback);
   answers.reserve(touches.size());
@@ -290,9 +291,9 @@ void Margins::check() {
     CHECK(told.pairGap <= contact);
     const Mesh &a = impl.meshes[c.query.mesh], &b = impl.meshes[impl.objects[c.object].object.mesh];
     const std::array<Place, 3> frame = frameOf(sensor, c.query.direction);
-    const Place anchor = placed(c.query.worldFromMesh, {told.anchorA[0] * a.unit + a.origin[0],
-                                                        told.anchorA[1] * a.unit + a.origin[1],
-                                                        told.anchorA[2] * a.unit + a.origin[2]});
+    const Place anchor =
+        placed(c.query.worldFromMesh, {told.anchorA[0] * a.unit + a.origin[0], told.anchorA[1] * a.unit + a.origin[1],
+                                       told.anchorA[2] * a.unit + a.origin[2]});
     const Real offA = offBy(told.cornersA, a, c.triangleA, c.query.worldFromMesh, anchor, frame, scale);
     const Real offB =
         offBy(told.cornersB, b, c.triangleB, impl.objects[c.object].object.worldFromMesh, anchor, frame, scale);

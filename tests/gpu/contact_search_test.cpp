@@ -99,7 +99,8 @@ TEST_CASE("with the least room, and in the shortest rounds, the answers have the
   CAPTURE(tools::nameOf(family), room, shape.queue, shape.stack);
   Searching narrow(asked.player.scene(), room, shape);
   checkSame(narrow.run(asked.queries), roomy);
-  // What a list has no room for goes to the processor, and nothing else does; rounds that are cut short go on in others.
+  // What a list has no room for goes to the processor, and nothing else does; rounds that are cut short go on in
+  // others.
   if (room.candidates == 1) CHECK(narrow.stats().cpuQueries > 0);
   if (room.budget == 1 && family == tools::Family::interlocking) CHECK(narrow.stats().submissions > 1);
   if (room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/answer.h"
 #include "stability/method.h"
 #include "stability/promises.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 #include "workloads/stability.h"
 

@@ -167,7 +167,9 @@ const std::vector<Expected>& sharedStructs() {
        sizeof(SearchPush),
        {MEMBER(SearchPush, round), MEMBER(SearchPush, taskCapacity), MEMBER(SearchPush, candidateCapacity),
         MEMBER(SearchPush, budget), MEMBER(SearchPush, width)}},
-      {"CollectPush", sizeof(CollectPush), {MEMBER(CollectPush, round), MEMBER(CollectPush, taskCapacity), MEMBER(CollectPush, isLast)}},
+      {"CollectPush",
+       sizeof(CollectPush),
+       {MEMBER(CollectPush, round), MEMBER(CollectPush, taskCapacity), MEMBER(CollectPush, isLast)}},
       {"FilterPush", sizeof(FilterPush), {MEMBER(FilterPush, candidateCapacity)}},
       {"ResolvePush", sizeof(ResolvePush), {MEMBER(ResolvePush, sensors), MEMBER(ResolvePush, unresolvedCapacity)}},
   };

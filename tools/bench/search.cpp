@@ -25,8 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr uint32_t kOnDevice = 0;  // SweeperOptions::cpuBatch: every batch goes to the device
 
-/// A workload, made when it is its turn: some take seconds and gigabytes. Where it has several scenes they are the steps
-/// of a motion, each a batch.
+/// A workload, made when it is its turn: some take seconds and gigabytes. Where it has several scenes they are the
+/// steps of a motion, each a batch.
 struct Case {
   std::string name;
   std::function<tools::Workload(uint32_t sensors)> make;
@@ -36,10 +36,14 @@ struct Case {
 std::vector<Case> allCases() {
   const std::vector<uint32_t> sizes{1, 64, 1024, 16'384, 131'072}, heavy{1, 64, 1024};
   const auto table1 = [](tools::SensorShape shape) {
-    return [shape](uint32_t n) { return tools::makeWorkload(tools::Table1{.boxes = 30'000, .sensors = n, .shape = shape}); };
+    return [shape](uint32_t n) {
+      return tools::makeWorkload(tools::Table1{.boxes = 30'000, .sensors = n, .shape = shape});
+    };
   };
   const auto city = [](uint32_t triangles, tools::SensorShape shape) {
-    return [=](uint32_t n) { return tools::makeWorkload(tools::OneMesh{.triangles = triangles, .sensors = n, .shape = shape}); };
+    return [=](uint32_t n) {
+      return tools::makeWorkload(tools::OneMesh{.triangles = triangles, .sensors = n, .shape = shape});
+    };
   };
   const auto grown = [](uint32_t boxes) {
     return [boxes](uint32_t n) {
@@ -56,22 +60,25 @@ std::vector<Case> allCases() {
       {"city-teapots", city(1'000'000, SensorShape::teapot), {1, 64, 1024, 16'384}},
   };
   for (const tools::Interlocking kind : tools::kInterlocking) {
-    cases.push_back({std::string("interlocking-") + tools::nameOf(kind),
-                     [kind](uint32_t n) { return tools::makeWorkload(tools::InterlockingPairs{.kind = kind, .sensors = n}); },
-                     {1, 64, 256}});
+    cases.push_back(
+        {std::string("interlocking-") + tools::nameOf(kind),
+         [kind](uint32_t n) { return tools::makeWorkload(tools::InterlockingPairs{.kind = kind, .sensors = n}); },
+         {1, 64, 256}});
   }
   cases.push_back({"real-meshes",
                    [](uint32_t n) {
                      std::vector<tools::MeshData> meshes;
                      std::vector<std::string> warnings;
                      for (const char* name : {"elephant", "knot1", "eight", "anchor", "hand"}) {
-                       meshes.push_back(tools::readMesh(RADAR_CGAL_MESHES + ("/" + std::string(name)) + ".off", warnings));
+                       meshes.push_back(
+                           tools::readMesh(RADAR_CGAL_MESHES + ("/" + std::string(name)) + ".off", warnings));
                      }
                      return tools::makeWorkload(tools::RandomPoses{.meshes = meshes, .sensors = n});
                    },
                    heavy});
   cases.push_back({"sheets", [](uint32_t n) { return tools::makeWorkload(tools::Sheets{.sensors = n}); }, {1, 4}});
-  cases.push_back({"drop-cutter", [](uint32_t) { return tools::makeWorkload(tools::DropCutter()); }, {1, 64, 1024, 42'000}});
+  cases.push_back(
+      {"drop-cutter", [](uint32_t) { return tools::makeWorkload(tools::DropCutter()); }, {1, 64, 1024, 42'000}});
   for (const uint32_t boxes : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
     cases.push_back({"growth-" + std::to_string(boxes), grown(boxes), {16'384}});
   }
@@ -123,7 +130,8 @@ class Bench {
     if (settings.csv.empty()) return;
     csv_.open(settings.csv);
     if (!csv_) throw Error(settings.csv + ": cannot be written");
-    csv_ << "workload,batch,contact us,device us,device host us,cpu us,cpu 1 thread us,device / cpu,contact / cpu,differ\n";
+    csv_ << "workload,batch,contact us,device us,device host us,cpu us,cpu 1 thread us,device / cpu,contact / "
+            "cpu,differ\n";
   }
 
   void run(const Case& one) {
@@ -142,16 +150,22 @@ class Bench {
       const size_t count = std::max<size_t>(1, std::min(queries.size() / batch, least));
       std::vector<std::span<const Query>> all;
       for (size_t i = 0; i < count; ++i) all.push_back(std::span(queries).subspan(i * batch, batch));
-      measure(one.name, batch, ways, [&](const auto& runBatch) {
-        for (const auto& part : all) runBatch(part);
-      }, count * batch);
+      measure(
+          one.name, batch, ways,
+          [&](const auto& runBatch) {
+            for (const auto& part : all) runBatch(part);
+          },
+          count * batch);
     }
   }
 
  private:
   struct Ways {
     Ways(const Device& device, const Scene& scene, unsigned threads)
-        : contact(device, scene), onDevice(device, scene, {.cpuBatch = kOnDevice}), cpu(scene, threads), oneThread(scene, 1) {
+        : contact(device, scene),
+          onDevice(device, scene, {.cpuBatch = kOnDevice}),
+          cpu(scene, threads),
+          oneThread(scene, 1) {
       for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
       list = {{"contact", [this](auto batch) { return contact.run(batch); }},
               {"device", [this](auto batch) { return onDevice.run(batch); }},
@@ -169,14 +183,18 @@ class Bench {
     tools::ScenePlayer player(workload);
     player.show(batches[0].scene);
     Ways ways(device_, player.scene(), settings_.threads);
-    measure(name, static_cast<uint32_t>(batches[0].queries.size()), ways, [&](const auto& runBatch) {
-      for (const tools::Batch& batch : batches) {
-        player.show(batch.scene);
-        std::vector<Query> queries;
-        for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
-        runBatch(queries);
-      }
-    }, workload.queries.size());
+    measure(
+        name, static_cast<uint32_t>(batches[0].queries.size()), ways,
+        [&](const auto& runBatch) {
+          for (const tools::Batch& batch : batches) {
+            player.show(batch.scene);
+            std::vector<Query> queries;
+            for (const uint32_t i : batch.queries)
+              queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
+            runBatch(queries);
+          }
+        },
+        workload.queries.size());
   }
 
   /// `pass` hands its argument every batch once.
@@ -212,12 +230,12 @@ class Bench {
     }
     const double ofContact = median(contact.us), ofDevice = median(device.us), host = median(device.hostUs),
                  ofCpu = median(cpu.us), ofOne = median(one.us);
-    std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7zu\n", name.c_str(), batch, ofContact, ofDevice,
-                host, ofCpu, ofOne, ofDevice / ofCpu, ofContact / ofCpu, differ);
+    std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7zu\n", name.c_str(), batch, ofContact,
+                ofDevice, host, ofCpu, ofOne, ofDevice / ofCpu, ofContact / ofCpu, differ);
     std::fflush(stdout);
     if (csv_.is_open()) {
-      csv_ << name << ',' << batch << ',' << ofContact << ',' << ofDevice << ',' << host << ',' << ofCpu << ',' << ofOne << ','
-           << ofDevice / ofCpu << ',' << ofContact / ofCpu << ',' << differ << std::endl;
+      csv_ << name << ',' << batch << ',' << ofContact << ',' << ofDevice << ',' << host << ',' << ofCpu << ',' << ofOne
+           << ',' << ofDevice / ofCpu << ',' << ofContact / ofCpu << ',' << differ << std::endl;
     }
     differed_ = differed_ || differ != 0;
   }
@@ -256,11 +274,12 @@ int main(int argc, char** argv) try {
   std::printf("device %s, driver %s, %u cores, commit %s\n", device.name().c_str(), device.driver().c_str(),
               std::thread::hardware_concurrency(), tools::commit());
   std::printf("microseconds a query; host: what the calling thread computed of the device's\n");
-  std::printf("%-27s %7s %10s %10s %8s %10s %10s %9s %9s %7s\n", "workload", "batch", "contact", "device", "host", "cpu",
-              "cpu,1 thr", "dev/cpu", "cont/cpu", "differ");
+  std::printf("%-27s %7s %10s %10s %8s %10s %10s %9s %9s %7s\n", "workload", "batch", "contact", "device", "host",
+              "cpu", "cpu,1 thr", "dev/cpu", "cont/cpu", "differ");
   Bench bench(device, settings);
   for (const Case& one : cases) {
-    const bool wanted = settings.cases.empty() || std::count(settings.cases.begin(), settings.cases.end(), one.name) > 0;
+    const bool wanted =
+        settings.cases.empty() || std::count(settings.cases.begin(), settings.cases.end(), one.name) > 0;
     if (wanted) bench.run(one);
   }
   return bench.differed() ? 1 : 0;

@@ -51,8 +51,8 @@ void EngineOptions::addTo(CLI::App& command) {
   command
       .add_option(
           "--mode", mode,
-          "How to answer: reference, exact on the CPU; on a Vulkan device: sampled, the paper's method, an upper "
-          "bound of the distance; contact, exact")
+          "How to answer: contact, exact, on a Vulkan device or on the CPU (see --cpu-batch); sampled, the paper's "
+          "method on the device, an upper bound of the distance; reference, exact on the CPU, without a device")
       ->type_name("sampled|contact|reference")
       ->capture_default_str();
   addResolutionTo(command);

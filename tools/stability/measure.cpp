@@ -61,7 +61,11 @@ class Measuring {
  public:
   Measuring(const Device& device, const StabilitySettings& settings, StabilityReport& report,
             const std::function<void(const std::string&)>& onWrong)
-      : sweeper_(device, scene_, {.cpuBatch = 0}), exact_(scene_), settings_(settings), report_(report), onWrong_(onWrong) {}
+      : sweeper_(device, scene_, {.cpuBatch = 0}),
+        exact_(scene_),
+        settings_(settings),
+        report_(report),
+        onWrong_(onWrong) {}
 
   void run(const StabilityFamily& family, uint64_t cases, const std::function<void(uint64_t)>& onProgress);
 

@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kBeginning = R"(# Where methods fail
 
 This page was written by the command below. It asks every tier about families of cases in which collision queries are
-known to go wrong, and holds each answer against the exact reference (`engine/reference`). A family has one parameter; its
+known to go wrong, and holds each answer against the CPU's exact search (`engine/cpu`); mode `contact` is
+asked on the device. A family has one parameter; its
 cases take the values in turn, in random rotations and positions, and sensor and scene change places in half of the cases
 that have one object. `tests/stability` does the same with fewer cases.
 
@@ -33,7 +34,7 @@ How to read the tables:
   the greater of the sensor's size and t. In mode `sampled` t is the upper end of the bracket.
 - **brackets**: brackets that do not hold the exact t. **otherwise**: other promises broken (no answer, wrong status, triangles, point or
   normal). The paper's min(L) has no bracket.
-- **select**, **pict.**, **contact %**: the share of cases settled by the hierarchy alone, by pictures, by the exact search;
+- **select**, **pict.**, **contact %**: the share of cases settled by the tree over objects alone, by pictures, by the exact search;
   **undecided** what is left.
 - **us a query**: microseconds, the median over batches of up to 32 queries.
 
@@ -72,7 +73,7 @@ std::string summaryOf(const StabilityReport& report) {
     error = std::max({error, row.late, row.early});
   }
   const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
-  const std::string t = error == 0 ? "the reference's to the bit" : print("within %.1e of the reference's", error);
+  const std::string t = error == 0 ? "the CPU's to the bit" : print("within %.1e of the CPU's", error);
   return print(
              "Mode `contact` (%llu answers): %llu missed, %llu false, %llu brackets violated, %llu promises broken "
              "otherwise,\n%llu undecided. Its t was ",
@@ -99,7 +100,8 @@ std::string stepsOf(const std::vector<StepRow>& rows) {
       "\n## In tiny steps\n\nThe sensor's pose moves in steps of 10^-6 of its size, in one direction a case. *excess*: "
       "the most that t "
       "moved in a\nstep beyond what the exact t did, in the units above; *flips*: steps in which only one of the two "
-      "contacts was found; of\nsteps in which the reference finds both. Pictures have 64 pixels.\n\n| family | steps |";
+      "contacts was found; of\nsteps in which the exact search finds both. Pictures have 64 pixels.\n\n| family | "
+      "steps |";
   std::string line = "\n|---|---|";
   for (size_t m = 0; m < kMethods; ++m) {
     text += print(" %s excess | flips |", nameOf(static_cast<Method>(m)));
@@ -125,7 +127,7 @@ std::string stepsOf(const std::vector<StepRow>& rows) {
 
 std::string changesOf(const std::vector<ChangeRow>& rows) {
   std::string text =
-      "\n## Changes that change nothing\n\nWithout the reference: what leaves the first contact where it is, exactly "
+      "\n## Changes that change nothing\n\nWithout a reference: what leaves the first contact where it is, exactly "
       "in float, must leave every answer within its\nbracket. *broken*: the answers before and after cannot both be "
       "right. Pictures have 64 pixels.\n\n| change | tier | cases | contacts found | broken |\n|---|---|---|---|---|\n";
   for (const ChangeRow& row : rows) {

@@ -64,7 +64,8 @@ Workload makeWorkload(const DropCutter& options) {
     for (uint32_t column = 0; column < options.columns; ++column) {
       QuerySpec query;
       query.id = "point/" + std::to_string(row) + "/" + std::to_string(column);
-      const double x = kWidth * ((column + 0.5) / options.columns - 0.5), y = kWidth * ((row + 0.5) / options.rows - 0.5);
+      const double x = kWidth * ((column + 0.5) / options.columns - 0.5),
+                   y = kWidth * ((row + 0.5) / options.rows - 0.5);
       query.sensor = {0, {{kRadius, 0, 0, x, 0, kRadius, 0, y, 0, 0, kRadius, 20}}};
       query.direction = {0, 0, -1};
       query.distance = 20;

@@ -229,7 +229,8 @@ Workload makeWorkload(const Sheets& options) {
     // Across the sheet, towards the cube's middle.
     query.direction = {-rotation[2], -rotation[5], -rotation[8]};
     const double half = 0.5 * kCubeSide;
-    query.sensor = {1, makePose(rotation, {half, half, half}, {2 * half * rotation[2], 2 * half * rotation[5], 2 * half * rotation[8]})};
+    query.sensor = {1, makePose(rotation, {half, half, half},
+                                {2 * half * rotation[2], 2 * half * rotation[5], 2 * half * rotation[8]})};
     query.distance = 2 * kCubeSide;
     workload.queries.push_back(std::move(query));
   }

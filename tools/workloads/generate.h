@@ -57,8 +57,8 @@ struct OneMesh {
 };
 Workload makeWorkload(const OneMesh& options);
 
-/// Few large sensors: wavy sheets of 20,000 triangles, as wide as the cube of Table 1, that come at its `boxes` boxes from
-/// outside, each from its own side. One batch.
+/// Few large sensors: wavy sheets of 20,000 triangles, as wide as the cube of Table 1, that come at its `boxes` boxes
+/// from outside, each from its own side. One batch.
 struct Sheets {
   uint32_t boxes = 30'000;
   uint32_t sensors = 4;

@@ -1,4 +1,4 @@
-// Shapes of many long thin triangles inside each other, turned off the axes, so that the boxes of their clusters
+// Shapes of many long thin triangles inside each other, turned off the axes, so that the boxes of their parts
 // overlap from the start: what a search by boxes finds hardest.
 #pragma once
 

@@ -1,8 +1,8 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// The public interface, with cpu_sweeper.h for the CPU alone, pool.h for several devices and recorder.h for a host's own
-// command buffers. Units: any one unit of length, used throughout; angles never appear. Coordinates are left- or right-handed; meshes are two-sided
-// triangle soups, winding is ignored, nothing has to be closed or connected.
+// The public interface, with cpu_sweeper.h for the CPU alone, pool.h for several devices and recorder.h for a host's
+// own command buffers. Units: any one unit of length, used throughout; angles never appear. Coordinates are left- or
+// right-handed; meshes are two-sided triangle soups, winding is ignored, nothing has to be closed or connected.
 //
 // Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
 // a Sweeper reads its Scene during run() and scopes().
@@ -179,10 +179,10 @@ enum class Detected : uint32_t {
 
 /// Why a Recorder (radar/recorder.h) has left a query without an answer: bits of Result::flags.
 inline constexpr uint32_t kFlagOpen = 1;  ///< pairs of triangles too close for the device: Recorder::read() decides
-inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates was too small
+inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates, or a list of the search, was too small
 inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was
-inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene's coordinates, or the sensor beside them
-inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of HostGeometry has left its declared bounds
+inline constexpr uint32_t kFlagRange = 8;    ///< floats cannot hold the scene's coordinates, or the sensor beside them
+inline constexpr uint32_t kFlagBounds = 16;  ///< a vertex or an object of HostGeometry has left its declared bounds
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 2: 120 bytes, natural alignment.
 ///
@@ -353,20 +353,21 @@ struct Scopes {
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
-  /// Creates the pipelines of mode contact; those of mode sampled are made when first used. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
+  /// Creates the pipelines of mode contact; those of mode sampled are made when first used. `device` and `scene` must
+  /// outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;
   Sweeper& operator=(Sweeper&&) noexcept;
 
-  /// Brings what changed in the scene since the last call to the device. run() does it too; calling it apart only moves
-  /// the cost.
+  /// Brings what changed in the scene since the last call to where it is needed, the device or the tree over objects.
+  /// run() does it too; calling it apart only moves the cost.
   void sync();
 
-  /// Answers each query as its mode says, in the order given: any number of queries. Those that go to the device are one
-  /// upload, one command buffer, one readback for each mode, or several where they are too many for the device's layers
-  /// or memory, or more than 16,384. The answer to a query does not depend on its batch. Throws if a query breaks its contract, naming it,
-  /// before anything is submitted. Blocks until the answers are here.
+  /// Answers each query as its mode says, in the order given: any number of queries. Those that go to the device are
+  /// one upload, one command buffer, one readback for each mode, or several where they are too many for the device's
+  /// layers or memory, or more than 16,384. The answer to a query does not depend on its batch. Throws if a query
+  /// breaks its contract, naming it, before anything is submitted. Blocks until the answers are here.
   std::vector<Result> run(std::span<const Query> queries);
 
   /// The pictures behind the answer to `query` in mode sampled, at the query's resolution. Throws Error where they do

@@ -15,8 +15,8 @@ struct Capacity {
   /// Pairs of triangles that may be first as far as floats can tell, of all queries together, while the search goes on:
   /// some 10 a query among boxes, 30 among meshes, hundreds where shapes interlock. kFlagCandidates.
   uint32_t candidates = 1u << 14;
-  /// Dispatches that the search is cut into, each of a few milliseconds at most; those behind the last one that is needed
-  /// cost next to nothing. An even number up to 64: kFlagRounds.
+  /// Dispatches that the search is cut into, each of a few milliseconds at most; those behind the last one that is
+  /// needed cost next to nothing. An even number up to 64: kFlagRounds.
   uint32_t rounds = 16;
   /// Pairs of triangles left open, in all. Where a query's have no room, read() cannot decide them: kFlagOpen stays.
   uint32_t openPairs = 1u << 12;
@@ -39,8 +39,8 @@ class RADAR_API Recorder {
   /// i * sizeof(Result) bytes from its start: to the bit that of Sweeper::run, except where the flag kFlagOpen says
   /// that pairs are too close for the device: then the status is undecided, `hi` does not exist, and nothing meets
   /// before `lo`. Queries whose numbers floats cannot hold are Status::invalid with
-  /// kFlagRange: coordinates beyond 2^80 (of one object: all queries), sizes below 2^-80, sizes of sensor and object that
-  /// differ by more than 10^12 times.
+  /// kFlagRange: coordinates beyond 2^80 (of one object: all queries), sizes below 2^-80, sizes of sensor and object
+  /// that differ by more than 10^12 times.
   ///
   /// Where something in the host's buffers is out of its bounds, or not finite, every answer is Status::invalid with
   /// kFlagBounds.

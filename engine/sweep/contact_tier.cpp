@@ -18,6 +18,11 @@ constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
 // Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
 
+// The device's own kernels, which live as long as it does.
+std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device) {
+  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
+}
+
 bool isDecidable(std::span<const gpu::UnresolvedPair* const> pairs) {
   return !pairs.empty() && pairs.size() <= kMostDecided;
 }
@@ -38,7 +43,9 @@ ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const S
       resident_(resident),
       kernels_(std::move(kernels)),
       room_(room),
-      batch_(batch) {}
+      batch_(batch) {
+  if (!kernels_ && !isOnCpu()) kernels_ = kernelsOf(device);
+}
 
 void ContactTier::answerOnCpu(std::span<const size_t> which) {
   if (which.empty()) return;

@@ -10,6 +10,7 @@ namespace radar {
 
 class ContactTier {
  public:
+  /// `kernels`: null: the device's, made here unless isOnCpu().
   ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, Asked& batch);
 

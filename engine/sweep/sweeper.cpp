@@ -5,15 +5,6 @@
 
 namespace radar {
 
-namespace {
-
-// The device's own kernels, which live as long as it does.
-std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device) {
-  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
-}
-
-}  // namespace
-
 Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given,
                     std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room,
                     std::shared_ptr<const ContactKernels> kernels)
@@ -21,7 +12,7 @@ Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const Sweep
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactTier(device, scene, given, *copy, kernels ? std::move(kernels) : kernelsOf(device), room, *this) {
+      contactTier(device, scene, given, *copy, std::move(kernels), room, *this) {
   timestamps = given.timestamps;
 }
 

@@ -353,8 +353,8 @@ struct Scopes {
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
-  /// Creates the pipelines of mode contact; those of mode sampled are made when first used. `device` and `scene` must
-  /// outlive the sweeper. Throws if the device has no queue.
+  /// Creates the pipelines of mode contact, where it is answered on the device; those of mode sampled are made when
+  /// first used. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;

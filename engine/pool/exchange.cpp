@@ -108,9 +108,11 @@ std::vector<PoolDevice> Exchange::devices() const {
   return devices_;
 }
 
-bool Exchange::isLast() const {
+bool Exchange::leave(uint32_t worker) {
   const Lock lock(mutex_);
-  return share_.alive() == 1;
+  if (share_.alive() == 1) return false;
+  share_.retire(worker);
+  return true;
 }
 
 // Queries that nobody has taken.

@@ -54,8 +54,9 @@ class Exchange {
                const SweepStats& stats, ChunkTrace trace, double deviceMs);
   /// The worker ends; its chunks go to the others.
   void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
-  /// Whether no other worker is left.
-  bool isLast() const;
+  /// The worker gets no more chunks, and is about to retire; false, and nothing changes, if no other is left. Of two
+  /// that ask at once, one stays.
+  bool leave(uint32_t worker);
 
   /// Milliseconds since this was made.
   double now() const { return at(std::chrono::steady_clock::now()); }

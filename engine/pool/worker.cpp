@@ -94,7 +94,7 @@ void Worker::finish(Lane& lane) {
   // Any other failed call is the trouble of the queries at hand.
   if (sweep.failure) {
     const bool forMemory = isOutOfMemory(sweep.failure->result);
-    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || exchange_.isLast());
+    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !exchange_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }

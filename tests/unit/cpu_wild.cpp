@@ -24,7 +24,7 @@ TEST_CASE("the CPU's answers equal brute force at every scale, far away and in p
     const std::vector<Result> results = sweeper.run(made.queries);
     for (size_t i = 0; i < results.size(); i += 2) {
       INFO("query " << i);
-      wild::checkTruth(made.scene, made.queries[i], results[i]);
+      soups::checkTruth(made.scene, made.queries[i], results[i]);
     }
   }
 }
@@ -45,7 +45,7 @@ TEST_CASE("the CPU answers for directions whose length no double holds") {
     const std::vector<Result> results = sweeper.run(made.queries);
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("query " << i);
-      wild::checkTruth(made.scene, made.queries[i], results[i]);
+      soups::checkTruth(made.scene, made.queries[i], results[i]);
     }
   }
 }

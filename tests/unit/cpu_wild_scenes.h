@@ -115,21 +115,4 @@ inline void make(Random& random, double most, Made& out) {
   }
 }
 
-/// The status, the pair and the bracket of an answer are the truth.
-inline void checkTruth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
-  const oracle::Answer truth = oracle::answer(scene, query);
-  if (!truth.found) {
-    REQUIRE(result.status == radar::Status::clear);
-    return;
-  }
-  REQUIRE(result.status == (truth.s.sign() == 0 ? radar::Status::overlap : radar::Status::hit));
-  REQUIRE(std::array{result.object, result.triB, result.triA} == std::array{truth.object, truth.triB, truth.triA});
-  REQUIRE(result.lo <= result.t);
-  REQUIRE(result.t <= result.hi);
-  REQUIRE(result.hi <= query.distance);
-  REQUIRE(oracle::compareToDistance(truth.s, query.direction, result.lo) >= 0);
-  REQUIRE(oracle::compareToDistance(truth.s, query.direction, result.hi) <= 0);
-  REQUIRE(result.hi - result.lo <= 4e-15 * result.hi + 1e-300);
-}
-
 }  // namespace wild

@@ -58,6 +58,7 @@ BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) 
   return BoundedFloat(value, error);
 }
 
+float quotient(float x, float y) { return x / y; }
 float depthOf(vec3 x, float error) { return x.z; }
 float depthSlack(vec3 span, float error) { return 4.0 * error + 8.0 * kUlp * span.z; }
 float squaredOf(float error) { return 1.0; }
@@ -76,6 +77,7 @@ float neverOf(float error) { return 3.0e38; }
 #undef ALONG
 
 #ifndef RADAR_NO_DOUBLES
+#include "divide.glsl"
 // u = 2^-53. A triple product of differences of doubles errs by less than 10 u times the sum of its absolute products.
 const double kTripleError = 10.0LF * 1.1102230246251565e-16LF;
 // Below this, products may have lost bits to underflow.
@@ -105,10 +107,12 @@ int sideOf(dvec3 q0, dvec3 q1, dvec3 p, dvec3 direction) { return signOf(faceOf(
 
 Bounded quotientOf(Bounded above, Bounded below, out bool known) {
   const double divisor = abs(below.value) - below.error;
-  known = divisor > 0.5LF * abs(below.value);
-  precise double value = above.value / (known ? below.value : 1.0LF);
-  const double error = (above.error + abs(value) * below.error) / (known ? divisor : 1.0LF) * (1.0LF + 9.094947017729282e-13LF) +
-                       8.881784197001252e-16LF * abs(value);
+  known = divisor > 0.5LF * abs(below.value) && divides(above.value, below.value);
+  const double value = known ? quotient(above.value, below.value) : 0.0LF;
+  const double off = above.error + abs(value) * below.error;
+  known = known && divides(off, divisor);
+  const double error =
+      quotient(off, known ? divisor : 1.0LF) * (1.0LF + 9.094947017729282e-13LF) + 8.881784197001252e-16LF * abs(value);
   return Bounded(value, error);
 }
 

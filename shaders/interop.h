@@ -240,24 +240,61 @@ INTEROP_SLOT(kSlotMoved, 6, Moved);
 INTEROP_SLOT(kSlotStray, 7, Stray);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
 
-// ---- the self-test of doubles ------------------------------------------------------------------------------------------
+// ---- what a device's arithmetic is tried with ---------------------------------------------------------------------------
 
-INTEROP_CONST kSums = 256;
+INTEROP_CONST kTrials = 1024;
+INTEROP_CONST kTrialGroup = 64;
 
-// Numbers to calculate with: x and y, and p placed by a row of a pose.
-struct Sum {
+// The operations that are tried. A trial can be told to spoil one of them, which shows that the trial would find it.
+INTEROP_CONST kNoOperation = 0;
+INTEROP_CONST kFloatSum = 1;
+INTEROP_CONST kFloatProduct = 2;
+INTEROP_CONST kFloatQuotient = 3;
+INTEROP_CONST kFloatChain = 4;  // x * y + z under `precise`
+INTEROP_CONST kFloatInverseRoot = 5;
+INTEROP_CONST kFloatOrder = 6;
+INTEROP_CONST kFloatOfInteger = 7;
+INTEROP_CONST kFloatCopy = 8;
+INTEROP_CONST kFloatSubnormal = 9;
+INTEROP_CONST kDoubleSum = 10;
+INTEROP_CONST kDoubleProduct = 11;
+INTEROP_CONST kDoubleQuotient = 12;
+INTEROP_CONST kDoubleCorrected = 13;  // quotient() of divide.glsl, whatever the device's own quotients are
+INTEROP_CONST kDoublePlaced = 14;     // the formula of Pose
+INTEROP_CONST kDoubleOrder = 15;
+INTEROP_CONST kDoubleOfFloat = 16;
+INTEROP_CONST kFloatOfDouble = 17;
+INTEROP_CONST kDoubleCopy = 18;
+INTEROP_CONST kOperations = 19;
+
+struct FloatTrial {
+  float x, y, z;
+  uint integer;  // below 2^24
+  float copied;
+};
+
+struct FloatOutcome {
+  float sum, product, quotient, chain, inverseRoot, ofInteger, copied;
+  uint order;  // 1: x < y, 2: min(x, y) is x, 4: max(x, y) is x
+};
+
+struct DoubleTrial {
   double x, y;
   double row[4];
   Point p;
   uint pad;
 };
 
-struct SumResult {
-  double sum, product, quotient, placed, rounded;
+struct DoubleOutcome {
+  double sum, product, quotient, corrected, placed, ofFloat, copied;
+  float ofDouble;
+  uint order;  // as above
 };
 
-INTEROP_SLOT(kSlotSums, 0, Sum);
-INTEROP_SLOT(kSlotSumResults, 1, SumResult);
+INTEROP_SLOT(kSlotFloatTrials, 0, FloatTrial);
+INTEROP_SLOT(kSlotFloatOutcomes, 1, FloatOutcome);
+INTEROP_SLOT(kSlotDoubleTrials, 0, DoubleTrial);
+INTEROP_SLOT(kSlotDoubleOutcomes, 1, DoubleOutcome);
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

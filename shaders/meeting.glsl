@@ -1,6 +1,6 @@
 // When a pair of triangles meets, as far as the arithmetic can tell (docs/method.md, "A pair of triangles"). A template:
 // contact.glsl includes it once for each precision, with REAL, REAL3, BOUNDED, MEETING, ALONG and the functions that err
-// in that precision: sideOf, faceOf, planeOf, quotientOf, depthOf, depthSlack, squaredOf, neverOf. Parameters are multiples of the
+// in that precision: sideOf, faceOf, planeOf, quotient, quotientOf, depthOf, depthSlack, squaredOf, neverOf. Parameters are multiples of the
 // direction that ALONG stands for.
 
 struct MEETING {
@@ -21,8 +21,8 @@ void addFeature(inout MEETING m, uint feature, int state, REAL3 gap, REAL3 x, RE
                 REAL slack, REAL squared, ALONG along) {
   bool known;
   const BOUNDED s = quotientOf(planeOf(gap, x, y, along), below, known);
-  const REAL lower = known ? s.value - s.error : (least - slack) / squared;
-  const REAL upper = known ? s.value + s.error : (most + slack) / squared;
+  const REAL lower = known ? s.value - s.error : quotient(least - slack, squared);
+  const REAL upper = known ? s.value + s.error : quotient(most + slack, squared);
   if (state < 0) return;
   const bool improves = known && state > 0 && upper < m.by;
   // The feature that was best so far joins the others.

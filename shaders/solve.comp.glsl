@@ -9,6 +9,10 @@
 #include "contact.glsl"
 #include "contact/scene.glsl"
 
+#ifndef RADAR_NO_DOUBLES
+#include "widen.glsl"
+#endif
+
 layout(local_size_x = kRound) in;
 
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
@@ -34,7 +38,7 @@ shared double pairHi[kRound];
 shared double pairLow[kRound];
 
 dvec3 placed(PreciseRows pose, uint vertex) {
-  const dvec3 p = dvec3(vertexAt(vertex));
+  const dvec3 p = widened(vertexBitsAt(vertex));
   dvec3 world;
   for (int k = 0; k < 3; ++k) {
     precise double sum = ((pose[k].x * p.x + pose[k].y * p.y) + pose[k].z * p.z) + pose[k].w;
@@ -67,7 +71,7 @@ uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   // count comes earlier by more than the tolerance. Features without a parameter are
   // bounded by the extent of their parts.
   const double s = max(meeting.by, 0.0LF);
-  const double tolerance = kTolerance * max(views[v].size / length, s);
+  const double tolerance = kTolerance * max(quotient(views[v].size, length), s);
   const double earliest = max(min(meeting.earliest, meeting.unknown), 0.0LF);
   const bool meets = meeting.ahead && s - earliest <= tolerance;
   const double hi = s * length * (1.0LF + 8.881784197001252e-16LF);

@@ -5,6 +5,15 @@
 // which it keeps in memory: what they take in turn goes round.
 uint three() { return gl_NumWorkGroups.z + 2; }
 
+#include "divide.glsl"
+
+// Whether every quotient so far was right.
+bool sound = true;
+double soundQuotient(double x, double y) {
+  sound = sound && divides(x, y);
+  return quotient(x, y);
+}
+
 struct Twofold {
   double high;
   double low;
@@ -164,12 +173,12 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
   }
 
   Told told;
-  precise double first = num.value.high / den.value.high;
+  const double first = soundQuotient(num.value.high, den.value.high);
   const Twofold rest = minus(num.value, times(Twofold(first, 0.0LF), den.value));
-  precise double second = rest.high / den.value.high;
+  const double second = soundQuotient(rest.high, den.value.high);
   const Twofold parameter = quickSum(first, second);
   const double sure = abs(den.value.high) * (1.0LF - 4.5e-16LF) - den.error, size = abs(parameter.high);
-  const double error = (num.error + size * den.error) / sure * (1.0LF + 1e-15LF) + 8.0e-31LF * size + 1e-300LF;
+  const double error = soundQuotient(num.error + size * den.error, sure) * (1.0LF + 1e-15LF) + 8.0e-31LF * size + 1e-300LF;
   told.s = parameter.high;
   told.turn = den.value.high > 0.0LF ? -1.0LF : 1.0LF;
   // The host asks for 2^-60, of an error that it rounds in its own way.
@@ -180,8 +189,8 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
   dvec3 origin = e.from, way = direction;
   double share = told.s;
   if (feature >= kFeatureEdges) {
-    precise double part = side0.value.high / minus(side0.value, side1.value).high;
-    share = isnan(part) || isinf(part) ? 0.0LF : clamp(part, 0.0LF, 1.0LF);
+    const double both = minus(side0.value, side1.value).high;
+    share = both == 0.0LF ? 0.0LF : clamp(soundQuotient(side0.value.high, both), 0.0LF, 1.0LF);
     origin = e.y0;
     way = edge;
   }
@@ -195,11 +204,11 @@ int exponentOf(double x) { return int(unpackDouble2x32(x).y >> 20 & 0x7ffu) - 10
 double powerOfTwo(int exponent) { return packDouble2x32(uvec2(0, uint(exponent + 1023) << 20)); }
 double mostOf(double x, double y, double z) { return max(max(abs(x), abs(y)), abs(z)); }
 
-// The square root of 1 <= x < 16 by adding, multiplying and dividing only, which every device rounds alike.
+// The square root of 1 <= x < 16 by adding, multiplying and dividing only, which the host rounds alike.
 double rootOf(double x) {
   precise double root = 0.5LF * (1.0LF + x);
   for (uint i = 0; i < three() + 4; ++i) {
-    precise double next = 0.5LF * (root + x / root);
+    precise double next = 0.5LF * (root + quotient(x, root));
     root = next;
   }
   return root;
@@ -216,8 +225,7 @@ bool normalOf(Event e, double turn, out dvec3 normal) {
   n *= powerOfTwo(clamp(-size, -1000, 1000));
   precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
   const double root = rootOf(square);
-  precise dvec3 unit = (turn * n) / root;
-  normal = unit;
+  normal = dvec3(soundQuotient(turn * n.x, root), soundQuotient(turn * n.y, root), soundQuotient(turn * n.z, root));
   return max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
 }
 
@@ -233,15 +241,15 @@ void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, in
     precise double above = (normal.x * pGap.x + normal.y * pGap.y) + normal.z * pGap.z;
     precise double below = (normal.x * qGap.x + normal.y * qGap.y) + normal.z * qGap.z;
     const bool misses = (above > 0.0LF) == (below > 0.0LF) && above != 0.0LF && below != 0.0LF;
-    precise double share = above / (above - below);
+    const double share = soundQuotient(above, above == below ? 1.0LF : above - below);
     precise dvec3 at = p + share * (q - p);
     double least = 1e300LF;
     dvec3 from = face0, to = face1, next = face2;
     for (uint k = 0; k < three(); ++k) {
       precise dvec3 side = to - from, gap = at - from;
       precise dvec3 c = side.yzx * gap.zxy - side.zxy * gap.yzx;
-      precise double coordinate = ((normal.x * c.x + normal.y * c.y) + normal.z * c.z) / square;
-      least = min(least, coordinate);
+      precise double height = (normal.x * c.x + normal.y * c.y) + normal.z * c.z;
+      least = min(least, soundQuotient(height, square));
       const dvec3 last = from;
       from = to;
       to = next;
@@ -268,9 +276,8 @@ bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
     size = max(size, max(mostOf(pa.x, pa.y, pa.z), mostOf(pb.x, pb.y, pb.z)));
   }
   for (int i = 0; i < 3; ++i) {
-    precise dvec3 pa = a[i] / size, pb = b[i] / size;
-    a[i] = pa;
-    b[i] = pb;
+    a[i] = dvec3(soundQuotient(a[i].x, size), soundQuotient(a[i].y, size), soundQuotient(a[i].z, size));
+    b[i] = dvec3(soundQuotient(b[i].x, size), soundQuotient(b[i].y, size), soundQuotient(b[i].z, size));
   }
   double inside = -1e-9LF;
   dvec3 best = dvec3(0.0LF);

@@ -38,8 +38,8 @@ ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& sh
       resolve(
           device,
           device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
-          "resolve") {
-  if (device.doubles) refine.emplace(device, k_contact_refine_comp, "refine");
+          "resolve", device.divisionConstants()) {
+  if (device.doubles) refine.emplace(device, k_contact_refine_comp, "refine", device.divisionConstants());
 }
 
 }  // namespace radar

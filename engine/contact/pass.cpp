@@ -55,7 +55,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
       kernels_(std::move(kernels)),
       room_(room),
       upload_(device),
-      sensors_(device, "sensors", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_SFLOAT),
+      sensors_(device, "sensors", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
       sweeps_(device, "sweeps", Residence::device, kUploaded),
       states_(device, "search states", Residence::device, kUploaded),
       heads_(device, "contender lists", Residence::device, kUploaded),

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "gpu/arithmetic.h"
 #include "gpu/check.h"
-#include "gpu/doubles.h"
 #include "gpu/requirements.h"
 
 namespace radar {
@@ -80,12 +80,30 @@ std::vector<std::string> reasonsAgainst(const HostDevice& host) {
   return gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice));
 }
 
+namespace {
+
+std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks) {
+  std::vector<std::string> lines;
+  for (const ArithmeticCheck& check : checks) {
+    if (!check.passed()) lines.push_back(check.operation + ": " + check.found + ", needed: " + check.needed);
+  }
+  return lines;
+}
+
+}  // namespace
+
 Device Device::adopt(const HostDevice& host) {
   const std::vector<std::string> reasons = reasonsAgainst(host);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   auto impl = std::make_unique<Impl>(host);
-  const bool canTest = host.queue != VK_NULL_HANDLE;
-  impl->doubles = host.doubles && (!canTest || gpu::doublesAreRight(*impl));
+  // Without a queue nothing can be tried; composed quotients are right wherever doubles are.
+  impl->doubles = host.doubles;
+  if (host.queue != VK_NULL_HANDLE) {
+    const gpu::Arithmetic arithmetic = gpu::tryArithmetic(*impl, host.doubles);
+    if (!arithmetic.floats) throw Error(impl->name + " cannot be used", VK_SUCCESS, failedChecks(arithmetic.checks));
+    impl->doubles = arithmetic.doubles;
+    impl->dividesRight = arithmetic.dividesRight;
+  }
   return Device(std::move(impl));
 }
 

@@ -1,6 +1,7 @@
 // A logical device with one queue, opened or adopted. Opening is making the handles, then adopting them.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -37,6 +38,10 @@ struct Device::Impl {
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may ask for a size; else all have the same
   bool doubles = false;              ///< shaders may calculate with them
+  bool dividesRight = false;         ///< quotients of doubles have the CPU's bits; else shaders/divide.glsl makes them
+
+  /// The specialization constants of shaders that include shaders/divide.glsl.
+  std::array<uint32_t, 1> divisionConstants() const { return {dividesRight ? 1u : 0u}; }
 
   VkDevice device() const { return host.device; }
   /// Throws, in the name of `who`, where the host gave no queue to submit to.

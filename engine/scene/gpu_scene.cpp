@@ -14,7 +14,8 @@ using gpu::Upload;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
+// Integers, also for floats: a device may change the bits of floats that are subnormal or none.
+constexpr VkFormat kTexels = VK_FORMAT_R32G32B32A32_UINT;
 
 // A texel buffer may be as large as it likes, a storage buffer not.
 template <class T>
@@ -39,13 +40,13 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
 
 GpuScene::GpuScene(const Device::Impl& device)
     : device_(&device),
-      buffers_{{device, "vertices", Residence::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kFloats},
-               {device, "triangles", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT},
-               {device, "mesh nodes", Residence::device, kUploaded, kFloats},
+      buffers_{{device, "vertices", Residence::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels},
+               {device, "triangles", Residence::device, kUploaded, kTexels},
+               {device, "mesh nodes", Residence::device, kUploaded, kTexels},
                {device, "meshes", Residence::device, kUploaded},
                {device, "objects", Residence::device, kUploaded},
-               {device, "placements", Residence::device, kUploaded, kFloats},
-               {device, "object nodes", Residence::device, kUploaded, kFloats},
+               {device, "placements", Residence::device, kUploaded, kTexels},
+               {device, "object nodes", Residence::device, kUploaded, kTexels},
                {device, "indices", Residence::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
 
 void GpuScene::willOverwrite(Overwritten next) {

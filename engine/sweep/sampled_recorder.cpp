@@ -38,7 +38,7 @@ struct SampledKernels {
       : reduce(device, k_reduce_comp, "reduce"),
         identify(device, k_identify_comp, "identify"),
         solve(device, device.doubles ? std::span<const uint32_t>(k_solve_comp) : k_solve_comp_RADAR_NO_DOUBLES,
-              "solve") {}
+              "solve", device.divisionConstants()) {}
   gpu::Kernel reduce, identify, solve;
 };
 

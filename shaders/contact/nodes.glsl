@@ -1,8 +1,8 @@
 // The trees, and what places their meshes.
-layout(binding = kSlotMeshNodes) uniform textureBuffer meshNodeTexels;
-layout(binding = kSlotObjectNodes) uniform textureBuffer objectNodeTexels;
-layout(binding = kSlotPlacements) uniform textureBuffer placementTexels;
-layout(binding = kSlotSensors) uniform textureBuffer sensorTexels;
+layout(binding = kSlotMeshNodes) uniform utextureBuffer meshNodeTexels;
+layout(binding = kSlotObjectNodes) uniform utextureBuffer objectNodeTexels;
+layout(binding = kSlotPlacements) uniform utextureBuffer placementTexels;
+layout(binding = kSlotSensors) uniform utextureBuffer sensorTexels;
 
 // MeshNode.
 struct Node {
@@ -16,19 +16,22 @@ struct Node {
 
 Node nodeAt(uint i) {
   const int t = int(3 * i);
-  const vec4 x = texelFetch(meshNodeTexels, t), y = texelFetch(meshNodeTexels, t + 1), z = texelFetch(meshNodeTexels, t + 2);
-  return Node(x.xyz, floatBitsToUint(x.w), y.xyz, y.w, z.xyz, z.w);
+  const uvec4 x = texelFetch(meshNodeTexels, t);
+  const vec4 y = uintBitsToFloat(texelFetch(meshNodeTexels, t + 1)), z = uintBitsToFloat(texelFetch(meshNodeTexels, t + 2));
+  return Node(uintBitsToFloat(x.xyz), x.w, y.xyz, y.w, z.xyz, z.w);
 }
 
 bool isLeaf(uint link) { return (link & kLinkLeaf) != 0; }
 
 // Texels of a Placement.
 const int kTexelFine = 3, kTexelInverse = 6, kTexelReach = 9, kTexelOrigin = 10, kTexelError = 11;
-vec4 objectTexel(uint object, int texel) { return texelFetch(placementTexels, int(kPlacementTexels * object) + texel); }
+uvec4 objectBits(uint object, int texel) { return texelFetch(placementTexels, int(kPlacementTexels * object) + texel); }
+vec4 objectTexel(uint object, int texel) { return uintBitsToFloat(objectBits(object, texel)); }
 
 // Texels of a Sensor, its placement's first.
 const int kTexelFrame = 12, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
-vec4 sensorTexel(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
+uvec4 sensorBits(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
+vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sensor, texel)); }
 
 // Rows x, y, z.
 mat3 rows(vec3 x, vec3 y, vec3 z) { return transpose(mat3(x, y, z)); }

@@ -1,5 +1,6 @@
 // A triangle's corners in the world, in double precision, by the formula of radar.h; sorted, so that what two triangles share
 // has the same bits in both. Included after contact/scene.glsl.
+#include "widen.glsl"
 bool before(dvec3 p, dvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
 }
@@ -7,7 +8,7 @@ bool before(dvec3 p, dvec3 q) {
 void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
   const uvec4 corner = triangleAt(slot);
   for (uint i = 0; i < 3; ++i) {
-    const dvec3 q = dvec3(vertexAt(corner[i]));
+    const dvec3 q = widened(vertexBitsAt(corner[i]));
     for (int k = 0; k < 3; ++k) {
       precise double sum = ((pose[k].x * q.x + pose[k].y * q.y) + pose[k].z * q.z) + pose[k].w;
       p[i][k] = sum;

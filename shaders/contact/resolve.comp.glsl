@@ -58,10 +58,11 @@ void list(uint at, Contender c) {
 }
 
 #ifndef RADAR_NO_DOUBLES
+#include "divide.glsl"
 #define NUMBER double
 #define NONE packDouble2x32(uvec2(0, 0x7ff80000u))
 const double kZero = 0.0LF;
-double hiOf(SearchState state) { return double(uintBitsToFloat(state.hi)) / double(sweeps[s].scale); }
+double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
 bool isAbove(double p, double q) { return p > q; }
 #else
 #include "double_bits.glsl"
@@ -149,13 +150,12 @@ bool tellHit(uint feature, Corners corners, inout RadarResult r) {
   precise double below = t - slack, above = t + slack;
   r.lo = min(max(below, 0.0LF), r.t);
   r.hi = min(above, distance);
-  precise double fraction = r.t / distance;
-  r.fraction = fraction;
+  r.fraction = soundQuotient(r.t, distance);
   dvec3 normal;
   const bool unit = normalOf(e, told.turn, normal);
   r.point = double[3](told.point.x, told.point.y, told.point.z);
   r.normal = double[3](normal.x, normal.y, normal.z);
-  return told.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
+  return sound && told.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
 void tellOverlap(Corners corners, inout RadarResult r) {
@@ -220,7 +220,7 @@ bool tell(uint first, Kept kept, inout RadarResult r) {
   r.triA = winner.z;
   if (!pierces) return tellHit(one.flags & 0xffu, corners, r);
   tellOverlap(corners, r);
-  return true;
+  return sound;
 }
 
 RadarResult answer(SearchState state) {

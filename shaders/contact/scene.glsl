@@ -1,8 +1,9 @@
 // What the contact tier's shaders read of the scene and of the sensors: texel buffers, which lavapipe loads faster than
-// storage buffers.
-layout(binding = kSlotVertices) uniform textureBuffer vertexTexels;
+// storage buffers; all of integers, whose bits no device changes.
+layout(binding = kSlotVertices) uniform utextureBuffer vertexTexels;
 layout(binding = kSlotTriangles) uniform utextureBuffer triangleTexels;
 
-vec3 vertexAt(uint i) { return texelFetch(vertexTexels, int(i)).xyz; }
+uvec3 vertexBitsAt(uint i) { return texelFetch(vertexTexels, int(i)).xyz; }
+vec3 vertexAt(uint i) { return uintBitsToFloat(vertexBitsAt(i)); }
 // The corners, and the triangle's id in its mesh.
 uvec4 triangleAt(uint slot) { return texelFetch(triangleTexels, int(slot)); }

@@ -207,13 +207,14 @@ uint findObjects(uint named) {
       const bool near = uintBitsToFloat(entry.z) <= limit, leaf = isLeaf(entry.y);
       if (near && leaf) named = entry.y & kLinkItem;
       const int t = near && !leaf ? int(2 * entry.y) : 0;
-      const vec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
-      const vec2 at0 = meetsBox(box, x0, texelFetch(objectNodeTexels, t + 1)), at1 = meetsBox(box, x1, texelFetch(objectNodeTexels, t + 3));
+      const uvec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
+      const vec2 at0 = meetsBox(box, uintBitsToFloat(x0), uintBitsToFloat(texelFetch(objectNodeTexels, t + 1))),
+                 at1 = meetsBox(box, uintBitsToFloat(x1), uintBitsToFloat(texelFetch(objectNodeTexels, t + 3)));
       const float most = limit * unscale;
       const bool meets0 = near && !leaf && at0.x <= at0.y && at0.x <= most, meets1 = near && !leaf && at1.x <= at1.y && at1.x <= most;
       const bool swap = meets1 && (!meets0 || at1.x < at0.x);
-      const uvec3 entry0 = uvec3(kNobody, floatBitsToUint(x0.w), floatBitsToUint(at0.x * scale)),
-                  entry1 = uvec3(kNobody, floatBitsToUint(x1.w), floatBitsToUint(at1.x * scale));
+      const uvec3 entry0 = uvec3(kNobody, x0.w, floatBitsToUint(at0.x * scale)),
+                  entry1 = uvec3(kNobody, x1.w, floatBitsToUint(at1.x * scale));
       if (meets0 && meets1) stack[depth++] = swap ? entry0 : entry1;
       if (meets0 || meets1) stack[depth++] = swap ? entry1 : entry0;
       objectDepth = depth;
@@ -223,7 +224,7 @@ uint findObjects(uint named) {
 }
 
 bool takesPart(uint named) {
-  const uvec4 asks = floatBitsToUint(sensorTexel(sensor, kTexelMask));
+  const uvec4 asks = sensorBits(sensor, kTexelMask);
   // What is excluded is in ascending order.
   uint first = asks.y, end = asks.z;
   while (countOf(first < end) != 0) {
@@ -238,7 +239,7 @@ bool takesPart(uint named) {
     }
   }
   const bool isExcluded = first < asks.z && excluded[first] == named;
-  return !isExcluded && (floatBitsToUint(objectTexel(named, kTexelError).z) & asks.x) != 0;
+  return !isExcluded && (objectBits(named, kTexelError).z & asks.x) != 0;
 }
 
 // Lanes that have been given an object, with nodes (`current`) or without, begin with it.
@@ -254,7 +255,7 @@ void enterObjects(uint named) {
     meshes = meshPairOf(sensor, object);
     if (!meshes.inRange) atomicOr(states[sensor].flags, kSearchOutOfRange);
     if (current.x == kNobody && meshes.inRange) {
-      const uint rootA = floatBitsToUint(sensorTexel(sensor, kTexelReach).w), rootB = floatBitsToUint(objectTexel(object, kTexelReach).w);
+      const uint rootA = sensorBits(sensor, kTexelReach).w, rootB = objectBits(object, kTexelReach).w;
       a = nodeAt(rootA);
       b = nodeAt(rootB);
       approach = approachOf(meshes, a, b, limit);
@@ -373,7 +374,8 @@ void solvePairs(bool all) {
       const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(m.earliest, m.unknown), 0.0);
       float bound = limitOf(pair.w, sensorTexel(pair.w, kTexelHalfExtent).w);
-      const float by = m.ahead ? max(m.by, 0.0) : kMiss;
+      // A subnormal number might be taken for 0 later.
+      const float by = m.ahead ? max(m.by, 1e-37) : kMiss;
       if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
       bound = min(bound, by);
       keeps = m.latest >= 0.0 && low <= bound;

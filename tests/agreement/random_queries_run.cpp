@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
-  bool withoutDoubles = false;
+  bool withoutDoubles = false, composedDivision = false;
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
@@ -44,13 +44,15 @@ int main(int argc, char** argv) {
   app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
   app.add_option("--device", index, "As `cyber-radar devices` numbers them");
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
+  app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = radar::test::familyNames();
 
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});
-  std::printf("device %s, driver %s, commit %s, seed %llu, %s doubles\n", device.name().c_str(),
+  if (composedDivision) device.impl().dividesRight = false;
+  std::printf("device %s, driver %s, commit %s, seed %llu, %s doubles%s\n", device.name().c_str(),
               device.driver().c_str(), radar::tools::commit(), static_cast<unsigned long long>(seed),
-              device.doubles() ? "with" : "without");
+              device.doubles() ? "with" : "without", composedDivision ? ", division composed" : "");
   printHeader();
   RandomQueries asking(device);
   RandomTally all;

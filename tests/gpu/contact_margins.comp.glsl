@@ -24,7 +24,8 @@ void main() {
   const Touch t = touches[i];
   Told told;
   const int node = int(2 * t.objectNode);
-  const vec2 box = meetsBox(sensorBoxOf(t.sensor), texelFetch(objectNodeTexels, node), texelFetch(objectNodeTexels, node + 1));
+  const vec2 box = meetsBox(sensorBoxOf(t.sensor), uintBitsToFloat(texelFetch(objectNodeTexels, node)),
+                            uintBitsToFloat(texelFetch(objectNodeTexels, node + 1)));
   told.boxGap = box.x;
   told.boxEnd = box.y;
   const MeshPair meshes = meshPairOf(t.sensor, t.object);

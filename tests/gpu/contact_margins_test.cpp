@@ -252,7 +252,7 @@ void Margins::check() {
   };
   const auto sensors = upload(
       batch.sensors,
-      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::Residence::upload, 0, VK_FORMAT_R32G32B32A32_SFLOAT));
+      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::Residence::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
   const auto asked = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::Residence::upload));
   gpu::Array<Told> answers(test::impl(), "told", gpu::Residence::readback);
   answers.reserve(touches.size());

@@ -120,11 +120,24 @@ const std::vector<Expected>& sharedStructs() {
        sizeof(Moved),
        {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, firstByte), MEMBER(Moved, anchor),
         MEMBER(Moved, halfExtent)}},
-      {"Sum", sizeof(Sum), {MEMBER(Sum, x), MEMBER(Sum, y), MEMBER(Sum, row), MEMBER(Sum, p), MEMBER(Sum, pad)}},
-      {"SumResult",
-       sizeof(SumResult),
-       {MEMBER(SumResult, sum), MEMBER(SumResult, product), MEMBER(SumResult, quotient), MEMBER(SumResult, placed),
-        MEMBER(SumResult, rounded)}},
+      {"FloatTrial",
+       sizeof(FloatTrial),
+       {MEMBER(FloatTrial, x), MEMBER(FloatTrial, y), MEMBER(FloatTrial, z), MEMBER(FloatTrial, integer),
+        MEMBER(FloatTrial, copied)}},
+      {"FloatOutcome",
+       sizeof(FloatOutcome),
+       {MEMBER(FloatOutcome, sum), MEMBER(FloatOutcome, product), MEMBER(FloatOutcome, quotient),
+        MEMBER(FloatOutcome, chain), MEMBER(FloatOutcome, inverseRoot), MEMBER(FloatOutcome, ofInteger),
+        MEMBER(FloatOutcome, copied), MEMBER(FloatOutcome, order)}},
+      {"DoubleTrial",
+       sizeof(DoubleTrial),
+       {MEMBER(DoubleTrial, x), MEMBER(DoubleTrial, y), MEMBER(DoubleTrial, row), MEMBER(DoubleTrial, p),
+        MEMBER(DoubleTrial, pad)}},
+      {"DoubleOutcome",
+       sizeof(DoubleOutcome),
+       {MEMBER(DoubleOutcome, sum), MEMBER(DoubleOutcome, product), MEMBER(DoubleOutcome, quotient),
+        MEMBER(DoubleOutcome, corrected), MEMBER(DoubleOutcome, placed), MEMBER(DoubleOutcome, ofFloat),
+        MEMBER(DoubleOutcome, copied), MEMBER(DoubleOutcome, ofDouble), MEMBER(DoubleOutcome, order)}},
       {"Sensor",
        sizeof(Sensor),
        {MEMBER(Sensor, placement), MEMBER(Sensor, frame), MEMBER(Sensor, direction), MEMBER(Sensor, scale),
@@ -221,8 +234,8 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       layoutsOf(doubles ? std::span<const uint32_t>(k_shared_structs_comp) : k_shared_structs_comp_RADAR_NO_DOUBLES);
   for (const Expected& one : sharedStructs()) {
     CAPTURE(doubles, one.structure);
-    // The self-test of doubles does not run without them.
-    if (!doubles && (one.structure == "Sum" || one.structure == "SumResult")) continue;
+    // Doubles are not tried without them.
+    if (!doubles && (one.structure == "DoubleTrial" || one.structure == "DoubleOutcome")) continue;
     REQUIRE(layouts.strides.count(one.structure) == 1);
     checkLayout(layouts, one);
   }
@@ -267,7 +280,7 @@ TEST_CASE("what shaders read as texels is made of whole ones, as many as they co
 }
 
 TEST_CASE("what uses doubles has a variant without, or is made only where a device has them") {
-  const std::set<std::string> onlyWithDoubles{"contact/refine.comp", "doubles.comp"};
+  const std::set<std::string> onlyWithDoubles{"arithmetic/doubles.comp", "contact/refine.comp"};
   const std::string suffix = ":RADAR_NO_DOUBLES";
   std::map<std::string, bool> doubles;
   for (const auto& [shader, spirv] : kEngineShaders) doubles[shader] = hasDoubles(spirv);

@@ -33,9 +33,11 @@ layout(scalar, binding = 24) readonly buffer B24 { SearchPush b24[]; };
 layout(scalar, binding = 25) readonly buffer B25 { CollectPush b25[]; };
 layout(scalar, binding = 26) readonly buffer B26 { FilterPush b26[]; };
 layout(scalar, binding = 27) readonly buffer B27 { ResolvePush b27[]; };
+layout(scalar, binding = 28) readonly buffer B28 { FloatTrial b28[]; };
+layout(scalar, binding = 29) readonly buffer B29 { FloatOutcome b29[]; };
 #ifndef RADAR_NO_DOUBLES
-layout(scalar, binding = 28) readonly buffer B28 { Sum b28[]; };
-layout(scalar, binding = 29) readonly buffer B29 { SumResult b29[]; };
+layout(scalar, binding = 30) readonly buffer B30 { DoubleTrial b30[]; };
+layout(scalar, binding = 31) readonly buffer B31 { DoubleOutcome b31[]; };
 #endif
 
 layout(local_size_x = 1) in;

@@ -16,7 +16,7 @@
 #include "spirv/contact_resolve_comp.h"
 #include "spirv/contact_search_comp.h"
 #include "spirv/depth_vert.h"
-#include "spirv/doubles_comp.h"
+#include "spirv/arithmetic_doubles_comp.h"
 #include "spirv/reduce_comp.h"
 
 namespace {
@@ -85,12 +85,13 @@ TEST_CASE("the size of push constants is that of the same struct in C++") {
   CHECK(reflectCompute(k_all_kinds_comp, "all kinds").pushBytes == sizeof(Push));
   CHECK(sizeof(Push) == 56);
   CHECK(reflectCompute(k_contact_search_comp, "search").pushBytes == sizeof(SearchPush));
-  CHECK(reflectCompute(k_doubles_comp, "doubles").pushBytes == 0);
+  CHECK(reflectCompute(k_arithmetic_doubles_comp, "double arithmetic").pushBytes == 0);
 }
 
 TEST_CASE("the engine's own shaders take what the shared structs say") {
-  checkDescriptors(k_doubles_comp, {{kSlotSums.number, "Sums", kStorage, sizeof(Sum)},
-                                    {kSlotSumResults.number, "Results", kStorage, sizeof(SumResult)}});
+  checkDescriptors(k_arithmetic_doubles_comp,
+                   {{kSlotDoubleTrials.number, "Trials", kStorage, sizeof(DoubleTrial)},
+                    {kSlotDoubleOutcomes.number, "Outcomes", kStorage, sizeof(DoubleOutcome)}});
   checkDescriptors(k_contact_collect_comp, {{kSlotStates.number, "States", kStorage, sizeof(SearchState)},
                                             {kSlotCounts.number, "Counts", kStorage, 0, 0, sizeof(SearchCounts)},
                                             {kSlotTasks.number, "Tasks", kStorage, sizeof(SearchTask)},

@@ -1,0 +1,35 @@
+// Tries the double arithmetic that pairs of triangles are solved with, with numbers whose results the host knows.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "divide.glsl"
+#include "interop.h"
+#include "widen.glsl"
+
+layout(local_size_x = kTrialGroup) in;
+layout(constant_id = 1) const uint kSpoiled = kNoOperation;
+
+layout(scalar, binding = kSlotDoubleTrials) readonly restrict buffer Trials { DoubleTrial trials[]; };
+layout(scalar, binding = kSlotDoubleOutcomes) writeonly restrict buffer Outcomes { DoubleOutcome outcomes[]; };
+
+double told(uint operation, double result) {
+  const uvec2 bits = unpackDouble2x32(result);
+  return kSpoiled == operation ? packDouble2x32(uvec2(bits.x ^ 1, bits.y)) : result;
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  const double x = trials[i].x, y = trials[i].y;
+  precise double sum = x + y, product = x * y, ratio = x / y;
+  const dvec3 p = widened(floatBitsToUint(trials[i].p));
+  const dvec4 row = dvec4(trials[i].row[0], trials[i].row[1], trials[i].row[2], trials[i].row[3]);
+  precise double placed = ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
+  uint order = (x < y ? 1 : 0) | (min(x, y) == x ? 2 : 0) | (max(x, y) == x ? 4 : 0);
+  if (kSpoiled == kDoubleOrder) order ^= 1;
+  float ofDouble = float(x);
+  if (kSpoiled == kFloatOfDouble) ofDouble = uintBitsToFloat(floatBitsToUint(ofDouble) + 4);
+  outcomes[i] =
+      DoubleOutcome(told(kDoubleSum, sum), told(kDoubleProduct, product), told(kDoubleQuotient, ratio),
+                    told(kDoubleCorrected, correctedQuotient(x, y)), told(kDoublePlaced, placed), told(kDoubleOfFloat, p.x),
+                    told(kDoubleCopy, trials[i].row[0]), ofDouble, order);
+}

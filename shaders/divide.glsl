@@ -1,0 +1,61 @@
+// Quotients of doubles, rounded to nearest on every device that adds and multiplies so. Vulkan asks little of the division of
+// doubles, and some drivers compose it of other operations: where a device's own is not right to the bit, it is corrected.
+#ifndef RADAR_DIVIDE_GLSL
+#define RADAR_DIVIDE_GLSL
+
+layout(constant_id = 0) const bool kDividesRight = true;
+
+uint exponentField(double x) { return unpackDouble2x32(x).y >> 20 & 0x7ffu; }
+
+// Whether quotient() is right: nothing is, or becomes, too large or too small.
+bool divides(double x, double y) {
+  const uint p = exponentField(x), q = exponentField(y);
+  return q - 60u < 1930u && (x == 0.0LF || (p - 60u < 1930u && abs(int(p) - int(q)) < 900));
+}
+
+// Of two doubles that divides() likes.
+double correctedQuotient(double x, double y) {
+  const uvec2 xBits = unpackDouble2x32(x), yBits = unpackDouble2x32(y);
+  // Significands, from 1 to 2.
+  const double p = packDouble2x32(uvec2(xBits.x, (xBits.y & 0xfffffu) | 0x3ff00000u));
+  const double q = packDouble2x32(uvec2(yBits.x, (yBits.y & 0xfffffu) | 0x3ff00000u));
+  // The inverse to 2^-21, as every device divides floats, and twice as many bits with each of two steps.
+  const double guess = double(1.0 / float(q));
+  precise double better = guess + guess * (1.0LF - q * guess);
+  precise double inverse = better + better * (1.0LF - q * better);
+  precise double near = p * inverse;
+  // What the quotient leaves is exact by Dekker's product, once to make it less than an ulp off, and once to round.
+  double ratio = near, rest = 0.0LF;
+  for (uint i = 0; i < 2; ++i) {
+    precise double split = 134217729.0LF * ratio, splitQ = 134217729.0LF * q;  // 2^27 + 1
+    precise double high = split - (split - ratio), highQ = splitQ - (splitQ - q);
+    precise double low = ratio - high, lowQ = q - highQ;
+    precise double product = ratio * q;
+    precise double lost = ((high * highQ - product) + high * lowQ + low * highQ) + low * lowQ;
+    precise double left = (p - product) - lost;
+    rest = left;
+    if (i == 0) {
+      precise double closer = ratio + rest * inverse;
+      ratio = closer;
+    }
+  }
+  // An ulp of the quotient, times q: a quotient is never half way between two doubles.
+  const uvec2 bits = unpackDouble2x32(ratio);
+  precise double ulp = packDouble2x32(uvec2(0, (bits.y & 0x7ff00000u) - (52u << 20))) * q;
+  const int step = 2.0LF * rest > ulp ? 1 : 2.0LF * rest < -ulp ? -1 : 0;
+  const uint low = bits.x + uint(step);
+  const uint carry = step > 0 && low == 0 ? 1u : step < 0 && bits.x == 0 ? uint(-1) : 0u;
+  const uint shift = (xBits.y >> 20 & 0x7ffu) - (yBits.y >> 20 & 0x7ffu);
+  const uint sign = (xBits.y ^ yBits.y) & 0x80000000u;
+  return x == 0.0LF ? packDouble2x32(uvec2(0, sign)) : packDouble2x32(uvec2(low, (bits.y + carry + (shift << 20)) | sign));
+}
+
+// 0 where divides() says no.
+double quotient(double x, double y) {
+  if (!divides(x, y)) return 0.0LF;
+  if (!kDividesRight) return correctedQuotient(x, y);
+  precise double ratio = x / y;
+  return ratio;
+}
+
+#endif

@@ -1,0 +1,70 @@
+// What a device calculates, and what would be found if it did not.
+#include <catch2/catch.hpp>
+
+#include "gpu/arithmetic.h"
+#include "support/test_device.h"
+
+using namespace radar;
+
+namespace {
+
+const char* const kNames[] = {"",
+                              "float addition",
+                              "float multiplication",
+                              "float division",
+                              "float x * y + z, declared precise",
+                              "float inverse square root",
+                              "float comparison, least and greatest",
+                              "integer to float, below 2^24",
+                              "loading and storing floats",
+                              "float multiplication of subnormal numbers",
+                              "double addition",
+                              "double multiplication",
+                              "double division",
+                              "double division, composed of the above",
+                              "double placement of a vertex, declared precise",
+                              "double comparison, least and greatest",
+                              "float to double, by bits",
+                              "double to float",
+                              "loading and storing doubles"};
+static_assert(std::size(kNames) == gpu::kOperations);
+
+std::vector<std::string> failed(const gpu::Arithmetic& arithmetic) {
+  std::vector<std::string> names;
+  for (const ArithmeticCheck& check : arithmetic.checks) {
+    if (!check.passed()) names.push_back(check.operation);
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("a device's arithmetic passes every check, and its doubles are used if nobody switched them off") {
+  const std::vector<ArithmeticCheck> checks = checkArithmetic(test::device());
+  CHECK(checks.size() == (test::wantsDoubles() ? 18 : 9));
+  for (const ArithmeticCheck& check : checks) {
+    CAPTURE(check.operation, check.found);
+    CHECK(check.passed());
+    CHECK(check.tried >= gpu::kTrials / 8);
+    CHECK_FALSE(check.found.empty());
+    CHECK_FALSE(check.needed.empty());
+    CHECK_FALSE(check.consequence.empty());
+  }
+  CHECK(test::device().doubles() == test::wantsDoubles());
+  CHECK(test::device().impl().dividesRight == test::wantsDoubles());
+}
+
+TEST_CASE("an operation that is spoiled is found, and what follows is heeded") {
+  const bool hasDoubles = test::wantsDoubles();
+  const uint32_t operations = hasDoubles ? gpu::kOperations : gpu::kDoubleSum;
+  for (uint32_t spoiled = 1; spoiled < operations; ++spoiled) {
+    const gpu::Arithmetic found = gpu::tryArithmetic(test::device().impl(), hasDoubles, spoiled);
+    const std::vector<std::string> names = failed(found);
+    CAPTURE(kNames[spoiled], names);
+    CHECK(std::count(names.begin(), names.end(), kNames[spoiled]) == 1);
+    const bool isFloat = spoiled < gpu::kDoubleSum;
+    CHECK(found.floats == !isFloat);
+    CHECK(found.doubles == (hasDoubles && (isFloat || spoiled == gpu::kDoubleQuotient)));
+    CHECK(found.dividesRight == (hasDoubles && spoiled != gpu::kDoubleQuotient));
+  }
+}

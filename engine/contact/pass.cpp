@@ -8,8 +8,8 @@
 
 // pass      reads                                  writes                        barrier behind it
 // --------- -------------------------------------- ----------------------------- ------------------------------
-// upload    staging                                scene, sensors, sweeps,       uploadToRead,
-//                                                  states, tasks, counts,        transferToComputeReadWrite
+// upload    staging                                scene, sensors, sweeps,       transferToComputeReadWrite
+//                                                  states, tasks, counts,
 //                                                  excluded, results; heads
 // search    scene, sensors, excluded, tasks        states, counts, candidates,   computeWriteToComputeReadWrite
 //                                                  the other list of tasks
@@ -206,7 +206,6 @@ void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& s
   stage("upload");
   upload_.record(commands);
   commands->CmdFillBuffer(commands, heads_.get(), 0, VK_WHOLE_SIZE, gpu::kNobody);
-  gpu::uploadToRead(commands);
   gpu::transferToComputeReadWrite(commands);
 }
 

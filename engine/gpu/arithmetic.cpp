@@ -125,7 +125,7 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint
   const Commands commands = submission.begin();
   submission.stage(name);
   upload.record(commands);
-  uploadToRead(commands);
+  transferToComputeReadWrite(commands);
   arguments.dispatch(commands, kTrials / kTrialGroup);
   computeWriteToCopy(commands);
   commands->CmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);

@@ -18,18 +18,6 @@ std::string gpu::driverText(const gpu::Api& vk, VkPhysicalDevice device, const V
   return std::string(driver.driverName) + " " + driver.driverInfo;
 }
 
-uint32_t gpu::queueFamilyOf(const gpu::Api& vk, VkPhysicalDevice device) {
-  uint32_t count = 0;
-  vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & kNeeded) == kNeeded) return i;
-  }
-  return kNone;
-}
-
 Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceProcAddr) {
   vk.load(host.instance);
   vk.load(host.device);
@@ -40,10 +28,23 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   const gpu::SubgroupFacts subgroups = gpu::subgroupFactsOf(vk, host.physicalDevice);
   subgroupSize = subgroups.size;
   choosesSubgroupSize = subgroups.canChoose;
+  if (host.sampled) {
+    reasonsAgainstSampled = gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice), Mode::sampled);
+    if (reasonsAgainstSampled.empty() && !gpu::doesGraphics(vk, host.physicalDevice, host.queueFamily)) {
+      reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does no graphics"};
+    }
+  } else {
+    reasonsAgainstSampled = {"HostDevice::sampled is false"};
+  }
   maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers);
 }
 
 Device::Impl::~Impl() = default;
+
+void Device::Impl::requireSampled(const std::string& who) const {
+  if (reasonsAgainstSampled.empty()) return;
+  throw Error(who + ": mode sampled cannot be answered on " + name, VK_SUCCESS, reasonsAgainstSampled);
+}
 
 void Device::Impl::requireQueue(const char* who) const {
   if (host.queue != VK_NULL_HANDLE) return;
@@ -74,10 +75,10 @@ Device::Impl::Shared& Device::Impl::sharedOf(std::type_index type) const {
   return shared_[type];
 }
 
-std::vector<std::string> reasonsAgainst(const HostDevice& host) {
+std::vector<std::string> reasonsAgainst(const HostDevice& host, Mode mode) {
   gpu::Api vk(host.getInstanceProcAddr);
   vk.load(host.instance);
-  return gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice));
+  return gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice), mode);
 }
 
 namespace {
@@ -93,7 +94,7 @@ std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks
 }  // namespace
 
 Device Device::adopt(const HostDevice& host) {
-  const std::vector<std::string> reasons = reasonsAgainst(host);
+  const std::vector<std::string> reasons = reasonsAgainst(host, Mode::contact);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   auto impl = std::make_unique<Impl>(host);
   // Without a queue nothing can be tried; composed quotients are right wherever doubles are.
@@ -119,6 +120,9 @@ const std::string& Device::driver() const {
 }
 bool Device::doubles() const {
   return impl_->doubles;
+}
+bool Device::supports(Mode mode) const {
+  return mode == Mode::contact || impl_->reasonsAgainstSampled.empty();
 }
 const HostDevice& Device::handles() const {
   return impl_->host;

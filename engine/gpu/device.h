@@ -34,6 +34,7 @@ struct Device::Impl {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
+  std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled cannot be answered; empty: it can
   uint32_t maxLayers = 0;
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may ask for a size; else all have the same
@@ -44,6 +45,8 @@ struct Device::Impl {
   std::array<uint32_t, 1> divisionConstants() const { return {dividesRight ? 1u : 0u}; }
 
   VkDevice device() const { return host.device; }
+  /// Throws with the reasons, in the name of `who`, where the device cannot answer in mode sampled.
+  void requireSampled(const std::string& who) const;
   /// Throws, in the name of `who`, where the host gave no queue to submit to.
   void requireQueue(const char* who) const;
   /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
@@ -85,9 +88,6 @@ const T& Device::Impl::shared() const {
 }
 
 namespace gpu {
-
-/// The first queue family that does graphics and compute, or kNone.
-uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device);
 
 /// Name and version, as the driver gives them.
 std::string driverText(const Api& vk, VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties);

@@ -110,8 +110,13 @@ std::vector<VkPhysicalDevice> physicalDevices(const gpu::Api& vk, VkInstance ins
 DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vk.GetPhysicalDeviceProperties(device, &properties);
-  return {properties.deviceName, gpu::driverText(vk, device, properties), typeText(properties.deviceType),
-          gpu::reasonsAgainst(gpu::factsOf(vk, device))};
+  const gpu::DeviceFacts facts = gpu::factsOf(vk, device);
+  return {properties.deviceName,
+          gpu::driverText(vk, device, properties),
+          typeText(properties.deviceType),
+          gpu::reasonsAgainst(facts, Mode::contact),
+          gpu::reasonsAgainst(facts, Mode::sampled),
+          facts.limits};
 }
 
 VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>& devices, uint32_t index) {
@@ -124,7 +129,7 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
   for (uint32_t i = 0; i < devices.size(); ++i) {
     VkPhysicalDeviceProperties properties;
     vk.GetPhysicalDeviceProperties(devices[i], &properties);
-    const std::vector<std::string> reasons = gpu::reasonsAgainst(gpu::factsOf(vk, devices[i]));
+    const std::vector<std::string> reasons = gpu::reasonsAgainst(gpu::factsOf(vk, devices[i]), Mode::contact);
     for (const std::string& reason : reasons) {
       lines.push_back("device " + std::to_string(i) + ", " + properties.deviceName + ": " + reason);
     }
@@ -162,8 +167,10 @@ Device Device::open(const DeviceOptions& options) {
                                       .queueFamilyIndex = host.queueFamily,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
-  host.doubles = options.doubles && gpu::factsOf(owned->vk, host.physicalDevice).doubles;
-  Requirements needed = requirements(host.doubles);
+  const gpu::DeviceFacts facts = gpu::factsOf(owned->vk, host.physicalDevice);
+  host.doubles = options.doubles && facts.doubles;
+  host.sampled = gpu::reasonsAgainst(facts, Mode::sampled).empty();
+  Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
                                 .queueCreateInfoCount = 1,

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "gpu/device.h"
+#include "gpu/kernel.h"
+#include "shaders/contact/interop.h"
 
 namespace radar::gpu {
 
@@ -11,27 +12,39 @@ namespace {
 struct Requirement {
   const char* name;
   const char* why;
+  Mode mode;
   VkBool32& (*in)(Requirements&);
 };
 
-// A sensor is a layer of an array image, chosen in the vertex stage; structs are shared in scalar layout.
 const Requirement kRequired[] = {
-    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage",
-     [](Requirements& f) -> VkBool32& { return f.vulkan12.shaderOutputLayer; }},
-    {"scalarBlockLayout", "buffers share the structs of C++",
+    {"scalarBlockLayout", "buffers share the structs of C++", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan12.scalarBlockLayout; }},
-    {"synchronization2", "barriers name exact stages",
+    {"synchronization2", "barriers name exact stages", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.synchronization2; }},
-    {"maintenance4", "shaders are compiled for Vulkan 1.3",
+    {"maintenance4", "shaders are compiled for Vulkan 1.3", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.maintenance4; }},
-    {"subgroupSizeControl", "a workgroup of the search is one subgroup",
+    {"subgroupSizeControl", "a workgroup of the search is one subgroup", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.subgroupSizeControl; }},
-    {"computeFullSubgroups", "a workgroup of the search is one subgroup",
+    {"computeFullSubgroups", "a workgroup of the search is one subgroup", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.computeFullSubgroups; }},
+    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage", Mode::sampled,
+     [](Requirements& f) -> VkBool32& { return f.vulkan12.shaderOutputLayer; }},
 };
+
+bool isNeeded(Mode what, Mode mode) {
+  return what == Mode::contact || mode == Mode::sampled;
+}
 
 // A search is dearer to a large subgroup, whose lanes wait for each other.
 constexpr uint32_t kLargeSubgroup = 64;
+
+std::vector<VkQueueFamilyProperties> queueFamiliesOf(const Api& vk, VkPhysicalDevice device) {
+  uint32_t count = 0;
+  vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
 
 std::string versionText(uint32_t version) {
   return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version));
@@ -55,58 +68,88 @@ SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device) {
   return facts;
 }
 
+std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const SubgroupFacts& subgroups) {
+  const uint32_t group = std::max(kContactGroup, subgroups.size);
+  const auto contact = [](const char* name, uint64_t needed, uint64_t has) {
+    return DeviceLimit{name, needed, has, Mode::contact};
+  };
+  const auto sampled = [](const char* name, uint64_t needed, uint64_t has) {
+    return DeviceLimit{name, needed, has, Mode::sampled};
+  };
+  return {contact("maxComputeWorkGroupInvocations", group, limits.maxComputeWorkGroupInvocations),
+          contact("maxComputeWorkGroupSize[0]", group, limits.maxComputeWorkGroupSize[0]),
+          contact("maxComputeWorkGroupCount[0]", 65535, limits.maxComputeWorkGroupCount[0]),
+          contact("maxComputeWorkGroupCount[1]", 65535, limits.maxComputeWorkGroupCount[1]),
+          contact("maxComputeSharedMemorySize", searchSharedBytes(subgroups.size), limits.maxComputeSharedMemorySize),
+          contact("maxPushConstantsSize", Kernel::kMaxPushBytes, limits.maxPushConstantsSize),
+          contact("maxPerStageDescriptorStorageBuffers", 8, limits.maxPerStageDescriptorStorageBuffers),
+          contact("maxPerStageDescriptorSampledImages", 6, limits.maxPerStageDescriptorSampledImages),
+          contact("maxTexelBufferElements", 65536, limits.maxTexelBufferElements),
+          contact("maxStorageBufferRange", 1u << 27, limits.maxStorageBufferRange),
+          sampled("maxComputeWorkGroupInvocations", kCells, limits.maxComputeWorkGroupInvocations),
+          sampled("maxComputeWorkGroupSize[0]", kCells, limits.maxComputeWorkGroupSize[0]),
+          sampled("maxImageArrayLayers", 256, limits.maxImageArrayLayers),
+          sampled("maxFramebufferLayers", 256, limits.maxFramebufferLayers),
+          sampled("subPixelPrecisionBits", 4, limits.subPixelPrecisionBits)};
+}
+
 DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vk.GetPhysicalDeviceProperties(device, &properties);
-  DeviceFacts facts{
-      .apiVersion = properties.apiVersion,
-      .maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers),
-      .subPixelBits = properties.limits.subPixelPrecisionBits,
-      .groupInvocations = properties.limits.maxComputeWorkGroupInvocations,
-      .stageBuffers = properties.limits.maxPerStageDescriptorStorageBuffers,
-      .sharedBytes = properties.limits.maxComputeSharedMemorySize,
-      .subgroups = {},
-      .graphicsAndComputeQueue = queueFamilyOf(vk, device) != kNone,
-      .doubles = false,
-      .missingFeatures = {}};
+  const uint32_t family = queueFamilyOf(vk, device);
+  DeviceFacts facts{.apiVersion = properties.apiVersion,
+                    .computeQueue = family != kNone,
+                    .graphicsAndComputeQueue = family != kNone && doesGraphics(vk, device, family)};
   if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the structs below do not exist there
   facts.subgroups = subgroupFactsOf(vk, device);
+  facts.limits = limitsOf(properties.limits, facts.subgroups);
   Requirements features;
   features.chain();
   vk.GetPhysicalDeviceFeatures2(device, &features.core);
   facts.doubles = features.core.features.shaderFloat64 == VK_TRUE;
   for (const Requirement& required : kRequired) {
-    if (!required.in(features)) facts.missingFeatures.push_back(std::string(required.name) + " (" + required.why + ")");
+    if (required.in(features)) continue;
+    facts.missingFeatures.push_back({std::string(required.name) + " (" + required.why + ")", required.mode});
   }
   return facts;
 }
 
-std::vector<std::string> reasonsAgainst(const DeviceFacts& facts) {
+std::vector<std::string> reasonsAgainst(const DeviceFacts& facts, Mode mode) {
   std::vector<std::string> reasons;
   if (facts.apiVersion < VK_API_VERSION_1_3) {
-    reasons.push_back("Vulkan 1.3 is needed, it has " + versionText(facts.apiVersion));
+    return {"Vulkan 1.3 is needed, it has " + versionText(facts.apiVersion)};
   }
-  for (const std::string& feature : facts.missingFeatures) reasons.push_back("lacks the feature " + feature);
-  if (!facts.graphicsAndComputeQueue) reasons.push_back("has no queue family that does graphics and compute");
-  if (facts.maxLayers < 256) {
-    reasons.push_back("256 layers are needed, it has " + std::to_string(facts.maxLayers));
+  for (const MissingFeature& feature : facts.missingFeatures) {
+    if (isNeeded(feature.mode, mode)) reasons.push_back("lacks the feature " + feature.text);
   }
-  if (facts.groupInvocations < 256) {
-    reasons.push_back("256 invocations in a workgroup are needed, it has " + std::to_string(facts.groupInvocations));
-  }
-  if (facts.stageBuffers < 8) {
-    reasons.push_back("8 storage buffers in a stage are needed, it has " + std::to_string(facts.stageBuffers));
+  if (!facts.computeQueue) reasons.push_back("has no queue family that does compute");
+  if (mode == Mode::sampled && !facts.graphicsAndComputeQueue) {
+    reasons.push_back("has no queue family that does graphics and compute");
   }
   if (!facts.subgroups.ballots) reasons.push_back("has no votes and ballots of subgroups in compute shaders");
   if (!facts.subgroups.isFixed) reasons.push_back("the size of its subgroups varies and cannot be chosen");
-  if (const uint32_t bytes = searchSharedBytes(facts.subgroups.size); facts.sharedBytes < bytes) {
-    reasons.push_back(std::to_string(bytes) + " bytes of shared memory are needed, it has " +
-                      std::to_string(facts.sharedBytes));
-  }
-  if (facts.subPixelBits < 4) {
-    reasons.push_back("4 bits of subpixel precision are needed, it has " + std::to_string(facts.subPixelBits));
+  for (const DeviceLimit& limit : facts.limits) {
+    if (limit.has >= limit.needed || !isNeeded(limit.mode, mode)) continue;
+    reasons.push_back("the limit " + limit.name + " must be at least " + std::to_string(limit.needed) + ", it is " +
+                      std::to_string(limit.has));
   }
   return reasons;
+}
+
+uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device) {
+  const std::vector<VkQueueFamilyProperties> families = queueFamiliesOf(vk, device);
+  constexpr VkQueueFlags kBoth = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (const VkQueueFlags needed : {kBoth, VkQueueFlags{VK_QUEUE_COMPUTE_BIT}}) {
+    for (uint32_t i = 0; i < families.size(); ++i) {
+      if ((families[i].queueFlags & needed) == needed) return i;
+    }
+  }
+  return kNone;
+}
+
+bool doesGraphics(const Api& vk, VkPhysicalDevice device, uint32_t family) {
+  const std::vector<VkQueueFamilyProperties> families = queueFamiliesOf(vk, device);
+  return family < families.size() && (families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
 }
 
 }  // namespace radar::gpu
@@ -120,10 +163,12 @@ const void* Requirements::chain(void* next) {
   return &core;
 }
 
-Requirements requirements(bool doubles) {
+Requirements requirements(Mode mode, bool doubles) {
   Requirements needed;
   needed.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
-  for (const gpu::Requirement& required : gpu::kRequired) required.in(needed) = VK_TRUE;
+  for (const gpu::Requirement& required : gpu::kRequired) {
+    if (gpu::isNeeded(required.mode, mode)) required.in(needed) = VK_TRUE;
+  }
   return needed;
 }
 

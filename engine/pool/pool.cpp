@@ -38,6 +38,7 @@ struct Pool::Impl {
       : scene(ownScene), exchange(reportsOf(devices)) {
     try {
       for (uint32_t i = 0; i < devices.size(); ++i) {
+        if (!devices[i].supports(Mode::sampled)) withoutSampled = &devices[i].impl();
         workers.push_back(std::make_unique<Worker>(i, devices[i], scene, options, exchange));
       }
     } catch (...) {
@@ -61,7 +62,16 @@ struct Pool::Impl {
     return reports;
   }
 
+  /// Any device may get any query.
+  void requireModes(std::span<const Query> queries) const {
+    if (withoutSampled == nullptr) return;
+    for (size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].mode == Mode::sampled) withoutSampled->requireSampled("query " + std::to_string(i));
+    }
+  }
+
   const Scene& scene;
+  const Device::Impl* withoutSampled = nullptr;  // a device that does not support the mode
   Exchange exchange;
   std::vector<std::unique_ptr<Worker>> workers;  // their threads end before the exchange does
 };
@@ -71,6 +81,7 @@ Pool::Pool(std::span<const Device> devices, const Scene& scene, const SweeperOpt
 Pool::~Pool() = default;
 
 std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, std::stop_token stop) {
+  impl_->requireModes(queries);
   return impl_->exchange.post(std::move(queries), std::move(stop), impl_->scene);
 }
 

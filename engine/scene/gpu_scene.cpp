@@ -218,7 +218,7 @@ void GpuScene::sync(const Scene::Impl& scene) {
   const gpu::Commands commands = sync_->submission.begin();
   sync_->submission.stage("upload");
   sync_->upload.record(commands);
-  gpu::uploadToRead(commands);
+  gpu::transferToComputeReadWrite(commands);
   sync_->submission.submitAndWait();
   confirm(scene);
 }

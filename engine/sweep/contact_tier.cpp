@@ -23,6 +23,11 @@ std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device) {
   return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
 }
 
+// Of one submission: what a texel buffer of sensors holds.
+size_t mostSensorsOf(const Device::Impl& device) {
+  return std::min<size_t>(kMostSensors, device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
+}
+
 bool isDecidable(std::span<const gpu::UnresolvedPair* const> pairs) {
   return !pairs.empty() && pairs.size() <= kMostDecided;
 }
@@ -43,6 +48,7 @@ ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const S
       resident_(resident),
       kernels_(std::move(kernels)),
       room_(room),
+      mostSensors_(mostSensorsOf(device)),
       batch_(batch) {
   if (!kernels_ && !isOnCpu()) kernels_ = kernelsOf(device);
 }
@@ -88,7 +94,7 @@ void ContactTier::run(std::span<const size_t> which) {
     if (planned == Planned::added) planned_.push_back(i);
     if (planned == Planned::clear) batch_.answers[i] = clearAnswer();
     if (planned == Planned::outOfRange) outOfRange.push_back(i);
-    if (planned_.size() < kMostSensors) continue;
+    if (planned_.size() < mostSensors_) continue;
     batch_.addCpuTime("encode", msSince(start));
     submit();
     start = Clock::now();
@@ -106,7 +112,12 @@ void ContactTier::submit() {
     if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
     submitter_->submit(sensors_, scene_.impl());
   } catch (const Error& error) {
-    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
+    const std::vector<size_t> grounded = std::exchange(flying_, {});
+    if (error.result == VK_SUCCESS) {  // no call failed: the device's limits are too small for the scene
+      answerOnCpu(grounded);
+    } else {
+      for (const size_t query : grounded) batch_.giveUp(query, error);
+    }
   }
   sensors_.clear();
 }

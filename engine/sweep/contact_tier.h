@@ -33,6 +33,7 @@ class ContactTier {
   GpuScene& resident_;
   std::shared_ptr<const ContactKernels> kernels_;
   const SearchRoom room_;
+  const size_t mostSensors_;  ///< of one submission
   Asked& batch_;
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed: batches may all be small
   cpu::Search cpu_;

@@ -41,14 +41,20 @@ void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     const std::string wrong = whatIsWrong(queries[i], scene);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+    if (queries[i].mode == Mode::sampled) device.requireSampled("query " + std::to_string(i));
   }
 }
 
 void Sweeper::Impl::sync() {
   if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
-  } else {
+    return;
+  }
+  try {
     copy->sync(scene.impl());
+  } catch (const Error& error) {
+    // Where the device's limits are too small for the scene, the CPU answers mode contact.
+    if (error.result != VK_SUCCESS || copy->hasIndices()) throw;
   }
 }
 
@@ -102,6 +108,7 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
 
 Scopes Sweeper::scopes(const Query& query) {
   impl_->refuseWrong({&query, 1});
+  impl_->device.requireSampled("scopes()");
   impl_->stats = {};
   return impl_->sampled().scopes(query);
 }

@@ -121,7 +121,7 @@ VKAPI_ATTR void* VKAPI_CALL reallocate(void* user, void* memory, size_t size, si
 
 }  // namespace
 
-Host::Host() {
+Host::Host(Mode mode) {
   const VkDebugUtilsMessengerCreateInfoEXT messenger{
       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
       .messageSeverity =
@@ -149,7 +149,8 @@ Host::Host() {
   VkPhysicalDeviceFeatures features;
   vkGetPhysicalDeviceFeatures(handles.physicalDevice, &features);
   handles.doubles = features.shaderFloat64 == VK_TRUE && wantsDoubles();
-  Requirements needed = requirements(handles.doubles);
+  handles.sampled = mode == Mode::sampled;
+  Requirements needed = requirements(mode, handles.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
                                 .queueCreateInfoCount = 1,

@@ -11,7 +11,8 @@ namespace radar::test {
 
 class Host {
  public:
-  Host();
+  /// With what `mode` requires and nothing else.
+  explicit Host(Mode mode = Mode::sampled);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;

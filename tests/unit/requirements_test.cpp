@@ -8,100 +8,164 @@
 
 namespace {
 
-radar::gpu::DeviceFacts goodDevice() {
+using namespace radar;
+
+constexpr gpu::SubgroupFacts kSubgroups{.size = 32, .canChoose = true, .isFixed = true, .ballots = true};
+
+// The least that Vulkan 1.3 allows, but for storage buffers.
+VkPhysicalDeviceLimits leastLimits() {
+  VkPhysicalDeviceLimits limits{};
+  limits.maxComputeWorkGroupInvocations = 128;
+  limits.maxComputeWorkGroupSize[0] = 128;
+  limits.maxComputeWorkGroupCount[0] = limits.maxComputeWorkGroupCount[1] = 65535;
+  limits.maxComputeSharedMemorySize = 16384;
+  limits.maxPushConstantsSize = 128;
+  limits.maxPerStageDescriptorStorageBuffers = 8;
+  limits.maxPerStageDescriptorSampledImages = 16;
+  limits.maxTexelBufferElements = 65536;
+  limits.maxStorageBufferRange = 1u << 27;
+  limits.maxImageArrayLayers = limits.maxFramebufferLayers = 256;
+  limits.subPixelPrecisionBits = 4;
+  return limits;
+}
+
+gpu::DeviceFacts goodDevice() {
+  VkPhysicalDeviceLimits limits = leastLimits();
+  limits.maxComputeWorkGroupInvocations = limits.maxComputeWorkGroupSize[0] = 1024;
   return {.apiVersion = VK_API_VERSION_1_3,
-          .maxLayers = 2048,
-          .subPixelBits = 8,
-          .groupInvocations = 1024,
-          .stageBuffers = 1024,
-          .sharedBytes = 32768,
-          .subgroups = {.size = 32, .canChoose = true, .isFixed = true, .ballots = true},
+          .computeQueue = true,
           .graphicsAndComputeQueue = true,
-          .missingFeatures = {}};
+          .subgroups = kSubgroups,
+          .missingFeatures = {},
+          .limits = gpu::limitsOf(limits, kSubgroups)};
+}
+
+bool isOfSampled(const std::string& shader) {
+  return shader.starts_with("reduce") || shader.starts_with("identify") || shader.starts_with("solve");
+}
+
+// The most descriptors of a type that a shader of the mode binds.
+uint64_t mostOf(std::initializer_list<VkDescriptorType> types, Mode mode) {
+  size_t most = 0;
+  for (const auto& [shader, spirv] : test::kEngineShaders) {
+    if (std::string(shader).ends_with(".vert") || isOfSampled(shader) != (mode == Mode::sampled)) continue;
+    size_t count = 0;
+    for (const gpu::Descriptor& descriptor : gpu::reflectCompute(spirv, shader).descriptors) {
+      count += std::count(types.begin(), types.end(), descriptor.type);
+    }
+    most = std::max(most, count);
+  }
+  return most;
+}
+
+uint64_t neededOf(const std::string& name, Mode mode) {
+  for (const DeviceLimit& limit : goodDevice().limits) {
+    if (limit.name == name && limit.mode == mode) return limit.needed;
+  }
+  return 0;
 }
 
 }  // namespace
 
 TEST_CASE("a device with everything is not refused") {
-  CHECK(radar::gpu::reasonsAgainst(goodDevice()).empty());
+  CHECK(gpu::reasonsAgainst(goodDevice(), Mode::sampled).empty());
+  CHECK(gpu::reasonsAgainst(goodDevice(), Mode::contact).empty());
 }
 
 TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
-  radar::gpu::DeviceFacts facts = goodDevice();
+  gpu::DeviceFacts facts = goodDevice();
   facts.apiVersion = VK_API_VERSION_1_1;
-  CHECK(radar::gpu::reasonsAgainst(facts) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1"});
+  CHECK(gpu::reasonsAgainst(facts, Mode::contact) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1"});
   facts = goodDevice();
-  facts.missingFeatures = {"maintenance4 (shaders are compiled for Vulkan 1.3)"};
-  facts.graphicsAndComputeQueue = false;
-  facts.maxLayers = 128;
-  facts.subPixelBits = 2;
-  facts.groupInvocations = 128;
-  facts.stageBuffers = 4;
-  facts.sharedBytes = 4096;
+  facts.missingFeatures = {{"maintenance4 (shaders are compiled for Vulkan 1.3)", Mode::contact}};
+  facts.computeQueue = facts.graphicsAndComputeQueue = false;
   facts.subgroups = {.size = 32};
-  const std::vector<std::string> reasons = radar::gpu::reasonsAgainst(facts);
-  REQUIRE(reasons.size() == 9);
-  CHECK(reasons[0].find("maintenance4") != std::string::npos);
+  VkPhysicalDeviceLimits limits = leastLimits();
+  limits.maxComputeSharedMemorySize = 4096;
+  limits.maxPerStageDescriptorStorageBuffers = 4;
+  facts.limits = gpu::limitsOf(limits, kSubgroups);
+  const std::vector<std::string> reasons = gpu::reasonsAgainst(facts, Mode::contact);
+  REQUIRE(reasons.size() == 6);
+  CHECK(reasons[0] == "lacks the feature maintenance4 (shaders are compiled for Vulkan 1.3)");
   CHECK(reasons[1].find("queue family") != std::string::npos);
-  CHECK(reasons[2].find("layers") != std::string::npos);
-  CHECK(reasons[3].find("invocations") != std::string::npos);
-  CHECK(reasons[4].find("storage buffers") != std::string::npos);
-  CHECK(reasons[5].find("votes and ballots") != std::string::npos);
-  CHECK(reasons[6].find("size of its subgroups varies") != std::string::npos);
-  CHECK(reasons[7].find("shared memory") != std::string::npos);
-  CHECK(reasons[8].find("subpixel") != std::string::npos);
+  CHECK(reasons[2].find("votes and ballots") != std::string::npos);
+  CHECK(reasons[3].find("size of its subgroups varies") != std::string::npos);
+  CHECK(reasons[4] == "the limit maxComputeSharedMemorySize must be at least 7552, it is 4096");
+  CHECK(reasons[5] == "the limit maxPerStageDescriptorStorageBuffers must be at least 8, it is 4");
 }
 
-TEST_CASE("a device whose limits are just enough is not refused, and one step less is") {
-  radar::gpu::DeviceFacts facts = goodDevice();
-  facts.maxLayers = facts.groupInvocations = 256;
-  facts.subPixelBits = 4;
-  facts.sharedBytes = radar::gpu::searchSharedBytes(facts.subgroups.size);
-  CHECK(radar::gpu::reasonsAgainst(facts).empty());
-  --facts.sharedBytes;
-  CHECK(radar::gpu::reasonsAgainst(facts).size() == 1);
+TEST_CASE("what only mode sampled needs does not keep a device from mode contact") {
+  gpu::DeviceFacts facts = goodDevice();
+  facts.graphicsAndComputeQueue = false;
+  facts.missingFeatures = {{"shaderOutputLayer (each sensor is a layer)", Mode::sampled}};
+  VkPhysicalDeviceLimits limits = leastLimits();
+  limits.maxImageArrayLayers = limits.maxFramebufferLayers = 1;
+  limits.subPixelPrecisionBits = 0;
+  facts.limits = gpu::limitsOf(limits, kSubgroups);
+  CHECK(gpu::reasonsAgainst(facts, Mode::contact).empty());
+  const std::vector<std::string> reasons = gpu::reasonsAgainst(facts, Mode::sampled);
+  REQUIRE(reasons.size() == 7);
+  CHECK(reasons[0] == "lacks the feature shaderOutputLayer (each sensor is a layer)");
+  CHECK(reasons[1] == "has no queue family that does graphics and compute");
+  CHECK(reasons[2] == "the limit maxComputeWorkGroupInvocations must be at least 256, it is 128");
 }
 
-TEST_CASE("as many storage buffers in a stage are required as the most that a shader binds, and no more") {
-  size_t most = 0;
-  for (const auto& [shader, spirv] : radar::test::kEngineShaders) {
-    if (std::string(shader).ends_with(".vert")) continue;
-    size_t count = 0;
-    for (const radar::gpu::Descriptor& descriptor : radar::gpu::reflectCompute(spirv, shader).descriptors) {
-      count += descriptor.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    }
-    most = std::max(most, count);
+TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, but for storage buffers") {
+  for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) {
+    gpu::DeviceFacts facts = goodDevice();
+    facts.subgroups.size = lanes;
+    facts.limits = gpu::limitsOf(leastLimits(), facts.subgroups);
+    CHECK(gpu::reasonsAgainst(facts, Mode::contact).empty());
   }
-  radar::gpu::DeviceFacts facts = goodDevice();
-  facts.stageBuffers = static_cast<uint32_t>(most);
-  CHECK(radar::gpu::reasonsAgainst(facts).empty());
-  --facts.stageBuffers;
-  CHECK(radar::gpu::reasonsAgainst(facts) ==
-        std::vector<std::string>{std::to_string(most) + " storage buffers in a stage are needed, it has " +
-                                 std::to_string(most - 1)});
+}
+
+TEST_CASE("a limit that is just enough will do, and one less is a reason") {
+  for (const Mode mode : {Mode::contact, Mode::sampled}) {
+    gpu::DeviceFacts facts = goodDevice();
+    for (size_t i = 0; i < facts.limits.size(); ++i) {
+      if (facts.limits[i].mode != mode) continue;
+      gpu::DeviceFacts changed = facts;
+      changed.limits[i].has = changed.limits[i].needed;
+      CHECK(gpu::reasonsAgainst(changed, mode).empty());
+      --changed.limits[i].has;
+      CHECK(gpu::reasonsAgainst(changed, mode).size() == 1);
+    }
+  }
+}
+
+TEST_CASE("as many buffers in a stage are required as the most that a shader binds, and no more") {
+  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                             kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  CHECK(neededOf("maxPerStageDescriptorStorageBuffers", Mode::contact) == mostOf({kStorage}, Mode::contact));
+  CHECK(neededOf("maxPerStageDescriptorSampledImages", Mode::contact) == mostOf({kTexels, kImage}, Mode::contact));
+  // What mode sampled binds is no more.
+  CHECK(mostOf({kStorage}, Mode::sampled) <= mostOf({kStorage}, Mode::contact));
+  CHECK(mostOf({kTexels, kImage}, Mode::sampled) <= mostOf({kTexels, kImage}, Mode::contact));
 }
 
 TEST_CASE("the search fits the shared memory that every device has, up to subgroups of 64") {
   constexpr uint32_t kEveryDevice = 16384;  // the least maxComputeSharedMemorySize
-  for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) CHECK(radar::gpu::searchSharedBytes(lanes) <= kEveryDevice);
-  CHECK(radar::gpu::searchSharedBytes(32, 256) > radar::gpu::searchSharedBytes(32));
+  for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) CHECK(gpu::searchSharedBytes(lanes) <= kEveryDevice);
+  CHECK(gpu::searchSharedBytes(32, 256) > gpu::searchSharedBytes(32));
 }
 
-TEST_CASE("every required feature is switched on for a device that is opened") {
-  radar::Requirements needed = radar::requirements(false);
-  CHECK(needed.core.features.shaderFloat64 == VK_FALSE);
-  CHECK(needed.vulkan12.shaderOutputLayer == VK_TRUE);
-  CHECK(needed.vulkan12.scalarBlockLayout == VK_TRUE);
-  CHECK(needed.vulkan13.synchronization2 == VK_TRUE);
-  CHECK(needed.vulkan13.maintenance4 == VK_TRUE);
-  CHECK(needed.vulkan13.subgroupSizeControl == VK_TRUE);
-  CHECK(needed.vulkan13.computeFullSubgroups == VK_TRUE);
-  CHECK(radar::requirements(true).core.features.shaderFloat64 == VK_TRUE);
+TEST_CASE("every feature that a mode requires is switched on for a device that is opened, and no other") {
+  for (const Mode mode : {Mode::contact, Mode::sampled}) {
+    const Requirements needed = requirements(mode, false);
+    CHECK(needed.core.features.shaderFloat64 == VK_FALSE);
+    CHECK(needed.vulkan12.shaderOutputLayer == (mode == Mode::sampled ? VK_TRUE : VK_FALSE));
+    CHECK(needed.vulkan12.scalarBlockLayout == VK_TRUE);
+    CHECK(needed.vulkan13.synchronization2 == VK_TRUE);
+    CHECK(needed.vulkan13.maintenance4 == VK_TRUE);
+    CHECK(needed.vulkan13.subgroupSizeControl == VK_TRUE);
+    CHECK(needed.vulkan13.computeFullSubgroups == VK_TRUE);
+    CHECK(requirements(mode, true).core.features.shaderFloat64 == VK_TRUE);
+  }
 }
 
 TEST_CASE("the requirements chain in front of what a host asks for itself") {
   VkPhysicalDeviceRobustness2FeaturesEXT own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ROBUSTNESS_2_FEATURES_EXT};
-  radar::Requirements needed = radar::requirements(false);
+  Requirements needed = requirements(Mode::contact, false);
   CHECK(needed.chain(&own) == &needed.core);
   CHECK(needed.core.pNext == &needed.vulkan12);
   CHECK(needed.vulkan12.pNext == &needed.vulkan13);

@@ -16,6 +16,8 @@ int listAll() {
     std::cout << i << "  " << device.name << " (" << device.type << ", " << device.driver
               << "): " << (device.usable() ? "usable" : "not usable") << "\n";
     for (const std::string& reason : device.reasons) std::cout << "     " << reason << "\n";
+    if (!device.usable()) continue;
+    for (const std::string& reason : device.sampledReasons) std::cout << "     no mode sampled: " << reason << "\n";
   }
   if (someUsable) return 0;
   std::cout << "No usable device. A software device: apt install mesa-vulkan-drivers\n";

@@ -69,7 +69,7 @@ class RADAR_API Pool {
   Pool& operator=(const Pool&) = delete;
 
   /// Hands over any number of queries; the future gets their answers and no exception. Throws if a query breaks its
-  /// contract, naming it. Once `stop` is requested, queries that no device has taken are answered with Status::invalid
+  /// contract, or has a mode that one of the devices does not support, naming it. Once `stop` is requested, queries that no device has taken are answered with Status::invalid
   /// ("cancelled") when the batch's turn comes. Blocks only while the scene is being edited.
   std::future<PoolAnswers> submit(std::vector<Query> queries, std::stop_token stop = {});
 

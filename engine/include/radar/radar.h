@@ -215,10 +215,19 @@ RADAR_API std::string whatIsWrong(const Query& query, const Scene& scene);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
+/// A limit of a physical device that shaders rely on, by its name in VkPhysicalDeviceLimits.
+struct DeviceLimit {
+  std::string name;
+  uint64_t needed = 0, has = 0;  ///< at least; the device's own
+  Mode mode = Mode::contact;     ///< which relies on it: what contact needs, sampled needs, too
+};
+
 /// A physical device as seen from here.
 struct DeviceReport {
   std::string name, driver, type;
-  std::vector<std::string> reasons;  ///< why it cannot be used; empty: it can
+  std::vector<std::string> reasons;         ///< why it cannot be used; empty: it can
+  std::vector<std::string> sampledReasons;  ///< why it cannot answer in mode sampled; empty: it can
+  std::vector<DeviceLimit> limits;          ///< empty where the device has no Vulkan 1.3
   bool usable() const { return reasons.empty(); }
 };
 
@@ -227,7 +236,7 @@ struct DeviceReport {
 RADAR_API std::vector<DeviceReport> listDevices();
 
 /// Vulkan handles of a host that owns them, all of which outlive the Device made from them. `device` has enabled what
-/// requirements() lists. `queue` belongs to family `queueFamily`, which does graphics and compute.
+/// requirements() lists. `queue` belongs to family `queueFamily`, which does compute; for mode sampled, graphics, too.
 ///
 /// `queue` may be null where every submission is to be the host's own: the engine then never submits. A Recorder works
 /// in full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Nor can the device's doubles be compared with
@@ -240,6 +249,7 @@ struct HostDevice {
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
   bool doubles = true;      ///< the feature shaderFloat64 is enabled on `device`
+  bool sampled = false;     ///< what requirements(Mode::sampled, ...) lists is enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
   /// The host's own way to Vulkan: all functions are looked up through it. Null: the loader of this machine.
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
@@ -259,12 +269,13 @@ struct Requirements {
   /// For VkDeviceCreateInfo::pNext: all three, chained, then `next`; valid while this object stays where it is.
   const void* chain(void* next = nullptr);
 };
-/// `doubles`: with shaderFloat64, which is not needed but makes mode contact leave less to the CPU.
-RADAR_API Requirements requirements(bool doubles);
+/// `mode`: sampled needs what contact needs, and graphics. `doubles`: with shaderFloat64, which is not needed but makes
+/// mode contact leave less to the CPU.
+RADAR_API Requirements requirements(Mode mode, bool doubles);
 
-/// Why a host's physical device cannot be used, a line for each thing it lacks; empty if it can. Looks at `instance`,
-/// `physicalDevice` and `getInstanceProcAddr` only.
-RADAR_API std::vector<std::string> reasonsAgainst(const HostDevice& host);
+/// Why a host's physical device cannot be used for `mode`, a line for each thing it lacks; empty if it can. Looks at
+/// `instance`, `physicalDevice` and `getInstanceProcAddr` only.
+RADAR_API std::vector<std::string> reasonsAgainst(const HostDevice& host, Mode mode);
 
 struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
@@ -278,9 +289,9 @@ class RADAR_API Device {
  public:
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks something. While this and a Sweeper of this device run, the host
-  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Submits once, to test the
-  /// doubles, where `host` has a queue and doubles. Any number of Devices may be made of one VkDevice.
+  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the bounds. While this and a Sweeper of this device run, the host
+  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Submits twice at most, to check
+  /// the arithmetic, where `host` has a queue. Any number of Devices may be made of one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -288,9 +299,12 @@ class RADAR_API Device {
 
   const std::string& name() const;
   const std::string& driver() const;
-  /// Whether pairs are solved in double precision on the device: it has doubles, and a test at opening found them to
-  /// be those of the CPU, bit for bit. Else they are solved in float, with error bounds, and what that leaves open is
-  /// decided on the CPU: the answers are the same. Adopted without a queue: HostDevice::doubles, untested.
+  /// Whether queries of this mode can be answered: contact always can; sampled needs graphics.
+  bool supports(Mode mode) const;
+  /// Whether pairs are solved in double precision on the device: it has doubles, and the checks at opening
+  /// (radar/arithmetic.h) found what they rest on to be as on the CPU, bit for bit. Else they are solved in float, with
+  /// error bounds, and what that leaves open is decided on the CPU: the answers are the same. Adopted without a queue:
+  /// HostDevice::doubles, untested.
   bool doubles() const;
   const HostDevice& handles() const;
 
@@ -367,11 +381,12 @@ class RADAR_API Sweeper {
   /// Answers each query as its mode says, in the order given: any number of queries. Those that go to the device are
   /// one upload, one command buffer, one readback for each mode, or several where they are too many for the device's
   /// layers or memory, or more than 16,384. The answer to a query does not depend on its batch. Throws if a query
-  /// breaks its contract, naming it, before anything is submitted. Blocks until the answers are here.
+  /// breaks its contract or has a mode that the device does not support, naming it, before anything is submitted.
+  /// Blocks until the answers are here.
   std::vector<Result> run(std::span<const Query> queries);
 
   /// The pictures behind the answer to `query` in mode sampled, at the query's resolution. Throws Error where they do
-  /// not fit the device.
+  /// not fit the device, or it does not support the mode.
   Scopes scopes(const Query& query);
 
   const SweepStats& stats() const;

@@ -1,0 +1,160 @@
+// A device that has what mode contact needs, and of everything else as little as Vulkan 1.3 allows.
+#include <cmath>
+#include <cstring>
+
+#include <vulkan/vulkan.h>
+#include <catch2/catch.hpp>
+
+#include "embed/host.h"
+#include "radar/cpu_sweeper.h"
+#include "support/test_device.h"
+#include "workloads/families.h"
+#include "workloads/generate.h"
+#include "workloads/shapes.h"
+
+namespace {
+
+using namespace radar;
+
+VKAPI_ATTR void VKAPI_CALL leastProperties(VkPhysicalDevice device, VkPhysicalDeviceProperties* properties) {
+  vkGetPhysicalDeviceProperties(device, properties);
+  VkPhysicalDeviceLimits& limits = properties->limits;
+  limits.maxComputeWorkGroupInvocations = limits.maxComputeWorkGroupSize[0] = 128;
+  limits.maxComputeWorkGroupCount[0] = limits.maxComputeWorkGroupCount[1] = 65535;
+  limits.maxComputeSharedMemorySize = 16384;
+  limits.maxPushConstantsSize = 128;
+  limits.maxPerStageDescriptorStorageBuffers = 8;  // the one thing that must be more: Vulkan asks for 4
+  limits.maxPerStageDescriptorSampledImages = 16;
+  limits.maxTexelBufferElements = 65536;
+  limits.maxStorageBufferRange = 1u << 27;
+  limits.maxImageArrayLayers = limits.maxFramebufferLayers = 256;
+  limits.subPixelPrecisionBits = 4;
+}
+
+VKAPI_ATTR void VKAPI_CALL leastFeatures(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* features) {
+  vkGetPhysicalDeviceFeatures2(device, features);
+  features->features.shaderFloat64 = VK_FALSE;
+  for (auto* next = static_cast<VkBaseOutStructure*>(features->pNext); next != nullptr; next = next->pNext) {
+    if (next->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES) continue;
+    reinterpret_cast<VkPhysicalDeviceVulkan12Features*>(next)->shaderOutputLayer = VK_FALSE;
+  }
+}
+
+VKAPI_ATTR void VKAPI_CALL computeFamilies(VkPhysicalDevice device, uint32_t* count, VkQueueFamilyProperties* families) {
+  vkGetPhysicalDeviceQueueFamilyProperties(device, count, families);
+  if (families == nullptr) return;
+  for (uint32_t i = 0; i < *count; ++i) families[i].queueFlags &= ~VkQueueFlags{VK_QUEUE_GRAPHICS_BIT};
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL leastLoader(VkInstance instance, const char* name) {
+  const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
+  if (is("vkGetPhysicalDeviceProperties")) return reinterpret_cast<PFN_vkVoidFunction>(leastProperties);
+  if (is("vkGetPhysicalDeviceFeatures2")) return reinterpret_cast<PFN_vkVoidFunction>(leastFeatures);
+  if (is("vkGetPhysicalDeviceQueueFamilyProperties")) return reinterpret_cast<PFN_vkVoidFunction>(computeFamilies);
+  return vkGetInstanceProcAddr(instance, name);
+}
+
+struct LeastDevice {
+  LeastDevice() {
+    host.handles.getInstanceProcAddr = leastLoader;
+    host.handles.doubles = false;
+  }
+  test::Host host{Mode::contact};
+};
+
+void checkSame(const std::vector<Result>& found, const std::vector<Result>& exact) {
+  const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  for (size_t i = 0; i < exact.size(); ++i) {
+    CAPTURE(i);
+    CHECK(found[i].status == exact[i].status);
+    CHECK(same(found[i].t, exact[i].t));
+    CHECK(same(found[i].lo, exact[i].lo));
+    CHECK(same(found[i].hi, exact[i].hi));
+    CHECK(found[i].object == exact[i].object);
+    CHECK(found[i].triB == exact[i].triB);
+    CHECK(found[i].triA == exact[i].triA);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a device with the least limits, no doubles and no graphics answers mode contact as the CPU does") {
+  LeastDevice least;
+  CHECK(reasonsAgainst(least.host.handles, Mode::contact).empty());
+  const Device device = Device::adopt(least.host.handles);
+  CHECK(device.supports(Mode::contact));
+  CHECK_FALSE(device.supports(Mode::sampled));
+  CHECK_FALSE(device.doubles());
+  for (const tools::Family family : tools::kFamilies) {
+    CAPTURE(tools::nameOf(family));
+    const tools::Workload workload =
+        tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 48, .seed = 17});
+    tools::ScenePlayer player(workload);
+    std::vector<Query> queries;
+    for (const tools::QuerySpec& spec : workload.queries) {
+      if (spec.scene == workload.queries[0].scene) queries.push_back(tools::toQuery(spec, Mode::contact));
+    }
+    player.show(workload.queries[0].scene);
+    Sweeper sweeper(device, player.scene(), {.cpuBatch = 0});
+    const std::vector<Result> found = sweeper.run(queries);
+    checkSame(found, CpuSweeper(player.scene()).run(queries));
+    CHECK(sweeper.stats().submissions > 0);
+  }
+}
+
+TEST_CASE("a scene beyond the device's limits, and many sensors at once, are answered all the same") {
+  LeastDevice least;
+  const Device device = Device::adopt(least.host.handles);
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Scene scene;
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const auto addRow = [&](int count, double y) {
+    for (int i = 0; i < count; ++i) scene.addObject({mesh, {{1, 0, 0, 3.0 * i, 0, 1, 0, y, 0, 0, 1, 4}}, ~0u});
+  };
+  addRow(100, 0);
+  // More sensors than a texel buffer of 65,536 elements holds.
+  std::vector<Query> queries;
+  for (int i = 0; i < 5000; ++i) {
+    queries.push_back({.mesh = mesh,
+                       .worldFromMesh = {{1, 0, 0, 0.06 * i, 0, 1, 0, 0.3, 0, 0, 1, 0}},
+                       .direction = {0, 0, 1},
+                       .distance = 10});
+  }
+  CpuSweeper cpu(scene);
+  Sweeper sweeper(device, scene, {.cpuBatch = 0});
+  checkSame(sweeper.run(queries), cpu.run(queries));
+  CHECK(sweeper.stats().submissions == 2);
+  CHECK(sweeper.stats().cpuQueries < queries.size());
+  // More objects than one of their placements holds.
+  addRow(6000, 40);
+  sweeper.sync();
+  checkSame(sweeper.run(queries), cpu.run(queries));
+  CHECK(sweeper.stats().cpuQueries == queries.size());
+}
+
+TEST_CASE("mode sampled is refused, with all that the device lacks for it, before anything is answered") {
+  LeastDevice least;
+  least.host.handles.sampled = true;
+  const std::vector<std::string> reasons = reasonsAgainst(least.host.handles, Mode::sampled);
+  REQUIRE(reasons.size() == 4);
+  const Device device = Device::adopt(least.host.handles);
+  Scene scene;
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Query query{.mesh = scene.addMesh(box.positions, box.indices),
+              .direction = {0, 0, 1},
+              .distance = 1,
+              .mode = Mode::sampled};
+  Sweeper sweeper(device, scene);
+  try {
+    sweeper.run({&query, 1});
+    FAIL("it was answered");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::Contains("query 0: mode sampled cannot be answered"));
+    CHECK(error.reasons == reasons);
+  }
+  query.mode = Mode::contact;
+  CHECK_THROWS_WITH(sweeper.scopes(query), Catch::Contains("scopes(): mode sampled cannot be answered"));
+  least.host.handles.sampled = false;
+  const Device unaware = Device::adopt(least.host.handles);
+  CHECK_FALSE(unaware.supports(Mode::sampled));
+}

@@ -1,10 +1,10 @@
 #include "chart/run.h"
 
+#include <link.h>
+
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
-#include <stdexcept>
+#include <span>
 
 #include "report/print.h"
 
@@ -93,14 +93,18 @@ Timing timingOf(Extent extent) {
 }  // namespace
 
 std::string programFingerprint() {
-  std::ifstream stream("/proc/self/exe", std::ios::binary);
-  if (!stream)
-    throw std::runtime_error(
-        "/proc/self/exe: cannot be read, so an interrupted run cannot be told from one "
-        "of another program");
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  // What is loaded of the program and cannot be written: /proc/self/exe is another program where a dynamic linker was
+  // asked to run this one.
   Fingerprint fingerprint;
-  fingerprint.add(bytes.data(), bytes.size());
+  const auto addProgram = [](dl_phdr_info* program, size_t, void* to) {
+    for (const ElfW(Phdr) & segment : std::span(program->dlpi_phdr, program->dlpi_phnum)) {
+      if (segment.p_type != PT_LOAD || (segment.p_flags & PF_W) != 0) continue;
+      static_cast<Fingerprint*>(to)->add(reinterpret_cast<const void*>(program->dlpi_addr + segment.p_vaddr),
+                                         segment.p_filesz);
+    }
+    return 1;  // the libraries come after it
+  };
+  dl_iterate_phdr(addProgram, &fingerprint);
   return fingerprint.text();
 }
 

@@ -32,7 +32,7 @@ std::vector<Planned> planOf(const RunSettings& settings, const std::vector<PeerR
 Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan, Record record, const Device& device,
                   const std::filesystem::path& folder, const std::function<void(const Planned&)>& step);
 
-/// A fingerprint of this very program.
+/// A fingerprint of this very program, so that an interrupted run is told from one of another.
 std::string programFingerprint();
 
 }  // namespace radar::tools

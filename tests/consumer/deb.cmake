@@ -1,0 +1,39 @@
+# Makes the Debian package, looks at it, unpacks it and runs its program: cmake -DBUILD=... -P deb.cmake.
+cmake_minimum_required(VERSION 3.25)
+
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+execute_process(COMMAND ${CPACK} -G DEB -B ${FOLDER} WORKING_DIRECTORY ${BUILD} COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB deb ${FOLDER}/cyber-radar_${VERSION}_*.deb)
+
+execute_process(COMMAND dpkg-deb -f ${deb} OUTPUT_VARIABLE fields COMMAND_ERROR_IS_FATAL ANY)
+foreach(expected "Package: cyber-radar\n" "Version: ${VERSION}\n" "Section: libdevel\n" "Maintainer: [^\n]+@"
+        "Depends:[^\n]* libvulkan1" "Depends:[^\n]* libassimp" "Depends:[^\n]* libcairo2" "Depends:[^\n]* libc6 [(]>="
+        "Recommends: libvulkan-dev\n" "Description: [^\n]+\n [^\n]+")
+  if(NOT fields MATCHES "${expected}")
+    message(FATAL_ERROR "expected \"${expected}\" among the fields of ${deb}:\n${fields}")
+  endif()
+endforeach()
+
+execute_process(COMMAND dpkg-deb -c ${deb} OUTPUT_VARIABLE contents COMMAND_ERROR_IS_FATAL ANY)
+foreach(file bin/cyber-radar include/radar/radar.h lib/libcyber-radar.a lib/cmake/CyberRadar/CyberRadarConfig.cmake
+        lib/pkgconfig/cyber-radar.pc share/doc/cyber-radar/copyright)
+  string(FIND "${contents}" " ./usr/${file}\n" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "expected /usr/${file} in ${deb}:\n${contents}")
+  endif()
+endforeach()
+if(NOT contents MATCHES "^drwxr-xr-x root/root ")
+  message(FATAL_ERROR "expected the files of ${deb} to be root's:\n${contents}")
+endif()
+
+execute_process(COMMAND dpkg-deb -x ${deb} ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)
+set(program ${FOLDER}/usr/bin/cyber-radar)
+execute_process(COMMAND ${program} workload table1 --boxes 100 --sensors 4 --out ${FOLDER}/table1
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${program} query ${FOLDER}/table1/queries.json OUTPUT_VARIABLE answers COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "\"status\": \"(hit|clear|overlap)\"" answered "${answers}")
+list(LENGTH answered count)
+if(NOT count EQUAL 4)
+  message(FATAL_ERROR "expected 4 answers, got:\n${answers}")
+endif()

@@ -1,5 +1,6 @@
 # A second device on any machine: the loader lists one device per driver file, so a copy of the lavapipe library with a
-# driver file of its own is a second lavapipe. Sets `two_lavapipes`, the value of VK_DRIVER_FILES that lists both.
+# driver file of its own is a second lavapipe. Sets `two_lavapipes`, the value of VK_DRIVER_FILES that lists both, and
+# `lavapipe`, the library of the first.
 file(GLOB installed /usr/share/vulkan/icd.d/lvp_icd*.json /usr/local/share/vulkan/icd.d/lvp_icd*.json
   /etc/vulkan/icd.d/lvp_icd*.json)
 if(NOT installed)
@@ -8,20 +9,20 @@ if(NOT installed)
 endif()
 list(GET installed 0 first_lavapipe)
 file(READ ${first_lavapipe} driver)
-string(JSON library GET "${driver}" ICD library_path)
-if(NOT IS_ABSOLUTE "${library}")
-  if(library MATCHES "/")  # relative to the driver file
-    get_filename_component(library "${library}" ABSOLUTE BASE_DIR ${first_lavapipe}/..)
+string(JSON lavapipe GET "${driver}" ICD library_path)
+if(NOT IS_ABSOLUTE "${lavapipe}")
+  if(lavapipe MATCHES "/")  # relative to the driver file
+    get_filename_component(lavapipe "${lavapipe}" ABSOLUTE BASE_DIR ${first_lavapipe}/..)
   else()
-    find_library(RADAR_LAVAPIPE ${library} REQUIRED)
-    set(library ${RADAR_LAVAPIPE})
+    find_library(RADAR_LAVAPIPE ${lavapipe} REQUIRED)
+    set(lavapipe ${RADAR_LAVAPIPE})
   endif()
 endif()
 # The same file name, so that a rule about libvulkan_lvp.so (ThreadSanitizer's suppression) holds for both.
 set(second_folder ${CMAKE_CURRENT_BINARY_DIR}/second_lavapipe)
-get_filename_component(library_name "${library}" NAME)
-file(REAL_PATH "${library}" library)
-configure_file("${library}" ${second_folder}/${library_name} COPYONLY)
+get_filename_component(library_name "${lavapipe}" NAME)
+file(REAL_PATH "${lavapipe}" lavapipe)
+configure_file("${lavapipe}" ${second_folder}/${library_name} COPYONLY)
 string(JSON driver SET "${driver}" ICD library_path "\"${second_folder}/${library_name}\"")
 file(WRITE ${second_folder}/lvp_icd.json "${driver}\n")
 set(two_lavapipes ${first_lavapipe}:${second_folder}/lvp_icd.json)

@@ -1,0 +1,104 @@
+// bin/cyber-radar of the archive: finds which libraries the machine has in a version that suffices, and runs the
+// program with those, and with the archive's own in place of the others. Linked statically, since it chooses the C
+// library.
+//
+// A Vulkan driver is loaded into the same process and needs the libraries of its machine, or newer ones. So the
+// machine's copy is taken wherever it is new enough for the program; where it is not, the archive's copy is the newer
+// one.
+
+#include <elf.h>
+#include <sys/auxv.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr const char* kMachineFolders[] = {
+    "/lib/x86_64-linux-gnu", "/usr/lib/x86_64-linux-gnu", "/lib64", "/usr/lib64", "/lib", "/usr/lib"};
+constexpr const char* kLinker = "ld-linux-x86-64.so.2";  // at /lib64 by the ABI
+constexpr const char* kLibc = "libc.so.6";
+constexpr const char* kFontSettings = "/etc/fonts/fonts.conf";
+
+[[noreturn]] void fail(const std::string& message) {
+  std::fprintf(stderr, "cyber-radar: %s\n", message.c_str());
+  std::exit(2);
+}
+
+/// The bytes of the machine's copy of a library, empty where it has none. /lib may hold those of another processor.
+std::string machinesCopy(const std::string& library) {
+  for (const std::string folder : kMachineFolders) {
+    std::ifstream stream(folder + "/" + library, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    Elf64_Ehdr header;
+    if (bytes.size() < sizeof header) continue;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) == 0 && header.e_machine == EM_X86_64) return bytes;
+  }
+  return {};
+}
+
+/// Which folders in `ours` the machine's own libraries can replace. Each line of the file `needed` there is a folder, a
+/// library, and a name that the machine's copy of it has to contain: of a version, or of a function.
+std::map<std::string, bool> replaceable(const std::string& ours) {
+  std::ifstream stream(ours + "/needed");
+  std::map<std::string, bool> folders;
+  std::map<std::string, std::string> copies;
+  std::string folder, library, name;
+  while (stream >> folder >> library >> name) {
+    if (!copies.contains(library)) copies[library] = machinesCopy(library);
+    const bool found = copies[library].find('\0' + name + '\0') != std::string::npos;
+    bool& all = folders.try_emplace(folder, true).first->second;
+    all = all && found;
+  }
+  if (folders.empty()) fail(ours + "/needed: cannot be read; the archive is not whole");
+  return folders;
+}
+
+/// The folder of the archive, through symbolic links. /proc may not be there.
+std::string archiveFolder() {
+  char path[PATH_MAX];
+  const char* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  if (realpath(started, path) == nullptr) fail(std::string(started) + ": " + std::strerror(errno));
+  std::string folder = path;
+  for (int up = 0; up < 2; ++up) folder.erase(folder.rfind('/'));
+  if (folder.find_first_of(":;") != std::string::npos) {
+    fail(folder + ": the dynamic linker cannot find libraries in a folder with a colon or semicolon in its name");
+  }
+  return folder;
+}
+
+}  // namespace
+
+int main(int, char** argv) {
+  const std::string folder = archiveFolder(), lib = folder + "/lib", ours = lib + "/replaceable";
+  std::string linker = std::string("/lib64/") + kLinker;
+  std::string search = lib;
+  for (const auto& [library, replaced] : replaceable(ours)) {
+    if (replaced) continue;
+    search += ":" + ours + "/" + library;
+    if (library == kLibc) linker = ours + "/" + library + "/" + kLinker;
+  }
+  if (const char* given = std::getenv("LD_LIBRARY_PATH"); given != nullptr && *given != '\0') {
+    search += ":" + std::string(given);
+  }
+  search += ":/lib64:/usr/lib64";  // the archive's linker, which is Debian's, does not look there by itself
+  if (access(kFontSettings, R_OK) != 0) setenv("FONTCONFIG_FILE", (folder + "/share/fonts/fonts.conf").c_str(), 0);
+
+  const std::string program = lib + "/cyber-radar";
+  std::vector<const char*> arguments{linker.c_str(), "--library-path", search.c_str(),
+                                     "--argv0",      argv[0],          program.c_str()};
+  for (char** argument = argv + 1; *argument != nullptr; ++argument) arguments.push_back(*argument);
+  arguments.push_back(nullptr);
+  execv(linker.c_str(), const_cast<char**>(arguments.data()));
+  fail(linker + ": " + std::strerror(errno));
+}

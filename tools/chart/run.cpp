@@ -99,8 +99,8 @@ std::string programFingerprint() {
   const auto addProgram = [](dl_phdr_info* program, size_t, void* to) {
     for (const ElfW(Phdr) & segment : std::span(program->dlpi_phdr, program->dlpi_phnum)) {
       if (segment.p_type != PT_LOAD || (segment.p_flags & PF_W) != 0) continue;
-      static_cast<Fingerprint*>(to)->add(reinterpret_cast<const void*>(program->dlpi_addr + segment.p_vaddr),
-                                         segment.p_filesz);
+      const void* bytes = reinterpret_cast<const void*>(program->dlpi_addr + segment.p_vaddr);  // NOLINT: a number
+      static_cast<Fingerprint*>(to)->add(bytes, segment.p_filesz);
     }
     return 1;  // the libraries come after it
   };

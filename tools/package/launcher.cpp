@@ -11,15 +11,17 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <string>
 #include <vector>
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -36,8 +38,8 @@ constexpr const char* kFontSettings = "/etc/fonts/fonts.conf";
 
 /// The bytes of the machine's copy of a library, empty where it has none. /lib may hold those of another processor.
 std::string machinesCopy(const std::string& library) {
-  for (const std::string folder : kMachineFolders) {
-    std::ifstream stream(folder + "/" + library, std::ios::binary);
+  for (const fs::path folder : kMachineFolders) {
+    std::ifstream stream(folder / library, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     Elf64_Ehdr header;
     if (bytes.size() < sizeof header) continue;
@@ -49,8 +51,8 @@ std::string machinesCopy(const std::string& library) {
 
 /// Which folders in `ours` the machine's own libraries can replace. Each line of the file `needed` there is a folder, a
 /// library, and a name that the machine's copy of it has to contain: of a version, or of a function.
-std::map<std::string, bool> replaceable(const std::string& ours) {
-  std::ifstream stream(ours + "/needed");
+std::map<std::string, bool> replaceable(const fs::path& ours) {
+  std::ifstream stream(ours / "needed");
   std::map<std::string, bool> folders;
   std::map<std::string, std::string> copies;
   std::string folder, library, name;
@@ -60,19 +62,19 @@ std::map<std::string, bool> replaceable(const std::string& ours) {
     bool& all = folders.try_emplace(folder, true).first->second;
     all = all && found;
   }
-  if (folders.empty()) fail(ours + "/needed: cannot be read; the archive is not whole");
+  if (folders.empty()) fail(ours.string() + "/needed: cannot be read; the archive is not whole");
   return folders;
 }
 
 /// The folder of the archive, through symbolic links. /proc may not be there.
-std::string archiveFolder() {
-  char path[PATH_MAX];
-  const char* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
-  if (realpath(started, path) == nullptr) fail(std::string(started) + ": " + std::strerror(errno));
-  std::string folder = path;
-  for (int up = 0; up < 2; ++up) folder.erase(folder.rfind('/'));
-  if (folder.find_first_of(":;") != std::string::npos) {
-    fail(folder + ": the dynamic linker cannot find libraries in a folder with a colon or semicolon in its name");
+fs::path archiveFolder() {
+  const char* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // NOLINT: given as a number
+  std::error_code error;
+  fs::path folder = fs::canonical(started, error).parent_path().parent_path();
+  if (error) fail(std::string(started) + ": " + error.message());
+  if (folder.string().find_first_of(":;") != std::string::npos) {
+    fail(folder.string() +
+         ": the dynamic linker cannot find libraries in a folder with a colon or semicolon in its name");
   }
   return folder;
 }
@@ -80,25 +82,25 @@ std::string archiveFolder() {
 }  // namespace
 
 int main(int, char** argv) {
-  const std::string folder = archiveFolder(), lib = folder + "/lib", ours = lib + "/replaceable";
-  std::string linker = std::string("/lib64/") + kLinker;
+  const fs::path folder = archiveFolder(), lib = folder / "lib", ours = lib / "replaceable";
+  fs::path linker = fs::path("/lib64") / kLinker;
   std::string search = lib;
   for (const auto& [library, replaced] : replaceable(ours)) {
     if (replaced) continue;
-    search += ":" + ours + "/" + library;
-    if (library == kLibc) linker = ours + "/" + library + "/" + kLinker;
+    search += ":" + (ours / library).string();
+    if (library == kLibc) linker = ours / library / kLinker;
   }
   if (const char* given = std::getenv("LD_LIBRARY_PATH"); given != nullptr && *given != '\0') {
     search += ":" + std::string(given);
   }
   search += ":/lib64:/usr/lib64";  // the archive's linker, which is Debian's, does not look there by itself
-  if (access(kFontSettings, R_OK) != 0) setenv("FONTCONFIG_FILE", (folder + "/share/fonts/fonts.conf").c_str(), 0);
+  if (access(kFontSettings, R_OK) != 0) setenv("FONTCONFIG_FILE", (folder / "share/fonts/fonts.conf").c_str(), 0);
 
-  const std::string program = lib + "/cyber-radar";
+  const fs::path program = lib / "cyber-radar";
   std::vector<const char*> arguments{linker.c_str(), "--library-path", search.c_str(),
                                      "--argv0",      argv[0],          program.c_str()};
   for (char** argument = argv + 1; *argument != nullptr; ++argument) arguments.push_back(*argument);
   arguments.push_back(nullptr);
   execv(linker.c_str(), const_cast<char**>(arguments.data()));
-  fail(linker + ": " + std::strerror(errno));
+  fail(linker.string() + ": " + std::strerror(errno));
 }

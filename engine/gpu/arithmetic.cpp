@@ -196,7 +196,8 @@ class Findings {
   /// Returns whether all was right.
   bool end(const std::string& found, const char* otherwise, const char* consequence) {
     ArithmeticCheck& check = checks_.back();
-    check.found = check.passed() ? found : std::to_string(check.wrong) + " of " + std::to_string(check.tried) + " wrong";
+    check.found =
+        check.passed() ? found : std::to_string(check.wrong) + " of " + std::to_string(check.tried) + " wrong";
     check.consequence = check.passed() ? otherwise : consequence;
     return check.passed();
   }
@@ -234,7 +235,10 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
       &FloatOutcome::sum);
   usable &= checkRounded(
       findings, "float multiplication", trials, outcomes,
-      [](const FloatTrial& t) { return ExactResult{double{t.x} * t.y, 0}; }, &FloatOutcome::product);
+      [](const FloatTrial& t) {
+        return ExactResult{double{t.x} * t.y, 0};
+      },
+      &FloatOutcome::product);
 
   findings.begin("float division", "at most 2.5 ulp off");
   for (size_t i = 0; i < trials.size(); ++i) {
@@ -291,7 +295,9 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
     flushed += product == 0 ? 1 : 0;
     findings.result(isKept || product == 0);
   }
-  usable &= findings.end(flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "kept at times, flushed to 0 at others",
+  usable &= findings.end(flushed == 0 ? "kept"
+                         : kept == 0  ? "flushed to 0"
+                                      : "kept at times, flushed to 0 at others",
                          "bounds have room for what is flushed", kUnusable);
   return usable;
 }
@@ -367,10 +373,9 @@ Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t s
   Arithmetic arithmetic;
   Findings findings(arithmetic.checks);
   const std::vector<FloatTrial> floats = floatTrials();
-  arithmetic.floats =
-      checkFloats(findings, floats,
-                  outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic", std::array{spoiled}, floats,
-                             kSlotFloatTrials, kSlotFloatOutcomes));
+  arithmetic.floats = checkFloats(findings, floats,
+                                  outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic", std::array{spoiled},
+                                             floats, kSlotFloatTrials, kSlotFloatOutcomes));
   if (!hasDoubles) return arithmetic;
   const std::vector<DoubleTrial> doubles = doubleTrials();
   checkDoubles(arithmetic, findings, doubles,

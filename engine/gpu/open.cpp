@@ -107,6 +107,17 @@ std::vector<VkPhysicalDevice> physicalDevices(const gpu::Api& vk, VkInstance ins
   return devices;
 }
 
+uint64_t memoryOf(const gpu::Api& vk, VkPhysicalDevice device) {
+  VkPhysicalDeviceMemoryProperties memory;
+  vk.GetPhysicalDeviceMemoryProperties(device, &memory);
+  uint64_t most = 0;
+  for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+    const VkMemoryHeap& heap = memory.memoryHeaps[i];
+    if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0) most = std::max<uint64_t>(most, heap.size);
+  }
+  return most;
+}
+
 DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vk.GetPhysicalDeviceProperties(device, &properties);
@@ -116,6 +127,10 @@ DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
           typeText(properties.deviceType),
           gpu::reasonsAgainst(facts, Mode::contact),
           gpu::reasonsAgainst(facts, Mode::sampled),
+          gpu::versionText(facts.apiVersion),
+          memoryOf(vk, device),
+          facts.subgroups.size,
+          facts.doubles,
           facts.limits};
 }
 

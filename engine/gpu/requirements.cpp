@@ -46,11 +46,12 @@ std::vector<VkQueueFamilyProperties> queueFamiliesOf(const Api& vk, VkPhysicalDe
   return families;
 }
 
-std::string versionText(uint32_t version) {
-  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version));
-}
-
 }  // namespace
+
+std::string versionText(uint32_t version) {
+  return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+         std::to_string(VK_API_VERSION_PATCH(version));
+}
 
 SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device) {
   VkPhysicalDeviceVulkan13Properties sizes{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};

@@ -44,6 +44,9 @@ constexpr uint32_t searchSharedBytes(uint32_t lanes, uint32_t queue = 0) {
   return (queue != 0 ? queue : 6 * lanes) * 36 + lanes * 20;
 }
 
+/// "1.3.224".
+std::string versionText(uint32_t version);
+
 /// One line per thing that is missing for `mode`; empty if the device will do.
 std::vector<std::string> reasonsAgainst(const DeviceFacts& facts, Mode mode);
 

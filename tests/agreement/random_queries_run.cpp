@@ -3,14 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "agreement/random_queries.h"
+#include "agreement/real_meshes.h"
 #include "commit/commit.h"
 #include "gpu/device.h"
 
 namespace {
 
-using radar::test::RandomQueries;
-using radar::test::RandomTally;
+using radar::tools::RandomQueries;
+using radar::tools::RandomTally;
 
 void printHeader() {
   std::printf("%-13s %7s %6s %6s %6s | %6s %5s %5s %6s %5s %7s %4s %5s %6s | %8s | %11s %9s %8s | %7s %7s\n", "family",
@@ -37,16 +37,18 @@ int main(int argc, char** argv) {
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
   bool withoutDoubles = false, composedDivision = false;
+  const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
+  const std::vector<std::string> known = radar::tools::randomFamilies(meshes);
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
   app.add_option("--first", first, "Number of each family's first query: to ask one again");
-  app.add_option("--family", families, "Only these")->check(CLI::IsMember(radar::test::familyNames()));
+  app.add_option("--family", families, "Only these")->check(CLI::IsMember(known));
   app.add_option("--device", index, "As `cyber-radar devices` numbers them");
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
   app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
   CLI11_PARSE(app, argc, argv);
-  if (families.empty()) families = radar::test::familyNames();
+  if (families.empty()) families = known;
 
   const radar::Device device = radar::Device::open({.index = index, .doubles = !withoutDoubles});
   if (composedDivision) device.impl().dividesRight = false;
@@ -54,7 +56,7 @@ int main(int argc, char** argv) {
               device.driver().c_str(), radar::tools::commit(), static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without", composedDivision ? ", division composed" : "");
   printHeader();
-  RandomQueries asking(device);
+  RandomQueries asking(device, meshes);
   RandomTally all;
   const uint64_t each = (queries + families.size() - 1) / families.size();
   for (const std::string& family : families) {

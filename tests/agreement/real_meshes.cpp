@@ -30,4 +30,8 @@ std::vector<tools::MeshData> cgalMeshes() {
                                      "hand.off", "anchor.off", "pig.stl"});
 }
 
+tools::MeshFamilies realMeshes() {
+  return {{"assimp", assimpModels()}, {"cgal", cgalMeshes()}};
+}
+
 }  // namespace radar::test

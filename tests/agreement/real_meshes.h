@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "selftest/random_queries.h"
 #include "workloads/workload.h"
 
 namespace radar::test {
@@ -11,5 +12,7 @@ namespace radar::test {
 std::vector<tools::MeshData> assimpModels();
 /// Closed and with holes, knotted and convoluted.
 std::vector<tools::MeshData> cgalMeshes();
+/// Both.
+tools::MeshFamilies realMeshes();
 
 }  // namespace radar::test

@@ -40,7 +40,8 @@ VKAPI_ATTR void VKAPI_CALL leastFeatures(VkPhysicalDevice device, VkPhysicalDevi
   }
 }
 
-VKAPI_ATTR void VKAPI_CALL computeFamilies(VkPhysicalDevice device, uint32_t* count, VkQueueFamilyProperties* families) {
+VKAPI_ATTR void VKAPI_CALL computeFamilies(VkPhysicalDevice device, uint32_t* count,
+                                           VkQueueFamilyProperties* families) {
   vkGetPhysicalDeviceQueueFamilyProperties(device, count, families);
   if (families == nullptr) return;
   for (uint32_t i = 0; i < *count; ++i) families[i].queueFlags &= ~VkQueueFlags{VK_QUEUE_GRAPHICS_BIT};
@@ -140,10 +141,8 @@ TEST_CASE("mode sampled is refused, with all that the device lacks for it, befor
   const Device device = Device::adopt(least.host.handles);
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
-  Query query{.mesh = scene.addMesh(box.positions, box.indices),
-              .direction = {0, 0, 1},
-              .distance = 1,
-              .mode = Mode::sampled};
+  Query query{
+      .mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1, .mode = Mode::sampled};
   Sweeper sweeper(device, scene);
   try {
     sweeper.run({&query, 1});

@@ -75,7 +75,7 @@ TEST_CASE("a device with everything is not refused") {
 TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
   gpu::DeviceFacts facts = goodDevice();
   facts.apiVersion = VK_API_VERSION_1_1;
-  CHECK(gpu::reasonsAgainst(facts, Mode::contact) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1"});
+  CHECK(gpu::reasonsAgainst(facts, Mode::contact) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1.0"});
   facts = goodDevice();
   facts.missingFeatures = {{"maintenance4 (shaders are compiled for Vulkan 1.3)", Mode::contact}};
   facts.computeQueue = facts.graphicsAndComputeQueue = false;
@@ -134,7 +134,8 @@ TEST_CASE("a limit that is just enough will do, and one less is a reason") {
 }
 
 TEST_CASE("as many buffers in a stage are required as the most that a shader binds, and no more") {
-  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                             kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                              kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   CHECK(neededOf("maxPerStageDescriptorStorageBuffers", Mode::contact) == mostOf({kStorage}, Mode::contact));
   CHECK(neededOf("maxPerStageDescriptorSampledImages", Mode::contact) == mostOf({kTexels, kImage}, Mode::contact));

@@ -15,6 +15,7 @@ void addScopesCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app, int& status);
 void addDemoCommand(CLI::App& app, int& status);
 void addScaleCommand(CLI::App& app, int& status);
+void addSelftestCommand(CLI::App& app, int& status);
 void addStabilityCommand(CLI::App& app, int& status);
 void addChartCommand(CLI::App& app);
 void addWorkloadCommand(CLI::App& app);

@@ -18,6 +18,7 @@ constexpr const char* kExamples = R"(Try:
   cyber-radar scale --quick --out DIR       what several devices gain, and what limits them
   cyber-radar stability --out DIR           every tier against the exact answer, where methods fail
   cyber-radar chart --quick --out DIR       accuracy against speed, mode by mode, in charts
+  cyber-radar selftest --out DIR            every device tried: arithmetic, answers, speed
   cyber-radar devices                       what could compute here, and what speaks against it
 
 Each command explains itself: cyber-radar sweep --help
@@ -46,6 +47,7 @@ int main(int argc, char** argv) try {
   radar::tools::addDevicesCommand(app, status);
   radar::tools::addDemoCommand(app, status);
   radar::tools::addScaleCommand(app, status);
+  radar::tools::addSelftestCommand(app, status);
   radar::tools::addStabilityCommand(app, status);
   radar::tools::addChartCommand(app);
   radar::tools::addWorkloadCommand(app);

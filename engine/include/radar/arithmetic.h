@@ -1,6 +1,6 @@
-// How a device calculates: the operations on which the bounds of mode contact rest, tried with numbers whose results the
-// CPU knows. Vulkan leaves drivers some freedom (its specification, "Precision and Operation of SPIR-V Instructions"),
-// and this is what they make of it.
+// How a device calculates: the operations on which the bounds of mode contact rest, tried with numbers whose results
+// the CPU knows. Vulkan leaves drivers some freedom (its specification, "Precision and Operation of SPIR-V
+// Instructions"), and this is what they make of it.
 #pragma once
 
 #include "radar/radar.h"

@@ -227,7 +227,11 @@ struct DeviceReport {
   std::string name, driver, type;
   std::vector<std::string> reasons;         ///< why it cannot be used; empty: it can
   std::vector<std::string> sampledReasons;  ///< why it cannot answer in mode sampled; empty: it can
-  std::vector<DeviceLimit> limits;          ///< empty where the device has no Vulkan 1.3
+  std::string version;                      ///< of Vulkan, that the device has: "1.3.224"
+  uint64_t memory = 0;                      ///< bytes of the largest heap that is the device's own
+  uint32_t subgroup = 0;                    ///< invocations in a workgroup of the search; 0 before Vulkan 1.3
+  bool doubles = false;                     ///< it has the feature shaderFloat64
+  std::vector<DeviceLimit> limits;          ///< empty before Vulkan 1.3
   bool usable() const { return reasons.empty(); }
 };
 
@@ -289,9 +293,10 @@ class RADAR_API Device {
  public:
   /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the bounds. While this and a Sweeper of this device run, the host
-  /// keeps other threads from using `queue`, unless it gives the functions that lock it. Submits twice at most, to check
-  /// the arithmetic, where `host` has a queue. Any number of Devices may be made of one VkDevice.
+  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the bounds.
+  /// While this and a Sweeper of this device run, the host keeps other threads from using `queue`, unless it gives the
+  /// functions that lock it. Submits twice at most, to check the arithmetic, where `host` has a queue. Any number of
+  /// Devices may be made of one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;

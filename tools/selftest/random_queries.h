@@ -4,17 +4,22 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "radar/radar.h"
+#include "workloads/workload.h"
 
-namespace radar::test {
+namespace radar::tools {
 
-/// Those of workloads/families.h; `assimp` and `cgal`: meshes that people made, in random poses; `at-distance`: all
-/// families in turn, asked again with D at the t that the CPU found, one ulp less and one ulp more.
-std::vector<std::string> familyNames();
+/// Meshes to ask about in random poses, by the name of the family that they make.
+using MeshFamilies = std::map<std::string, std::vector<MeshData>>;
+
+/// Those of workloads/families.h; `at-distance`: all of them in turn, asked again with D at the t that the CPU found,
+/// one ulp less and one ulp more; and those of `meshes`.
+std::vector<std::string> randomFamilies(const MeshFamilies& meshes = {});
 
 struct RandomTally {
   uint64_t queries = 0, hits = 0, clear = 0, overlaps = 0;
@@ -29,7 +34,7 @@ struct RandomTally {
 
 class RandomQueries {
  public:
-  explicit RandomQueries(const Device& device);
+  explicit RandomQueries(const Device& device, MeshFamilies meshes = {});
   ~RandomQueries();
 
   struct Range {
@@ -45,4 +50,4 @@ class RandomQueries {
   std::unique_ptr<Stage> stage_;
 };
 
-}  // namespace radar::test
+}  // namespace radar::tools

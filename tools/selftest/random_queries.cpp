@@ -1,48 +1,32 @@
-#include "agreement/random_queries.h"
+#include "selftest/random_queries.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "agreement/real_meshes.h"
+#include "radar/cpu_sweeper.h"
 #include "stability/promises.h"
-#include "support/answer.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
 
-namespace radar::test {
+namespace radar::tools {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr uint32_t kQueriesPerScene = 64;
-constexpr const char *kAssimp = "assimp", *kCgal = "cgal", *kAtDistance = "at-distance";
+constexpr const char* kAtDistance = "at-distance";
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-tools::Workload randomPoses(std::vector<tools::MeshData> meshes, uint64_t seed) {
-  return tools::makeWorkload(
-      tools::RandomPoses{.meshes = std::move(meshes), .objects = 100, .sensors = kQueriesPerScene, .seed = seed});
+Workload familyScene(Family family, uint64_t seed) {
+  return makeWorkload(FamilyScene{.family = family, .queries = kQueriesPerScene, .seed = seed});
 }
 
-tools::Workload sceneOf(const std::string& family, uint64_t seed, uint64_t number) {
-  const uint64_t sceneSeed = seed * 1'000'003 + number;
-  if (family == kAssimp) return randomPoses(assimpModels(), sceneSeed);
-  if (family == kCgal) return randomPoses(cgalMeshes(), sceneSeed);
-  if (family == kAtDistance) {
-    return tools::makeWorkload(tools::FamilyScene{
-        .family = tools::kFamilies[number % tools::kFamilies.size()], .queries = kQueriesPerScene, .seed = sceneSeed});
-  }
-  const auto found = std::find_if(tools::kFamilies.begin(), tools::kFamilies.end(),
-                                  [&](tools::Family f) { return family == tools::nameOf(f); });
-  if (found == tools::kFamilies.end()) throw Error("no family is called " + family);
-  return tools::makeWorkload(tools::FamilyScene{.family = *found, .queries = kQueriesPerScene, .seed = sceneSeed});
-}
-
-void count(RandomTally& tally, const tools::Verdict& verdict, const Result& result, const Result& exact) {
+void count(RandomTally& tally, const Verdict& verdict, const Result& result, const Result& exact) {
   ++tally.queries;
   tally.hits += exact.status == Status::hit;
   tally.clear += exact.status == Status::clear;
@@ -62,10 +46,11 @@ void count(RandomTally& tally, const tools::Verdict& verdict, const Result& resu
 
 }  // namespace
 
-std::vector<std::string> familyNames() {
+std::vector<std::string> randomFamilies(const MeshFamilies& meshes) {
   std::vector<std::string> names;
-  for (tools::Family family : tools::kFamilies) names.push_back(tools::nameOf(family));
-  for (const char* name : {kAssimp, kCgal, kAtDistance}) names.push_back(name);
+  for (const Family family : kFamilies) names.push_back(nameOf(family));
+  names.push_back(kAtDistance);
+  for (const auto& [name, own] : meshes) names.push_back(name);
   return names;
 }
 
@@ -84,10 +69,23 @@ void RandomTally::add(const RandomTally& other) {
 
 /// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.
 struct RandomQueries::Stage {
-  explicit Stage(const Device& device) : sweeper(device, scene, {.cpuBatch = 0}), cpu(scene) {}
+  Stage(const Device& device, MeshFamilies more)
+      : meshes(std::move(more)), sweeper(device, scene, {.cpuBatch = 0}), cpu(scene) {}
 
-  void show(const tools::Workload& workload) {
-    tools::replaceBy(workload, 0, scene);
+  Workload sceneOf(const std::string& family, uint64_t seed, uint64_t number) const {
+    const uint64_t sceneSeed = seed * 1'000'003 + number;
+    if (const auto found = meshes.find(family); found != meshes.end()) {
+      return makeWorkload(
+          RandomPoses{.meshes = found->second, .objects = 100, .sensors = kQueriesPerScene, .seed = sceneSeed});
+    }
+    if (family == kAtDistance) return familyScene(kFamilies[number % kFamilies.size()], sceneSeed);
+    const auto found = std::find_if(kFamilies.begin(), kFamilies.end(), [&](Family f) { return family == nameOf(f); });
+    if (found == kFamilies.end()) throw Error("no family is called " + family);
+    return familyScene(*found, sceneSeed);
+  }
+
+  void show(const Workload& workload) {
+    replaceBy(workload, 0, scene);
     sweeper.sync();
     cpu.sync();
   }
@@ -95,19 +93,21 @@ struct RandomQueries::Stage {
   /// D becomes where the CPU finds the contact, or a rounding beside it.
   void moveDistances(std::vector<Query>& queries, uint64_t number) {
     for (Query& query : queries) {
-      const Result exact = test::answer(cpu, query);
+      const Result exact = cpu.run({&query, 1})[0];
       const uint64_t which = number++ % 3;
       if (exact.status != Status::hit) continue;
       query.distance = which == 0 ? exact.t : std::nextafter(exact.t, which == 1 ? 0 : INFINITY);
     }
   }
 
+  MeshFamilies meshes;
   Scene scene;
   Sweeper sweeper;
   CpuSweeper cpu;
 };
 
-RandomQueries::RandomQueries(const Device& device) : stage_(std::make_unique<Stage>(device)) {}
+RandomQueries::RandomQueries(const Device& device, MeshFamilies meshes)
+    : stage_(std::make_unique<Stage>(device, std::move(meshes))) {}
 RandomQueries::~RandomQueries() = default;
 
 RandomTally RandomQueries::run(const Range& range, const std::function<void(uint64_t, const std::string&)>& onWrong,
@@ -117,11 +117,11 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
   const uint64_t end = range.first + range.queries;
   while (next < end) {
     const uint64_t number = next / kQueriesPerScene;
-    const tools::Workload workload = sceneOf(range.family, range.seed, number);
+    const Workload workload = stage_->sceneOf(range.family, range.seed, number);
     std::vector<Query> queries;
     const uint64_t first = next;
     for (; next < std::min(end, (number + 1) * kQueriesPerScene); ++next) {
-      queries.push_back(tools::toQuery(workload.queries[next % kQueriesPerScene], Mode::contact));
+      queries.push_back(toQuery(workload.queries[next % kQueriesPerScene], Mode::contact));
     }
     stage_->show(workload);
     if (range.family == kAtDistance) stage_->moveDistances(queries, first);
@@ -134,7 +134,7 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
     const std::vector<Result> exact = stage_->cpu.run(queries);
     tally.cpuSeconds += secondsSince(cpuStart);
     for (size_t i = 0; i < queries.size(); ++i) {
-      const tools::Verdict verdict = tools::judgeContact(stage_->scene, queries[i], results[i], exact[i]);
+      const Verdict verdict = judgeContact(stage_->scene, queries[i], results[i], exact[i]);
       count(tally, verdict, results[i], exact[i]);
       if (!verdict.right()) onWrong(first + i, verdict.words() + " " + stage_->sweeper.reason(i));
     }
@@ -143,4 +143,4 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
   return tally;
 }
 
-}  // namespace radar::test
+}  // namespace radar::tools

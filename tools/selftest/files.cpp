@@ -1,0 +1,174 @@
+// The report for programs: JSON, and tables of comma-separated values.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/print.h"
+#include "selftest/selftest.h"
+
+namespace radar::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no infinities.
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json jsonOf(const PartReport& part) {
+  return {{"state", nameOf(part.state)}, {"note", part.note}, {"seconds", part.seconds}};
+}
+
+Json jsonOf(const std::vector<StageRow>& rows) {
+  Json all = Json::array();
+  for (const StageRow& row : rows) {
+    all.push_back({{"workload", row.workload}, {"stage", row.stage}, {"us_per_query", row.us}});
+  }
+  return all;
+}
+
+Json jsonOf(const std::vector<LaneRow>& rows) {
+  Json all = Json::array();
+  for (const LaneRow& row : rows) {
+    all.push_back({{"way", row.way}, {"us_per_query", row.us}, {"times_as_fast", row.times}});
+  }
+  return all;
+}
+
+Json jsonOf(const DeviceTest& device) {
+  const DeviceReport& facts = device.facts;
+  Json json{{"number", device.number},
+            {"name", facts.name},
+            {"type", facts.type},
+            {"driver", facts.driver},
+            {"vulkan", facts.version},
+            {"memory_bytes", facts.memory},
+            {"subgroup", facts.subgroup},
+            {"has_doubles", facts.doubles},
+            {"uses_doubles", device.usesDoubles},
+            {"reasons", facts.reasons},
+            {"sampled_reasons", facts.sampledReasons},
+            {"right", device.right()},
+            {"answers_checked", device.checkedAnswers()},
+            {"answers_wrong", device.wrongAnswers()}};
+  for (const DeviceLimit& limit : facts.limits) {
+    json["limits"].push_back({{"name", limit.name},
+                              {"needed", limit.needed},
+                              {"has", limit.has},
+                              {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
+  }
+  for (const Part part : kParts) json["parts"][nameOf(part)] = jsonOf(device[part]);
+  json["arithmetic"] = Json::array();
+  for (const ArithmeticCheck& check : device.arithmetic) {
+    json["arithmetic"].push_back({{"operation", check.operation},
+                                  {"tried", check.tried},
+                                  {"wrong", check.wrong},
+                                  {"worst_ulps", finite(check.worst)},
+                                  {"found", check.found},
+                                  {"needed", check.needed},
+                                  {"consequence", check.consequence}});
+  }
+  json["exactness"] = Json::array();
+  for (const ExactnessRow& row : device.exactness) {
+    const RandomTally& t = row.tally;
+    json["exactness"].push_back({{"family", row.family},
+                                 {"doubles", row.doubles},
+                                 {"queries", t.queries},
+                                 {"hits", t.hits},
+                                 {"clear", t.clear},
+                                 {"overlaps", t.overlaps},
+                                 {"wrong", t.wrong},
+                                 {"pairs", t.pairs},
+                                 {"cpu_pairs", t.cpuPairs}});
+  }
+  json["throughput"] = Json::array();
+  for (const ThroughputRow& row : device.throughput) {
+    json["throughput"].push_back({{"workload", row.workload},
+                                  {"batch", row.batch},
+                                  {"device_us_per_query", row.deviceUs},
+                                  {"cpu_us_per_query", row.cpuUs},
+                                  {"differ", row.differ}});
+  }
+  json["stages"] = jsonOf(device.stages);
+  json["lanes"] = jsonOf(device.lanes);
+  json["passes"] = jsonOf(device.passes);
+  return json;
+}
+
+// Texts have commas in them.
+std::string cell(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+// `add` writes the lines of one device after its number.
+template <class Add>
+std::string csvOf(const SelftestReport& report, const char* head, const Add& add) {
+  std::string text = std::string("device,") + head + "\n";
+  for (const DeviceTest& device : report.devices) add(device, std::to_string(device.number) + ",", text);
+  return text;
+}
+
+std::string text(uint64_t value) {
+  return std::to_string(value) + ",";
+}
+
+}  // namespace
+
+std::string jsonOf(const SelftestReport& report) {
+  Json json{{"command", report.command},     {"commit", report.commit},   {"date", report.date},
+            {"processor", report.processor}, {"minutes", report.minutes}, {"seconds", report.seconds},
+            {"right", report.right()},       {"devices", Json::array()}};
+  for (const DeviceTest& device : report.devices) json["devices"].push_back(jsonOf(device));
+  json["together"] = {{"part", jsonOf(report.togetherState)}, {"rows", jsonOf(report.together)}};
+  return json.dump(2) + "\n";
+}
+
+std::string arithmeticCsv(const SelftestReport& report) {
+  return csvOf(report, "operation,tried,wrong,worst ulps,found,needed,consequence",
+               [](const DeviceTest& device, const std::string& first, std::string& out) {
+                 for (const ArithmeticCheck& check : device.arithmetic) {
+                   out += first + cell(check.operation) + "," + text(check.tried) + text(check.wrong) +
+                          print("%g,", check.worst) + cell(check.found) + "," + cell(check.needed) + "," +
+                          cell(check.consequence) + "\n";
+                 }
+               });
+}
+
+std::string exactnessCsv(const SelftestReport& report) {
+  return csvOf(report, "family,doubles,queries,hits,clear,overlaps,wrong,pairs,cpu pairs",
+               [](const DeviceTest& device, const std::string& first, std::string& out) {
+                 for (const ExactnessRow& row : device.exactness) {
+                   const RandomTally& t = row.tally;
+                   out += first + row.family + "," + (row.doubles ? "with," : "without,") + text(t.queries) +
+                          text(t.hits) + text(t.clear) + text(t.overlaps) + text(t.wrong) + text(t.pairs) +
+                          std::to_string(t.cpuPairs) + "\n";
+                 }
+               });
+}
+
+std::string throughputCsv(const SelftestReport& report) {
+  return csvOf(report, "workload,batch,device us,cpu us,differ",
+               [](const DeviceTest& device, const std::string& first, std::string& out) {
+                 for (const ThroughputRow& row : device.throughput) {
+                   out += first + row.workload + "," + text(row.batch) + print("%g,%g,", row.deviceUs, row.cpuUs) +
+                          std::to_string(row.differ) + "\n";
+                 }
+               });
+}
+
+std::string stagesCsv(const SelftestReport& report) {
+  return csvOf(report, "mode,workload,stage,us",
+               [](const DeviceTest& device, const std::string& first, std::string& out) {
+                 for (const bool sampled : {false, true}) {
+                   for (const StageRow& row : sampled ? device.passes : device.stages) {
+                     out += first + (sampled ? "sampled," : "contact,") + cell(row.workload) + "," + cell(row.stage) +
+                            print(",%g\n", row.us);
+                   }
+                 }
+               });
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,44 @@
+// The measurements of a selftest. Each stops at its deadline, with what it has by then; it returns false if the
+// deadline kept it from something.
+#pragma once
+
+#include <chrono>
+
+#include "selftest/selftest.h"
+
+namespace radar::tools {
+
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : end_(std::chrono::steady_clock::now() +
+             std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds))) {}
+  double left() const { return std::chrono::duration<double>(end_ - std::chrono::steady_clock::now()).count(); }
+  bool isOver() const { return left() <= 0; }
+
+ private:
+  std::chrono::steady_clock::time_point end_;
+};
+
+/// Random queries of all families in turn, with doubles where the device has them and without, until the time is up:
+/// at the least each family is asked once.
+bool measureExactness(const Device& device, uint32_t number, const Deadline& deadline, std::vector<ExactnessRow>& rows);
+
+/// Batches of 1 to 10^6 small sensors among 30,000 boxes (light), of teapots (heavy), and of teapots that all move from
+/// batch to batch (moving; D 15, the scene's changes in the time).
+bool measureThroughput(const Device& device, const Deadline& deadline, std::vector<ThroughputRow>& rows);
+
+/// Where the time of batches of 16,384 goes in the exact search.
+bool measureStages(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows);
+
+/// One batch after the other, beside two in flight.
+bool measureLanes(const Device& device, const Deadline& deadline, std::vector<LaneRow>& rows);
+
+/// Where the time goes in the paper's method: 256 teapots among 10,000 boxes.
+bool measurePasses(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows);
+
+/// Every device alone, then all of them.
+bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,
+                     std::vector<LaneRow>& rows);
+
+}  // namespace radar::tools

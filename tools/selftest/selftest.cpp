@@ -1,0 +1,189 @@
+#include "selftest/selftest.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "radar/pool.h"
+#include "selftest/measure.h"
+
+namespace radar::tools {
+
+const char* nameOf(Part part) {
+  constexpr std::array kNames{"arithmetic", "exactness", "throughput", "stages", "lanes", "passes"};
+  static_assert(kNames.size() == kParts.size());
+  return kNames[static_cast<size_t>(part)];
+}
+
+const char* nameOf(PartState state) {
+  constexpr std::array kNames{"not begun", "running", "done", "cut short: the time was up", "failed", "impossible"};
+  return kNames[static_cast<size_t>(state)];
+}
+
+uint64_t DeviceTest::wrongAnswers() const {
+  uint64_t wrong = 0;
+  for (const ExactnessRow& row : exactness) wrong += row.tally.wrong;
+  for (const ThroughputRow& row : throughput) wrong += row.differ;
+  return wrong;
+}
+
+uint64_t DeviceTest::checkedAnswers() const {
+  uint64_t checked = 0;
+  for (const ExactnessRow& row : exactness) checked += row.tally.queries;
+  for (const ThroughputRow& row : throughput) checked += row.batch;
+  return checked;
+}
+
+bool DeviceTest::right() const {
+  const bool failed =
+      std::any_of(parts.begin(), parts.end(), [](const PartReport& part) { return part.state == PartState::failed; });
+  return wrongAnswers() == 0 && !failed;
+}
+
+bool SelftestReport::right() const {
+  return togetherState.state != PartState::failed &&
+         std::all_of(devices.begin(), devices.end(), [](const DeviceTest& device) { return device.right(); });
+}
+
+void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
+  report.minutes = settings.minutes;
+  const std::vector<DeviceReport> all = listDevices();
+  std::vector<uint32_t> numbers = settings.devices;
+  if (numbers.empty()) {
+    for (uint32_t i = 0; i < all.size(); ++i) numbers.push_back(i);
+  }
+  std::vector<std::string> reasons;
+  bool isSomeUsable = false;
+  for (const uint32_t number : numbers) {
+    if (number >= all.size()) {
+      throw Error("device " + std::to_string(number) + " does not exist: there are " + std::to_string(all.size()));
+    }
+    DeviceTest& device = report.devices.emplace_back();
+    device.number = number;
+    device.facts = all[number];
+    isSomeUsable = isSomeUsable || device.facts.usable();
+    for (const std::string& reason : device.facts.reasons) {
+      reasons.push_back("device " + std::to_string(number) + ", " + device.facts.name + ": " + reason);
+    }
+  }
+  if (!isSomeUsable) throw Error("no usable Vulkan device", VK_SUCCESS, reasons);
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// What part of a device's time each part may take, of what is left when it begins.
+double weightOf(Part part) {
+  switch (part) {
+    case Part::arithmetic:
+      return 0.02;
+    case Part::exactness:
+      return 0.3;
+    case Part::throughput:
+      return 0.45;
+    case Part::stages:
+      return 0.05;
+    case Part::lanes:
+      return 0.08;
+    case Part::passes:
+      return 0.1;
+  }
+  return 0;
+}
+
+// Runs one part, and keeps its state.
+void run(PartReport& part, const std::function<bool()>& work, const std::function<void()>& onChange) {
+  part.state = PartState::running;
+  onChange();
+  const Clock::time_point begun = Clock::now();
+  try {
+    part.state = work() ? PartState::done : PartState::cut;
+  } catch (const Error& error) {
+    part.state = PartState::failed;
+    part.note = error.what();
+    for (const std::string& reason : error.reasons) part.note += "; " + reason;
+  } catch (const std::exception& error) {
+    part.state = PartState::failed;
+    part.note = error.what();
+  }
+  part.seconds = secondsSince(begun);
+  onChange();
+}
+
+void testDevice(DeviceTest& test, double seconds, const std::function<void()>& onChange) {
+  const Clock::time_point begun = Clock::now();
+  std::optional<Device> device;
+  for (const Part part : kParts) {
+    if (part == Part::passes && !test.facts.sampledReasons.empty()) {
+      test[part] = {PartState::impossible, test.facts.sampledReasons.front(), 0};
+      continue;
+    }
+    double weights = 0;
+    for (const Part other : kParts) weights += other >= part ? weightOf(other) : 0;
+    const Deadline deadline((seconds - secondsSince(begun)) * weightOf(part) / weights);
+    run(
+        test[part],
+        [&] {
+          if (!device) device.emplace(Device::open({.index = test.number}));
+          test.usesDoubles = device->doubles();
+          switch (part) {
+            case Part::arithmetic:
+              test.arithmetic = checkArithmetic(*device);
+              return true;
+            case Part::exactness:
+              return measureExactness(*device, test.number, deadline, test.exactness);
+            case Part::throughput:
+              return measureThroughput(*device, deadline, test.throughput);
+            case Part::stages:
+              return measureStages(*device, deadline, test.stages);
+            case Part::lanes:
+              return measureLanes(*device, deadline, test.lanes);
+            case Part::passes:
+              return measurePasses(*device, deadline, test.passes);
+          }
+          return true;
+        },
+        onChange);
+    if (!device) return;  // it could not be opened; the part says why
+  }
+}
+
+}  // namespace
+
+void runSelftest(SelftestReport& report, const std::function<void()>& onChange) {
+  const Clock::time_point begun = Clock::now();
+  const auto tell = [&] {
+    report.seconds = secondsSince(begun);
+    onChange();
+  };
+  tell();
+  std::vector<DeviceTest*> usable;
+  for (DeviceTest& device : report.devices) {
+    if (device.facts.usable()) usable.push_back(&device);
+  }
+  const double all = 60 * report.minutes, forTogether = usable.size() > 1 ? 0.1 * all : 0;
+  for (size_t i = 0; i < usable.size(); ++i) {
+    const double left = all - forTogether - secondsSince(begun);
+    testDevice(*usable[i], left / static_cast<double>(usable.size() - i), tell);
+  }
+  if (usable.size() < 2) {
+    report.togetherState = {PartState::impossible, "there is one usable device", 0};
+    return tell();
+  }
+  const Deadline deadline(all - secondsSince(begun));
+  run(
+      report.togetherState,
+      [&] {
+        std::vector<uint32_t> numbers;
+        for (const DeviceTest* device : usable) numbers.push_back(device->number);
+        return measureTogether(openDevices(numbers), numbers, deadline, report.together);
+      },
+      tell);
+}
+
+}  // namespace radar::tools

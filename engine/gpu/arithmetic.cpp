@@ -24,13 +24,18 @@ enum class Kind {
   wide,       ///< magnitudes far apart
   cancelled,  ///< a sum that cancels shows what was rounded before, and what a fused multiply-add did not round
   halfway,    ///< of doubles: a quotient next to the middle between two
-  subnormal   ///< x, or the product, is too small for a normal number
+  subnormal,  ///< x is too small for a normal number
+  overflow    ///< of floats: the product is too large
 };
 
 Kind kindOf(size_t trial) {
   constexpr Kind kKinds[] = {Kind::wide, Kind::cancelled, Kind::wide,      Kind::halfway,
-                             Kind::wide, Kind::cancelled, Kind::subnormal, Kind::wide};
+                             Kind::wide, Kind::cancelled, Kind::subnormal, Kind::overflow};
   return kKinds[trial % std::size(kKinds)];
+}
+
+bool isOrdinary(size_t trial) {
+  return kindOf(trial) != Kind::subnormal && kindOf(trial) != Kind::overflow;
 }
 
 class Numbers {
@@ -65,6 +70,10 @@ std::vector<FloatTrial> floatTrials() {
       t.y = 0x1p30f;
       t.z = 0;
     }
+    if (kindOf(i) == Kind::overflow) {
+      t.x = std::ldexp(t.x, 80);
+      t.y = std::ldexp(t.y, 80);
+    }
     // Any bits but those of what is no number: subnormal numbers, too.
     const auto bits = static_cast<uint32_t>(numbers.bits());
     t.copied = std::bit_cast<float>((bits & 0x7f800000u) == 0x7f800000u || i % 4 == 0 ? bits & 0x807fffffu : bits);
@@ -83,6 +92,7 @@ std::vector<DoubleTrial> doubleTrials() {
     for (float& coordinate : t.p) coordinate = static_cast<float>(numbers.wide(60));
     switch (kindOf(i)) {
       case Kind::wide:
+      case Kind::overflow:
         break;
       case Kind::cancelled:
         t.y = -t.x * 1.0000001;
@@ -96,6 +106,8 @@ std::vector<DoubleTrial> doubleTrials() {
       }
       case Kind::subnormal:
         t.p[0] = std::bit_cast<float>(static_cast<uint32_t>(numbers.bits() & 0x7fffff) | 1);
+        t.x = std::bit_cast<double>((numbers.bits() >> 12) | 1);
+        t.y = 0x1p60;
         break;
     }
   }
@@ -193,6 +205,7 @@ class Findings {
     check.wrong += isRight ? 0 : 1;
     check.worst = check.tried == 1 ? ulps : std::max(check.worst, ulps);
   }
+  uint32_t tried() const { return checks_.back().tried; }
   /// Returns whether all was right.
   bool end(const std::string& found, const char* otherwise, const char* consequence) {
     ArithmeticCheck& check = checks_.back();
@@ -218,7 +231,7 @@ bool checkRounded(Findings& findings, const char* operation, const std::vector<F
   findings.begin(operation, "less than 1 ulp off");
   Rounding rounding;
   for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
+    if (!isOrdinary(i)) continue;
     const ExactResult exact = exactOf(trials[i]);
     const float result = outcomes[i].*member;
     const double off = std::abs((result - exact.high) - exact.low), ulp = ulpOf(static_cast<float>(exact.high));
@@ -227,6 +240,10 @@ bool checkRounded(Findings& findings, const char* operation, const std::vector<F
     rounding.add(exact, result);
   }
   return findings.end(rounding.words(), kBoundsHold, kUnusable);
+}
+
+const char* inWords(size_t kept, size_t flushed) {
+  return flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "kept at times, flushed to 0 at others";
 }
 
 bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, const std::vector<FloatOutcome>& outcomes) {
@@ -242,7 +259,7 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
 
   findings.begin("float division", "at most 2.5 ulp off");
   for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
+    if (!isOrdinary(i)) continue;
     const double exact = double{trials[i].x} / trials[i].y;
     const double ulps = std::abs(outcomes[i].quotient - exact) / ulpOf(static_cast<float>(exact));
     findings.result(ulps <= 2.5, ulps);
@@ -251,7 +268,7 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
 
   findings.begin("float x * y + z, declared precise", "the product is rounded before the sum");
   for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
+    if (!isOrdinary(i)) continue;
     const ExactResult exact = exactSum(outcomes[i].product, trials[i].z);
     const double off = std::abs((outcomes[i].chain - exact.high) - exact.low);
     const double ulp = std::max(ulpOf(static_cast<float>(exact.high)), ulpOf(outcomes[i].chain));
@@ -261,6 +278,7 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
 
   findings.begin("float inverse square root", "at most 2 ulp off");
   for (size_t i = 0; i < trials.size(); ++i) {
+    if (!isOrdinary(i)) continue;
     const double exact = 1 / std::sqrt(std::abs(double{trials[i].y}));
     const double ulps = std::abs(outcomes[i].inverseRoot - exact) / ulpOf(static_cast<float>(exact));
     findings.result(ulps <= 2, ulps);
@@ -269,7 +287,7 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
 
   findings.begin("float comparison, least and greatest", "exact");
   for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
+    if (!isOrdinary(i)) continue;
     const bool isLess = trials[i].x < trials[i].y;
     findings.result(outcomes[i].order == (isLess ? 3u : 4u));
   }
@@ -295,10 +313,21 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
     flushed += product == 0 ? 1 : 0;
     findings.result(isKept || product == 0);
   }
-  usable &= findings.end(flushed == 0 ? "kept"
-                         : kept == 0  ? "flushed to 0"
-                                      : "kept at times, flushed to 0 at others",
-                         "bounds have room for what is flushed", kUnusable);
+  usable &= findings.end(inWords(kept, flushed), "bounds have room for what is flushed", kUnusable);
+
+  findings.begin("float multiplication that overflows", "");
+  size_t infinite = 0, largest = 0;
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) != Kind::overflow) continue;
+    const float product = std::abs(outcomes[i].product);
+    infinite += std::isinf(product) ? 1 : 0;
+    largest += product == std::numeric_limits<float>::max() ? 1 : 0;
+    findings.result(true);
+  }
+  findings.end(infinite == findings.tried()  ? "infinity"
+               : largest == findings.tried() ? "the largest float"
+                                             : "now this, now that",
+               "nothing rests on it: no sum or product of the search overflows", "");
   return usable;
 }
 
@@ -309,9 +338,11 @@ double distanceInUlps(double result, double exact) {
 // Results that are to have the bits of the CPU's.
 bool checkBits(Findings& findings, const char* operation, const std::vector<DoubleTrial>& trials,
                const std::vector<DoubleOutcome>& outcomes, double (*exactOf)(const DoubleTrial&),
-               double DoubleOutcome::*member, const char* otherwise = kSolved, const char* consequence = kUnsolved) {
+               double DoubleOutcome::*member, bool subnormals, const char* otherwise = kSolved,
+               const char* consequence = kUnsolved) {
   findings.begin(operation, "the bits of IEEE 754, rounded to nearest");
   for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal && !subnormals) continue;
     const double exact = exactOf(trials[i]), result = outcomes[i].*member;
     findings.result(sameBits(result, exact), distanceInUlps(result, exact));
   }
@@ -328,25 +359,26 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
                   const std::vector<DoubleOutcome>& outcomes) {
   bool usable = checkBits(
       findings, "double addition", trials, outcomes, [](const DoubleTrial& t) { return t.x + t.y; },
-      &DoubleOutcome::sum);
+      &DoubleOutcome::sum, false);
   usable &= checkBits(
       findings, "double multiplication", trials, outcomes, [](const DoubleTrial& t) { return t.x * t.y; },
-      &DoubleOutcome::product);
+      &DoubleOutcome::product, false);
   usable &= checkBits(findings, "double placement of a vertex, declared precise", trials, outcomes, placedOf,
-                      &DoubleOutcome::placed);
+                      &DoubleOutcome::placed, true);
   usable &= checkBits(
       findings, "float to double, by bits", trials, outcomes, [](const DoubleTrial& t) { return double{t.p[0]}; },
-      &DoubleOutcome::ofFloat);
+      &DoubleOutcome::ofFloat, true);
   usable &= checkBits(
       findings, "double division, composed of the above", trials, outcomes,
-      [](const DoubleTrial& t) { return t.x / t.y; }, &DoubleOutcome::corrected,
+      [](const DoubleTrial& t) { return t.x / t.y; }, &DoubleOutcome::corrected, false,
       "may stand in for the device's own division");
   usable &= checkBits(
       findings, "loading and storing doubles", trials, outcomes, [](const DoubleTrial& t) { return t.row[0]; },
-      &DoubleOutcome::copied);
+      &DoubleOutcome::copied, true);
 
   findings.begin("double comparison, least and greatest", "exact");
   for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal) continue;
     findings.result(outcomes[i].order == (trials[i].x < trials[i].y ? 3u : 4u));
   }
   usable &= findings.end("exact", kSolved, kUnsolved);
@@ -354,6 +386,7 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
   findings.begin("double to float", "less than 1 ulp off");
   Rounding rounding;
   for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal) continue;
     const double off = std::abs(outcomes[i].ofDouble - trials[i].x);
     const double ulp = std::max(ulpOf(static_cast<float>(trials[i].x)), ulpOf(outcomes[i].ofDouble));
     findings.result(off < ulp, off / ulp);
@@ -361,10 +394,22 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
   }
   usable &= findings.end(rounding.words(), kSolved, kUnsolved);
 
+  findings.begin("double multiplication of subnormal numbers", "");
+  size_t kept = 0, flushed = 0;
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) != Kind::subnormal) continue;
+    const double product = outcomes[i].product;
+    kept += product == trials[i].x * trials[i].y ? 1 : 0;
+    flushed += product == 0 ? 1 : 0;
+    findings.result(true);
+  }
+  findings.end(kept + flushed == findings.tried() ? inWords(kept, flushed) : "neither kept nor flushed to 0",
+               "nothing rests on it: bounds have room for what is lost there", "");
+
   arithmetic.doubles = usable;
   arithmetic.dividesRight = checkBits(
       findings, "double division", trials, outcomes, [](const DoubleTrial& t) { return t.x / t.y; },
-      &DoubleOutcome::quotient, "used as it is", "not used: divisions are composed of sums and products");
+      &DoubleOutcome::quotient, false, "used as it is", "not used: divisions are composed of sums and products");
 }
 
 }  // namespace

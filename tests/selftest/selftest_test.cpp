@@ -117,7 +117,7 @@ TEST_CASE("a selftest can be read whenever it is interrupted, and every part has
   CHECK(begun == std::vector<Part>(kParts.begin(), kParts.end()));
   const DeviceTest& device = report.devices[0];
   CHECK(device.right());
-  CHECK(device.arithmetic.size() == 18);
+  CHECK(device.arithmetic.size() == 20);
   CHECK(device.checkedAnswers() > 64);
   CHECK_FALSE(device.throughput.empty());
   CHECK_FALSE(device.stages.empty());

@@ -44,7 +44,8 @@ std::string arithmeticText(const DeviceTest& device) {
     text +=
         print("    %-48s %s %s\n", check.operation.c_str(), check.passed() ? "right:" : "WRONG:", check.found.c_str());
     const std::string worst = std::isnan(check.worst) ? "" : print("worst %.3g ulp; ", check.worst);
-    text += "      " + worst + "needed: " + check.needed + "; so " + check.consequence + "\n";
+    const std::string needed = check.needed.empty() ? "" : "needed: " + check.needed + "; so ";
+    text += "      " + worst + needed + check.consequence + "\n";
   }
   return text;
 }

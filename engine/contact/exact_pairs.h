@@ -4,7 +4,7 @@
 #include <compare>
 
 #include "exact/contact.h"
-#include "scene/frame.h"
+#include "math/frame.h"
 #include "scene/scene.h"
 #include "shaders/contact/interop.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "exact/contact.h"
-#include "scene/frame.h"
+#include "math/frame.h"
+#include "math/rounding.h"
 #include "scene/placement.h"
-#include "scene/rounding.h"
 
 namespace radar {
 

@@ -9,26 +9,26 @@ namespace radar::cpu {
 
 namespace {
 
-inline Vec minus(const Vec& p, const Vec& q) {
+inline Vector minus(const Vector& p, const Vector& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
 /// -1 or 1, the sign of w . (x cross y); 0 where doubles cannot tell. All three are differences of doubles, rounded
 /// once.
-inline int sureSign(const Vec& w, const Vec& x, const Vec& y) {
+inline int sureSign(const Vector& w, const Vector& x, const Vector& y) {
   const exact::Estimate rough = exact::estimate(w, x, y, exact::underflowOf(w));
   return std::abs(rough.value) > rough.error ? exact::signOf(rough.value) : 0;
 }
 
 /// Whether a line along d from p passes through the inside of a triangle.
-bool isOver(const Vec& p, const exact::Triangle& face, const Vec& d) {
-  const Vec to[3] = {minus(face[0], p), minus(face[1], p), minus(face[2], p)};
+bool isOver(const Vector& p, const exact::Triangle& face, const Vector& d) {
+  const Vector to[3] = {minus(face[0], p), minus(face[1], p), minus(face[2], p)};
   const int side = sureSign(d, to[0], to[1]);
   return side != 0 && sureSign(d, to[1], to[2]) == side && sureSign(d, to[2], to[0]) == side;
 }
 
 /// The corner that is farthest in the direction side * (x cross y); -1 where none certainly is, by itself.
-int farthest(const exact::Triangle& triangle, const Vec& x, const Vec& y, int side) {
+int farthest(const exact::Triangle& triangle, const Vector& x, const Vector& y, int side) {
   const int first = side * sureSign(minus(triangle[1], triangle[0]), x, y);
   const int second = side * sureSign(minus(triangle[2], triangle[0]), x, y);
   if (first < 0 && second < 0) return 0;
@@ -37,9 +37,9 @@ int farthest(const exact::Triangle& triangle, const Vec& x, const Vec& y, int si
   return second > 0 && last > 0 ? 2 : -1;
 }
 
-Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vec& d, bool ofA) {
+Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA) {
   const exact::Triangle& face = ofA ? a : b;
-  const Vec x = minus(face[1], face[0]), y = minus(face[2], face[0]);
+  const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
   const int side = sureSign(d, x, y);
   if (side == 0) return kNoFeature;
   // To the face of b comes what a has farthest along the motion, to that of a what b has farthest against it.
@@ -48,14 +48,14 @@ Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vec
   return ofA ? 3 + corner : corner;
 }
 
-Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vec& d, int i, int k) {
-  const Vec &a0 = a[i], &a1 = a[(i + 1) % 3], &a2 = a[(i + 2) % 3];
-  const Vec &b0 = b[k], &b1 = b[(k + 1) % 3], &b2 = b[(k + 2) % 3];
-  const Vec x = minus(a1, a0), y = minus(b1, b0);
+Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k) {
+  const Vector &a0 = a[i], &a1 = a[(i + 1) % 3], &a2 = a[(i + 2) % 3];
+  const Vector &b0 = b[k], &b1 = b[(k + 1) % 3], &b2 = b[(k + 2) % 3];
+  const Vector x = minus(a1, a0), y = minus(b1, b0);
   const int side = sureSign(d, x, y);
   if (side == 0 || sureSign(minus(a2, a0), x, y) != -side || sureSign(minus(b2, b0), x, y) != side) return kNoFeature;
   // Seen along d, the ends of either edge are on different sides of the other.
-  const Vec w00 = minus(b0, a0), w01 = minus(b1, a0), w10 = minus(b0, a1), w11 = minus(b1, a1);
+  const Vector w00 = minus(b0, a0), w01 = minus(b1, a0), w10 = minus(b0, a1), w11 = minus(b1, a1);
   const int p = sureSign(d, w00, w10), r = sureSign(d, w00, w01);
   if (p == 0 || r == 0 || sureSign(d, w01, w11) != -p || sureSign(d, w10, w11) != -r) return kNoFeature;
   return 6 + 3 * i + k;
@@ -63,11 +63,11 @@ Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Ve
 
 }  // namespace
 
-Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vec& d, Axis axis) {
+Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, Axis axis) {
   return axis < 2 ? acrossFace(a, b, d, axis == 0) : acrossEdges(a, b, d, (axis - 2) / 3, (axis - 2) % 3);
 }
 
-exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vec& d) {
+exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d) {
   if (feature < 3) return exact::vertexFace(d, a[feature], b);
   if (feature < 6) return exact::faceVertex(d, a, b[feature - 3]);
   const int i = (feature - 6) / 3, k = (feature - 6) % 3;

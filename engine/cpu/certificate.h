@@ -14,9 +14,9 @@ inline constexpr Feature kNoFeature = -1;
 /// if double precision is certain of these: what the two have farthest towards each other across `axis` are these
 /// features and nothing else, and the motion takes an inner point of one to an inner point of the other. Else
 /// kNoFeature.
-Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vec& direction, Axis axis);
+Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
 
 /// Contact by features of which the former is certain: the `first` of exact::contact, to the bit.
-exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vec& direction);
+exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction);
 
 }  // namespace radar::cpu

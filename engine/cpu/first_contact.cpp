@@ -19,12 +19,12 @@ int compareToEnd(const exact::Event& event, const Motion& motion) {
 
 }  // namespace
 
-FirstContact::FirstContact(const Motion& motion, bool decide, const Vec& sensor, double size)
+FirstContact::FirstContact(const Motion& motion, bool decide, const Vector& sensor, double size)
     : motion_(motion), view_(sensor, size, motion.unit), decide_(decide), latest_(motion.distance) {}
 
 void FirstContact::consider(const PairName& name, const exact::Triangle& a, const exact::Triangle& b, Axis axis) {
   if (isBefore(name)) return;
-  const Vec& d = motion_.direction;
+  const Vector& d = motion_.direction;
   if (const Feature feature = certainlyFirst(a, b, d, axis); feature != kNoFeature) {
     const exact::Event event = eventOf(feature, a, b, d);
     if (event.s > event.error) return keep(name, a, b, event, false);

@@ -20,7 +20,7 @@ class FirstContact {
  public:
   /// `decide`: any contact will do. `sensor`, `size`: where it is and how large, roughly. `motion` must
   /// outlive this.
-  FirstContact(const Motion& motion, bool decide, const Vec& sensor, double size);
+  FirstContact(const Motion& motion, bool decide, const Vector& sensor, double size);
 
   /// Whether nothing more need be shown.
   bool isDecided() const { return decide_ && found_; }

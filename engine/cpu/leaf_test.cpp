@@ -110,7 +110,7 @@ void LeafTest<Real>::showA(const gpu::MeshNode& leaf) {
   for (int k = 0; k < 3; ++k) {
     // In doubles, so that the difference of two corners is as precise as it is small.
     using D = Lanes<double>;
-    const Vec& row = matrix_[k];
+    const Vector& row = matrix_[k];
     a_.corner[k] = D(row[0]) * own.first[0] + D(row[1]) * own.first[1] + D(row[2]) * own.first[2];
     LaneVec<Real> lanes;
     for (int j = 0; j < 3; ++j) {

@@ -43,7 +43,7 @@ class LeafTest {
   const Mesh &meshA_, &meshB_;
   Side a_, b_;
   Matrix matrix_;
-  Vec offset_, travel_;
+  Vector offset_, travel_;
   Real travelSize_ = 0;     // sum over the axes
   Real positionError_ = 0;  // of a corner of A from one of B, along any axis
   Real edgeError_ = 0;      // of an edge, beyond what it is rounded by

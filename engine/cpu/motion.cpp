@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/frame.h"
+#include "math/frame.h"
 
 namespace radar::cpu {
 
@@ -12,7 +12,7 @@ namespace {
 // Beyond, a length or a quotient may lose more than a rounding.
 constexpr double kLeastNormal = 0x1p-900;
 
-Vec normalized(Vec v) {
+Vector normalized(Vector v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   for (double& c : v) c /= largest;
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);

@@ -6,14 +6,12 @@
 
 namespace radar::cpu {
 
-using exact::Vec;
-
 /// 2^-53: what a double loses in an operation, at most, relative to the result.
 inline constexpr double kUnit = 0x1p-53;
 
 struct Motion {
-  Vec direction;     ///< the query's, times a power of two that makes its largest component 1 to 2 where that is exact
-  Vec unit;          ///< of length 1; each component is off by at most 8u of itself and 2^-1074
+  Vector direction;  ///< the query's, times a power of two that makes its largest component 1 to 2 where that is exact
+  Vector unit;       ///< of length 1; each component is off by at most 8u of itself and 2^-1074
   double length;     ///< of `direction`, rounded to the nearest double
   double distance;   ///< D
   double parameter;  ///< whatever meets at a parameter, in terms of `direction`, below it meets before D

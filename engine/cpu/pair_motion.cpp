@@ -7,19 +7,19 @@ namespace radar::cpu {
 
 namespace {
 
-double dot(const Vec& p, const Vec& q) {
+double dot(const Vector& p, const Vector& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
 /// Of `sizes`, which are not negative, weighted by |p|.
-double sizeAlong(const Vec& p, const Vec& sizes) {
+double sizeAlong(const Vector& p, const Vector& sizes) {
   return std::abs(p[0]) * sizes[0] + std::abs(p[1]) * sizes[1] + std::abs(p[2]) * sizes[2];
 }
 
 }  // namespace
 
 PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest) : span(latest) {
-  const Vec& unit = motion.unit;
+  const Vector& unit = motion.unit;
   int fastest = 0;
   for (int k = 0; k < 3; ++k) {
     gap[k] = a.origin[k] - b.origin[k];
@@ -38,7 +38,7 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
 
 Sight::Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side) {
   for (int k = 0; k < 3; ++k) {
-    const Vec& n = own.rows[k];
+    const Vector& n = own.rows[k];
     offset[k] = side * dot(n, motion.gap);
     travel[k] = side * dot(n, motion.travel);
     slack[k] = sizeAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;

@@ -7,10 +7,10 @@ namespace radar::cpu {
 
 /// What matters of the motion of A past B. Time counts from 0 to 1, which is after `span`.
 struct PairMotion {
-  Vec gap;       ///< from B's origin to A's
-  Vec travel;    ///< of A in a unit of time
-  Vec rounding;  ///< per world axis: bound on what a position or a displacement is off by
-  double span;   ///< world units; no contact that matters comes later
+  Vector gap;       ///< from B's origin to A's
+  Vector travel;    ///< of A in a unit of time
+  Vector rounding;  ///< per world axis: bound on what a position or a displacement is off by
+  double span;      ///< world units; no contact that matters comes later
 
   /// Contacts later than `latest` do not matter.
   PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest);
@@ -23,8 +23,8 @@ struct PairMotion {
 /// by at most `slack` along each axis.
 struct Sight {
   Matrix matrix;
-  Vec offset, travel, slack;
-  Vec magnitude;  ///< per axis: bound on a vertex of either mesh, and on all that is added up to place it
+  Vector offset, travel, slack;
+  Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on all that is added up to place it
 
   /// `side`: 1 where the other mesh is the one in motion, else -1.
   Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side);

@@ -17,10 +17,10 @@ double scaleOf(double x) {
 /// Not finite where that is out of range.
 Matrix roughInverse(Matrix m) {
   // Columns of about 1, so that their products neither under- nor overflow.
-  Vec scale;
+  Vector scale;
   for (int k = 0; k < 3; ++k) {
     scale[k] = scaleOf(std::max({std::abs(m[0][k]), std::abs(m[1][k]), std::abs(m[2][k])}));
-    for (Vec& row : m) row[k] *= scale[k];
+    for (Vector& row : m) row[k] *= scale[k];
   }
   Matrix out;
   for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ Placement::Placement(const Mesh& mesh, const Pose& worldFromMesh) {
 
 MeshAxes::MeshAxes(const Matrix& linear) : rows(roughInverse(linear)) {
   for (int k = 0; k < 3; ++k) {
-    const Vec& n = rows[k];
+    const Vector& n = rows[k];
     residual[k] = 0;
     for (int j = 0; j < 3; ++j) {
       residual[k] += std::abs(n[0] * linear[0][j] + n[1] * linear[1][j] + n[2] * linear[2][j] - (j == k));

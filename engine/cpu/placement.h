@@ -6,14 +6,14 @@
 
 namespace radar::cpu {
 
-using Matrix = std::array<Vec, 3>;  ///< rows
+using Matrix = std::array<Vector, 3>;  ///< rows
 
 /// Places normalised vertices: world = origin + linear * q. The bounds are derived in docs/method.md.
 struct Placement {
-  Vec origin;
+  Vector origin;
   Matrix linear;
-  Vec extent;  ///< per world axis: bound on |linear * q|
-  Vec error;   ///< per world axis: how far `radar::place` and the formula above may be apart
+  Vector extent;  ///< per world axis: bound on |linear * q|
+  Vector error;   ///< per world axis: how far `radar::place` and the formula above may be apart
 
   Placement(const Mesh& mesh, const Pose& worldFromMesh);
 };
@@ -22,7 +22,7 @@ struct Placement {
 /// and `residual` says how far that is.
 struct MeshAxes {
   Matrix rows;
-  Vec residual;  ///< of row k: the sum over columns j of |rows[k] . linear[.][j] - (j == k)|, as computed
+  Vector residual;  ///< of row k: the sum over columns j of |rows[k] . linear[.][j] - (j == k)|, as computed
 
   explicit MeshAxes(const Matrix& linear);
 };

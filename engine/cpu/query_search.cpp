@@ -8,8 +8,8 @@ namespace radar::cpu {
 
 namespace {
 
-Vec middleOf(const Mesh& mesh, const Placement& placement) {
-  Vec middle = placement.origin;
+Vector middleOf(const Mesh& mesh, const Placement& placement) {
+  Vector middle = placement.origin;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) middle[i] += placement.linear[i][k] * mesh.tree.nodes[0].centre[k];
   }

@@ -15,7 +15,7 @@ TwoDoubles both(double x) {
 
 SweptBox::SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree) {
   const Box& world = tree.worldBox();
-  Vec middle, half, magnitude;
+  Vector middle, half, magnitude;
   double latest = motion.distance;
   for (int k = 0; k < 3; ++k) {
     const double anchor = tree.anchor()[k], speed = std::abs(motion.unit[k]);

@@ -115,7 +115,7 @@ Span spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& se
 bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
   // What is not a number is not within either.
   if (!(a.error + b.error < kMostError)) return true;
-  Vec below, above;  // what differences b - a lie between
+  Vector below, above;  // what differences b - a lie between
   for (int k = 0; k < 3; ++k) {
     below[k] = b.lo[k] - a.hi[k];
     above[k] = b.hi[k] - a.lo[k];

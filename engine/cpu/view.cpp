@@ -16,27 +16,27 @@ double scaleOf(double size) {
 
 }  // namespace
 
-View::View(const Vec& sensor, double size, const Vec& w) : origin(sensor), scale(scaleOf(size)) {
+View::View(const Vector& sensor, double size, const Vector& w) : origin(sensor), scale(scaleOf(size)) {
   int least = 0;
   for (int k = 1; k < 3; ++k) {
     if (std::abs(w[k]) < std::abs(w[least])) least = k;
   }
   const int i = (least + 1) % 3, j = (least + 2) % 3;
-  Vec u{};
+  Vector u{};
   u[i] = -w[j];
   u[j] = w[i];
   const double length = std::sqrt(u[i] * u[i] + u[j] * u[j]);
   for (double& c : u) c /= length;
-  axes = {u, Vec{w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]}, w};
+  axes = {u, Vector{w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]}, w};
 }
 
 ViewedTriangle::ViewedTriangle(const exact::Triangle& world, const View& view) {
   double farthest = 0, sum = 0;
   for (int i = 0; i < 3; ++i) {
-    Vec local;
+    Vector local;
     for (int k = 0; k < 3; ++k) local[k] = view.scale * (world[i][k] - view.origin[k]);
     for (int k = 0; k < 3; ++k) {
-      const Vec& axis = view.axes[k];
+      const Vector& axis = view.axes[k];
       corners[i][k] = axis[0] * local[0] + axis[1] * local[1] + axis[2] * local[2];
     }
     const double size = std::abs(local[0]) + std::abs(local[1]) + std::abs(local[2]);
@@ -49,7 +49,7 @@ ViewedTriangle::ViewedTriangle(const exact::Triangle& world, const View& view) {
     lo[k] = std::min({corners[0][k], corners[1][k], corners[2][k]}) - error;
     hi[k] = std::max({corners[0][k], corners[1][k], corners[2][k]}) + error;
   }
-  const Vec &p = corners[0], &q = corners[1], &r = corners[2];
+  const Vector &p = corners[0], &q = corners[1], &r = corners[2];
   area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
   const double width = std::max(hi[0] - lo[0], hi[1] - lo[1]), off = 2 * error + kUnit * width;
   areaError = 4 * width * off + 4 * off * off + 4 * kUnit * width * width;

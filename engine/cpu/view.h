@@ -7,18 +7,18 @@
 namespace radar::cpu {
 
 struct View {
-  Vec origin;
+  Vector origin;
   double scale;  ///< of world units, a power of two
-  std::array<Vec, 3> axes;
+  std::array<Vector, 3> axes;
 
   /// `size`: of the sensor, in the world, roughly.
-  View(const Vec& sensor, double size, const Vec& unit);
+  View(const Vector& sensor, double size, const Vector& unit);
 };
 
 /// A triangle placed in the world, as the view sees it.
 struct ViewedTriangle {
-  std::array<Vec, 3> corners;
-  Vec lo, hi;              ///< their box, widened by `error`
+  std::array<Vector, 3> corners;
+  Vector lo, hi;           ///< their box, widened by `error`
   double error;            ///< bounds what rounding did to each coordinate of each corner; not finite: nothing is known
   double area, areaError;  ///< of the triangle seen along the motion, signed, twice; bound on its error
 

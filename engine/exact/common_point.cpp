@@ -12,37 +12,37 @@ namespace {
 
 struct Candidate {
   double inside;  ///< least barycentric coordinate in the pierced triangle
-  Vec at;
+  Vector at;
 };
 
-Vec minus(const Vec& p, const Vec& q) {
+Vector minus(const Vector& p, const Vector& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
-Vec cross(const Vec& p, const Vec& q) {
+Vector cross(const Vector& p, const Vector& q) {
   return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
 
-double dot(const Vec& p, const Vec& q) {
+double dot(const Vector& p, const Vector& q) {
   return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
 }
 
 /// All of `face` and `other` is relative to a corner of `face`.
 void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
-  const Vec normal = cross(minus(face[1], face[0]), minus(face[2], face[0]));
+  const Vector normal = cross(minus(face[1], face[0]), minus(face[2], face[0]));
   const double square = dot(normal, normal);
   if (square == 0) return;
   for (int i = 0; i < 3; ++i) {
-    const Vec &p = other[i], &q = other[(i + 1) % 3];
+    const Vector &p = other[i], &q = other[(i + 1) % 3];
     const double above = dot(normal, minus(p, face[0])), below = dot(normal, minus(q, face[0]));
     if ((above > 0) == (below > 0) && above != 0 && below != 0) continue;
     if (above == below) continue;
     const double share = above / (above - below);
-    const Vec edge = minus(q, p);
-    const Vec at{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
+    const Vector edge = minus(q, p);
+    const Vector at{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
     double inside = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const Vec &r = face[k], &s = face[(k + 1) % 3];
+      const Vector &r = face[k], &s = face[(k + 1) % 3];
       inside = std::min(inside, dot(normal, cross(minus(s, r), minus(at, r))) / square);
     }
     if (inside > best.inside) best = {inside, at};
@@ -51,12 +51,12 @@ void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
 
 }  // namespace
 
-Vec commonPoint(const Triangle& first, const Triangle& second) {
+Vector commonPoint(const Triangle& first, const Triangle& second) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Triangle a = first, b = second;
   std::sort(a.begin(), a.end());
   std::sort(b.begin(), b.end());
-  const Vec origin = b[0];
+  const Vector origin = b[0];
   Triangle pa, pb;
   double size = 0;
   for (int i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ Vec commonPoint(const Triangle& first, const Triangle& second) {
   }
   // Of unit size, so that products neither under- nor overflow.
   for (Triangle* t : {&pa, &pb}) {
-    for (Vec& p : *t) {
+    for (Vector& p : *t) {
       for (double& c : p) c /= size;
     }
   }

@@ -60,8 +60,8 @@ class Signs {
   int edgeOfB[3][3];  ///< [k][i]: vertex i of a against the edge of b from k to next(k)
   bool allZero = true;
 
-  Signs(const Triangle& a, const Triangle& b, const Vec& direction) : a_(a), b_(b), direction_(direction) {
-    Vec gap[3][3];
+  Signs(const Triangle& a, const Triangle& b, const Vector& direction) : a_(a), b_(b), direction_(direction) {
+    Vector gap[3][3];
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) gap[i][k] = rounded({a[i], b[k]});
     }
@@ -98,8 +98,8 @@ class Signs {
   int exactMinor(int i, int k, int j, int l) {
     // Where one sign is hard, others are: the pair is taken to integers once.
     if (fit_ == Fit::unknown) {
-      const std::array<const Vec*, 6> corners{&a_[0], &a_[1], &a_[2], &b_[0], &b_[1], &b_[2]};
-      const std::array<const Vec*, 1> way{&direction_};
+      const std::array<const Vector*, 6> corners{&a_[0], &a_[1], &a_[2], &b_[0], &b_[1], &b_[2]};
+      const std::array<const Vector*, 1> way{&direction_};
       int exponent;
       fit_ = toWhole(corners, corners_, exponent) && toWhole(way, way_, exponent) ? Fit::yes : Fit::no;
     }
@@ -110,7 +110,7 @@ class Signs {
 
   enum class Fit { unknown, yes, no };
   const Triangle &a_, &b_;
-  const Vec& direction_;
+  const Vector& direction_;
   Fit fit_ = Fit::unknown;
   std::array<WholeVec, 6> corners_;
   std::array<WholeVec, 1> way_;
@@ -118,7 +118,7 @@ class Signs {
 
 /// Both triangles lie on one line as seen along the direction, or on two points: a problem in a plane that contains the
 /// direction. Its basic solutions are a vertex on an edge or, where all is on one line, a vertex on a vertex.
-void addPlanar(const Triangle& a, const Triangle& b, const Vec& direction, Ends& ends) {
+void addPlanar(const Triangle& a, const Triangle& b, const Vector& direction, Ends& ends) {
   int across = 0;
   int side[3][3];
   for (; across < 3; ++across) {
@@ -132,8 +132,8 @@ void addPlanar(const Triangle& a, const Triangle& b, const Vec& direction, Ends&
     if (any) break;
   }
   if (across == 3) {
-    for (const Vec& p : a) {
-      for (const Vec& q : b) ends.add(vertexVertex(direction, p, q));
+    for (const Vector& p : a) {
+      for (const Vector& q : b) ends.add(vertexVertex(direction, p, q));
     }
     return;
   }
@@ -148,7 +148,7 @@ void addPlanar(const Triangle& a, const Triangle& b, const Vec& direction, Ends&
 
 }  // namespace
 
-std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vec& direction) {
+std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction) {
   const Signs signs(a, b, direction);
   Ends ends;
   if (signs.allZero) {

@@ -12,10 +12,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "math/vector.h"
+
 namespace radar::exact {
 
-using Vec = std::array<double, 3>;
-using Triangle = std::array<Vec, 3>;
+using Triangle = std::array<Vector, 3>;
 
 /// What touches what: of the moving triangle first, of the resting one second. The last three occur only where both
 /// triangles lie in one plane that contains the direction.
@@ -27,9 +28,9 @@ enum class Kind : uint8_t { vertexFace, faceVertex, edgeEdge, vertexEdge, edgeVe
 /// triangles they were found in.
 struct Event {
   Kind kind;
-  Vec direction;
-  Vec from, to;  ///< a vertex of the moving feature, a vertex of the resting one
-  Vec x0, x1, y0, y1;
+  Vector direction;
+  Vector from, to;  ///< a vertex of the moving feature, a vertex of the resting one
+  Vector x0, x1, y0, y1;
   double s;      ///< the parameter, approximately
   double error;  ///< bound on |s - exact parameter|; may be infinite
 };
@@ -39,7 +40,7 @@ struct Interval {
 };
 
 /// The interval of contact; none where the triangles do not meet for any s. `direction` is not zero.
-std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vec& direction);
+std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vector& direction);
 
 /// -1, 0 or 1: the sign of the event's parameter.
 int sign(const Event& event);
@@ -51,13 +52,13 @@ int compareToDistance(const Event& event, double distance);
 /// features have the same bits.
 double parameter(const Event& event);
 /// |direction|, rounded to the nearest double.
-double length(const Vec& direction);
+double length(const Vector& direction);
 
 /// Where the features touch, once the moving one has been moved by `s` = parameter(event).
-Vec point(const Event& event, double s);
+Vector point(const Event& event, double s);
 /// Unit normal of the contact with normal . direction <= 0: of the face, or across both edges. NaN where the features
 /// leave it open (the kinds of one plane).
-Vec normal(const Event& event);
+Vector normal(const Event& event);
 
 /// How many decisions of this thread needed exact integers so far, because no filter in floating point sufficed.
 uint64_t exactDecisions();

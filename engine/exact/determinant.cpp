@@ -23,7 +23,7 @@ void countExactDecision() {
 }
 
 Estimate estimate(const Determinant& d) {
-  const Vec w = rounded(d.w);
+  const Vector w = rounded(d.w);
   return estimate(w, rounded(d.x), rounded(d.y), underflowOf(w));
 }
 

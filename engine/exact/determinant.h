@@ -13,8 +13,8 @@ namespace radar::exact {
 
 /// The vector to - from, not rounded.
 struct Difference {
-  const Vec& from;
-  const Vec& to;
+  const Vector& from;
+  const Vector& to;
 };
 
 /// w . (x cross y).
@@ -50,7 +50,7 @@ inline constexpr double kRelative = 16 * 0x1p-53;
 inline constexpr double kUnderflow = 0x1p-1000;
 
 /// The determinant of three differences whose components were rounded once. `floor` is at least kUnderflow (1 + |w|).
-inline Estimate estimate(const Vec& w, const Vec& x, const Vec& y, double floor) {
+inline Estimate estimate(const Vector& w, const Vector& x, const Vector& y, double floor) {
   const double p0 = x[1] * y[2], p1 = x[2] * y[0], p2 = x[0] * y[1];
   const double q0 = x[2] * y[1], q1 = x[0] * y[2], q2 = x[1] * y[0];
   const double value = w[0] * (p0 - q0) + w[1] * (p1 - q1) + w[2] * (p2 - q2);
@@ -60,11 +60,11 @@ inline Estimate estimate(const Vec& w, const Vec& x, const Vec& y, double floor)
   return {value, kRelative * magnitude + floor};
 }
 
-inline double underflowOf(const Vec& w) {
+inline double underflowOf(const Vector& w) {
   return kUnderflow * (1 + (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2])));
 }
 
-inline Vec rounded(const Difference& d) {
+inline Vector rounded(const Difference& d) {
   return {d.to[0] - d.from[0], d.to[1] - d.from[1], d.to[2] - d.from[2]};
 }
 
@@ -73,7 +73,7 @@ inline int signOf(double v) {
 }
 
 /// The origin: makes a difference of a vector.
-inline constexpr Vec kOrigin{};
+inline constexpr Vector kOrigin{};
 
 /// To be called wherever exact integers had to decide: keeps the count that exactDecisions() gives.
 void countExactDecision();

@@ -24,8 +24,8 @@ Determinant denominator(const Event& e) {
 }
 
 /// Fills in the parameter. With num = n + dn, den = d + dd: n/d - num/den = (dn - (n/d) dd) / -den.
-Event evaluated(Kind kind, const Vec& direction, const Vec& from, const Vec& to, const Vec& x0, const Vec& x1,
-                const Vec& y0, const Vec& y1) {
+Event evaluated(Kind kind, const Vector& direction, const Vector& from, const Vector& to, const Vector& x0,
+                const Vector& x1, const Vector& y0, const Vector& y1) {
   Event e{kind, direction, from, to, x0, x1, y0, y1, 0, 0};
   const Estimate num = estimate(numerator(e)), den = estimate(denominator(e));
   e.s = num.value / den.value;
@@ -36,8 +36,8 @@ Event evaluated(Kind kind, const Vec& direction, const Vec& from, const Vec& to,
   return e;
 }
 
-Vec unit(int axis) {
-  Vec v{};
+Vector unit(int axis) {
+  Vector v{};
   v[axis % 3] = 1;
   return v;
 }
@@ -68,33 +68,33 @@ FineParameter fineParameter(const Event& e) {
 
 }  // namespace
 
-Event vertexFace(const Vec& direction, const Vec& a, const Triangle& b) {
+Event vertexFace(const Vector& direction, const Vector& a, const Triangle& b) {
   const Triangle f = sorted(b);
   return evaluated(Kind::vertexFace, direction, a, f[0], f[0], f[1], f[0], f[2]);
 }
 
-Event faceVertex(const Vec& direction, const Triangle& a, const Vec& b) {
+Event faceVertex(const Vector& direction, const Triangle& a, const Vector& b) {
   const Triangle f = sorted(a);
   return evaluated(Kind::faceVertex, direction, f[0], b, f[0], f[1], f[0], f[2]);
 }
 
-Event edgeEdge(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b0, const Vec& b1) {
+Event edgeEdge(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b0, const Vector& b1) {
   const auto [p0, p1] = std::minmax(a0, a1);
   const auto [q0, q1] = std::minmax(b0, b1);
   return evaluated(Kind::edgeEdge, direction, p0, q0, p0, p1, q0, q1);
 }
 
-Event vertexEdge(const Vec& direction, const Vec& a, const Vec& b0, const Vec& b1, int axis) {
+Event vertexEdge(const Vector& direction, const Vector& a, const Vector& b0, const Vector& b1, int axis) {
   const auto [q0, q1] = std::minmax(b0, b1);
   return evaluated(Kind::vertexEdge, direction, a, q0, q0, q1, kOrigin, unit(axis));
 }
 
-Event edgeVertex(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b, int axis) {
+Event edgeVertex(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b, int axis) {
   const auto [p0, p1] = std::minmax(a0, a1);
   return evaluated(Kind::edgeVertex, direction, p0, b, p0, p1, kOrigin, unit(axis));
 }
 
-Event vertexVertex(const Vec& direction, const Vec& a, const Vec& b) {
+Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b) {
   int axis = 0;
   while (direction[axis] == 0) ++axis;
   return evaluated(Kind::vertexVertex, direction, a, b, kOrigin, unit(axis + 1), kOrigin, unit(axis + 2));
@@ -160,7 +160,7 @@ double parameter(const Event& e) {
 namespace {
 
 /// An estimate made right: the length is between the midpoints from its nearest double to the neighbours.
-double exactLength(const Vec& d, double root) {
+double exactLength(const Vector& d, double root) {
   Dyadic square;
   for (double c : d) square = square + Dyadic(c) * Dyadic(c);
   const Dyadic fourfold = square * Dyadic(4);
@@ -182,7 +182,7 @@ double exactLength(const Vec& d, double root) {
 
 }  // namespace
 
-double length(const Vec& d) {
+double length(const Vector& d) {
   const double root = std::hypot(d[0], d[1], d[2]);
   if (!std::isfinite(root)) return root;
   if (root < 0x1p-400 || root > 0x1p400) return exactLength(d, root);
@@ -197,13 +197,13 @@ double length(const Vec& d) {
 
 namespace {
 
-Vec along(const Vec& p, double s, const Vec& d) {
+Vector along(const Vector& p, double s, const Vector& d) {
   return {p[0] + s * d[0], p[1] + s * d[1], p[2] + s * d[2]};
 }
 
 }  // namespace
 
-Vec point(const Event& e, double s) {
+Vector point(const Event& e, double s) {
   switch (e.kind) {
     case Kind::vertexFace:
     case Kind::vertexEdge:
@@ -234,7 +234,7 @@ double rootOf(double x) {
 
 }  // namespace
 
-Vec normal(const Event& e) {
+Vector normal(const Event& e) {
   if (e.kind > Kind::edgeEdge) return {NAN, NAN, NAN};
   Twofold x[3], y[3];
   for (int k = 0; k < 3; ++k) {
@@ -246,7 +246,7 @@ Vec normal(const Event& e) {
     const int size = std::ilogb(std::max({std::abs(v[0].high), std::abs(v[1].high), std::abs(v[2].high)}));
     for (int k = 0; k < 3; ++k) v[k] = {std::ldexp(v[k].high, -size), std::ldexp(v[k].low, -size)};
   }
-  Vec n;
+  Vector n;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     n[k] = (x[i] * y[j] - x[j] * y[i]).high;

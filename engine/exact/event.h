@@ -7,13 +7,13 @@
 
 namespace radar::exact {
 
-Event vertexFace(const Vec& direction, const Vec& a, const Triangle& b);
-Event faceVertex(const Vec& direction, const Triangle& a, const Vec& b);
-Event edgeEdge(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b0, const Vec& b1);
+Event vertexFace(const Vector& direction, const Vector& a, const Triangle& b);
+Event faceVertex(const Vector& direction, const Triangle& a, const Vector& b);
+Event edgeEdge(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b0, const Vector& b1);
 /// `axis`: a component in which direction x edge is not zero.
-Event vertexEdge(const Vec& direction, const Vec& a, const Vec& b0, const Vec& b1, int axis);
-Event edgeVertex(const Vec& direction, const Vec& a0, const Vec& a1, const Vec& b, int axis);
-Event vertexVertex(const Vec& direction, const Vec& a, const Vec& b);
+Event vertexEdge(const Vector& direction, const Vector& a, const Vector& b0, const Vector& b1, int axis);
+Event edgeVertex(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b, int axis);
+Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b);
 
 /// An event's parameter as the exact fraction it is.
 struct Ratio {

@@ -52,10 +52,10 @@ struct Parts {
 
 }  // namespace
 
-bool toWhole(std::span<const Vec* const> points, std::span<WholeVec> out, int& exponent) {
+bool toWhole(std::span<const Vector* const> points, std::span<WholeVec> out, int& exponent) {
   constexpr int kNone = 5000;
   int low = kNone, high = -kNone;
-  for (const Vec* point : points) {
+  for (const Vector* point : points) {
     for (double c : *point) {
       const Parts parts(c);
       if (parts.digits == 0) continue;
@@ -77,7 +77,7 @@ bool toWhole(std::span<const Vec* const> points, std::span<WholeVec> out, int& e
 }
 
 std::optional<Whole> whole(const Difference& v) {
-  const std::array<const Vec*, 2> points{&v.to, &v.from};
+  const std::array<const Vector*, 2> points{&v.to, &v.from};
   std::array<WholeVec, 2> at;
   Whole out;
   if (!toWhole(points, at, out.exponent)) return std::nullopt;

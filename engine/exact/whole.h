@@ -15,7 +15,7 @@ namespace radar::exact {
 using WholeVec = std::array<int64_t, 3>;
 
 /// points[n] = out[n] * 2^exponent, components below 2^61. False if they do not fit.
-bool toWhole(std::span<const Vec* const> points, std::span<WholeVec> out, int& exponent);
+bool toWhole(std::span<const Vector* const> points, std::span<WholeVec> out, int& exponent);
 
 /// A difference, components below 2^62.
 struct Whole {

@@ -4,6 +4,7 @@
 #include <future>
 #include <limits>
 
+#include "math/vector.h"
 #include "scene/parallel.h"
 
 namespace radar {
@@ -62,7 +63,7 @@ class Binning {
   }
 
  private:
-  std::array<double, 3> first_{}, scale_{};
+  Vector first_{}, scale_{};
 };
 
 // Where the sum of (area times items) of both sides is least.

@@ -26,7 +26,7 @@ void refuseAbove(const Device::Impl& device, const char* what, uint64_t count) {
               " bytes, the device allows " + std::to_string(limit));
 }
 
-void copyPoint(const std::array<double, 3>& from, float (&to)[3]) {
+void copyPoint(const Vector& from, float (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
 

@@ -80,7 +80,7 @@ class Builder {
 
   // A slab across the triangles' mean normal: any normal would do, that one is thin.
   void fitSlab(const MeshTree& tree, const BoxTree::Node& from, gpu::MeshNode& node) const {
-    std::array<double, 3> sum{};
+    Vector sum{};
     for (uint32_t place = from.first; place < from.first + from.count; ++place) {
       const uint32_t triangle = tree.order[place];
       const Point a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);

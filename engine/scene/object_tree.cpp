@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "math/rounding.h"
 #include "scene/box_tree.h"
 #include "scene/parallel.h"
-#include "scene/rounding.h"
 #include "scene/scene.h"
 
 namespace radar {
@@ -20,7 +20,7 @@ double halfArea(const gpu::ObjectNode& node) {
   return x * y + y * z + z * x;
 }
 
-FloatBox floatBox(const Box& box, const std::array<double, 3>& anchor) {
+FloatBox floatBox(const Box& box, const Vector& anchor) {
   FloatBox out;
   for (int k = 0; k < 3; ++k) {
     // The differences are rounded, too.

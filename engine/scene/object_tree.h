@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "math/box.h"
 #include "radar/radar.h"
-#include "scene/box.h"
 #include "shaders/interop.h"
 
 namespace radar {
@@ -21,7 +21,7 @@ class ObjectTree {
   /// and its object's id. None where there are no objects.
   const std::vector<gpu::ObjectNode>& nodes() const { return nodes_; }
   /// Amid the objects as they were when the tree was built, so that a scene far from its origin keeps its precision.
-  const std::array<double, 3>& anchor() const { return anchor_; }
+  const Vector& anchor() const { return anchor_; }
   /// Of all objects; empty where there are none.
   const Box& worldBox() const { return world_; }
   /// Of one, world coordinates: where it is, and where a host may move it.
@@ -40,7 +40,7 @@ class ObjectTree {
 
   std::vector<gpu::ObjectNode> nodes_;
   std::vector<Box> boxes_;  // of every object id
-  std::array<double, 3> anchor_{};
+  Vector anchor_{};
   Box world_;
   uint32_t depth_ = 0;
   bool inRange_ = true;

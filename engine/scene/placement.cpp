@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scene/rounding.h"
+#include "math/rounding.h"
 
 namespace radar {
 

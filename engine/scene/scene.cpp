@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "scene/rounding.h"
+#include "math/rounding.h"
 
 namespace radar {
 
@@ -142,9 +142,9 @@ double determinant(const Pose& pose) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
-std::array<double, 3> place(const Pose& pose, const float* p) {
+Vector place(const Pose& pose, const float* p) {
   const double x = p[0], y = p[1], z = p[2];
-  std::array<double, 3> out;
+  Vector out;
   for (int k = 0; k < 3; ++k) {
     const double* r = &pose.m[4 * k];
     out[k] = ((r[0] * x + r[1] * y) + r[2] * z) + r[3];

@@ -9,8 +9,8 @@
 #include <queue>
 #include <vector>
 
+#include "math/box.h"
 #include "radar/radar.h"
-#include "scene/box.h"
 #include "scene/mesh_tree.h"
 #include "scene/object_tree.h"
 
@@ -27,7 +27,7 @@ struct Mesh {
   /// Derived. A local vertex is position - origin, so that a part modelled far from its origin keeps its float
   /// precision. The origin is of floats that make this difference exact: 0 along an axis on which the mesh spans or
   /// nears 0, the middle on the others. One array per axis, so that loops over vertices vectorise.
-  std::array<double, 3> origin{};
+  Vector origin{};
   std::array<std::vector<float>, 3> local;
   Box box;                       ///< of local vertices, and of what a host may make of them
   std::array<float, 3> reach{};  ///< greatest |coordinate| in the box

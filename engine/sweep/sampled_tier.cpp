@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "sweep/decode.h"
+#include "sampled/decode.h"
 
 namespace radar {
 
@@ -44,7 +44,7 @@ std::string SampledTier::tooLarge(const ViewPlan& plan) const {
 }
 
 ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
-  return encode(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
+  return planSampled(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
 }
 
 void SampledTier::submit(std::span<Pending> part) {
@@ -56,7 +56,7 @@ void SampledTier::submit(std::span<Pending> part) {
     plans.push_back(&pending.plan);
     flying_.push_back(pending.query);
   }
-  fill(drawn_, plans);
+  packBatch(drawn_, plans);
   batch_.addCpuTime("encode", msSince(start));
   ++batch_.stats.submissions;
   batch_.stats.drawnObjects += drawn_.objects;
@@ -72,13 +72,13 @@ void SampledTier::land() {
   const std::vector<size_t> landing = std::exchange(flying_, {});
   if (landing.empty()) return;
   try {
-    const Answers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages);
+    const SampledAnswers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages);
     batch_.deviceDone = Clock::now();
     for (size_t i = 0; i < landing.size(); ++i) {
       const size_t query = landing[i];
       batch_.answers[query] =
-          decode(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs), batch_.asked[query],
-                 scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
+          decodeSampled(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs),
+                        batch_.asked[query], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
       batch_.stats.pairs += found.answers[i].pairs;
     }
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
@@ -139,15 +139,15 @@ Scopes SampledTier::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
-  fill(drawn_, plans);
+  packBatch(drawn_, plans);
   StoredScopes stored;
   recorder_.submit(drawn_, scene_.impl(), true);
-  const Answers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
+  const SampledAnswers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()
-                                    : decode(found.answers[0], found.openPairs, query, scene_.impl(),
-                                             plan.view.resolution, batch_.stats.cpuPairs);
+                                    : decodeSampled(found.answers[0], found.openPairs, query, scene_.impl(),
+                                                    plan.view.resolution, batch_.stats.cpuPairs);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

@@ -2,8 +2,8 @@
 // a time; it lands before the next is staged.
 #pragma once
 
+#include "sampled/submitter.h"
 #include "sweep/asked.h"
-#include "sweep/sampled_recorder.h"
 
 namespace radar {
 
@@ -42,11 +42,11 @@ class SampledTier {
   const Scene& scene_;
   const SweeperOptions options_;
   Asked& batch_;
-  SampledRecorder recorder_;
+  SampledSubmitter recorder_;
   uint64_t bufferBytes_;
   uint64_t maxItems_;           ///< items name triangles in 32 bits
   std::vector<size_t> flying_;  ///< the queries with the device, in the order of `drawn_.views`
-  Batch drawn_;
+  SampledBatch drawn_;
 };
 
 }  // namespace radar

@@ -13,8 +13,8 @@
 #include "radar/recorder.h"
 #include "support/buffer_words.h"
 #include "support/exact_placement.h"
-#include "sweep/host_format.h"
-#include "sweep/host_geometry.h"
+#include "embed/host_format.h"
+#include "embed/host_geometry.h"
 #include "workloads/families.h"
 #include "workloads/shapes.h"
 

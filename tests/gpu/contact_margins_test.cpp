@@ -8,7 +8,7 @@
 #include "gpu/contact_margins_interop.h"
 #include "gpu/kernel_fixture.h"
 #include "scene/gpu_scene.h"
-#include "scene/rounding.h"
+#include "math/rounding.h"
 #include "spirv/contact_margins_comp.h"
 #include "workloads/shapes.h"
 

@@ -10,9 +10,9 @@
 namespace {
 
 using namespace radar;
-using Vec = std::array<double, 3>;
+using Vector = std::array<double, 3>;
 
-double dot(const Vec& a, const Vec& b) {
+double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -23,8 +23,8 @@ struct Window {
     snap = std::ldexp(1.0, 1 - static_cast<int>(bits));
   }
   // Pixels across, world units along.
-  Vec operator()(const Vec& world) const {
-    const Vec offset{world[0] - scopes.origin[0], world[1] - scopes.origin[1], world[2] - scopes.origin[2]};
+  Vector operator()(const Vector& world) const {
+    const Vector offset{world[0] - scopes.origin[0], world[1] - scopes.origin[1], world[2] - scopes.origin[2]};
     return {dot(offset, scopes.right) / scopes.pixel, dot(offset, scopes.up) / scopes.pixel,
             dot(offset, scopes.forward)};
   }
@@ -33,7 +33,7 @@ struct Window {
 };
 
 // Placement error of a mesh (docs/method.md): 8 u times the greatest coordinate of its turned box about the sensor.
-double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scopes, const Vec& about) {
+double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scopes, const Vector& about) {
   std::array<float, 3> lo{3e38f, 3e38f, 3e38f}, hi{-3e38f, -3e38f, -3e38f};
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
@@ -44,9 +44,9 @@ double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scop
   double worst = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const float p[3] = {corner & 1 ? hi[0] : lo[0], corner & 2 ? hi[1] : lo[1], corner & 4 ? hi[2] : lo[2]};
-    Vec world = place(pose, p);
+    Vector world = place(pose, p);
     for (int k = 0; k < 3; ++k) world[k] -= about[k];
-    for (const Vec& axis : {scopes.right, scopes.up, scopes.forward})
+    for (const Vector& axis : {scopes.right, scopes.up, scopes.forward})
       worst = std::max(worst, std::abs(dot(world, axis)));
   }
   return 8 * 0x1p-24 * worst;
@@ -58,9 +58,9 @@ struct Raster {
   Raster(uint32_t w, uint32_t h)
       : width(w), height(h), depth(size_t{w} * h, NAN), tolerance(depth.size()), unsure(depth.size()) {}
 
-  void add(const Vec (&p)[3], double sign, double error, double snap, double pixel) {
+  void add(const Vector (&p)[3], double sign, double error, double snap, double pixel) {
     double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
-    for (const Vec& corner : p) {
+    for (const Vector& corner : p) {
       for (int k = 0; k < 2; ++k) {
         lo[k] = std::min(lo[k], corner[k]);
         hi[k] = std::max(hi[k], corner[k]);
@@ -73,10 +73,10 @@ struct Raster {
     }
   }
 
-  void addAt(size_t at, const Vec& centre, const Vec (&p)[3], double sign, double error, double snap, double pixel) {
+  void addAt(size_t at, const Vector& centre, const Vector (&p)[3], double sign, double error, double snap, double pixel) {
     int left = 0, right = 0;
     for (int i = 0; i < 3; ++i) {
-      const Vec &a = p[i], &b = p[(i + 1) % 3];
+      const Vector &a = p[i], &b = p[(i + 1) % 3];
       const double ex = b[0] - a[0], ey = b[1] - a[1], ox = centre[0] - a[0], oy = centre[1] - a[1];
       const double along = std::clamp((ox * ex + oy * ey) / std::max(ex * ex + ey * ey, 1e-300), 0.0, 1.0);
       if (std::hypot(ox - along * ex, oy - along * ey) <= snap) unsure[at] = 1;
@@ -112,7 +112,7 @@ struct Raster {
 
 void addMesh(Raster& raster, const Window& window, const MeshView& mesh, const Pose& pose, double sign, double error) {
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    Vec p[3];
+    Vector p[3];
     for (size_t k = 0; k < 3; ++k) p[k] = window(place(pose, &mesh.positions[3 * size_t{mesh.indices[i + k]}]));
     raster.add(p, sign, error, window.snap, window.scopes.pixel);
   }
@@ -149,7 +149,7 @@ void checkScopes(const Scene& scene, const Query& query, const Scopes& scopes, C
   REQUIRE(scopes.R.size() == size_t{scopes.width} * scopes.height);
   const Window window(scopes);
   const MeshView sensor = scene.mesh(query.mesh);
-  Vec about{};
+  Vector about{};
   for (int k = 0; k < 3; ++k) {
     // The middle of the window, at the back plane: near enough to the sensor's centre for an error bound.
     about[k] = scopes.origin[k] + 0.5 * scopes.pixel * (scopes.width * scopes.right[k] + scopes.height * scopes.up[k]) +

@@ -2,13 +2,16 @@ cmake_minimum_required(VERSION 3.25)
 
 # Holds the order of the floors: cmake -DROOT=... -P floors.cmake. From low to high; each folder may include itself and what
 # is listed. No floor names one that comes later.
-set(floors exact gpu scene contact cpu sweep pool)
-set(exact_may)
+set(floors math exact gpu scene contact cpu sampled sweep embed pool)
+set(math_may radar)
+set(exact_may math)
 set(gpu_may radar shaders spirv)
-set(scene_may radar gpu shaders)
-set(contact_may radar exact gpu scene shaders spirv)
-set(cpu_may radar exact scene shaders)
-set(sweep_may radar exact gpu scene contact cpu shaders spirv)
+set(scene_may radar math gpu shaders)
+set(contact_may radar math exact gpu scene shaders spirv)
+set(cpu_may radar math exact scene shaders)
+set(sampled_may radar math exact gpu scene contact shaders spirv)
+set(sweep_may radar math gpu scene contact cpu sampled shaders)
+set(embed_may radar math gpu scene contact shaders spirv)
 set(pool_may radar gpu scene sweep)
 
 set(wrong "")

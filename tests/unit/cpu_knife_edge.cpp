@@ -10,9 +10,9 @@ using soups::Random;
 
 namespace {
 
-using Vec = std::array<double, 3>;
+using Vector = std::array<double, 3>;
 
-Query sweep(MeshId mesh, const Pose& pose, const Vec& direction, double distance) {
+Query sweep(MeshId mesh, const Pose& pose, const Vector& direction, double distance) {
   Query query;
   query.mesh = mesh;
   query.worldFromMesh = pose;
@@ -21,7 +21,7 @@ Query sweep(MeshId mesh, const Pose& pose, const Vec& direction, double distance
   return query;
 }
 
-Result alone(const soups::Mesh& a, const Pose& poseA, const soups::Mesh& b, const Pose& poseB, const Vec& direction,
+Result alone(const soups::Mesh& a, const Pose& poseA, const soups::Mesh& b, const Pose& poseB, const Vector& direction,
              double distance) {
   Scene scene;
   const MeshId sensor = add(scene, a);
@@ -42,18 +42,18 @@ void everyWay(const Body& body) {
   for (int octant = 0; octant < 8; ++octant) {
     std::array<int, 3> order{0, 1, 2};
     do {
-      body(Vec{octant & 1 ? -1.0 : 1.0, octant & 2 ? -1.0 : 1.0, octant & 4 ? -1.0 : 1.0}, order);
+      body(Vector{octant & 1 ? -1.0 : 1.0, octant & 2 ? -1.0 : 1.0, octant & 4 ? -1.0 : 1.0}, order);
     } while (std::next_permutation(order.begin(), order.end()));
   }
 }
 
-Vec turned(const Vec& v, const Vec& sign, const std::array<int, 3>& order) {
-  Vec out;
+Vector turned(const Vector& v, const Vector& sign, const std::array<int, 3>& order) {
+  Vector out;
   for (size_t k = 0; k < 3; ++k) out[static_cast<size_t>(order[k])] = v[k] * sign[k];
   return out;
 }
 
-Pose at(const Vec& v) {
+Pose at(const Vector& v) {
   return soups::at(v[0], v[1], v[2]);
 }
 
@@ -61,8 +61,8 @@ Pose at(const Vec& v) {
 
 TEST_CASE("boxes that slide past each other touch at gap zero and not one place apart") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
-  everyWay([&](const Vec& sign, const std::array<int, 3>& order) {
-    const Vec ahead = turned({0, 0, 1}, sign, order);
+  everyWay([&](const Vector& sign, const std::array<int, 3>& order) {
+    const Vector ahead = turned({0, 0, 1}, sign, order);
     for (double side : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
       // 1 - ulp / 2 is placed on -1/2 + 1: the boxes have sides one place apart exactly where it exceeds 1.
       const Result result = alone(box, Pose{}, box, at(turned({side, 0.25, 4}, sign, order)), ahead, 10);
@@ -74,20 +74,20 @@ TEST_CASE("boxes that slide past each other touch at gap zero and not one place 
 
 TEST_CASE("edges and vertices that graze touch at gap zero and not one place apart") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
-  const Vec direction{1, 2, 4};
+  const Vector direction{1, 2, 4};
   // Box b at w is met while w_k - 1 <= s d_k <= w_k + 1 for each k. Contact begins in x and ends in y at s = 3: edge on
   // edge. With z it begins or ends there too: vertex on vertex.
   for (double z : {12.0, 13.0, 11.0}) {
-    const Vec graze{4, 5, z};
-    everyWay([&](const Vec& sign, const std::array<int, 3>& order) {
-      const Vec d = turned(direction, sign, order);
+    const Vector graze{4, 5, z};
+    everyWay([&](const Vector& sign, const std::array<int, 3>& order) {
+      const Vector d = turned(direction, sign, order);
       const Result touch = alone(box, Pose{}, box, at(turned(graze, sign, order)), d, 100);
       REQUIRE(touch.status == Status::hit);
       REQUIRE(touch.lo <= 3 * std::sqrt(21.0));
       REQUIRE(touch.hi >= 3 * std::sqrt(21.0));
       for (int k = 0; k < 3; ++k) {
         for (double way : {-100.0, 100.0}) {
-          Vec w = graze;
+          Vector w = graze;
           w[static_cast<size_t>(k)] = std::nextafter(w[static_cast<size_t>(k)], way);
           // Apart if contact begins later in x (or z = 13), or ends earlier in y (or z = 11).
           const bool apart = (k == 0 && way > 0) || (k == 1 && way < 0) || (k == 2 && z == 13 && way > 0) ||
@@ -102,9 +102,9 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
 
 TEST_CASE("contact at D and one place before D are told apart where |direction| is rational") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
-  for (const auto& [direction, length] : {std::pair{Vec{2, 3, 6}, 7.0}, {Vec{1, 4, 8}, 9.0}, {Vec{0, 3, -4}, 5.0}}) {
+  for (const auto& [direction, length] : {std::pair{Vector{2, 3, 6}, 7.0}, {Vector{1, 4, 8}, 9.0}, {Vector{0, 3, -4}, 5.0}}) {
     // b begins to be met at s = 3 in the largest component, and well inside in the others.
-    Vec w;
+    Vector w;
     for (size_t k = 0; k < 3; ++k) w[k] = 3 * direction[k];
     const size_t largest = 2;
     w[largest] += direction[largest] > 0 ? 1 : -1;
@@ -130,7 +130,7 @@ TEST_CASE("lattice soups moved by single places equal brute force") {
     }
     CpuSweeper sweeper(scene);
     Query query = sweep(sensor, Pose{}, {}, random.integer(0, 12));
-    while (query.direction == Vec{}) {
+    while (query.direction == Vector{}) {
       for (double& c : query.direction) c = random.chance(0.4) ? 0 : random.integer(-3, 3);
     }
     INFO("seed " << seed);
@@ -149,8 +149,8 @@ TEST_CASE("swapping the roles and reversing the direction keeps every bit of t")
     };
     const soups::Mesh a = mesh(), b = mesh();
     const Pose poseA = pose(0), poseB = pose(random.integer(0, 6));
-    const Vec d = grid ? Vec{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
-                       : Vec{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
+    const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
+                       : Vector{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
     requireSameBits(alone(a, poseA, b, poseB, d, 20), alone(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
   }
 }
@@ -179,7 +179,7 @@ TEST_CASE("the order of triangles and vertices changes no bit of t") {
     };
     const soups::Mesh a = mesh(), b = mesh();
     const Pose poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
-    const Vec d = grid ? Vec{random.integer(-1, 1) + 0.0, 0, 2} : Vec{random.uniform(-0.2, 0.2), 0.1, 1};
+    const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, 0, 2} : Vector{random.uniform(-0.2, 0.2), 0.1, 1};
     requireSameBits(alone(a, Pose{}, b, poseB, d, 20), alone(shuffled(a), Pose{}, shuffled(b), poseB, d, 20));
   }
 }
@@ -195,9 +195,9 @@ TEST_CASE("a shift that keeps every coordinate exact changes no bit of t") {
       return out;
     };
     const soups::Mesh a = mesh(), b = mesh();
-    const Vec d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
+    const Vector d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
     const double z = random.integer(0, 3), size = std::ldexp(1, random.integer(0, 39));
-    const Vec shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
+    const Vector shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
     requireSameBits(alone(a, Pose{}, b, soups::at(0, 0, z), d, 20),
                     alone(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
   }

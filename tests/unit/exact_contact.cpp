@@ -8,6 +8,7 @@
 using namespace radar::exact;
 using oracle::Fraction;
 using oracle::Rational;
+using radar::Vector;
 using soups::Random;
 
 namespace {
@@ -25,7 +26,7 @@ bool isNearest(double rounded, const Rational& exact) {
   return below - slack <= exact && exact <= above + slack;
 }
 
-void check(const Triangle& a, const Triangle& b, const Vec& direction) {
+void check(const Triangle& a, const Triangle& b, const Vector& direction) {
   const auto ours = contact(a, b, direction);
   const auto truth = oracle::contact(a, b, direction);
   REQUIRE(ours.has_value() == truth.has_value());
@@ -52,15 +53,15 @@ void check(const Triangle& a, const Triangle& b, const Vec& direction) {
 
 Triangle latticeTriangle(Random& random, int side) {
   Triangle t;
-  for (Vec& c : t) {
+  for (Vector& c : t) {
     for (double& v : c) v = random.integer(0, side);
   }
   return t;
 }
 
-Vec latticeDirection(Random& random, int side) {
-  Vec d{};
-  while (d == Vec{}) {
+Vector latticeDirection(Random& random, int side) {
+  Vector d{};
+  while (d == Vector{}) {
     for (double& c : d) c = random.chance(0.3) ? 0 : random.integer(-side, side);
   }
   return d;
@@ -73,7 +74,7 @@ void nudge(Random& random, Triangle& t) {
 }
 
 void scale(Triangle& t, double by) {
-  for (Vec& c : t) {
+  for (Vector& c : t) {
     for (double& v : c) v *= by;
   }
 }
@@ -95,7 +96,7 @@ TEST_CASE("the contact interval is exact one place beside integer lattices") {
     INFO("case " << i);
     Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
     for (int n = random.integer(1, 3); n-- > 0;) nudge(random, random.chance(0.5) ? a : b);
-    Vec d = latticeDirection(random, 3);
+    Vector d = latticeDirection(random, 3);
     if (random.chance(0.3)) d[0] = std::nextafter(d[0], 9);
     check(a, b, d);
   }
@@ -123,7 +124,7 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
           if (random.chance(0.5)) nudge(random, *t);
           scale(*t, size);
         }
-        Vec d = latticeDirection(random, 3);
+        Vector d = latticeDirection(random, 3);
         for (double& c : d) c *= speed;
         check(a, b, d);
       }
@@ -141,11 +142,12 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
 
 TEST_CASE("events that share a parameter compare equal, whatever features they are of") {
   // A vertex comes down on the corner where four triangles meet: over faces, edges and a vertex at once.
-  const Triangle a{Vec{0, 0, 5}, Vec{1, 0, 6}, Vec{0, 1, 6}};
+  const Triangle a{Vector{0, 0, 5}, Vector{1, 0, 6}, Vector{0, 1, 6}};
   std::vector<Event> events;
-  for (const Triangle& b :
-       {Triangle{Vec{0, 0, 0}, Vec{1, 0, 0}, Vec{0, 1, 0}}, Triangle{Vec{0, 0, 0}, Vec{0, 1, 0}, Vec{-1, 0, -1}},
-        Triangle{Vec{-1, 0, 0}, Vec{0, -1, 0}, Vec{0, 0, 0}}, Triangle{Vec{1, 0, 0}, Vec{0, 0, 0}, Vec{0, -1, 0}}}) {
+  for (const Triangle& b : {Triangle{Vector{0, 0, 0}, Vector{1, 0, 0}, Vector{0, 1, 0}},
+                            Triangle{Vector{0, 0, 0}, Vector{0, 1, 0}, Vector{-1, 0, -1}},
+                            Triangle{Vector{-1, 0, 0}, Vector{0, -1, 0}, Vector{0, 0, 0}},
+                            Triangle{Vector{1, 0, 0}, Vector{0, 0, 0}, Vector{0, -1, 0}}}) {
     const auto interval = contact(a, b, {0, 0, -1});
     REQUIRE(interval);
     events.push_back(interval->first);
@@ -158,8 +160,8 @@ TEST_CASE("events that share a parameter compare equal, whatever features they a
 
 TEST_CASE("two parameters that round to the same double are told apart") {
   const auto fall = [](double floor) {
-    const Triangle ground{Vec{-9, -9, floor}, Vec{9, -9, floor}, Vec{0, 9, floor}};
-    const Triangle a{Vec{0, 0, 1}, Vec{1, 0, 9}, Vec{0, 1, 9}};
+    const Triangle ground{Vector{-9, -9, floor}, Vector{9, -9, floor}, Vector{0, 9, floor}};
+    const Triangle a{Vector{0, 0, 1}, Vector{1, 0, 9}, Vector{0, 1, 9}};
     return contact(a, ground, {0, 0, -3})->first;
   };
   const Event third = fall(0);
@@ -176,7 +178,7 @@ TEST_CASE("two parameters that round to the same double are told apart") {
 
 TEST_CASE("the length of a direction is rounded to the nearest double") {
   Random random(5);
-  const auto check = [](const Vec& d) {
+  const auto check = [](const Vector& d) {
     const double r = length(d);
     Rational square = 0;
     for (double c : d) square += Rational(c) * Rational(c);
@@ -192,25 +194,26 @@ TEST_CASE("the length of a direction is rounded to the nearest double") {
 }
 
 TEST_CASE("contact point and normal lie where the features are") {
-  const Triangle floor{Vec{-9, -9, 0}, Vec{9, -9, 0}, Vec{0, 9, 0}};
-  const Triangle tip{Vec{0, 0, 2}, Vec{1, 0, 3}, Vec{0, 1, 3}};
+  const Triangle floor{Vector{-9, -9, 0}, Vector{9, -9, 0}, Vector{0, 9, 0}};
+  const Triangle tip{Vector{0, 0, 2}, Vector{1, 0, 3}, Vector{0, 1, 3}};
   const auto down = contact(tip, floor, {0, 0, -1})->first;
   REQUIRE(down.kind == Kind::vertexFace);
-  REQUIRE(point(down, parameter(down)) == Vec{0, 0, 0});
-  REQUIRE(normal(down) == Vec{0, 0, 1});
+  REQUIRE(point(down, parameter(down)) == Vector{0, 0, 0});
+  REQUIRE(normal(down) == Vector{0, 0, 1});
   const auto up = contact(floor, tip, {0, 0, 1})->first;
   REQUIRE(up.kind == Kind::faceVertex);
-  REQUIRE(point(up, parameter(up)) == Vec{0, 0, 2});
-  REQUIRE(normal(up) == Vec{0, 0, -1});
-  const auto edges = contact({Vec{-1, 0, 4}, Vec{1, 0, 4}, Vec{0, 0, 5}},
-                             {Vec{0.5, -1, 0}, Vec{0.5, 1, 0}, Vec{0.5, 0, -1}}, {0, 0, -2})
+  REQUIRE(point(up, parameter(up)) == Vector{0, 0, 2});
+  REQUIRE(normal(up) == Vector{0, 0, -1});
+  const auto edges = contact({Vector{-1, 0, 4}, Vector{1, 0, 4}, Vector{0, 0, 5}},
+                             {Vector{0.5, -1, 0}, Vector{0.5, 1, 0}, Vector{0.5, 0, -1}}, {0, 0, -2})
                          ->first;
   REQUIRE(edges.kind == Kind::edgeEdge);
   REQUIRE(parameter(edges) == 2);
-  REQUIRE(point(edges, 2) == Vec{0.5, 0, 0});
-  REQUIRE(normal(edges) == Vec{0, 0, 1});
-  const auto flat =
-      contact({Vec{0, 0, 0}, Vec{1, 0, 0}, Vec{0, 0, 1}}, {Vec{5, 0, 0}, Vec{6, 0, 0}, Vec{5, 0, 1}}, {1, 0, 0})->first;
+  REQUIRE(point(edges, 2) == Vector{0.5, 0, 0});
+  REQUIRE(normal(edges) == Vector{0, 0, 1});
+  const auto flat = contact({Vector{0, 0, 0}, Vector{1, 0, 0}, Vector{0, 0, 1}},
+                            {Vector{5, 0, 0}, Vector{6, 0, 0}, Vector{5, 0, 1}}, {1, 0, 0})
+                        ->first;
   REQUIRE(parameter(flat) == 4);
   REQUIRE(std::isnan(normal(flat)[0]));
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "scene/rounding.h"
+#include "math/rounding.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/frame.h"
+#include "math/frame.h"
 #include "scene/scene.h"
 #include "workloads/generate.h"
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "scene/frame.h"
-#include "sweep/select.h"
+#include "math/frame.h"
+#include "sampled/select.h"
 #include "workloads/generate.h"
 
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "scene/frame.h"
-#include "sweep/select.h"
+#include "math/frame.h"
+#include "sampled/select.h"
 
 namespace radar {
 
@@ -25,21 +25,21 @@ struct SensorWindow {
 
 SensorWindow lookAlong(const Query& query, const Mesh& sensor);
 
-struct Reached {
+struct SelectedObject {
   ObjectId object;
   Affine frameFromMesh;  ///< from recentred vertices
   double error;          ///< how far a vertex that a shader places may be off
   Box box;               ///< around it, and around all that a host may make of it
 };
 
-struct Reach {
-  Prism prism;                   ///< the sensor's window, swept
-  std::vector<Reached> objects;  ///< those in it, by id; none: certainly clear
-  double depth = 0;              ///< from the back plane to the farthest of them, sensor length + D at most
-  double error = 0;              ///< the greatest placement error
+struct Selection {
+  Prism prism;                          ///< the sensor's window, swept
+  std::vector<SelectedObject> objects;  ///< those in it, by id; none: certainly clear
+  double depth = 0;                     ///< from the back plane to the farthest of them, sensor length + D at most
+  double error = 0;                     ///< the greatest placement error
 };
 
-Reach reachOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window);
+Selection selectionOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window);
 
 /// What double precision may lose of a point within `box`, placed in the world and seen from `origin`, world units.
 double doubleErrorWithin(const Box& box, const Vector& origin);

@@ -1,9 +1,9 @@
 #include "radar/host_geometry.h"
 
+#include "embed/host_format.h"
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
-#include "sweep/host_format.h"
 
 namespace radar {
 

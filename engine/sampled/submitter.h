@@ -7,13 +7,13 @@
 #include "gpu/kernel.h"
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
+#include "sampled/batch.h"
 #include "scene/gpu_scene.h"
-#include "sweep/batch.h"
 
 namespace radar {
 
 /// What the shaders say of a batch, by view; open pairs: kOpenPairs per view. Valid until the next submission.
-struct Answers {
+struct SampledAnswers {
   std::span<const gpu::Answer> answers;
   std::span<const gpu::OpenPair> openPairs;
 };
@@ -23,17 +23,17 @@ struct StoredScopes {
   std::vector<float> range, mask;
 };
 
-class SampledRecorder {
+class SampledSubmitter {
  public:
   /// `resident`: the scene's copy, shared with others of the device.
-  SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
+  SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// One upload, one command buffer, one readback; returns while the device works on it, and collect() comes next, with
   /// the same arguments. With `scopes`, the pictures of view 0 come too.
-  void submit(const Batch& batch, const Scene::Impl& scene, bool scopes = false);
+  void submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes = false);
   /// Waits for what was submitted, and adds each stage's time to `stages`.
-  Answers collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                  StoredScopes* scopes = nullptr);
+  SampledAnswers collect(const SampledBatch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
+                         StoredScopes* scopes = nullptr);
 
  private:
   struct Pictures {
@@ -45,11 +45,11 @@ class SampledRecorder {
     VkDeviceSize answers, openPairs, picture;
   };
 
-  static Readback readbackOf(const Batch& batch, bool scopes);
-  Pictures& picturesFor(const Batch& batch);
-  void stage(const Batch& batch, const Scene::Impl& scene);
+  static Readback readbackOf(const SampledBatch& batch, bool scopes);
+  Pictures& picturesFor(const SampledBatch& batch);
+  void stage(const SampledBatch& batch, const Scene::Impl& scene);
   void bind(const Pictures& pictures);
-  void drawScopes(const gpu::Commands& commands, const Batch& batch, const std::vector<DepthPass>& passes,
+  void drawScopes(const gpu::Commands& commands, const SampledBatch& batch, const std::vector<DepthPass>& passes,
                   gpu::DepthArray& target) const;
 
   const Device::Impl* device_;

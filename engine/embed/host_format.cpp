@@ -1,4 +1,4 @@
-#include "sweep/host_format.h"
+#include "embed/host_format.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sweep/encode.h"
+#include "sampled/plan.h"
 
 namespace radar {
 
@@ -21,7 +21,7 @@ struct DepthPass {
   uint32_t firstCall, calls;
 };
 
-struct Batch {
+struct SampledBatch {
   std::vector<gpu::View> views;
   std::vector<gpu::Draw> draws;
   std::vector<gpu::Item> items;
@@ -36,6 +36,6 @@ struct Batch {
 };
 
 /// `plans`: ascending by resolution, each with something in reach. View i is plan i, in layer i.
-void fill(Batch& batch, std::span<const ViewPlan* const> plans);
+void packBatch(SampledBatch& batch, std::span<const ViewPlan* const> plans);
 
 }  // namespace radar

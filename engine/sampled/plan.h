@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "sampled/selection.h"
 #include "shaders/interop.h"
-#include "sweep/reach.h"
 
 namespace radar {
 
@@ -49,7 +49,7 @@ struct ViewPlan {
 };
 
 /// `subPixelBits`: of the device.
-ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn);
+ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn);
 
 /// The window's longer side, pixels, where the query leaves it open: four pixels to the sensor's mean triangle edge, so
 /// that a triangle is seen by some pixel centres, in powers of two from 64 to 512.

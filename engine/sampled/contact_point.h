@@ -1,7 +1,7 @@
 // Where two triangles touch.
 #pragma once
 
-#include "scene/frame.h"
+#include "math/frame.h"
 
 namespace radar {
 

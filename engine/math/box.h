@@ -2,14 +2,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+
+#include "math/vector.h"
 
 namespace radar {
 
 /// Empty while lo > hi.
 struct Box {
-  std::array<double, 3> lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
-  void add(const std::array<double, 3>& p) {
+  Vector lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+  void add(const Vector& p) {
     for (int k = 0; k < 3; ++k) {
       lo[k] = std::min(lo[k], p[k]);
       hi[k] = std::max(hi[k], p[k]);

@@ -1,4 +1,4 @@
-#include "sweep/batch.h"
+#include "sampled/batch.h"
 
 #include <algorithm>
 #include <bit>
@@ -58,7 +58,7 @@ bool drawnBefore(const Pending& a, const Pending& b) {
 
 // Appends the draws of one pass: what several draw alike is one instanced call. Notes where each identified one went,
 // in the order given.
-DepthPass addPass(Batch& batch, std::vector<Pending>& pending, std::vector<Identified>& identified,
+DepthPass addPass(SampledBatch& batch, std::vector<Pending>& pending, std::vector<Identified>& identified,
                   const DepthPass& shape) {
   DepthPass pass = shape;
   pass.firstCall = static_cast<uint32_t>(batch.calls.size());
@@ -90,7 +90,7 @@ DepthPass addPass(Batch& batch, std::vector<Pending>& pending, std::vector<Ident
   return pass;
 }
 
-void addItems(Batch& batch, const Identified& identified) {
+void addItems(SampledBatch& batch, const Identified& identified) {
   for (const Run& run : identified.runs) {
     const uint32_t end = run.first + run.count;
     for (uint32_t first = run.first; first < end; first += gpu::kItemTriangles) {
@@ -100,7 +100,7 @@ void addItems(Batch& batch, const Identified& identified) {
 }
 
 // Plans of one resolution, from view `firstView`.
-void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView) {
+void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView) {
   const uint32_t perPass = layersPerPass(plans);
   const uint32_t resolution = plans[0]->view.resolution;
   const uint32_t firstLayer = batch.layers;
@@ -133,7 +133,7 @@ void fillClass(Batch& batch, std::span<const ViewPlan* const> plans, uint32_t fi
 
 }  // namespace
 
-void Batch::clear() {
+void SampledBatch::clear() {
   views.clear();
   draws.clear();
   items.clear();
@@ -144,7 +144,7 @@ void Batch::clear() {
   triangles = objects = 0;
 }
 
-void fill(Batch& batch, std::span<const ViewPlan* const> plans) {
+void packBatch(SampledBatch& batch, std::span<const ViewPlan* const> plans) {
   batch.clear();
   for (size_t begin = 0; begin < plans.size();) {
     size_t end = begin;

@@ -1,4 +1,4 @@
-#include "sweep/contact_point.h"
+#include "sampled/contact_point.h"
 
 #include <cmath>
 #include <limits>

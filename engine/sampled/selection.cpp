@@ -1,4 +1,4 @@
-#include "sweep/reach.h"
+#include "sampled/selection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,13 +62,13 @@ Box tightBox(const Mesh& mesh, const Affine& m) {
 }
 
 // Objects in the swept prism, by id.
-std::vector<Reached> collectReached(const Query& query, const Scene::Impl& scene, const Prism& prism,
-                                    double& farthest) {
+std::vector<SelectedObject> collectReached(const Query& query, const Scene::Impl& scene, const Prism& prism,
+                                           double& farthest) {
   thread_local std::vector<ObjectId> ids;
   ids.clear();
   selectObjects(scene, prism, ids);
   std::sort(ids.begin(), ids.end());
-  std::vector<Reached> reached;
+  std::vector<SelectedObject> reached;
   for (ObjectId id : ids) {
     const Object& object = scene.objects[id].object;
     if (isExcluded(query, object, id)) continue;
@@ -147,8 +147,8 @@ SensorWindow lookAlong(const Query& query, const Mesh& sensor) {
   return w;
 }
 
-Reach reachOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window) {
-  Reach reach;
+Selection selectionOf(const Query& query, const Scene::Impl& scene, const SensorWindow& window) {
+  Selection reach;
   const double d = window.length + query.distance;
   reach.prism = {window.origin, window.axes, window.box};
   Prism& prism = reach.prism;
@@ -159,7 +159,7 @@ Reach reachOf(const Query& query, const Scene::Impl& scene, const SensorWindow& 
   }
   double farthest = window.box.lo[2];
   reach.objects = collectReached(query, scene, prism, farthest);
-  for (const Reached& r : reach.objects) reach.error = std::max(reach.error, r.error);
+  for (const SelectedObject& r : reach.objects) reach.error = std::max(reach.error, r.error);
   reach.depth = std::min(d, std::max(farthest - window.box.lo[2], 0.0));
   return reach;
 }

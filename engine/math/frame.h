@@ -1,18 +1,10 @@
 // The frame in which a sensor looks along its motion.
 #pragma once
 
-#include <array>
-
+#include "math/vector.h"
 #include "radar/radar.h"
 
 namespace radar {
-
-using Vector = std::array<double, 3>;
-using Affine = std::array<double, 12>;  ///< row-major 3x4
-
-inline double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// Orthonormal axes: [2] along `direction` (finite, not zero), [0] and [1] across. A direction along a world axis gives
 /// world axes, exactly.

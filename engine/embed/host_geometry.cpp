@@ -1,15 +1,15 @@
-#include "sweep/host_geometry.h"
+#include "embed/host_geometry.h"
 
 #include <algorithm>
 
+#include "embed/host_format.h"
 #include "gpu/barrier.h"
-#include "scene/rounding.h"
+#include "math/rounding.h"
 #include "spirv/deform_comp.h"
 #include "spirv/move_comp.h"
 #include "spirv/move_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/refit_comp.h"
 #include "spirv/refuse_comp.h"
-#include "sweep/host_format.h"
 
 // pass    reads                              writes                     barrier behind it
 // ------- ---------------------------------- -------------------------- -------------------------------

@@ -1,7 +1,7 @@
-#include "sweep/decode.h"
+#include "sampled/decode.h"
 
 #include "contact/exact_pairs.h"
-#include "sweep/contact_point.h"
+#include "sampled/contact_point.h"
 
 namespace radar {
 
@@ -50,8 +50,8 @@ Result decodeClear() {
   return result;
 }
 
-Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
-              const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs) {
+Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
+                     const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs) {
   Result result;
   result.tier = Tier::sampled;
   result.resolution = resolution;

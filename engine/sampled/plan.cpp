@@ -1,10 +1,10 @@
-#include "sweep/encode.h"
+#include "sampled/plan.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "sweep/cluster_walk.h"
+#include "sampled/cluster_walk.h"
 
 namespace radar {
 
@@ -31,8 +31,8 @@ uint32_t pixelsAcross(const SensorWindow& window, int axis, double pixel, uint32
   return std::clamp(static_cast<uint32_t>(pixels), 1u, resolution);
 }
 
-void fillView(gpu::View& view, const Query& query, const SensorWindow& window, const Reach& reach, const ViewPlan& plan,
-              uint32_t resolution) {
+void fillView(gpu::View& view, const Query& query, const SensorWindow& window, const Selection& reach,
+              const ViewPlan& plan, uint32_t resolution) {
   // The far plane lies a little behind what must be seen, so that contact exactly at D is not cut off.
   const double rangeScale = reach.depth + std::max({64 * kFloatUnit * reach.depth, 2 * reach.error, window.margin});
   const double maskScale = plan.length + 2 * window.margin;
@@ -88,11 +88,11 @@ void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine&
 }
 
 // Fills inReach, unless no cluster meets the swept prism, and mask where it is not drawn whole.
-void addReached(ViewPlan& plan, const Scene::Impl& scene, const Reach& reach, const Box& visible, Drawn drawn,
+void addReached(ViewPlan& plan, const Scene::Impl& scene, const Selection& reach, const Box& visible, Drawn drawn,
                 const Mesh& sensor, const SensorWindow& window, const auto& placeInRange) {
   bool inPrism = false;
   std::vector<Box> columns;  // around what is seen of each object, endless along the motion
-  for (const Reached& r : reach.objects) {
+  for (const SelectedObject& r : reach.objects) {
     Placed placed = placeInRange(r.object, r.frameFromMesh, r.error);
     const Mesh& mesh = scene.meshes[placed.mesh];
     Box around;
@@ -127,7 +127,7 @@ void addReached(ViewPlan& plan, const Scene::Impl& scene, const Reach& reach, co
 
 // Objects out of reach. What meets the visible box although nothing of it is in reach must not make a difference: the
 // pictures reach a rounding farther than select does.
-void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, const Reach& reach, const Box& visible,
+void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, const Selection& reach, const Box& visible,
                const Vector& origin, const auto& placeInRange) {
   auto next = reach.objects.begin();
   for (ObjectId id = 0; id < scene.objects.size(); ++id) {
@@ -152,7 +152,7 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
   return std::bit_ceil(static_cast<uint32_t>(std::clamp(wanted, 64.0, 512.0)));
 }
 
-ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn) {
+ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn) {
   ViewPlan plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   const SensorWindow window = lookAlong(query, sensor);
@@ -168,7 +168,7 @@ ViewPlan encode(const Query& query, const Scene::Impl& scene, uint32_t subPixelB
     plan.corner[i] = window.origin[i];
     for (int k = 0; k < 3; ++k) plan.corner[i] += plan.axes[k][i] * window.box.lo[k];
   }
-  const Reach reach = reachOf(query, scene, window);
+  const Selection reach = selectionOf(query, scene, window);
   fillView(plan.view, query, window, reach, plan, resolution);
 
   // The scales as the shaders see them, rounded to float: pictures and what is read from them agree.

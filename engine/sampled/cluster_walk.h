@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/frame.h"
+#include "math/frame.h"
 #include "scene/scene.h"
 
 namespace radar {

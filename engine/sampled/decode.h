@@ -13,7 +13,7 @@ Result decodeClear();
 
 /// Of a sensor whose scopes were drawn; `resolution` is its window's. Open pairs that may come before what the device
 /// found are decided exactly, and counted in `cpuPairs`; where only a decision is asked, no more than it takes.
-Result decode(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
-              const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
+Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
+                     const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
 
 }  // namespace radar

@@ -4,8 +4,8 @@
 
 #include "contact/decode.h"
 #include "contact/pass.h"
+#include "embed/host_geometry.h"
 #include "gpu/barrier.h"
-#include "sweep/host_geometry.h"
 
 // pass     reads           writes   barrier behind it
 // -------- --------------- -------- -----------------

@@ -10,9 +10,9 @@ namespace radar {
 
 /// A box in a frame of its own: frame = axes (world from frame, orthonormal rows) about `origin`. World units.
 struct Prism {
-  std::array<double, 3> origin;
-  std::array<std::array<double, 3>, 3> axes;  ///< axes[k] is the frame's k-th axis in world coordinates
-  Box box;                                    ///< in the frame
+  Vector origin;
+  std::array<Vector, 3> axes;  ///< axes[k] is the frame's k-th axis in world coordinates
+  Box box;                     ///< in the frame
 };
 
 /// Appends the ids of all objects whose world box meets the prism's, in no order. Never leaves out one that touches the

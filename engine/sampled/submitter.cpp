@@ -1,4 +1,4 @@
-#include "sweep/sampled_recorder.h"
+#include "sampled/submitter.h"
 
 #include <algorithm>
 #include <tuple>
@@ -37,14 +37,15 @@ struct SampledKernels {
   explicit SampledKernels(const Device::Impl& device)
       : reduce(device, k_reduce_comp, "reduce"),
         identify(device, k_identify_comp, "identify"),
-        solve(device, device.doubles ? std::span<const uint32_t>(k_solve_comp) : k_solve_comp_RADAR_NO_DOUBLES,
-              "solve", device.divisionConstants()) {}
+        solve(device, device.doubles ? std::span<const uint32_t>(k_solve_comp) : k_solve_comp_RADAR_NO_DOUBLES, "solve",
+              device.divisionConstants()) {}
   gpu::Kernel reduce, identify, solve;
 };
 
 }  // namespace
 
-SampledRecorder::SampledRecorder(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps)
+SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
+                                   bool timestamps)
     : device_(&device),
       pictureBytes_(pictureBytes),
       resident_(resident),
@@ -67,7 +68,7 @@ SampledRecorder::SampledRecorder(const Device::Impl& device, GpuScene& resident,
       identify_(device.shared<SampledKernels>().identify),
       solve_(device.shared<SampledKernels>().solve) {}
 
-SampledRecorder::Pictures& SampledRecorder::picturesFor(const Batch& batch) {
+SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& batch) {
   const auto found = pictures_.find(batch.resolution);
   if (found != pictures_.end() && found->second.range.layers() >= batch.layers) return found->second;
   if (found != pictures_.end()) pictures_.erase(found);  // before its successor is allocated
@@ -80,7 +81,7 @@ SampledRecorder::Pictures& SampledRecorder::picturesFor(const Batch& batch) {
   return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
 }
 
-void SampledRecorder::stage(const Batch& batch, const Scene::Impl& scene) {
+void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene) {
   views_.reserve(batch.views.size());
   draws_.reserve(batch.draws.size());
   items_.reserve(batch.items.size());
@@ -96,7 +97,7 @@ void SampledRecorder::stage(const Batch& batch, const Scene::Impl& scene) {
   upload_.add(batch.items.data(), bytesOf(batch.items), items_);
 }
 
-void SampledRecorder::bind(const Pictures& pictures) {
+void SampledSubmitter::bind(const Pictures& pictures) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = resident_.buffers();
   drawBindings_.setBuffer(kSlotDraws.number, draws_);
@@ -127,8 +128,8 @@ void SampledRecorder::bind(const Pictures& pictures) {
               {kSlotOpenPairs, openPairs_}});
 }
 
-void SampledRecorder::drawScopes(const gpu::Commands& commands, const Batch& batch,
-                                 const std::vector<DepthPass>& passes, gpu::DepthArray& target) const {
+void SampledSubmitter::drawScopes(const gpu::Commands& commands, const SampledBatch& batch,
+                                  const std::vector<DepthPass>& passes, gpu::DepthArray& target) const {
   for (const DepthPass& pass : passes) {
     target.beginPass(commands, pass.firstLayer, pass.layers, pass.resolution);
     for (uint32_t i = pass.firstCall; i < pass.firstCall + pass.calls; ++i) {
@@ -142,13 +143,13 @@ void SampledRecorder::drawScopes(const gpu::Commands& commands, const Batch& bat
 }
 
 // Where the parts of the readback lie.
-SampledRecorder::Readback SampledRecorder::readbackOf(const Batch& batch, bool scopes) {
+SampledSubmitter::Readback SampledSubmitter::readbackOf(const SampledBatch& batch, bool scopes) {
   const VkDeviceSize views = batch.views.size();
   return {views * sizeof(gpu::Answer), views * gpu::kOpenPairs * sizeof(gpu::OpenPair),
           scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
 }
 
-void SampledRecorder::submit(const Batch& batch, const Scene::Impl& scene, bool scopes) {
+void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
   bind(pictures);
@@ -201,8 +202,8 @@ void SampledRecorder::submit(const Batch& batch, const Scene::Impl& scene, bool 
   submission_.submit();
 }
 
-Answers SampledRecorder::collect(const Batch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                                 StoredScopes* scopes) {
+SampledAnswers SampledSubmitter::collect(const SampledBatch& batch, const Scene::Impl& scene,
+                                         std::vector<StageTime>& stages, StoredScopes* scopes) {
   submission_.wait();
   resident_.confirm(scene);
   submission_.addTimes(stages);

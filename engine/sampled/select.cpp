@@ -1,4 +1,4 @@
-#include "sweep/select.h"
+#include "sampled/select.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double sla
   for (int k = 0; k < 3; ++k) {
     if (b.lo[k] > prismInWorld.hi[k] || b.hi[k] < prismInWorld.lo[k]) return false;
   }
-  std::array<double, 3> centre, half;
+  Vector centre, half;
   double own = slack;
   for (int k = 0; k < 3; ++k) {
     centre[k] = b.middle(k) - prism.origin[k];
@@ -24,7 +24,7 @@ bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double sla
     own += kRounding * (std::abs(centre[k]) + half[k]);
   }
   for (int k = 0; k < 3; ++k) {
-    const std::array<double, 3>& axis = prism.axes[k];
+    const Vector& axis = prism.axes[k];
     const double at = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
     const double reach = std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1] + std::abs(axis[2]) * half[2] + own;
     if (at - reach > prism.box.hi[k] || at + reach < prism.box.lo[k]) return false;
@@ -32,7 +32,7 @@ bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double sla
   return true;
 }
 
-Box worldBox(const gpu::ObjectNode& node, const std::array<double, 3>& anchor) {
+Box worldBox(const gpu::ObjectNode& node, const Vector& anchor) {
   Box box;
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = anchor[k] + (double(node.centre[k]) - node.halfExtent[k]);
@@ -48,7 +48,7 @@ void selectObjects(const Scene::Impl& scene, const Prism& prism, std::vector<Obj
   Box world;
   double magnitude = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    std::array<double, 3> p = prism.origin;
+    Vector p = prism.origin;
     for (int k = 0; k < 3; ++k) {
       const double at = (corner >> k & 1) != 0 ? prism.box.hi[k] : prism.box.lo[k];
       for (int i = 0; i < 3; ++i) p[i] += prism.axes[k][i] * at;

@@ -1,0 +1,15 @@
+// Points and vectors of the world, and the maps between frames, in double precision.
+#pragma once
+
+#include <array>
+
+namespace radar {
+
+using Vector = std::array<double, 3>;
+using Affine = std::array<double, 12>;  ///< row-major 3x4
+
+inline double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace radar

@@ -99,7 +99,9 @@ TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, Residence
 }
 
 VkDeviceSize TexelBuffer::maxBytes() const {
-  return VkDeviceSize{device_->properties.limits.maxTexelBufferElements} * texelBytes_;
+  // Shaders number texels by an int.
+  const uint32_t texels = device_->properties.limits.maxTexelBufferElements;
+  return VkDeviceSize{std::min<uint32_t>(texels, INT32_MAX)} * texelBytes_;
 }
 
 void TexelBuffer::makeView() {
@@ -117,8 +119,7 @@ void TexelBuffer::makeView() {
 bool TexelBuffer::reserve(VkDeviceSize bytes) {
   if (bytes > maxBytes()) {
     throw Error(std::string(buffer_.name()) + ": " + std::to_string((bytes + texelBytes_ - 1) / texelBytes_) +
-                " texels, but the device's maxTexelBufferElements is " +
-                std::to_string(device_->properties.limits.maxTexelBufferElements));
+                " texels, but the device's maxTexelBufferElements is " + std::to_string(maxBytes() / texelBytes_));
   }
   const bool grew = buffer_.reserve(bytes);
   if (grew) view_ = {};

@@ -62,6 +62,7 @@ void GpuScene::forget() {
 
 VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
   if (seenScene_ != scene.identity) forget();
+  refuseTooLargeToWrite(scene);
   const VkDeviceSize meshes = prepareMeshes(scene);
   return meshes + prepareIndices(scene) + prepareObjects(scene);
 }
@@ -86,6 +87,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
     nodes += mesh.tree.nodes.size();
     changedMeshes_.push_back(i);
   }
+  refuseAbove<gpu::MeshRecord>(*device_, "meshes", records_.size());
   if (vertices > gpu::kLinkItem || triangles > gpu::kLinkItem || nodes > gpu::kLinkItem) {
     throw Error("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
@@ -93,6 +95,19 @@ void GpuScene::layOut(const Scene::Impl& scene) {
   buffers_.triangles.reserve(triangles);
   buffers_.meshNodes.reserve(nodes);
   buffers_.meshes.reserve(records_.size());
+}
+
+// What shaders write is bound as storage buffers, of which they reach only as much as the device allows.
+void GpuScene::refuseTooLargeToWrite(const Scene::Impl& scene) const {
+  if (!next_.objects.empty()) refuseAbove<gpu::Placement>(*device_, "placements", scene.objects.size());
+  if (next_.meshes.empty()) return;
+  uint64_t vertices = 0, nodes = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    vertices += mesh.vertexCount();
+    nodes += mesh.tree.nodes.size();
+  }
+  refuseAbove<gpu::Vertex>(*device_, "vertices", vertices);
+  refuseAbove<gpu::MeshNode>(*device_, "mesh nodes", nodes);
 }
 
 VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {

@@ -54,6 +54,7 @@ class GpuScene {
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
 
  private:
+  void refuseTooLargeToWrite(const Scene::Impl& scene) const;
   VkDeviceSize prepareMeshes(const Scene::Impl& scene);
   VkDeviceSize prepareIndices(const Scene::Impl& scene);
   VkDeviceSize prepareObjects(const Scene::Impl& scene);

@@ -6,7 +6,10 @@
 #include <catch2/catch.hpp>
 
 #include "embed/host.h"
+#include "gpu/buffer.h"
+#include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
+#include "radar/recorder.h"
 #include "support/test_device.h"
 #include "workloads/families.h"
 #include "workloads/generate.h"
@@ -131,6 +134,26 @@ TEST_CASE("a scene beyond the device's limits, and many sensors at once, are ans
   sweeper.sync();
   checkSame(sweeper.run(queries), cpu.run(queries));
   CHECK(sweeper.stats().cpuQueries == queries.size());
+}
+
+TEST_CASE("what a host writes must fit a storage buffer, though what is read need not") {
+  LeastDevice least;
+  const Device device = Device::adopt(least.host.handles);
+  // Vertices of 16 bytes, of which 2^27 bytes hold no more than 2^23.
+  constexpr uint32_t kVertices = (1u << 23) + 1;
+  Scene scene;
+  const std::vector<float> positions(size_t{3} * kVertices);
+  const uint32_t triangle[] = {0, 1, 2};
+  const MeshId mesh = scene.addMesh(positions, triangle, Bounds{{-1, -1, -1}, {1, 1, 1}});
+  scene.addObject({.mesh = mesh});
+  Recorder recorder(device, scene);
+  gpu::Buffer host(device.impl(), "host's", gpu::Residence::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  host.reserve(12);
+  const DeformedMesh deformed{mesh, {.buffer = host.get()}};
+  gpu::Submission submission(device.impl(), false);
+  const gpu::Commands commands = submission.begin();
+  CHECK_THROWS_WITH(recorder.record(commands, {}, {.meshes = {&deformed, 1}}),
+                    Catch::StartsWith("the scene's vertices need a buffer of 134217744 bytes"));
 }
 
 TEST_CASE("mode sampled is refused, with all that the device lacks for it, before anything is answered") {

@@ -57,8 +57,9 @@ void main() {
   const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
   const MeshRecord mesh = meshes[push.mesh];
   const vec3 local = uintBitsToFloat(bits) - mesh.origin;
-  const bool strays = any(equal(bits >> 23 & 0xffu, uvec3(0xffu))) || !all(lessThanEqual(local, mesh.hi)) ||
-                      !all(lessThanEqual(mesh.lo, local));
+  // Bounds end at 2^120: from 2^121 on differences might overflow.
+  const bool strays = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) || any(greaterThan(local, mesh.hi)) ||
+                      any(greaterThan(mesh.lo, local));
   if (strays && atomicCompSwap(stray.mesh, kNobody, push.mesh) == kNobody) atomicExchange(stray.vertex, i);
   // What strays counts no more, but must not send the search astray.
   vertices[mesh.firstVertex + i].position = strays ? floatBitsToUint(mesh.origin + mesh.lo) : bits;

@@ -175,6 +175,10 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   for (size_t i = 0; i < positions.size(); ++i) {
     if (!std::isfinite(positions[i]))
       throw Error("addMesh: positions: vertex " + std::to_string(i / 3) + " is not finite");
+    if (bounds && std::abs(positions[i]) > kMostBound) {
+      throw Error("addMesh: positions: vertex " + std::to_string(i / 3) +
+                  " of a mesh with bounds: expected coordinates of at most 2^120");
+    }
   }
   for (size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] >= positions.size() / 3) {

@@ -335,6 +335,9 @@ TEST_CASE("every node of a deformed mesh holds what is below, however far that i
 
 TEST_CASE("an object that a host moves is placed where its transform says, but for what its placement says",
           "[subgroups]") {
+  // Of transforms, to both sides of 1: usual sizes, those that floats hold, and beyond.
+  const int smallest = GENERATE(-30, -79, -140), largest = std::min(-smallest, 85);
+  CAPTURE(smallest);
   std::mt19937_64 bits(23);
   const auto uniform = [&](double lo, double hi) {
     return lo + (hi - lo) * static_cast<double>(bits() >> 11) * 0x1p-53;
@@ -347,7 +350,9 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
     const double size = powerOfTwo(-20, 20), baked = i % 2 == 0 ? 0 : size * powerOfTwo(-4, 12);
     std::vector<float> positions;
     const double middle[3] = {uniform(-baked, baked), uniform(-baked, baked), uniform(-baked, baked)};
-    for (size_t v = 0; v < 18; ++v) positions.push_back(static_cast<float>(middle[v % 3] + uniform(-size, size)));
+    for (size_t v = 0; v < 18; ++v) {
+      positions.push_back(i % 4 == 3 && v % 3 == 2 ? 0 : static_cast<float>(middle[v % 3] + uniform(-size, size)));
+    }
     scene.addMesh(positions, std::vector<uint32_t>{0, 1, 2, 3, 4, 5});
   }
   std::vector<std::byte> bytes;
@@ -355,15 +360,18 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
   std::vector<Pose> poses;
   for (uint32_t i = 0; i < 1200; ++i) {
     Pose pose;
-    const double scale = powerOfTwo(-30, 30), away = i % 3 == 0 ? 0 : powerOfTwo(-40, 55);
+    const double scale = powerOfTwo(smallest, largest), away = i % 3 == 0 ? 0 : powerOfTwo(smallest - 10, largest + 25);
     for (double& value : pose.m) value = static_cast<float>(scale * uniform(-1, 1));
     // Some are flat, or nearly.
     for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 2] *= i % 5 == 0 ? 0 : i % 5 == 1 ? 0x1p-20 : 1;
+    // A flat mesh has no use for the last column, whatever is there.
+    const double unused = i % 4 == 3 && i % 3 == 0 && smallest < -30 ? powerOfTwo(smallest, 126) / scale : 1;
+    for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 2] = static_cast<float>(pose.m[4 * row + 2] * unused);
     for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 3] = static_cast<float>(uniform(-away, away));
     for (const double value : pose.m) append<float>(bytes, {static_cast<float>(value)});
     poses.push_back(pose);
     objects.push_back(scene.addObject({i % 40, {}, ~0u}));
-    scene.setBounds(objects.back(), {{-0x1p79, -0x1p79, -0x1p79}, {0x1p79, 0x1p79, 0x1p79}});
+    scene.setBounds(objects.back(), {{-0x1p120, -0x1p120, -0x1p120}, {0x1p120, 0x1p120, 0x1p120}});
   }
   const OnDevice transforms(bytes);
   const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
@@ -380,10 +388,14 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
     CHECK(placements[i].mesh == i % 40);
     CHECK(placements[i].mask == ~0u);
     CHECK(placements[i].root == there.resident.record(i % 40).firstNode);
+    for (const float* rows : {placements[i].coarse, placements[i].fine, placements[i].inverse}) {
+      CHECK(std::all_of(rows, rows + 12, [](float x) { return std::isfinite(x); }));
+    }
+    CHECK(std::isfinite(placements[i].error + placements[i].size));
     if (!isInRange(placements[i])) continue;
     ++inRange;
     test::checkPlacement(scene.impl().meshes[i % 40], poses[i], placements[i], used);
   }
-  CHECK(inRange > 1100);
+  CHECK(inRange > (smallest == -30 ? 1100 : smallest == -79 ? 700 : 400));
   CHECK(used.inverse > 0.01);
 }

@@ -64,7 +64,8 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const OnDevice inside(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})), beyond(floats({-1, -1, 1, 1, -1, 2.001f, 0, 1, 1})),
-      infinite(floats({-1, -1, 1, 1, -1, 1, 0, -INFINITY, 1})), none(floats({-1, -1, 1, 1, NAN, 1, 0, 1, 1}));
+      infinite(floats({-1, -1, 1, 1, -1, 1, 0, -INFINITY, 1})), vast(floats({-1, -1, 1, 1, -1, 1, 0, 3e38f, 1})),
+      none(floats({-1, -1, 1, 1, NAN, 1, 0, 1, 1}));
   const OnDevice at(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7})), away(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9})),
       huge(floats({1, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 1, 7})), lost(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, NAN, 7}));
   const auto look = [&](const OnDevice& vertices, const OnDevice& transform) {
@@ -91,6 +92,7 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   CHECK(recorder.stray() == "mesh 1: vertex 1 is out of its bounds, or not finite");
   expectRefused(look(infinite, at));
   expectRefused(look(none, at));
+  expectRefused(look(vast, at));
   expectSeen(look(inside, at));
   CHECK(recorder.stray().empty());
   expectRefused(look(inside, away));

@@ -66,6 +66,9 @@ TEST_CASE("what breaks a contract is refused in words") {
   CHECK_THROWS_WITH(scene.addMesh(corner, {}), Catch::Contains("at least one triangle"));
   CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1, 3}), Catch::Contains("vertex 3 of 3"));
   CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1}), Catch::Contains("3 per triangle"));
+  CHECK_THROWS_WITH(
+      scene.addMesh(std::vector<float>{0, 2e36f, 0}, std::vector<uint32_t>{0, 0, 0}, Bounds{{-1, -1, -1}, {1, 1, 1}}),
+      Catch::Contains("vertex 0 of a mesh with bounds: expected coordinates of at most 2^120"));
   CHECK_THROWS_WITH(scene.addMesh(std::vector<float>{0, 0, NAN}, std::vector<uint32_t>{0, 0, 0}),
                     Catch::Contains("vertex 0 is not finite"));
   CHECK_THROWS_WITH(scene.addObject({mesh + 1, {}, ~0u}), Catch::Contains("does not exist"));

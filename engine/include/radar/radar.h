@@ -99,7 +99,7 @@ class RADAR_API Scene {
 
   /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
   /// not a multiple of 3, a number is not finite, an index is out of range, or a bound is above its other or beyond
-  /// 2^120.
+  /// 2^120, or, where there are bounds, a position is.
   ///
   /// `bounds`, mesh units: the host will deform the mesh on its device (radar/host_geometry.h), within them. The closer
   /// `positions` are to what it will be (its rest pose), the faster the search; elsewhere they are the mesh.

@@ -74,7 +74,7 @@ Vector commonPoint(const Triangle& first, const Triangle& second) {
   pierce(pb, pa, best);
   pierce(pa, pb, best);
   for (int k = 0; k < 3; ++k) best.at[k] = best.at[k] * size + origin[k];
-  return best.at;
+  return withoutZeroSigns(best.at);
 }
 
 }  // namespace radar::exact

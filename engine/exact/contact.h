@@ -18,6 +18,12 @@ namespace radar::exact {
 
 using Triangle = std::array<Vector, 3>;
 
+/// With 0 for -0: Vulkan lets a device lose the sign of 0, and both give the same bits.
+inline Vec withoutZeroSigns(Vec v) {
+  for (double& c : v) c = c == 0 ? 0 : c;
+  return v;
+}
+
 /// What touches what: of the moving triangle first, of the resting one second. The last three occur only where both
 /// triangles lie in one plane that contains the direction.
 enum class Kind : uint8_t { vertexFace, faceVertex, edgeEdge, vertexEdge, edgeVertex, vertexVertex };

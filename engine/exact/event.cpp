@@ -207,11 +207,11 @@ Vector point(const Event& e, double s) {
   switch (e.kind) {
     case Kind::vertexFace:
     case Kind::vertexEdge:
-      return along(e.from, s, e.direction);
+      return withoutZeroSigns(along(e.from, s, e.direction));
     case Kind::faceVertex:
     case Kind::edgeVertex:
     case Kind::vertexVertex:
-      return e.to;
+      return withoutZeroSigns(e.to);
     case Kind::edgeEdge:
       break;
   }
@@ -220,7 +220,7 @@ Vector point(const Event& e, double s) {
   const Twofold p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
   const Twofold q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
   const double share = p.high / (p - q).high;
-  return along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1}));
+  return withoutZeroSigns(along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1})));
 }
 
 namespace {
@@ -256,7 +256,7 @@ Vector normal(const Event& e) {
   const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
   const double turn = sign(denominator(e)) > 0 ? -1 : 1;
   for (double& c : n) c = turn * c / root;
-  return n;
+  return withoutZeroSigns(n);
 }
 
 }  // namespace radar::exact

@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "contact/interop.h"
 #include "contact/scene.glsl"
+#define RADAR_RESULT_BITS
 #include "radar/result.glsl"
 #include "workgroup.glsl"
 
@@ -59,18 +60,13 @@ void list(uint at, Contender c) {
 
 #ifndef RADAR_NO_DOUBLES
 #include "divide.glsl"
-#define NUMBER double
-#define NONE packDouble2x32(uvec2(0, 0x7ff80000u))
-const double kZero = 0.0LF;
+// 0 has no sign: what a device makes of it is its own.
+uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
+uvec2[3] bitsOf(dvec3 v) { return uvec2[3](bitsOf(v.x), bitsOf(v.y), bitsOf(v.z)); }
 double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
-bool isAbove(double p, double q) { return p > q; }
 #else
 #include "double_bits.glsl"
-#define NUMBER uvec2
-#define NONE uvec2(0, 0x7ff80000u)
-const uvec2 kZero = uvec2(0);
-// Of doubles that are not negative.
-bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
+uvec2 bitsOf(uvec2 x) { return x; }
 // Times a power of two, by the exponent.
 uvec2 unscaled(float x, float scale) {
   const uvec2 bits = doubleBits(floatBitsToUint(x));
@@ -79,10 +75,13 @@ uvec2 unscaled(float x, float scale) {
 }
 #endif
 
+// Of the bits of doubles that are not negative.
+bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
+
 RadarResult nothing(uint status) {
-  const NUMBER n = NONE;
+  const uvec2 n = uvec2(0, 0x7ff80000u);  // no number
   return RadarResult(status, RADAR_TIER_CONTACT, RADAR_NOT_LOOKED, 0, n, n, n, n, kNobody, kNobody, kNobody, 0,
-                     NUMBER[3](n, n, n), NUMBER[3](n, n, n), n);
+                     uvec2[3](n, n, n), uvec2[3](n, n, n), n);
 }
 
 RadarResult invalid(uint flags) {
@@ -98,23 +97,24 @@ RadarResult noContact(bool met) { return nothing(met ? RADAR_INVALID : RADAR_CLE
 RadarResult within() {
   RadarResult r = nothing(RADAR_HIT);
   r.detected = RADAR_DETECTED;
-  r.lo = kZero;
-  r.hi = sweeps[s].distance;
+  r.lo = uvec2(0);
+  r.hi = bitsOf(sweeps[s].distance);
   return r;
 }
 
-RadarResult undecided(bool met, NUMBER low) {
+RadarResult undecided(bool met, uvec2 low) {
   RadarResult r = nothing(RADAR_UNDECIDED);
   r.flags = RADAR_OPEN;
   if (met) r.detected = RADAR_DETECTED;
-  r.lo = isAbove(low, sweeps[s].distance) ? sweeps[s].distance : low;
+  const uvec2 distance = bitsOf(sweeps[s].distance);
+  r.lo = isAbove(low, distance) ? distance : low;
   return r;
 }
 
 #ifndef RADAR_NO_DOUBLES
 #include "contact/placed_corners.glsl"
 #include "twofold.glsl"
-const double kNever = 1.0e300LF;
+const double kNever = 1.0e200LF;
 const double kRounded = 8.0LF * 1.1102230246251565e-16LF;
 
 // The corners of a contender's triangles: the sensor's, the scene's.
@@ -145,24 +145,25 @@ bool tellHit(uint feature, Corners corners, inout RadarResult r) {
   precise double t = told.s * sweeps[s].directionLength;
   precise double slack = kRounded * t;
   const double distance = sweeps[s].distance;
-  r.status = RADAR_HIT;
-  r.t = min(t, distance);
+  const double first = min(t, distance);
   precise double below = t - slack, above = t + slack;
-  r.lo = min(max(below, 0.0LF), r.t);
-  r.hi = min(above, distance);
-  r.fraction = soundQuotient(r.t, distance);
+  r.status = RADAR_HIT;
+  r.t = bitsOf(first);
+  r.lo = bitsOf(min(max(below, 0.0LF), first));
+  r.hi = bitsOf(min(above, distance));
+  r.fraction = bitsOf(soundQuotient(first, distance));
   dvec3 normal;
   const bool unit = normalOf(e, told.turn, normal);
-  r.point = double[3](told.point.x, told.point.y, told.point.z);
-  r.normal = double[3](normal.x, normal.y, normal.z);
+  r.point = bitsOf(told.point);
+  r.normal = bitsOf(normal);
   return sound && told.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
 void tellOverlap(Corners corners, inout RadarResult r) {
   dvec3 point;
   r.status = RADAR_OVERLAP;
-  r.t = r.lo = r.hi = r.fraction = 0.0LF;
-  if (commonPoint(corners.a, corners.b, point)) r.point = double[3](point.x, point.y, point.z);
+  r.t = r.lo = r.hi = r.fraction = uvec2(0);
+  if (commonPoint(corners.a, corners.b, point)) r.point = bitsOf(point);
 }
 
 // What of a sensor's contenders may be first.
@@ -235,7 +236,7 @@ RadarResult answer(SearchState state) {
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = contenders[i].next) {
     if (contenders[i].low <= kept.limit) list(at++, contenders[i]);
   }
-  return undecided(met, kept.low);
+  return undecided(met, bitsOf(kept.low));
 }
 #else
 RadarResult answer(SearchState state) {

@@ -6,11 +6,12 @@
 //     #include "radar/result.glsl"
 //     layout(scalar, binding = 0) readonly buffer Results { RadarResult results[]; };
 //
-// Where a shader has no doubles, define RADAR_NO_DOUBLES before: they are then their bits, for radarFloat().
+// Where a shader has no doubles, define RADAR_NO_DOUBLES before: they are then their bits, for radarFloat(). So they are
+// with RADAR_RESULT_BITS, which keeps NaN: a device may lose one that it handles as a double.
 #ifndef RADAR_RESULT_GLSL
 #define RADAR_RESULT_GLSL
 
-#ifdef RADAR_NO_DOUBLES
+#if defined(RADAR_NO_DOUBLES) || defined(RADAR_RESULT_BITS)
 #define RADAR_DOUBLE uvec2
 #else
 #define RADAR_DOUBLE double

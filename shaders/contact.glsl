@@ -11,7 +11,7 @@ struct BoundedFloat {
 const float kUlp = 1.1920929e-7;
 const float kFlushed = 2.4e-38;
 
-// -1, 1: certain; 0: too close to tell, or not a number.
+// -1, 1: certain; 0: too close to tell.
 int signOf(BoundedFloat x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
 
 // What a feature is: 1 the two certainly pass over each other, 0 perhaps, -1 certainly not.
@@ -47,7 +47,7 @@ BoundedFloat planeOf(vec3 gap, vec3 x, vec3 y, float error) {
                       1.0001 * given + 12.0 * kUlp * dot(abs(gap), abs(p) + abs(q)) + kFlushed * (6.0 + 6.0 * g));
 }
 
-// above / below, if `known`: below is certainly not 0, and all is finite.
+// above / below, if `known`: below is certainly not 0, and neither the quotient nor its error is out of all reach.
 BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) {
   const float divisor = abs(below.value) - below.error;
   const bool nonzero = divisor > 0.5 * abs(below.value);
@@ -119,7 +119,8 @@ Bounded quotientOf(Bounded above, Bounded below, out bool known) {
 double depthOf(dvec3 x, dvec3 direction) { return dot(direction, x); }
 double depthSlack(dvec3 span, dvec3 direction) { return 3.552713678800501e-15LF * dot(abs(direction), span); }
 double squaredOf(dvec3 direction) { return dot(direction, direction); }
-const double kNever = 1.0e300LF;
+// Whatever is met is far below, and its products with lengths and scales do not overflow.
+const double kNever = 1.0e200LF;
 double neverOf(dvec3 direction) { return kNever; }
 
 #define REAL double

@@ -14,8 +14,10 @@ namespace {
 
 // A sensor smaller than this, beside what it may travel through, is scaled to less than 1: distances stay below 2^40.
 constexpr double kLeastShare = 0x1p-38;
-// What floats hold of a distance.
-constexpr double kMostDistance = 0x1p100;
+// Scaled. With kLeastShare whatever is met is nearer than this, and a search that finds nothing need not look farther.
+constexpr double kMostDistance = 0x1p42;
+// Scaled. A shorter way, other than none, might be taken for 0, and what is met must be told from what is not.
+constexpr double kLeastDistance = 0x1p-100;
 
 // Sums of axes of: how far the farthest point of the scene is from `centre`.
 double farthestOf(const Box& world, const Vector& centre) {
@@ -60,6 +62,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   const double size = std::max(double{sensor.placement.size}, kLeastShare * farthest);
   if (!(size >= 1 / kMostCoordinate && farthest <= 8 * kMostCoordinate)) return Planned::outOfRange;
   const double scale = std::ldexp(1.0, -std::ilogb(size));
+  const double distance = std::min(query.distance * scale, kMostDistance);
+  if (query.distance > 0 && distance < kLeastDistance) return Planned::outOfRange;
 
   const std::array<Vector, 3> axes = axesAlong(query.direction);
   for (int row = 0; row < 3; ++row) {
@@ -69,9 +73,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sensor.placement.mesh = query.mesh;
   sensor.scale = static_cast<float>(scale);
   sensor.unscale = static_cast<float>(1 / scale);
-  // Whatever lies beyond is out of reach, too.
-  sensor.distance = roundUp(std::min(query.distance * scale, kMostDistance));
-  sensor.enough = query.decide ? roundDown(std::min(query.distance * scale, kMostDistance)) : -1.0f;
+  sensor.distance = roundUp(distance);
+  sensor.enough = query.decide ? roundDown(distance) : -1.0f;
   setBox(sensor, box, tree.anchor(), farthest);
   sensor.mask = query.mask;
   sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());

@@ -21,7 +21,7 @@ struct SensorBatch {
 enum class Planned {
   added,
   clear,      ///< there is nothing to meet
-  outOfRange  ///< floats cannot hold it: the sensor, the scene, or how large one is beside the other
+  outOfRange  ///< floats cannot hold it: the sensor, the scene, the distance, or how large one is beside the other
 };
 
 /// Adds a query, which keeps its contract; its answer goes to place `result`.

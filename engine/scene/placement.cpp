@@ -10,8 +10,10 @@ namespace radar {
 
 namespace {
 
-// Below, and above its inverse, an entry of an inverse matrix is out of range, too.
+// An entry of an inverse matrix, and what it is off, are out of range from here on.
 constexpr double kMostInverse = 0x1p100;
+// What a device may take for 0 of the placement's floats, together.
+constexpr double kFlushed = 1e-37;
 
 // The leading 16 bits: the shader's products with numbers of 8 bits are exact.
 float leadingBits(double x) {
@@ -48,7 +50,9 @@ bool setInverse(gpu::Placement& out, const Matrix& matrix) {
       off += std::abs(product) * out.reach[j];
       sum += magnitude * out.reach[j];
     }
-    n[3] = roundUp(off + 0x1p-48 * sum);
+    // Shaders add to it, and may round each sum down.
+    n[3] = roundUp(1.00001 * (off + 0x1p-48 * sum));
+    if (!(n[3] < kMostInverse)) return false;
   }
   return true;
 }
@@ -83,7 +87,7 @@ gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh) {
     out.error = std::max(out.error, roundUp(0x1p-44 * sum));
   }
   out.size = roundUp(size);
-  out.error = roundUp(double(out.error) + 0x1p-35 * size);
+  out.error = roundUp(double(out.error) + 0x1p-35 * size + kFlushed);
   const bool inRange = magnitude <= kMostCoordinate && most <= kMostCoordinate && most >= 1 / kMostCoordinate &&
                        mesh.unit <= kMostCoordinate && mesh.unit >= 1 / kMostCoordinate;
   if (!inRange || !setInverse(out, matrix)) return {};

@@ -13,8 +13,10 @@ struct MeshPair {
   float leastA, leastB;       // velocities along normals below this are taken for it
   bool inRange;
 };
-// A size or a distance so many times the sensor's overflows in products of three.
-const float kMostRatio = 1.0e12;
+// A size or a distance so many times the sensor's overflows in products of three, and so does such an error in cubes.
+const float kMostRatio = 1.0e12, kMostError = 1.0e9;
+
+float mostOf(vec4 x, vec4 y, vec4 z) { return max3(vec3(sum3(abs(x.xyz)), sum3(abs(y.xyz)), sum3(abs(z.xyz)))); }
 
 MeshPair meshPairOf(uint sensor, uint object) {
   const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
@@ -33,22 +35,29 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
 
   const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
-  const vec3 apart = (high + low) * scale, lost = 4.0 * kUnit * scale * (abs(high) + abs(low));
-  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * scale;
-  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * scale;
-  const mat3 inverseA = rows(na0.xyz, na1.xyz, na2.xyz) * unscale, inverseB = rows(nb0.xyz, nb1.xyz, nb2.xyz) * unscale;
+  const vec3 apart = (high + low) * scale;
+  const float error = scale * (sizesA.x + sizesB.x);
+  const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
+
+  MeshPair p;
+  // Asked before it is multiplied. Where floats cannot hold an object, its perUnit is 0.
+  p.inRange = objectTexel(object, kTexelOrigin).w > 0.0 && most < kMostRatio && error < kMostError &&
+              max(mostOf(a0, a1, a2), mostOf(b0, b1, b2)) < kMostRatio * unscale &&
+              max(mostOf(na0, na1, na2), mostOf(nb0, nb1, nb2)) < kMostRatio * scale;
+  const float by = p.inRange ? scale : 0.0, perBy = p.inRange ? unscale : 0.0;
+  const vec3 lost = 4.0 * kUnit * by * (abs(high) + abs(low));
+  const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * by;
+  const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * by;
+  const mat3 inverseA = rows(na0.xyz, na1.xyz, na2.xyz) * perBy, inverseB = rows(nb0.xyz, nb1.xyz, nb2.xyz) * perBy;
   const mat3 sizeA = abs3(inverseA), sizeB = abs3(inverseB);
   const vec3 sumA = sizeA * vec3(1.0), sumB = sizeB * vec3(1.0);
 
-  MeshPair p;
   p.fromA = inverseB * matrixA;
   p.fromB = inverseA * matrixB;
   p.offsetA = -(inverseB * apart);
   p.offsetB = inverseA * apart;
   p.velocityA = inverseB * direction.xyz;
   p.velocityB = inverseA * direction.xyz;
-  const float error = scale * (sizesA.x + sizesB.x);
-  const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
   p.farthest = max(1.00001 * min(sensorTexel(sensor, kTexelCentre).w, most), 9.5367432e-7);
   // The sum of all that is added up along an axis.
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
@@ -57,8 +66,9 @@ MeshPair meshPairOf(uint sensor, uint object) {
              16.0 * kUnit * p.farthest * sumB + 1e-18;
   p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * lost + 64.0 * kUnit * spanA +
              16.0 * kUnit * p.farthest * sumA + 1e-18;
-  const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA, vec3(9.5367432e-7)),
-             leastB = 9.5367432e-7 / p.farthest * max(reachA + abs3(p.fromB) * reachB, vec3(9.5367432e-7));
+  // With the slack, so that what is divided by a velocity stays below 1e12 times `farthest`.
+  const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA + p.slackA, vec3(9.5367432e-7)),
+             leastB = 9.5367432e-7 / p.farthest * max(reachA + abs3(p.fromB) * reachB + p.slackB, vec3(9.5367432e-7));
   const vec3 wayA = awayFromZero(p.velocityA, leastA), wayB = awayFromZero(p.velocityB, leastB);
   p.slackA += p.farthest * abs(wayA - p.velocityA);
   p.slackB += p.farthest * abs(wayB - p.velocityB);
@@ -66,9 +76,6 @@ MeshPair meshPairOf(uint sensor, uint object) {
   p.inverseB = 1.0 / wayB;
   p.leastA = max3(leastA);
   p.leastB = max3(leastB);
-  // Where floats cannot hold an object, its perUnit is 0.
-  const bool held = objectTexel(object, kTexelOrigin).w > 0.0;
-  p.inRange = held && max(max3(sumA), max3(sumB)) < kMostRatio && most < kMostRatio;
   return p;
 }
 
@@ -113,12 +120,4 @@ Approach approachOf(MeshPair p, Node a, Node b, float limit) {
   addNormalSlab(enter, leave, b, a, p.fromA, p.offsetA, -p.velocityA, p.slackA, p.leastA, p.farthest);
   const bool meets = enter <= leave && leave >= 0.0 && enter <= limit;
   return Approach(meets ? max(enter, 0.0) : kMiss, sum3(spanA), sum3(b.halfExtent));
-}
-
-// Whether the boxes of two whole meshes come near each other at all: where they do not, the products above may overflow.
-bool mayMeet(MeshPair p, Node a, Node b) {
-  const vec3 gapA = b.centre - (p.fromA * a.centre + p.offsetA), gapB = p.fromB * b.centre + p.offsetB - a.centre;
-  const vec3 spanA = abs3(p.fromA) * a.halfExtent, spanB = abs3(p.fromB) * b.halfExtent;
-  return all(lessThanEqual(abs(gapA), b.halfExtent + spanA + p.slackA + 1.001 * p.farthest / abs(p.inverseA))) &&
-         all(lessThanEqual(abs(gapB), a.halfExtent + spanB + p.slackB + 1.001 * p.farthest / abs(p.inverseB)));
 }

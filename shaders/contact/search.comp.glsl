@@ -259,7 +259,7 @@ void enterObjects(uint named) {
       a = nodeAt(rootA);
       b = nodeAt(rootB);
       approach = approachOf(meshes, a, b, limit);
-      const bool meets = mayMeet(meshes, a, b) && approach.gap < kMiss;
+      const bool meets = approach.gap < kMiss;
       leaves = meets && isLeaf(a.link & b.link);
       if (meets && !leaves) current = entryOf(rootA, a, rootB, b, approach);
     }

@@ -31,7 +31,7 @@ void main() {
   const MeshPair meshes = meshPairOf(t.sensor, t.object);
   told.inRange = meshes.inRange ? 1 : 0;
   const Node nodeA = nodeAt(t.nodeA), nodeB = nodeAt(t.nodeB);
-  told.gap = mayMeet(meshes, nodeA, nodeB) ? approachOf(meshes, nodeA, nodeB, t.limit).gap : kMiss;
+  told.gap = approachOf(meshes, nodeA, nodeB, t.limit).gap;
   const PairFrame f = pairFrameOf(t.sensor, t.object, vertexAt(triangleAt(t.slotA).x), vertexAt(triangleAt(t.slotB).x));
   const PlacedTriangle a = placedA(f, t.slotA), b = placedB(f, t.slotB);
   told.anchorA = f.anchorA;

@@ -1,0 +1,82 @@
+// The device against the CPU where floats end: scenes and motions of all sizes, far away and in poses that are nearly
+// singular.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "radar/cpu_sweeper.h"
+#include "support/test_device.h"
+#include "unit/cpu_wild_scenes.h"
+
+namespace {
+
+using namespace radar;
+
+/// Scenes up to 10^`most` in size, half of them with distances of any size.
+void make(uint64_t seed, double most, wild::Made& made) {
+  wild::Random random(seed);
+  wild::make(random, most, made);
+  if (seed % 2 == 0) return;
+  for (Query& query : made.queries) {
+    query.distance = std::min(query.distance * wild::power(random, random.chance(0.5) ? 12 : 60), 1e300);
+  }
+}
+
+/// But for the tier: it says who has answered.
+void checkSame(Result found, const Result& exact) {
+  found.tier = exact.tier;
+  CHECK(found.status == exact.status);
+  CHECK(std::memcmp(&found, &exact, sizeof exact) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("contact has the CPU's bits at every scale, far away and in poses that are nearly singular") {
+  const double most = GENERATE(1.0, 12.0, 24.0, 30.0);
+  CAPTURE(most);
+  uint64_t onDevice = 0;
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    CAPTURE(seed);
+    wild::Made made;
+    make(seed, most, made);
+    for (const bool decide : {false, true}) {
+      CAPTURE(decide);
+      for (Query& query : made.queries) query.decide = decide;
+      Sweeper sweeper(test::device(), made.scene, {.cpuBatch = 0});
+      const std::vector<Result> found = sweeper.run(made.queries), exact = CpuSweeper(made.scene, 1).run(made.queries);
+      onDevice += made.queries.size() - sweeper.stats().cpuQueries;
+      for (size_t i = 0; i < exact.size(); ++i) {
+        CAPTURE(i);
+        checkSame(found[i], exact[i]);
+      }
+    }
+  }
+  CHECK(onDevice > (most > 20 ? 150 : 600));
+}
+
+TEST_CASE("a distance of any size is heeded, the least that doubles hold too") {
+  Scene scene;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  const MeshId mesh = scene.addMesh(corners, triangle);
+  const double scale = GENERATE(1.0, 0x1p-70, 0x1p70);
+  CAPTURE(scale);
+  const auto placed = [&](double z) { return Pose{{scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, z * scale}}; };
+  for (const double z : {0x1p-140, 1e-30, 0x1p-20, 1.0, 1e11}) scene.addObject({mesh, placed(z), ~0u});
+  std::vector<Query> queries;
+  for (const double distance : {0.0, 0x1p-1000, 0x1p-200, 0x1p-141, 0x1p-140, 0x1p-139, 1e-31, 1e-30, 1e-29, 1.0, 1e10,
+                                1e11, 1e12, 1e40, 1e200}) {
+    for (const uint32_t from : {0u, 1u, 2u, 3u, 4u}) {
+      Query query{.mesh = mesh, .worldFromMesh = placed(0), .direction = {0, 0, 1}, .distance = distance * scale};
+      for (uint32_t nearer = 0; nearer < from; ++nearer) query.exclude.push_back(nearer);
+      queries.push_back(query);
+    }
+  }
+  const std::vector<Result> found = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries),
+                            exact = CpuSweeper(scene, 1).run(queries);
+  for (size_t i = 0; i < exact.size(); ++i) {
+    CAPTURE(i);
+    checkSame(found[i], exact[i]);
+  }
+}

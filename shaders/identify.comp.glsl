@@ -49,7 +49,6 @@ struct Surface {
 // Names the triangle (pixels across, stored depth along) at the candidates that it covers.
 void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec3 low = min(min(p0, p1), p2), high = max(max(p0, p1), p2);
-  if (!(all(lessThanEqual(low, high)))) return;  // not a number
   const vec2 lowEdge = low.xy - s.snap, highEdge = high.xy + s.snap;
   if (any(greaterThan(lowEdge, s.window)) || any(lessThan(highEdge, vec2(0.0))) || low.z > 1.0 || high.z < 0.0) return;
 
@@ -57,16 +56,18 @@ void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec2 rise = vec2(p1.z - p0.z, p2.z - p0.z);
   const float area = a.x * b.y - a.y * b.x;
   const float turn = area < 0.0 ? -1.0 : 1.0;
-  // Slivers: the plane's gradient is rounding; the vertices' range of depth stands in for it.
-  const bool sliver = abs(area) <= 0.0009765625 * (abs(a.x * b.y) + abs(a.y * b.x));
-  const vec2 gradient =
-      sliver ? vec2(0.0) : vec2(rise.x * b.y - rise.y * a.y, rise.y * a.x - rise.x * b.x) / area;
+  // Slivers: the plane's gradient is rounding, or overflows; the vertices' range of depth stands in for it.
+  const bool sliver = abs(area) <= 0.0009765625 * (abs(a.x * b.y) + abs(a.y * b.x)) ||
+                      abs(area) <= 1.52587890625e-5 * max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y)));
+  const vec2 slope = vec2(rise.x * b.y - rise.y * a.y, rise.y * a.x - rise.x * b.x);
+  const vec2 gradient = sliver ? vec2(0.0) : slope / (sliver ? 1.0 : area);
   const float slack = s.slack + (abs(gradient.x) + abs(gradient.y)) * s.snap;
 
   // Most triangles cover no candidate: cells are skipped by a cheap test until one has its candidate in the triangle's
   // box. Lavapipe runs both sides of an `if`, but leaves a loop.
-  const uvec2 firstCell = uvec2(clamp(lowEdge / s.cellSide, vec2(0.0), vec2(kCellsPerSide - 1)));
-  const uvec2 lastCell = uvec2(clamp(highEdge / s.cellSide, vec2(0.0), vec2(kCellsPerSide - 1)));
+  const vec2 lastOfAll = vec2(kCellsPerSide - 1);
+  const uvec2 firstCell = uvec2(clamp(lowEdge / s.cellSide, vec2(0.0), lastOfAll));
+  const uvec2 lastCell = uvec2(clamp(highEdge / s.cellSide, vec2(0.0), lastOfAll));
   const uint columns = lastCell.x - firstCell.x + 1, cells = columns * (lastCell.y - firstCell.y + 1);
   uint next = 0;
   while (true) {

@@ -5,23 +5,56 @@
 #include <cmath>
 
 #include "sampled/cluster_walk.h"
+#include "scene/placement.h"
 
 namespace radar {
 
 namespace {
 
+// In halves of the window across, in depths of the picture along: what is larger than this beside them might overflow
+// in products of the identify stage (docs/method.md, "Ranges").
+constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
+
+// Why the pictures cannot be set up, before anything is calculated; empty: they can.
+std::string outOfRange(const Query& query, const Scene::Impl& scene) {
+  const Vector direction = scaledDirection(query.direction);
+  if (std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})) != 0) {
+    return "range: the direction's components differ by more than doubles can scale";
+  }
+  if (!scene.objectTree().inRange()) return "range: an object has coordinates beyond 2^80";
+  if (!isInRange(placementOf(scene.meshes[query.mesh], query.worldFromMesh))) {
+    return "range: the sensor has coordinates beyond 2^80, or a size below 2^-80";
+  }
+  return {};
+}
+
+// Whether floats hold the mesh in the window, with what its vertices may be off.
+bool fitsWindow(const Mesh& mesh, const Affine& clipFromMesh, double snap, double slack) {
+  bool fits = fitsFloats(mesh, clipFromMesh) && snap < kMostAcross && slack < kMostAlong;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &clipFromMesh[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.reach[k];
+    fits = fits && sum < (row < 2 ? kMostAcross : kMostAlong);
+  }
+  return fits;
+}
+
+std::array<float, 12> floatsOf(const Affine& m) {
+  std::array<float, 12> out;
+  for (size_t i = 0; i < m.size(); ++i) out[i] = static_cast<float>(m[i]);
+  return out;
+}
+
 // clip.xy = 2 (frame.xy - corner) / (pixel * resolution) - 1; clip.z = scaleZ * frame.z + offsetZ.
-std::array<float, 12> clipFrom(const Affine& frameFromMesh, const Box& window, double pixel, uint32_t resolution,
-                               double scaleZ, double offsetZ) {
+Affine clipFrom(const Affine& frameFromMesh, const Box& window, double pixel, uint32_t resolution, double scaleZ,
+                double offsetZ) {
   const double across = 2 / (pixel * resolution);
   const double scale[3] = {across, across, scaleZ};
   const double offset[3] = {-across * window.lo[0] - 1, -across * window.lo[1] - 1, offsetZ};
-  std::array<float, 12> out;
+  Affine out;
   for (int row = 0; row < 3; ++row) {
-    for (int k = 0; k < 4; ++k) {
-      const double value = scale[row] * frameFromMesh[4 * row + k] + (k == 3 ? offset[row] : 0);
-      out[4 * row + k] = static_cast<float>(value);
-    }
+    for (int k = 0; k < 4; ++k) out[4 * row + k] = scale[row] * frameFromMesh[4 * row + k] + (k == 3 ? offset[row] : 0);
   }
   return out;
 }
@@ -51,7 +84,9 @@ void fillView(gpu::View& view, const Query& query, const SensorWindow& window, c
   view.maskBase = static_cast<float>(plan.length + window.margin);
   view.maskScale = static_cast<float>(maskScale);
   view.slack = static_cast<float>(reach.error + window.error + 4 * kFloatUnit * (rangeScale + maskScale));
-  view.rangeLimit = static_cast<float>((plan.d + reach.error + window.error) / rangeScale + 4 * kFloatUnit);
+  // No picture holds more than 1.
+  view.rangeLimit =
+      static_cast<float>(std::min((plan.d + reach.error + window.error) / rangeScale + 4 * kFloatUnit, 2.0));
 }
 
 // What the pictures can show of a mesh, its own error aside: whole pixels, which may pass the window's edge, and as
@@ -139,7 +174,9 @@ void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, con
       const Affine m = frameFromLocal(plan.axes, origin, object.worldFromMesh, mesh.origin);
       const double error = placementError(mesh, m);
       if (overlap(boxOfLocal(mesh, m), visible, 2 * error)) continue;
-      plan.others.push_back(placeInRange(id, m, error));
+      Placed placed = placeInRange(id, m, error);
+      if (!placed.fits) continue;
+      plan.others.push_back(placed);
       addWhole(plan, plan.others.back(), mesh);
     }
   }
@@ -154,6 +191,8 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
 
 ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn) {
   ViewPlan plan;
+  plan.outOfRange = outOfRange(query, scene);
+  if (!plan.outOfRange.empty()) return plan;
   const Mesh& sensor = scene.meshes[query.mesh];
   const SensorWindow window = lookAlong(query, sensor);
   plan.axes = window.axes;
@@ -177,13 +216,18 @@ ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subP
   const auto place = [&](ObjectId object, MeshId mesh, const Affine& m, double error, double scaleZ, double offsetZ) {
     const double snap =
         std::ldexp(1.0, -static_cast<int>(subPixelBits)) + error / plan.pixel + 6 * kFloatUnit * resolution;
+    const double slack = error * std::abs(scaleZ) + 8 * kFloatUnit;
+    const Affine clip = clipFrom(m, window.box, plan.pixel, resolution, scaleZ, offsetZ);
+    if (!fitsWindow(scene.meshes[mesh], clip, snap, slack))
+      return Placed{.object = object, .mesh = mesh, .fits = false};
     const Vector& origin = scene.meshes[mesh].origin;
     return Placed{object,
                   mesh,
-                  clipFrom(m, window.box, plan.pixel, resolution, scaleZ, offsetZ),
+                  true,
+                  floatsOf(clip),
                   {static_cast<float>(origin[0]), static_cast<float>(origin[1]), static_cast<float>(origin[2])},
                   static_cast<float>(snap),
-                  static_cast<float>(error * std::abs(scaleZ) + 8 * kFloatUnit)};
+                  static_cast<float>(slack)};
   };
   plan.mask =
       place(kNone, query.mesh, window.frameFromMesh, window.error, -1 / maskScale, (maskBase + backPlane) / maskScale);
@@ -193,6 +237,11 @@ ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subP
   };
   const Box visible = visibleBox(window, plan, subPixelBits);
   addReached(plan, scene, reach, visible, drawn, sensor, window, placeInRange);
+  const bool fits = std::all_of(plan.inReach.begin(), plan.inReach.end(), [](const Placed& p) { return p.fits; });
+  if (!plan.inReach.empty() && !(plan.mask.fits && fits)) {
+    plan.outOfRange = "range: an object in reach is too large beside the sensor, or its place too coarse, for floats";
+    return plan;
+  }
   for (const Run& run : plan.runs) plan.items += (run.count + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
   if (drawn == Drawn::everything && !plan.inReach.empty()) {
     addOthers(plan, query, scene, reach, visible, window.origin, placeInRange);

@@ -2,6 +2,7 @@
 // with. CPU only; looks at boxes, never at triangle pairs.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sampled/selection.h"
@@ -18,6 +19,7 @@ struct Run {
 struct Placed {
   ObjectId object = kNone;  ///< kNone: the sensor
   MeshId mesh = kNone;
+  bool fits = true;  ///< floats hold it; if not, nothing below is told
   std::array<float, 12> clipFromMesh{};
   std::array<float, 3> origin{};    ///< of the mesh's local vertices
   float snap = 0;                   ///< how far from a triangle a covered centre may lie, pixels
@@ -40,6 +42,7 @@ struct ViewPlan {
   std::vector<Placed> inReach;  ///< by object; empty: certainly clear
   std::vector<Placed> others;   ///< drawn too, only for Drawn::everything
   std::vector<Run> runs;        ///< of all that is drawn
+  std::string outOfRange;       ///< why floats cannot hold the view: then nothing else counts; empty: they can
   uint64_t triangles = 0;       ///< drawn, R and M
   uint64_t items = 0;           ///< what the identify stage takes them in, without the others'
 

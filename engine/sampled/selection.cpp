@@ -114,7 +114,7 @@ double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
     worst = std::max(worst, sum);
     scale = std::max(scale, std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
   }
-  return 8 * kFloatUnit * worst + 0x1p-120 * (1 + extent + scale);
+  return 16 * kFloatUnit * worst + 0x1p-120 * (1 + extent + scale);
 }
 
 double doubleErrorWithin(const Box& box, const Vector& origin) {

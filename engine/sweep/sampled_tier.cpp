@@ -33,7 +33,8 @@ bool SampledTier::fits(const Load& load) const {
          load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_;
 }
 
-std::string SampledTier::tooLarge(const ViewPlan& plan) const {
+std::string SampledTier::reasonAgainst(const ViewPlan& plan) const {
+  if (!plan.outOfRange.empty()) return plan.outOfRange;
   Load load;
   load.add(plan);
   if (load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_)
@@ -117,11 +118,11 @@ void SampledTier::run(std::span<const size_t> which) {
     const Clock::time_point start = Clock::now();
     ViewPlan plan = planOf(batch_.asked[i], options_.select ? Drawn::inReach : Drawn::everything);
     batch_.addCpuTime("select", msSince(start));
-    if (plan.inReach.empty()) {
+    if (plan.inReach.empty() && plan.outOfRange.empty()) {
       batch_.answers[i] = decodeClear();
       continue;
     }
-    if (std::string reason = tooLarge(plan); !reason.empty()) {
+    if (std::string reason = reasonAgainst(plan); !reason.empty()) {
       batch_.reasons[i] = std::move(reason);
       continue;
     }
@@ -137,7 +138,7 @@ void SampledTier::run(std::span<const size_t> which) {
 
 Scopes SampledTier::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
-  if (std::string reason = tooLarge(plan); !reason.empty()) throw Error("scopes: " + reason);
+  if (std::string reason = reasonAgainst(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
   packBatch(drawn_, plans);
   StoredScopes stored;

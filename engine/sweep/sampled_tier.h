@@ -33,7 +33,7 @@ class SampledTier {
   };
 
   bool fits(const Load& load) const;
-  std::string tooLarge(const ViewPlan& plan) const;
+  std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;
   void flush(std::vector<Pending>& slice);
   void submit(std::span<Pending> part);

@@ -80,3 +80,35 @@ TEST_CASE("a distance of any size is heeded, the least that doubles hold too") {
     checkSame(found[i], exact[i]);
   }
 }
+
+TEST_CASE("in mode sampled what floats cannot hold is refused with a reason, and what is answered is right") {
+  const double most = GENERATE(1.0, 20.0, 90.0);
+  CAPTURE(most);
+  uint64_t answered = 0, refused = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    wild::Made made;
+    make(seed, most, made);
+    if (seed % 4 == 0) made.queries[0].direction = {1e300, 5e-324, 0};
+    const std::vector<Result> exact = CpuSweeper(made.scene, 1).run(made.queries);
+    for (Query& query : made.queries) {
+      query.mode = Mode::sampled;
+      query.resolution = 32;
+    }
+    Sweeper sweeper(test::device(), made.scene);
+    const std::vector<Result> found = sweeper.run(made.queries);
+    for (size_t i = 0; i < exact.size(); ++i) {
+      CAPTURE(i, sweeper.reason(i), exact[i].t, found[i].hi);
+      const bool meets = exact[i].status != Status::clear;
+      CHECK((found[i].status == Status::invalid) == !sweeper.reason(i).empty());
+      if (found[i].status == Status::clear) CHECK_FALSE(meets);
+      if (found[i].status == Status::hit || found[i].status == Status::overlap) {
+        CHECK(meets);
+        CHECK(found[i].hi >= exact[i].lo);
+      }
+      (found[i].status == Status::invalid ? refused : answered) += 1;
+    }
+  }
+  CHECK((most > 80 ? refused : answered) > 100);
+  CHECK(test::takeValidationMessages().empty());
+}

@@ -32,7 +32,8 @@ struct Window {
   double snap;
 };
 
-// Placement error of a mesh (docs/method.md): 8 u times the greatest coordinate of its turned box about the sensor.
+// Placement error of a mesh where floats are rounded to nearest, half of what docs/method.md allows for any rounding: 8
+// u times the greatest coordinate of its turned box about the sensor.
 double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scopes, const Vector& about) {
   std::array<float, 3> lo{3e38f, 3e38f, 3e38f}, hi{-3e38f, -3e38f, -3e38f};
   for (uint32_t vertex : mesh.indices) {

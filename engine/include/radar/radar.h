@@ -4,6 +4,11 @@
 // own command buffers. Units: any one unit of length, used throughout; angles never appear. Coordinates are left- or
 // right-handed; meshes are two-sided triangle soups, winding is ignored, nothing has to be closed or connected.
 //
+// Ranges: mode contact takes all finite numbers; what floats cannot hold is answered on the CPU (recorder.h, which has
+// none beside it, says what that is). Mode sampled answers Status::invalid, with a reason, where coordinates are beyond
+// 2^80, the sensor's size is below 2^-80, an object in reach is more than 2^40 times as large as the sensor, or the
+// components of a direction differ by more than about 2^1000 times.
+//
 // Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
 // a Sweeper reads its Scene during run() and scopes().
 //
@@ -148,7 +153,7 @@ struct Query {
   MeshId mesh = kNone;                ///< of the scene
   Pose worldFromMesh;                 ///< invertible
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
-  double distance = 0;                ///< D >= 0, world units
+  double distance = 0;                ///< D >= 0, finite, world units
   Mode mode = Mode::contact;
   bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
   std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
@@ -181,7 +186,7 @@ enum class Detected : uint32_t {
 inline constexpr uint32_t kFlagOpen = 1;  ///< pairs of triangles too close for the device: Recorder::read() decides
 inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates, or a list of the search, was too small
 inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was
-inline constexpr uint32_t kFlagRange = 8;    ///< floats cannot hold the scene's coordinates, or the sensor beside them
+inline constexpr uint32_t kFlagRange = 8;    ///< floats cannot hold the scene, or the sensor or D beside it
 inline constexpr uint32_t kFlagBounds = 16;  ///< a vertex or an object of HostGeometry has left its declared bounds
 
 /// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 2: 120 bytes, natural alignment.

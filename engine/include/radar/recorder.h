@@ -39,8 +39,13 @@ class RADAR_API Recorder {
   /// i * sizeof(Result) bytes from its start: to the bit that of Sweeper::run, except where the flag kFlagOpen says
   /// that pairs are too close for the device: then the status is undecided, `hi` does not exist, and nothing meets
   /// before `lo`. Queries whose numbers floats cannot hold are Status::invalid with
-  /// kFlagRange: coordinates beyond 2^80 (of one object: all queries), sizes below 2^-80, sizes of sensor and object
-  /// that differ by more than 10^12 times.
+  /// kFlagRange:
+  /// - coordinates beyond 2^80 (of one object, or its bounds: all queries) or more than 10^22 times the sensor's size;
+  /// - sizes below 2^-80; sizes of sensor and object that differ by more than 10^12 times, also along an axis on which
+  ///   a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensors away;
+  /// - a distance D that is not 0 but below 2^-100 of the sensor's size, or 2^-138 of the scene's; there is no upper
+  ///   end;
+  /// - a direction whose components differ by more than about 2^1000 times.
   ///
   /// Where something in the host's buffers is out of its bounds, or not finite, every answer is Status::invalid with
   /// kFlagBounds.

@@ -19,7 +19,7 @@ namespace radar::exact {
 using Triangle = std::array<Vector, 3>;
 
 /// With 0 for -0: Vulkan lets a device lose the sign of 0, and both give the same bits.
-inline Vec withoutZeroSigns(Vec v) {
+inline Vector withoutZeroSigns(Vector v) {
   for (double& c : v) c = c == 0 ? 0 : c;
   return v;
 }

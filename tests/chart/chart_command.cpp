@@ -38,7 +38,7 @@ TEST_CASE("chart leaves numbers, charts, a page and documents, and takes up what
   CHECK(folder.read("c/chart.csv") == csv);
   CHECK(runProgram(folder, "chart --render --out c --docs d").status == 0);
   CHECK_THAT(folder.read("d/accuracy.md"), Contains("](../c/front-thin.svg)"));
-  CHECK_THAT(folder.read("d/speed.md"), Contains("Table 1"));
+  CHECK_THAT(folder.read("d/performance.md"), Contains("](../c/table1.svg)"));
 }
 
 TEST_CASE("chart refuses what it cannot do with status 2 and the option's or file's name") {

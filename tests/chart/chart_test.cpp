@@ -220,10 +220,62 @@ TEST_CASE("the page and the documents stand by themselves and name every method"
   record.cells[2].errorWorst = NAN;
   const std::string page = pageOf(record);
   CHECK_THAT(page, Contains("<svg") && Contains("Shapes &amp; more") && Contains("prefers-color-scheme:dark") &&
-                       Contains("--out &lt;here>") && Contains("FCL steps"));
+                       Contains("--out &lt;here>") && Contains("FCL steps") && Contains("Peer: cannot &lt;that>"));
   CHECK_THAT(page, !Contains("http") && !Contains("nan") && !Contains("inf "));
-  CHECK_THAT(accuracyDocument(record, "chart"), Contains("](chart/front-w.svg)") && Contains("FCL steps"));
-  CHECK_THAT(speedDocument(record, "chart"), Contains("| contact |"));
+  const std::string accuracy = accuracyDocument(record, "chart"), performance = performanceDocument(record, "chart");
+  CHECK_THAT(accuracy, Contains("](chart/front-w.svg)") && Contains("](chart/chart.html)"));
+  CHECK_THAT(accuracy, Contains("contact is on the front on 1 of 1 workloads."));
+  for (const std::string& document : {accuracy, performance}) {
+    CHECK_THAT(document, Contains("cyber-radar chart --out <here>") && !Contains("nan") && !Contains("inf "));
+  }
+}
+
+TEST_CASE("the documents sum up every method over all workloads, and tell where it fails") {
+  Record record;
+  record.workloads = {{"w", "Shapes"}, {"v", "Others"}};
+  record.cells = {madeUp("contact", 2, 0), madeUp("FCL steps", 4, 0), madeUp("FCL steps", 9, 0.1, 1),
+                  madeUp("contact", 5, 0), madeUp("ODE steps", 1, 0, 3)};
+  record.cells[1].size = 16;
+  record.cells[1].method = "FCL steps 16";
+  record.cells[2].size = 64;
+  record.cells[2].method = "FCL steps 64";
+  for (size_t i = 3; i < record.cells.size(); ++i) record.cells[i].workload = "v";
+  for (const uint32_t size : {16, 64}) {
+    Cell& broken = record.cells.emplace_back(madeUp("ODE steps " + std::to_string(size), NAN, NAN));
+    broken.size = size;
+    broken.family = "ODE steps";
+    broken.failed = "crashes";
+  }
+  const std::string accuracy = accuracyDocument(record, "chart"), performance = performanceDocument(record, "chart");
+  CHECK_THAT(accuracy, Contains("| contact | 0.0% | 0.0% | 0 | 2 to 5 |"));
+  CHECK_THAT(accuracy, Contains("| FCL steps 64 (fails on v) | 10.0% | 10.0% | 0.1 | 9 to 9 |"));
+  CHECK_THAT(accuracy, Contains("| ODE steps (fails on w) | 30.0% | 30.0% | 0 | 1 to 1 |"));
+  CHECK_THAT(accuracy, Contains("Not drawn: ODE steps 16/64 (crashes).") && !Contains("| FCL steps 16"));
+  CHECK_THAT(accuracy, Contains("It took 2 to 5 µs per query; its worst error was 0."));
+  CHECK_THAT(accuracy, Contains("on the front on 2 of 2 workloads."));
+  CHECK_THAT(performance, Contains("| w | 2 | - | - | - | 4 (FCL steps 16) |"));
+  CHECK_THAT(performance, Contains("| v | 5 | - | - | - | none |"));
+  record.cells[4].misses = 0;
+  CHECK_THAT(accuracyDocument(record, "chart"), Contains("on the front on 1 of 2 workloads, not on v."));
+}
+
+TEST_CASE("Table 1 is told from its first row to its last, with what mode contact overtakes") {
+  Record record;
+  for (const double boxes : {10'000.0, 20'000.0, 30'000.0}) {
+    for (const char* method : {"contact", "sampled 64", "FCL steps 64"}) {
+      const bool isContact = std::string(method) == "contact", isFcl = std::string(method) == "FCL steps 64";
+      Cell& cell = record.cells.emplace_back(madeUp(method, isContact ? 4 : isFcl ? boxes / 5'000 : 2'000, 0));
+      cell.section = "table1";
+      cell.workload = "boxes";
+      cell.x = boxes;
+    }
+  }
+  const std::string performance = performanceDocument(record, "chart");
+  CHECK_THAT(performance, Contains("| µs per query among | 10,000 boxes | 30,000 boxes | ratio |"));
+  CHECK_THAT(performance, Contains("| FCL steps 64 | 2 | 6 | 3.00 |"));
+  CHECK_THAT(performance, Contains("| the paper's OPCODE | 11270 | 85480 | 7.58 |"));
+  CHECK_THAT(performance, Contains("Mode contact overtakes FCL steps 64 from 20000 boxes on."));
+  CHECK_THAT(performance, Contains("Mode contact takes 4 µs per query among 10,000 boxes and 4 µs among 30,000: 1.00"));
 }
 
 TEST_CASE("a child hands over numbers, an exception's words, the signal that ended it, or that it took too long") {

@@ -1,10 +1,11 @@
 #include <algorithm>
+#include <map>
 
 #include "batch/whole_file.h"
 #include "chart/drawings.h"
 #include "chart/findings.h"
 #include "chart/report.h"
-#include "chart/tables.h"
+#include "report/axis.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -16,6 +17,9 @@ std::string listOf(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) text += "- " + sentence + "\n";
   return text + "\n";
 }
+
+// A heading line, then lines of cells.
+using Table = std::vector<std::vector<std::string>>;
 
 std::string tableOf(const Table& table) {
   std::string text;
@@ -32,17 +36,17 @@ std::string tableOf(const Table& table) {
 }
 
 std::string originOf(const Record& record) {
-  return "Measured " + record.date + ", commit " + record.commit + ", by\n\n    " + record.command + "\n\non " +
-         record.machine + "; device: " + record.device + ". ";
+  return "Measured on " + record.date + ", commit " + record.commit + ", with\n\n    " + record.command + "\n\non " +
+         record.machine + ", device " + record.device +
+         ". The same command with `--render` writes this page again from what it measured.\n\n";
 }
 
-std::string pictureOf(const Drawing& drawing, const std::string& charts) {
-  std::string text = "![" + drawing.caption + "](" + charts + "/" + drawing.name + ".svg)\n\n*";
-  for (const std::string& note : drawing.notes) text += (&note == &drawing.notes.front() ? "" : " ") + note;
-  return drawing.notes.empty() ? text.substr(0, text.size() - 1) : text + "*\n\n";
+std::string pictureOf(const Drawing& drawing, const std::string& charts, const std::string& text = "") {
+  return "![" + drawing.chart.title + "](" + charts + "/" + drawing.name + ".svg)\n\n" +
+         (text.empty() ? "" : "*" + text + "*\n\n");
 }
 
-// Least and greatest over the front's workloads of a number of a method's cells.
+// Least and greatest of the numbers taken.
 struct Spread {
   double least = INFINITY, most = -INFINITY;
   void take(double value) {
@@ -50,117 +54,210 @@ struct Spread {
     least = std::min(least, value);
     most = std::max(most, value);
   }
+  bool isEmpty() const { return least > most; }
 };
 
-template <class Number>
-Spread spreadOf(const Record& record, const std::string& method, const Number& number) {
-  Spread spread;
+// A method over all workloads of the front.
+struct Summary {
+  uint64_t queries = 0, wrong = 0;
+  Spread us, wrongShare, error;
+  std::vector<std::string> without;  // workloads on which it has no numbers
+
+  bool wasMeasured() const { return queries > 0; }
+  std::string times() const { return inWords(us.least) + " to " + timeInWords(us.most) + " per query"; }
+};
+
+Summary summaryOf(const Record& record, const std::string& method) {
+  Summary summary;
   for (const WorkloadNote& workload : record.workloads) {
-    for (const Cell* cell : shownCells(record, "front", workload.name)) {
-      if (cell->method == method) spread.take(number(*cell));
+    const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
+    const auto found =
+        std::find_if(cells.begin(), cells.end(), [&](const Cell* cell) { return cell->method == method; });
+    if (found == cells.end()) {
+      summary.without.push_back(workload.name);
+      continue;
+    }
+    const Cell& cell = **found;
+    summary.queries += cell.queries;
+    summary.wrong += cell.misses + cell.falseHits;
+    summary.us.take(cell.us);
+    summary.wrongShare.take(100 * wrongShare(cell));
+    summary.error.take(cell.errorWorst);
+  }
+  return summary;
+}
+
+// Of each family the member with the most pixels, rays or steps, in the order of the record.
+std::vector<std::string> finestMethods(const Record& record) {
+  std::vector<const Cell*> finest;
+  for (const Cell& cell : record.cells) {
+    if (cell.section != "front" || !cell.failed.empty()) continue;
+    const auto same =
+        std::find_if(finest.begin(), finest.end(), [&](const Cell* one) { return one->family == cell.family; });
+    if (same == finest.end()) {
+      finest.push_back(&cell);
+    } else if (cell.size > (*same)->size) {
+      *same = &cell;
     }
   }
-  return spread;
+  std::vector<std::string> methods;
+  methods.reserve(finest.size());
+  for (const Cell* cell : finest) methods.push_back(cell->method);
+  return methods;
 }
 
-std::string timesOf(const Record& record, const std::string& method) {
-  const Spread us = spreadOf(record, method, [](const Cell& cell) { return cell.us; });
-  return inWords(us.least) + " to " + inWords(us.most) + " us a query";
+Table summaryTable(const Record& record) {
+  Table table{{"method", "wrong answers", "on the worst workload", "worst error", "µs per query"}};
+  for (const std::string& method : finestMethods(record)) {
+    const Summary summary = summaryOf(record, method);
+    std::string name = method;
+    for (const std::string& workload : summary.without) name += " (fails on " + workload + ")";
+    table.push_back({name, print("%.1f%%", 100 * double(summary.wrong) / double(summary.queries)),
+                     print("%.1f%%", summary.wrongShare.most),
+                     summary.error.isEmpty() ? "-" : print("%.2g", summary.error.most),
+                     inWords(summary.us.least) + " to " + inWords(summary.us.most)});
+  }
+  return table;
 }
 
-// On how many workloads, and on which, mode contact is on the front beside methods that sample.
+// On how many workloads mode contact is on the front beside methods that sample, and on which it is not.
 std::string frontsOf(const Record& record) {
-  std::string on;
+  std::string off;
   size_t number = 0;
   for (const WorkloadNote& workload : record.workloads) {
     const BesideSampling beside = besideSampling(shownCells(record, "front", workload.name));
-    if (beside.contact == nullptr || beside.better != nullptr) continue;
-    ++number;
-    on += (on.empty() ? "" : ", ") + workload.name;
+    if (beside.contact != nullptr && beside.better == nullptr) {
+      ++number;
+    } else {
+      off += (off.empty() ? "" : ", ") + workload.name;
+    }
   }
-  return print("%zu of %zu workloads", number, record.workloads.size()) + (number > 0 ? " (" + on + ")." : ".") +
-         (number < record.workloads.size()
-              ? " Elsewhere such a method takes less time and happens to answer these queries without a miss, but "
-                "certifies none of them; by how much stands under each chart."
-              : "");
+  return print(
+             "Compared only with the methods that sample pixels, rays or steps of the motion, mode contact is on the "
+             "front on %zu of %zu workloads",
+             number, record.workloads.size()) +
+         (off.empty() ? "." : ", not on " + off + ".");
 }
 
 // Mode by mode, with the run's numbers: of what it measured.
 std::vector<std::string> adviceOf(const Record& record) {
-  const auto worst = [](const Cell& cell) { return cell.errorWorst; };
-  const auto missed = [](const Cell& cell) { return 100 * wrongShare(cell); };
   std::vector<std::string> advice;
-  advice.push_back("**A distance to rely upon: mode `contact`**, the default. " + timesOf(record, "contact") +
-                   print("; worst error over all workloads %.2g of the sensor's size. Use it for time of impact, "
-                         "placement, clearance.",
-                         spreadOf(record, "contact", worst).most));
-  advice.push_back(
-      "**The paper's method: mode `sampled`**. At 64 pixels " + timesOf(record, "sampled 64") +
-      print(
-          "; up to %.1f%% of its answers on a workload miss a contact, at 256 pixels up to %.1f%%. Use it to see what "
-          "the paper's method sees.",
-          spreadOf(record, "sampled 64", missed).most, spreadOf(record, "sampled 256", missed).most));
-  advice.push_back("**No device: mode `reference`**. " + timesOf(record, "reference") +
-                   ", the exact search on the CPU. Mode `contact` takes it, too, where the device itself runs on the "
-                   "CPU; *contact on device* is the device's own search.");
-  advice.push_back(
-      "**Beside methods that sample** (pixels of mode sampled, rays of Embree, steps of FCL and ODE), mode `contact` "
-      "is on the front on " +
-      frontsOf(record));
+  if (const Summary contact = summaryOf(record, "contact"); contact.wasMeasured()) {
+    advice.push_back(
+        "**Mode `contact`, the default**, gives certified distances, for times of impact, placement and clearance. It "
+        "took " +
+        contact.times() + print("; its worst error was %.2g.", contact.error.isEmpty() ? 0.0 : contact.error.most));
+  }
+  if (const Summary coarse = summaryOf(record, "sampled 64"); coarse.wasMeasured()) {
+    std::string text = "**Mode `sampled`** shows what the paper's method sees. With 64 pixels it took " +
+                       coarse.times() +
+                       print("; up to %.1f%% of its answers on a workload were wrong", coarse.wrongShare.most);
+    const Summary fine = summaryOf(record, "sampled 256");
+    if (fine.wasMeasured()) text += print(", with 256 pixels up to %.1f%%", fine.wrongShare.most);
+    advice.push_back(text + ".");
+  }
+  if (const Summary reference = summaryOf(record, "reference"); reference.wasMeasured()) {
+    advice.push_back("**Mode `reference`** is the exact search on the CPU and needs no device. It took " +
+                     reference.times() +
+                     ". Where the device itself runs on the CPU, mode `contact` uses the same search; *contact on "
+                     "device* is the device's own.");
+  }
   return advice;
+}
+
+// The methods over the workloads' names: microseconds a query, and the fastest other library without a wrong answer.
+Table workloadTable(const Record& record) {
+  const std::vector<std::string> ours{"contact", "contact on device", "reference", "sampled 64"};
+  Table table{{"µs per query"}};
+  table[0].insert(table[0].end(), ours.begin(), ours.end());
+  table[0].emplace_back("fastest other library without a wrong answer");
+  for (const WorkloadNote& workload : record.workloads) {
+    std::map<std::string, double> us;
+    const Cell* other = nullptr;
+    for (const Cell* cell : shownCells(record, "front", workload.name)) {
+      us[cell->method] = cell->us;
+      if (isOurs(cell->family) || wrongShare(*cell) > 0) continue;
+      if (other == nullptr || cell->us < other->us) other = cell;
+    }
+    std::vector<std::string>& line = table.emplace_back(std::vector<std::string>{workload.name});
+    for (const std::string& method : ours) line.push_back(us.contains(method) ? inWords(us[method]) : "-");
+    line.push_back(other == nullptr ? "none" : inWords(other->us) + " (" + other->method + ")");
+  }
+  return table;
+}
+
+// The times of the paper's Table 1 at both ends, the paper's own last.
+Table table1Table(const Record& record) {
+  const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
+  if (contact.size() < 2) return {};
+  Table table{{"µs per query among", inTic(contact.front().x) + " boxes", inTic(contact.back().x) + " boxes", "ratio"}};
+  const auto add = [&](const std::string& name, double few, double many) {
+    table.push_back({name, inWords(few), inWords(many), print("%.2f", many / few)});
+  };
+  for (const std::string& method : methodsOf(record, "table1", "boxes")) {
+    const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
+    if (times.size() == contact.size()) add(method, times.front().y, times.back().y);
+  }
+  const PaperRow &few = paperTable1().front(), &many = paperTable1().back();
+  if (few.boxes == contact.front().x && many.boxes == contact.back().x) {
+    add("the paper's Cyber Radar", 1000 * few.cyberRadar, 1000 * many.cyberRadar);
+    add("the paper's OPCODE", 1000 * few.opcode, 1000 * many.opcode);
+  }
+  return table;
 }
 
 }  // namespace
 
 std::string accuracyDocument(const Record& record, const std::string& charts) {
-  std::string text = "# Accuracy\n\nHow right each method is, on the same queries, against the exact answers. " +
-                     originOf(record) + "The numbers: [CSV](" + charts + "/chart.csv), [JSON](" + charts +
-                     "/chart.json); all charts on one page: [chart.html](" + charts +
-                     "/chart.html). This file is made from them, anew by the same command with `--render`.\n\n";
-  text +=
-      "Lengths are in sizes of the sensor, the greatest extent of its box. An answer is *missed* if there is a contact "
-      "and the method tells none, or sees none; a *false hit* if it tells one where there is none. " +
-      std::string(kFrontInWords) +
-      " Running the command again gives the same columns to the last digit, on the same driver.\n\n## Which mode for "
-      "what\n\n" +
-      listOf(adviceOf(record));
+  std::string text =
+      "# Accuracy\n\nEvery method answers the same queries, and each answer is compared with the exact one. " +
+      originOf(record) + "[chart.csv](" + charts +
+      "/chart.csv) has all numbers, and [performance](performance.md) explains the times.\n\nLengths are in units of "
+      "the sensor's size, the longest side of its box. An answer is *wrong* if it misses a contact, by denying it or "
+      "by "
+      "not seeing it, or reports one that does not exist. *Error* is the error of the distances found. Accuracy does "
+      "not vary from run to run on the same driver.\n\n";
+  text += "## Which mode for what\n\n" + listOf(adviceOf(record));
+  text += "## All workloads\n\n" + tableOf(summaryTable(record)) +
+          "*Methods with sizes are shown with their largest. Times run from the fastest workload to the slowest.*\n\n";
+  text += "## Accuracy against speed\n\n" + std::string(kFrontInWords) + " " + frontsOf(record) + "\n\n";
   for (const WorkloadNote& workload : record.workloads) {
-    text += "## " + workload.name + "\n\n" + workload.about + ".\n\n" +
-            pictureOf(frontDrawing(record, workload), charts) + listOf(frontFindings(record, workload.name)) +
-            tableOf(accuracyTable(record, workload.name));
+    const Drawing drawing = frontDrawing(record, workload);
+    std::string caption = workload.name + ":";
+    for (const std::string& note : drawing.notes) caption += " " + note;
+    text += pictureOf(drawing, charts, caption + " " + fastestRight(record, workload.name));
   }
-  if (!record.notes.empty()) text += "## What the others cannot do\n\n" + listOf(record.notes);
-  return text;
+  return text + "All charts on one page, with what the other libraries cannot do: [chart.html](" + charts +
+         "/chart.html).\n";
 }
 
-std::string speedDocument(const Record& record, const std::string& charts) {
-  std::string text = "# Speed\n\nHow long each method takes, on the same queries. " + originOf(record) +
-                     "The numbers: [CSV](" + charts +
-                     "/chart.csv). How right the answers are: [accuracy](accuracy.md).\n\n"
-                     "A time is that of a batch divided by its queries: the median over passes, and quartiles. "
-                     "*Processor us* adds up all threads. Preparing (trees, uploads) and changes of scene are apart. A "
-                     "software device takes all threads of the processor.\n\n";
-  if (!shownCells(record, "table1", "boxes").empty()) {
-    text += "## The paper's Table 1\n\n" + pictureOf(table1Drawing(record), charts) + listOf(table1Findings(record)) +
-            tableOf(table1Table(record));
+std::string performanceDocument(const Record& record, const std::string& charts) {
+  std::string text = "# Performance\n\nEvery method answers the same queries. " + originOf(record) +
+                     "A time is that of a whole batch divided by its queries: the median over passes, with the number "
+                     "of threads that was fastest. [chart.csv](" +
+                     charts +
+                     "/chart.csv) has the quartiles, the processor times, the times to prepare and to change scenes, "
+                     "and every number of threads. [Accuracy](accuracy.md) says how right the answers are, "
+                     "[benchmarks](benchmarks.md) how the exact searches compare by batch size, and "
+                     "[scaling](scaling.md) what several devices gain.\n\n";
+  text += "## Workload by workload\n\n" + tableOf(workloadTable(record));
+  if (const Table table = table1Table(record); !table.empty()) {
+    text += "## The paper's Table 1\n\n" + pictureOf(table1Drawing(record), charts) + tableOf(table) +
+            listOf(table1Findings(record));
   }
-  text += "## As the work grows\n\n";
-  for (const Drawing& drawing : growthDrawings(record)) text += pictureOf(drawing, charts);
-  text += listOf(growthFindings(record));
-  for (const char* axis : {"boxes", "sensors", "triangles"}) {
-    if (const Table table = growthTable(record, axis); table.size() > 1) text += tableOf(table);
+  if (const std::vector<Drawing> drawings = growthDrawings(record); !drawings.empty()) {
+    text += "## As the work grows\n\n";
+    for (const Drawing& drawing : drawings) text += pictureOf(drawing, charts);
+    text += listOf(growthFindings(record));
   }
-  for (const WorkloadNote& workload : record.workloads) {
-    text += "## " + workload.name + "\n\n" + workload.about + ". Chart: [accuracy](accuracy.md#" + workload.name +
-            ").\n\n" + tableOf(speedTable(record, workload.name));
-  }
+  text.pop_back();  // the empty line at the end
   return text;
 }
 
 void writeDocuments(const std::filesystem::path& folder, const std::filesystem::path& charts, const Record& record) {
   const std::string place = std::filesystem::relative(charts, folder).generic_string();
   writeWhole(folder / "accuracy.md", accuracyDocument(record, place));
-  writeWhole(folder / "speed.md", speedDocument(record, place));
+  writeWhole(folder / "performance.md", performanceDocument(record, place));
 }
 
 }  // namespace radar::tools

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "chart/findings.h"
 #include "report/print.h"
@@ -14,19 +15,18 @@ struct Look {
   const char* family;  ///< how its name starts
   int colour;
   Mark mark;
-  bool ours;
 };
-constexpr std::array kLooks{Look{"sampled", 0, Mark::circle, true},
-                            Look{"drawing all", 0, Mark::square, true},
-                            Look{"contact on device", 2, Mark::diamond, true},
-                            Look{"contact", 1, Mark::diamond, true},
-                            Look{"reference", 6, Mark::triangle, true},
-                            Look{"Embree rays", 3, Mark::circle, false},
-                            Look{"Embree vertex rays", 3, Mark::diamond, false},
-                            Look{"FCL", 4, Mark::square, false},
-                            Look{"Bullet hull", 5, Mark::circle, false},
-                            Look{"Bullet triangles", 5, Mark::triangle, false},
-                            Look{"ODE", 7, Mark::diamond, false}};
+constexpr std::array kLooks{Look{"sampled", 0, Mark::circle},
+                            Look{"drawing all", 0, Mark::square},
+                            Look{"contact on device", 2, Mark::diamond},
+                            Look{"contact", 1, Mark::diamond},
+                            Look{"reference", 6, Mark::triangle},
+                            Look{"Embree rays", 3, Mark::circle},
+                            Look{"Embree vertex rays", 3, Mark::diamond},
+                            Look{"FCL", 4, Mark::square},
+                            Look{"Bullet hull", 5, Mark::circle},
+                            Look{"Bullet triangles", 5, Mark::triangle},
+                            Look{"ODE", 7, Mark::diamond}};
 
 constexpr const char* kKey =
     "filled: Cyber Radar; hollow: other libraries; crosses: some answers are wrong; numbers: pixels, rays or steps";
@@ -44,7 +44,7 @@ ChartLine lineFor(const std::string& family, const std::string& name) {
   line.name = name;
   const auto look =
       std::find_if(kLooks.begin(), kLooks.end(), [&](const Look& known) { return family.starts_with(known.family); });
-  line.hollow = look == kLooks.end() || !look->ours;
+  line.hollow = !isOurs(family);
   if (look == kLooks.end()) return line;
   line.colour = look->colour;
   line.mark = look->mark;
@@ -125,6 +125,25 @@ std::vector<Drawing> resolutionDrawings(const Record& record, const WorkloadNote
   return {{"growth-resolution", caption, {}, chart}};
 }
 
+// Those that failed alike in one note.
+std::vector<std::string> failureNotes(const std::vector<const Cell*>& failed) {
+  std::map<std::string, std::vector<const Cell*>> byReason;
+  for (const Cell* cell : failed) {
+    std::vector<const Cell*>& cells = byReason[cell->failed];
+    if (cells.empty() || cells.back()->method != cell->method) cells.push_back(cell);
+  }
+  std::vector<std::string> notes;
+  for (const auto& [reason, cells] : byReason) {
+    std::string names;
+    for (const std::string& name : namesOf(cells)) {
+      if (!names.empty()) names += ", ";
+      names += name;
+    }
+    notes.push_back("Not drawn: " + names + " (" + reason + ").");
+  }
+  return notes;
+}
+
 }  // namespace
 
 Drawing frontDrawing(const Record& record, const WorkloadNote& workload) {
@@ -143,8 +162,8 @@ Drawing frontDrawing(const Record& record, const WorkloadNote& workload) {
   Drawing drawing{"front-" + workload.name, workload.about, {}, chart};
   drawing.notes.push_back(print("%u queries, %u with a contact.", cells.empty() ? 0 : cells[0]->queries,
                                 cells.empty() ? 0 : cells[0]->contacts));
-  for (const Cell* cell : failedCells(record, "front", workload.name)) {
-    drawing.notes.push_back("Not drawn: " + cell->method + " " + cell->failed + ".");
+  for (const std::string& note : failureNotes(failedCells(record, "front", workload.name))) {
+    drawing.notes.push_back(note);
   }
   return drawing;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "report/axis.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -18,32 +19,10 @@ std::pair<double, double> rankOf(const Cell& cell) {
   return {wrongShare(cell), std::isnan(cell.errorWorst) ? kErrorFloor : std::max(cell.errorWorst, kErrorFloor)};
 }
 
-std::string timeOf(double us) {
-  return us < 1000 ? print("%.3g us", us) : print("%.3g ms", us / 1000);
-}
-
 std::string listOf(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? "none" : text;
-}
-
-// "3.2 times as fast as", or as slow.
-std::string against(double us, double other) {
-  return us <= other ? print("%.3g times as fast", other / us) : print("%.3g times as slow", us / other);
-}
-
-// The names of a family's members as one: "sampled 16/64/1024".
-std::vector<std::string> namesOf(const std::vector<const Cell*>& cells) {
-  std::vector<std::string> names;
-  for (size_t i = 0; i < cells.size();) {
-    std::string name = cells[i]->method;
-    size_t end = i + 1;
-    for (; end < cells.size() && cells[end]->family == cells[i]->family; ++end) name += print("/%u", cells[end]->size);
-    names.push_back(name);
-    i = end;
-  }
-  return names;
 }
 
 const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& method) {
@@ -51,16 +30,14 @@ const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& m
   return found == cells.end() ? nullptr : *found;
 }
 
-// "is", or what keeps it off the front.
 std::string standingOf(const std::vector<const Cell*>& cells) {
   const auto [contact, better] = besideSampling(cells);
-  if (contact == nullptr) return "was not measured";
-  if (better == nullptr) return "is";
-  const auto errorOf = [](const Cell& cell) { return std::isnan(cell.errorWorst) ? 0 : cell.errorWorst; };
-  return "is not: it takes " + timeOf(contact->us) + print(", %.3g times as long as ", contact->us / better->us) +
-         better->method +
-         print(", with a worst error of %.2g against %.2g (%.2g%% of those are wrong, none is certified)",
-               errorOf(*contact), errorOf(*better), 100 * wrongShare(*better));
+  const std::string beside = "Compared with methods that sample pixels, rays or steps, mode contact ";
+  if (contact == nullptr) return beside + "was not measured.";
+  if (better == nullptr) return beside + "is on the front.";
+  return beside + "is not on the front: " + better->method + " takes " + timeInWords(better->us) + " instead of " +
+         timeInWords(contact->us) +
+         print(" per query, with %.2g%% wrong answers, none of them certified.", 100 * wrongShare(*better));
 }
 
 // The fastest member of each family that is faster, by how much, and how many of its answers are wrong.
@@ -80,21 +57,17 @@ std::vector<std::string> fasterThan(const std::vector<const Cell*>& cells, const
   names.reserve(best.size());
   for (const Cell* cell : best) {
     names.push_back(cell->method + print(" (%.3g times", contact.us / cell->us) +
-                    (wrongShare(*cell) > 0 ? print(", %.1f%% wrong)", 100 * wrongShare(*cell)) : ")"));
+                    (wrongShare(*cell) > 0 ? print(" as fast, %.1f%% wrong)", 100 * wrongShare(*cell)) : " as fast)"));
   }
   return names;
 }
 
-std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload) {
-  std::vector<std::string> methods;
-  for (const Cell& cell : record.cells) {
-    if (cell.section != section || cell.workload != workload || !cell.failed.empty()) continue;
-    if (std::find(methods.begin(), methods.end(), cell.method) == methods.end()) methods.push_back(cell.method);
-  }
-  return methods;
-}
-
 }  // namespace
+
+bool isOurs(const std::string& family) {
+  constexpr std::array kOurs{"sampled", "drawing all", "contact", "contact on device", "reference"};
+  return std::find(kOurs.begin(), kOurs.end(), family) != kOurs.end();
+}
 
 double wrongShare(const Cell& cell) {
   return static_cast<double>(cell.misses + cell.falseHits) / cell.queries;
@@ -179,6 +152,15 @@ std::optional<double> crossing(std::span<const Point> first, std::span<const Poi
   return at;
 }
 
+std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload) {
+  std::vector<std::string> methods;
+  for (const Cell& cell : record.cells) {
+    if (cell.section != section || cell.workload != workload || !cell.failed.empty()) continue;
+    if (std::find(methods.begin(), methods.end(), cell.method) == methods.end()) methods.push_back(cell.method);
+  }
+  return methods;
+}
+
 std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
                              const std::string& method) {
   std::vector<Point> points;
@@ -186,6 +168,39 @@ std::vector<Point> timesOver(const Record& record, const std::string& section, c
     if (cell->method == method) points.push_back({cell->x, cell->us});
   }
   return points;
+}
+
+std::string inWords(double value) {
+  return std::isnan(value) ? "-" : print(value < 1000 ? "%.3g" : "%.0f", value);
+}
+
+std::string timeInWords(double us) {
+  return us < 1000 ? inWords(us) + " µs" : inWords(us / 1000) + " ms";
+}
+
+std::vector<std::string> namesOf(const std::vector<const Cell*>& cells) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < cells.size();) {
+    std::string name = cells[i]->method;
+    size_t end = i + 1;
+    for (; end < cells.size() && cells[end]->family == cells[i]->family; ++end) name += print("/%u", cells[end]->size);
+    names.push_back(name);
+    i = end;
+  }
+  return names;
+}
+
+std::string fastestRight(const Record& record, const std::string& workload) {
+  const std::vector<const Cell*> cells = shownCells(record, "front", workload);
+  const Cell* contact = methodIn(cells, "contact");
+  if (contact == nullptr) return "";
+  const Cell* fastest = nullptr;
+  for (const Cell* cell : cells) {
+    if (wrongShare(*cell) == 0 && (fastest == nullptr || cell->us < fastest->us)) fastest = cell;
+  }
+  if (fastest == nullptr) return "No method answers every query correctly.";
+  const std::string text = "Fastest without a wrong answer: " + fastest->method + ", " + timeInWords(fastest->us);
+  return fastest == contact ? text + "." : text + " (contact: " + timeInWords(contact->us) + ").";
 }
 
 std::vector<std::string> frontFindings(const Record& record, const std::string& workload) {
@@ -196,23 +211,13 @@ std::vector<std::string> frontFindings(const Record& record, const std::string& 
     if (isCertain(*cell)) certain.push_back(cell);
   }
   std::vector<std::string> findings;
-  findings.push_back("Neither a miss nor a false hit: " + listOf(namesOf(right)) +
-                     ". With a certificate: " + listOf(namesOf(certain)) + ".");
+  findings.push_back("No wrong answers: " + listOf(namesOf(right)) + ". Certified: " + listOf(namesOf(certain)) + ".");
   findings.push_back("On the front: " + listOf(namesOf(frontOf(cells))) + ".");
-  findings.push_back("On the front beside methods that sample pixels, rays or steps: mode contact " +
-                     standingOf(cells) + ".");
-  const Cell* contact = methodIn(cells, "contact");
-  if (contact == nullptr) return findings;
-  const auto fastest =
-      std::min_element(right.begin(), right.end(), [](const Cell* a, const Cell* b) { return a->us < b->us; });
-  if (fastest != right.end() && *fastest != contact) {
-    findings.push_back("The fastest without a wrong answer is " + (*fastest)->method + ", " + timeOf((*fastest)->us) +
-                       " a query; mode contact takes " + timeOf(contact->us) + ", " +
-                       against(contact->us, (*fastest)->us) + ".");
-  } else {
-    findings.push_back("Mode contact is the fastest without a wrong answer: " + timeOf(contact->us) + " a query.");
+  findings.push_back(standingOf(cells));
+  if (const Cell* contact = methodIn(cells, "contact")) {
+    findings.push_back(fastestRight(record, workload));
+    findings.push_back("Faster than mode contact: " + listOf(fasterThan(cells, *contact)) + ".");
   }
-  findings.push_back("Faster than mode contact: " + listOf(fasterThan(cells, *contact)) + ".");
   return findings;
 }
 
@@ -220,39 +225,33 @@ std::vector<std::string> table1Findings(const Record& record) {
   std::vector<std::string> findings;
   const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
   if (contact.size() < 2) return findings;
-  const std::string few = print("%.0f", contact.front().x), many = print("%.0f", contact.back().x);
+  const Point &few = contact.front(), &many = contact.back();
+  findings.push_back("Mode contact takes " + timeInWords(few.y) + " per query among " + inTic(few.x) + " boxes and " +
+                     timeInWords(many.y) + " among " + inTic(many.x) + print(": %.2f times as long.", many.y / few.y));
+  std::vector<std::string> crossed;
   for (const std::string& method : methodsOf(record, "table1", "boxes")) {
     const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
-    if (times.size() != contact.size()) continue;
-    std::string text = method + ": " + timeOf(times.front().y) + " a query among " + few + " boxes, " +
-                       timeOf(times.back().y) + " among " + many +
-                       print(" (%.2f times)", times.back().y / times.front().y);
-    if (method != "contact") {
-      const double before = contact.front().y, after = contact.back().y;
-      text += "; contact is " + against(before, times.front().y) + ", then " + against(after, times.back().y);
-      if (const auto at = crossing(contact, times)) text += print("; they cross at %.0f boxes", *at);
-    }
-    findings.push_back(text + ".");
+    if (method == "contact" || times.size() != contact.size()) continue;
+    if (const auto at = crossing(contact, times)) crossed.push_back(method + print(" from %.0f boxes on", *at));
   }
+  if (!crossed.empty()) findings.push_back("Mode contact overtakes " + listOf(crossed) + ".");
   const PaperRow &first = kPaper.front(), &last = kPaper.back();
-  findings.push_back(
-      print("The paper, on its machine: Cyber Radar %.2f ms, then %.2f ms (%.2f times); OPCODE %.2f ms, "
-            "then %.2f ms (%.2f times): Cyber Radar was ahead only among many boxes.",
-            first.cyberRadar, last.cyberRadar, last.cyberRadar / first.cyberRadar, first.opcode, last.opcode,
-            last.opcode / first.opcode));
+  findings.push_back(print(
+      "On the paper's machine, its Cyber Radar took %.2f ms and then %.2f ms (%.2f times as long), OPCODE %.2f ms "
+      "and then %.2f ms (%.2f times): Cyber Radar was faster only among many boxes.",
+      first.cyberRadar, last.cyberRadar, last.cyberRadar / first.cyberRadar, first.opcode, last.opcode,
+      last.opcode / first.opcode));
   return findings;
 }
 
 std::vector<std::string> growthFindings(const Record& record) {
   std::vector<std::string> findings;
   for (const char* axis : {"boxes", "sensors", "triangles"}) {
-    for (const std::string& method : methodsOf(record, "growth", axis)) {
-      const std::vector<Point> points = timesOver(record, "growth", axis, method);
-      if (points.size() < 2) continue;
-      findings.push_back(method + ": time per query grows as " + axis + print("^%.2f, from ", slopeOf(points)) +
-                         timeOf(points.front().y) + print(" at %.0f to ", points.front().x) + timeOf(points.back().y) +
-                         print(" at %.0f.", points.back().x));
-    }
+    const std::vector<Point> points = timesOver(record, "growth", axis, "contact");
+    if (points.size() < 2) continue;
+    findings.push_back("From " + inTic(points.front().x) + " to " + inTic(points.back().x) + " " + axis +
+                       ", mode contact goes from " + timeInWords(points.front().y) + " to " +
+                       timeInWords(points.back().y) + " per query (" + axis + print("^%.2f).", slopeOf(points)));
   }
   return findings;
 }

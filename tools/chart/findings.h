@@ -13,6 +13,9 @@ namespace radar::tools {
 /// Errors below this, in sizes of the sensor, are drawn at it and count as equal.
 inline constexpr double kErrorFloor = 1e-13;
 
+/// Whether the method is Cyber Radar's, not another library's.
+bool isOurs(const std::string& family);
+
 /// Share of answers that are wrong: a contact missed, or told where there is none.
 double wrongShare(const Cell& cell);
 
@@ -24,12 +27,10 @@ std::vector<const Cell*> shownCells(const Record& record, const std::string& sec
 /// Those that have none.
 std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload);
 
-/// What frontOf and besideSampling do, for readers.
+/// What frontOf does, for readers.
 inline constexpr const char* kFrontInWords =
-    "The front holds the methods to which no other is both as fast and as right. A wrong answer is an error that no "
-    "smaller one makes up for: fewer of them are better, whatever the errors; of equal shares, the lesser worst error. "
-    "Mode contact, which certifies what it says, is also held against the methods that sample pixels, rays or steps of "
-    "the motion alone.";
+    "The front holds the methods that no other method beats in both speed and accuracy. A wrong answer outweighs any "
+    "error: fewer wrong answers rank first, then the smaller worst error.";
 
 /// Those to which no other is both as fast and as right, by rising time. Fewer wrong answers are better; of equal
 /// shares, a lesser worst error, down to kErrorFloor.
@@ -55,10 +56,23 @@ double slopeOf(std::span<const Point> points);
 /// where it does not, or is below from the start.
 std::optional<double> crossing(std::span<const Point> first, std::span<const Point> second);
 
+/// The methods of a workload that have numbers, in the order of the record.
+std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload);
+
 /// The times of one method over x, as of shownCells. `method`: Cell::method.
 std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
                              const std::string& method);
 
+/// Three digits, or whole; a dash where there is no number.
+std::string inWords(double value);
+/// "5.27 µs".
+std::string timeInWords(double us);
+/// The names of methods in a row, a family's members as one: "sampled 16/64/1024".
+std::vector<std::string> namesOf(const std::vector<const Cell*>& cells);
+
+/// The fastest method of a workload without a wrong answer, and mode contact beside it: one sentence, empty without
+/// mode contact.
+std::string fastestRight(const Record& record, const std::string& workload);
 /// One sentence each.
 std::vector<std::string> frontFindings(const Record& record, const std::string& workload);
 std::vector<std::string> table1Findings(const Record& record);

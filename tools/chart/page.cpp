@@ -3,7 +3,6 @@
 #include "chart/drawings.h"
 #include "chart/findings.h"
 #include "chart/report.h"
-#include "chart/tables.h"
 #include "report/chart.h"
 #include "report/markup.h"
 
@@ -15,20 +14,6 @@ std::string listOf(const std::vector<std::string>& sentences) {
   std::string text = "<ul class=\"findings\">\n";
   for (const std::string& sentence : sentences) text += "<li>" + escaped(sentence) + "</li>\n";
   return text + "</ul>\n";
-}
-
-std::string tableOf(const Table& table) {
-  std::string text = openTable();
-  for (size_t i = 0; i < table.size(); ++i) {
-    std::vector<std::string> cells;
-    for (const std::string& cell : table[i]) cells.push_back(escaped(cell));
-    text += row(cells, i == 0 ? "th" : "td");
-  }
-  return text + closeTable();
-}
-
-std::string folded(const std::string& summary, const std::string& content) {
-  return "<details><summary>" + escaped(summary) + "</summary>\n" + content + "</details>\n";
 }
 
 // What stands above every chart: where it comes from.
@@ -45,8 +30,6 @@ std::string frontsOf(const Record& record) {
     text += "<h2>" + escaped(workload.name) + "</h2>\n<div class=\"charts large\">\n" +
             figureOf(record, frontDrawing(record, workload)) + "<div>" + listOf(frontFindings(record, workload.name)) +
             "</div></div>\n";
-    text += folded("Accuracy", tableOf(accuracyTable(record, workload.name)));
-    text += folded("Speed", tableOf(speedTable(record, workload.name)));
   }
   return text;
 }
@@ -56,8 +39,9 @@ std::string frontsOf(const Record& record) {
 std::string pageOf(const Record& record) {
   std::string html = openPage("Cyber Radar: accuracy against speed", "Accuracy against speed");
   html +=
-      "<p>How far can a shape move before it first touches anything: every method answers the same queries, and is "
-      "held against the exact answers. Lengths are in sizes of the sensor, the greatest extent of its box. " +
+      "<p>How far can a shape move before it first touches anything? Every method answers the same queries, and each "
+      "answer is compared with the exact one. Lengths are in units of the sensor's size, the longest side of its "
+      "box. " +
       std::string(kFrontInWords) +
       "</p>\n"
       "<p class=\"soft\">" +
@@ -66,12 +50,12 @@ std::string pageOf(const Record& record) {
   html += frontsOf(record);
   if (!shownCells(record, "table1", "boxes").empty()) {
     html += "<h2>The paper's Table 1</h2>\n<div class=\"charts large\">\n" + figureOf(record, table1Drawing(record)) +
-            "<div>" + listOf(table1Findings(record)) + "</div></div>\n" + folded("Times", tableOf(table1Table(record)));
+            "<div>" + listOf(table1Findings(record)) + "</div></div>\n";
   }
   html += "<h2>As the work grows</h2>\n<div class=\"charts large\">\n";
   for (const Drawing& drawing : growthDrawings(record)) html += figureOf(record, drawing);
   html += "</div>\n" + listOf(growthFindings(record));
-  if (!record.notes.empty()) html += "<h2>What the others cannot do</h2>\n" + listOf(record.notes);
+  if (!record.notes.empty()) html += "<h2>What the other libraries cannot do</h2>\n" + listOf(record.notes);
   return html + closePage();
 }
 

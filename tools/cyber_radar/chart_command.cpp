@@ -163,7 +163,7 @@ void addChartCommand(CLI::App& app) {
       ->check(CLI::IsMember({"full", "quick", "least"}))
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "--extent quick");
-  command->add_option("--docs", options->docs, "Folder for accuracy.md and speed.md")->type_name("DIR");
+  command->add_option("--docs", options->docs, "Folder for accuracy.md and performance.md")->type_name("DIR");
   command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
   command->callback([options] { chart(*options); });
 }

@@ -159,20 +159,19 @@ std::unique_ptr<Peer> make(const Workload& workload, uint32_t) {
 std::vector<PeerRow> bulletRows() {
   const std::string product =
       "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100) + ", doubles";
-  return {
-      {.family = "Bullet hull",
-       .product = product,
-       .limits = "casts convex shapes only: a sensor that is not is swept as its hull, which is another shape; no "
-                 "certificate; deforming meshes need new trees.",
-       .sizes = {0},
-       .make = make<false>},
-      {.family = "Bullet triangles",
-       .product = product,
-       .limits = "the sensor cast triangle by triangle, so it may be of any shape, at the cost of as many casts; no "
-                 "certificate; deforming meshes need new trees.",
-       .sizes = {0},
-       .sections = {"front"},
-       .make = make<true>}};
+  return {{.family = "Bullet hull",
+           .product = product,
+           .limits = "casts only convex shapes, and any other sensor as its hull, which is a different shape. No "
+                     "certificate; deforming meshes need new trees.",
+           .sizes = {0},
+           .make = make<false>},
+          {.family = "Bullet triangles",
+           .product = product,
+           .limits = "casts the sensor triangle by triangle: any shape, at the cost of that many casts. No "
+                     "certificate; deforming meshes need new trees.",
+           .sizes = {0},
+           .sections = {"front"},
+           .make = make<true>}};
 }
 
 }  // namespace radar::tools

@@ -274,16 +274,15 @@ std::vector<PeerRow> embreeRows() {
   return {
       {.family = "Embree rays",
        .product = product,
-       .limits = "a ray for each pixel, from the sensor's front: what falls between pixels, or lies behind the front "
-                 "in a concavity, is missed, and what surrounds the start is; no certificate; deforming meshes need "
-                 "new trees.",
+       .limits = "one ray per pixel from the sensor's front. It misses what lies between pixels, what lies behind the "
+                 "front in a concavity, and what surrounds the start. No certificate; deforming meshes need new trees.",
        .sizes = {16, 32, 64, 128, 256, 512, 1024},
        .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Peer> {
          return std::make_unique<PixelRays>(workload, size);
        }},
       {.family = "Embree vertex rays",
        .product = product,
-       .limits = "rays from the vertices of both sides: contacts of two edges are missed; no certificate; deforming "
+       .limits = "rays from the vertices of both sides. It misses contacts of two edges. No certificate; deforming "
                  "meshes need new trees.",
        .sizes = {0},
        .make = [](const Workload& workload, uint32_t) -> std::unique_ptr<Peer> {

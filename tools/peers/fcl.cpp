@@ -117,9 +117,8 @@ class Fcl : public Peer {
 std::vector<PeerRow> fclRows() {
   return {{.family = "FCL steps",
            .product = "FCL " FCL_VERSION,
-           .limits =
-               "asks whether shapes meet, at so many steps of the motion, then bisects: what is thinner than a step "
-               "is passed through; no certificate; shears, scales and deforming meshes need new trees.",
+           .limits = "asks at a number of steps whether the shapes meet, then bisects. It passes through what is "
+                     "thinner than a step. No certificate; shears, scales and deforming meshes need new trees.",
            .sizes = {16, 64, 256},
            .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Peer> {
              return std::make_unique<Fcl>(workload, size);

@@ -101,10 +101,9 @@ class Ode : public Peer {
 std::vector<PeerRow> odeRows() {
   return {{.family = "ODE/OPCODE steps",
            .product = "ODE " dODE_VERSION,
-           .limits =
-               "asks whether shapes meet, at so many steps of the motion, then bisects: what is thinner than a step "
-               "is passed through, and so is what lies inside another without a contact point; no certificate; one "
-               "thread; shears, scales and deforming meshes need new trees.",
+           .limits = "asks at a number of steps whether the shapes meet, then bisects. It passes through what is "
+                     "thinner than a step, and misses what lies inside another shape without a contact point. No "
+                     "certificate; one thread; shears, scales and deforming meshes need new trees.",
            .sizes = {16, 64, 256},
            .threads = false,
            .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Peer> {

@@ -73,9 +73,11 @@ TEST_CASE("stability asks every family, and leaves a page, a table and pictures"
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("sampled 64") && !Contains("WRONG"));
   const std::string page = folder.read("s/stability.md"), table = folder.read("s/stability/table.csv");
-  CHECK_THAT(page, Contains("### key in keyhole") && Contains("cyber-radar stability --cases 52 --seed 1"));
-  CHECK_THAT(page, Contains("| D split in two | contact | 52 |"));
+  CHECK_THAT(page, Contains("cyber-radar stability --cases 52 --seed 1") && Contains("Of 520 pairs"));
   CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 26 * 3);
+  CHECK_THAT(folder.read("s/stability/steps.csv"), Contains("\nkey in keyhole,contact,"));
+  CHECK_THAT(folder.read("s/stability/changes.csv"), Contains("\nD split in two,contact,52,"));
+  CHECK_THAT(folder.read("s/stability/families.csv"), Contains("\nkey in keyhole,"));
   CHECK_THAT(page, Contains("stability/edge-on.png"));
   CHECK(isPng(folder.read("s/stability/edge-on.png")));
 }

@@ -22,23 +22,24 @@ struct Kind {
 
 constexpr std::array kKinds{
     Kind{"thin", Method::paper, Failure::missed, "thin", "A rod is not seen",
-         "It is thinner than a pixel and falls between the pixels' centres, so R does not hold it. More pixels only "
-         "move the limit."},
+         "It is thinner than a pixel and lies between the pixels' centres, so R does not contain it. More pixels "
+         "only move the limit."},
     Kind{"edge-on", Method::paper, Failure::missed, "edge-on", "A plate is not seen",
-         "Seen edge-on it has no area, so it covers no pixel's centre at any resolution."},
+         "It is edge-on, so it has no area and covers no pixel's centre at any resolution."},
     Kind{"slope", Method::paper, Failure::late, "slope", "Too late on a steep face",
-         "The depth of a steep face changes within a pixel by many times the pixel's side. The contact lies between "
-         "two centres, and L knows the gap at the centres only."},
+         "Within one pixel, its depth changes by many times the pixel's side. The contact lies between two centres, "
+         "but L "
+         "holds the gap only at the centres."},
     Kind{"ball in cup", Method::paper, Failure::early, "ball-in-cup", "Too early in a concavity",
-         "R and M hold one layer each: the scene's first surface beyond the sensor's back plane, the sensor's "
-         "foremost one. Where the sensor is past that surface already, L is negative, and the literal min(L) says "
-         "that they touch now."},
+         "R and M hold one layer each: the scene's first surface beyond the sensor's back plane, and the sensor's "
+         "front. "
+         "Where the sensor is already past that surface, L is negative, and min(L) claims a contact now."},
     Kind{"hook behind bar", Method::paper, Failure::falseHit, "hook", "A contact that does not exist",
-         "The same where a hook and a bar have passed each other: the sensor's front is beyond the scene's first "
-         "surface in the pixels they share, L is negative, and yet nothing will ever meet."},
-    Kind{"depth", Method::sampled, Failure::missed, "depth", "An overlap at the start is not seen",
-         "Where surfaces cross already, L is negative, which is no witness of a contact (see the concavities above); "
-         "mode sampled answers undecided."}};
+         "A hook and a bar have passed each other. L is negative in the pixels they share, but they will never meet."},
+    Kind{
+        "depth", Method::sampled, Failure::missed, "depth", "An overlap at the start is not seen",
+        "Where surfaces already cross, L is negative. That does not prove a contact (see the concavity above), so mode "
+        "sampled answers undecided."}};
 
 StabilityPicture draw(const Device& device, const Kind& kind, const TellingCase& telling, uint64_t seed,
                       const std::filesystem::path& folder) {
@@ -59,7 +60,7 @@ StabilityPicture draw(const Device& device, const Kind& kind, const TellingCase&
       ",  min(L) = " + (std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL));
   const std::string file = std::string("stability/") + kind.file + ".png";
   writeScopePicture(folder / file, numbers, scopes, panelsOf(scopes));
-  return {file, kind.title, std::string(kind.why) + " Here, " + numbers + "."};
+  return {file, kind.title, kind.why};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   cyber-radar stability --cases 2000 --resolution 16,64     under a minute
-  cyber-radar stability --out docs                          docs/stability.md, docs/stability/table.csv, pictures
+  cyber-radar stability --out docs                          docs/stability.md; tables and pictures in docs/stability
   cyber-radar stability --family thin --first 17 --cases 1  one case again
 
 Needles and plates edge-on, steep faces, exact touching, gaps of one rounding, 10^7 units from the origin, rings on
@@ -71,7 +71,11 @@ void writeFiles(const Options& options, const Device& device, StabilityFindings&
     command += (i == 0 ? "" : ",") + std::to_string(options.settings.resolutions[i]);
   }
   findings.pictures = drawFailures(device, findings.report, options.settings.seed, folder);
-  writeWhole(folder / "stability" / "table.csv", csvOf(findings.report.rows));
+  const std::filesystem::path tables = folder / "stability";
+  writeWhole(tables / "table.csv", csvOf(findings.report.rows));
+  writeWhole(tables / "steps.csv", csvOf(findings.steps));
+  writeWhole(tables / "changes.csv", csvOf(findings.changes));
+  writeWhole(tables / "families.csv", csvOf(stabilityFamilies()));
   writeWhole(folder / "stability.md",
              pageOf(findings, {command + " --out DIR", commit(), today(), device.name(), device.driver()}));
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": stability.md, stability/\n";

@@ -1,7 +1,6 @@
 #include "stability/page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -12,32 +11,11 @@ namespace radar::tools {
 
 namespace {
 
-constexpr const char* kBeginning = R"(# Where methods fail
-
-This page was written by the command below. It asks every tier about families of cases in which collision queries are
-known to go wrong, and holds each answer against the CPU's exact search (`engine/cpu`); mode `contact` is
-asked on the device. A family has one parameter; its
-cases take the values in turn, in random rotations and positions, and sensor and scene change places in half of the cases
-that have one object. `tests/stability` does the same with fewer cases.
-
-)";
-
 constexpr const char* kReading = R"(
-How to read the tables:
-
-- **tier, pixels**: `paper` is the paper's literal min(L), which mode `sampled` tells beside its own answer: contact
-  after min(L) if that is within D, now if it is negative. `sampled` and `contact` are the modes of the engine. The number is
-  the pixels of the scope's longer side. The larger the scope, the fewer of the cases are asked: *cases* counts them.
-- **missed**: there is a contact within D, and the answer is that there is none; for `paper` and `sampled` also that
-  none was seen. Mode `sampled` then says `undecided`, never `clear`. **false**: a contact is told where there is none within D.
-- **late**, **early**: the most that the t told lies after or before the exact one. **width**: the median of hi - lo. All three in units of
-  the greater of the sensor's size and t. In mode `sampled` t is the upper end of the bracket.
-- **brackets**: brackets that do not hold the exact t. **otherwise**: other promises broken (no answer, wrong status, triangles, point or
-  normal). The paper's min(L) has no bracket.
-- **select**, **pict.**, **contact %**: the share of cases settled by the tree over objects alone, by pictures, by the exact search;
-  **undecided** what is left.
-- **us a query**: microseconds, the median over batches of up to 32 queries.
-
+`paper` is the paper's literal min(L), which mode `sampled` reports beside its own answer. *Missed*: contacts that the tier
+denies or does not see; mode `sampled` then says `undecided`, never `clear`. *Late*, *early*: the largest errors of reported
+distances, in units of the greater of the sensor's size and the distance. All rows: [table.csv](stability/table.csv).
+What each family varies: [families.csv](stability/families.csv).
 )";
 
 template <class... Values>
@@ -47,117 +25,95 @@ std::string print(const char* format, Values... values) {
   return text;
 }
 
-std::vector<StabilityRow> rowsOf(const StabilityReport& report, const std::string& family) {
-  std::vector<StabilityRow> rows;
-  std::copy_if(report.rows.begin(), report.rows.end(), std::back_inserter(rows),
-               [&](const StabilityRow& row) { return row.family == family; });
-  return rows;
+unsigned long long whole(uint64_t value) {
+  return value;
 }
 
-std::string originOf(const StabilityOrigin& origin) {
-  return "    " + origin.command + "\n\n*" + origin.date + ", device " + origin.device + ", driver " + origin.driver +
-         ", commit " + origin.commit + ".*\n";
+std::string beginningOf(const StabilityOrigin& origin) {
+  return print(
+             "# Where methods fail\n\nSome situations break collision queries: thin and edge-on shapes, "
+             "exact "
+             "touching, gaps of one rounding, great\ndistances, concave shapes inside each other. This "
+             "command asks every tier about %zu families of such cases and\ncompares each answer with the CPU's exact "
+             "search; mode `contact` runs on the device:\n\n",
+             stabilityFamilies().size()) +
+         "    " + origin.command + "\n\n*" + origin.date + ", device " + origin.device + ", driver " + origin.driver +
+         ", commit " + origin.commit + "*\n\n";
 }
 
 std::string summaryOf(const StabilityReport& report) {
-  uint64_t contact = 0, missed = 0, falseHits = 0, brackets = 0, otherwise = 0, undecided = 0;
+  StabilityRow all;
   double error = 0;
   for (const StabilityRow& row : report.rows) {
     if (row.method != Method::contact) continue;
-    contact += row.cases;
-    missed += row.missed;
-    falseHits += row.falseHits;
-    brackets += row.brackets;
-    otherwise += row.otherwise;
-    undecided += row.undecided;
+    for (uint64_t StabilityRow::*number :
+         {&StabilityRow::cases, &StabilityRow::missed, &StabilityRow::falseHits, &StabilityRow::brackets,
+          &StabilityRow::otherwise, &StabilityRow::undecided}) {
+      all.*number += row.*number;
+    }
     error = std::max({error, row.late, row.early});
   }
-  const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
-  const std::string t = error == 0 ? "the CPU's to the bit" : print("within %.1e of the CPU's", error);
+  const std::string distances =
+      error == 0 ? "equals the CPU's to the bit" : print("is within %.1e of the CPU's", error);
   return print(
-             "Mode `contact` (%llu answers): %llu missed, %llu false, %llu brackets violated, %llu promises broken "
-             "otherwise,\n%llu undecided. Its t was ",
-             number(contact), number(missed), number(falseHits), number(brackets), number(otherwise),
-             number(undecided)) +
-         t +
-         " in every family, those whose input is ill-conditioned among them: both\ndecide about the same placed "
-         "vertices, without rounding.\n";
+             "Mode `contact` gave %llu answers: %llu contacts missed, %llu invented, %llu brackets violated, %llu "
+             "other promises\nbroken, %llu undecided. Every distance ",
+             whole(all.cases), whole(all.missed), whole(all.falseHits), whole(all.brackets), whole(all.otherwise),
+             whole(all.undecided)) +
+         distances + ".\n\n";
+}
+
+std::string tableOf(const StabilityReport& report) {
+  std::string text = "| tier, pixels | contacts | missed | invented | late | early |\n|---|--:|--:|--:|--:|--:|\n";
+  for (const StabilityRow& row : overFamilies(report.rows)) {
+    text += print("| %s | %llu | %llu | %llu | %.2g | %.2g |\n", tierOf(row).c_str(), whole(row.contacts),
+                  whole(row.missed), whole(row.falseHits), row.late, row.early);
+  }
+  return text;
 }
 
 std::string picturesOf(const std::vector<StabilityPicture>& pictures) {
-  std::string text = "\n## How the sampled method fails\n\n";
-  text +=
-      "One case for each kind of failure, the gravest of its family in this run at 64 pixels. Scopes as in the paper: "
-      "R, M, L.\n";
+  std::string text =
+      print("\n## How sampling fails\n\nThe worst case of each kind at %u pixels.\n", kTellingResolution);
   for (const StabilityPicture& picture : pictures) {
-    text += "\n### " + picture.title + "\n\n" + picture.words + "\n\n![" + picture.title + "](" + picture.file + ")\n";
+    text += "\n**" + picture.title + ".** " + picture.words + "\n\n![R, M and L](" + picture.file + ")\n";
   }
   return text;
 }
 
 std::string stepsOf(const std::vector<StepRow>& rows) {
-  std::string text =
-      "\n## In tiny steps\n\nThe sensor's pose moves in steps of 10^-6 of its size, in one direction a case. *excess*: "
-      "the most that t "
-      "moved in a\nstep beyond what the exact t did, in the units above; *flips*: steps in which only one of the two "
-      "contacts was found; of\nsteps in which the exact search finds both. Pictures have 64 pixels.\n\n| family | "
-      "steps |";
-  std::string line = "\n|---|---|";
-  for (size_t m = 0; m < kMethods; ++m) {
-    text += print(" %s excess | flips |", nameOf(static_cast<Method>(m)));
-    line += "---|---|";
-  }
-  text += line;
-  std::array<StepRow, kMethods> all;
-  for (const StepRow& row : rows) {
-    if (row.method == Method::paper) {
-      text += print("\n| %s | %llu |", row.family.c_str(), static_cast<unsigned long long>(row.steps));
-    }
-    text += print(" %.2g | %llu |", row.excess, static_cast<unsigned long long>(row.flips));
-    StepRow& sum = all[static_cast<size_t>(row.method)];
-    sum.steps += row.steps;
-    sum.flips += row.flips;
-    sum.excess = std::max(sum.excess, row.excess);
-  }
-  text += print("\n| **all: the largest** | %llu |", static_cast<unsigned long long>(all[0].steps));
-  for (const StepRow& sum : all)
-    text += print(" %.2g | %llu |", sum.excess, static_cast<unsigned long long>(sum.flips));
-  return text + "\n";
-}
-
-std::string changesOf(const std::vector<ChangeRow>& rows) {
-  std::string text =
-      "\n## Changes that change nothing\n\nWithout a reference: what leaves the first contact where it is, exactly "
-      "in float, must leave every answer within its\nbracket. *broken*: the answers before and after cannot both be "
-      "right. Pictures have 64 pixels.\n\n| change | tier | cases | contacts found | broken |\n|---|---|---|---|---|\n";
-  for (const ChangeRow& row : rows) {
-    text += print("| %s | %s | %llu | %llu | %llu |\n", nameOf(row.change), nameOf(row.method),
-                  static_cast<unsigned long long>(row.cases), static_cast<unsigned long long>(row.contacts),
-                  static_cast<unsigned long long>(row.broken));
+  const std::vector<StepRow> sums = overFamilies(rows);
+  std::string text = print(
+      "\n## In tiny steps\n\nThe sensor moves in %llu steps of a millionth of its size. *Flips*: steps at which only "
+      "one "
+      "of two contacts is found. *Excess*:\nthe most that a distance changes beyond the change of the exact one "
+      "([steps.csv](stability/steps.csv)).\n\n",
+      whole(sums.empty() ? 0 : sums.front().steps));
+  for (const StepRow& sum : sums) {
+    text += print("- `%s`: %llu flips, excess %.2g\n", nameOf(sum.method), whole(sum.flips), sum.excess);
   }
   return text;
 }
 
-std::string familyOf(const StabilityFamily& family, const std::vector<StabilityRow>& rows) {
-  std::string text = "\n### " + family.name + "\n\nParameter: " + family.parameter + ":";
-  for (const double value : family.values) text += print(" %g", value);
-  return text + ".\n\n" + markdownOf(rows);
+std::string changesOf(const std::vector<ChangeRow>& rows) {
+  uint64_t cases = 0, broken = 0;
+  for (const ChangeRow& row : rows) {
+    cases += row.cases;
+    broken += row.broken;
+  }
+  return print(
+      "\n## Changes that change nothing\n\nMoving everything together, swapping sensor and object, cutting triangles, "
+      "adding far objects and splitting the distance leave\nthe first contact where it is. Of %llu pairs of answers "
+      "before and after, %llu are contradictory\n([changes.csv](stability/changes.csv)).\n",
+      whole(cases), whole(broken));
 }
 
 }  // namespace
 
 std::string pageOf(const StabilityFindings& findings, const StabilityOrigin& origin) {
-  std::string text = kBeginning + originOf(origin) + "\n" + summaryOf(findings.report) + kReading;
-  text +=
-      "## All families\n\nCounts added up, the worst of the worst, medians of the families' medians. Rows as a file: "
-      "[table.csv](stability/table.csv).\n\n";
-  text += markdownOf(overFamilies(findings.report.rows));
+  std::string text = beginningOf(origin) + summaryOf(findings.report) + tableOf(findings.report) + kReading;
   if (!findings.pictures.empty()) text += picturesOf(findings.pictures);
-  text += stepsOf(findings.steps) + changesOf(findings.changes) + "\n## Each family\n";
-  for (const StabilityFamily& family : stabilityFamilies()) {
-    text += familyOf(family, rowsOf(findings.report, family.name));
-  }
-  return text;
+  return text + stepsOf(findings.steps) + changesOf(findings.changes);
 }
 
 }  // namespace radar::tools

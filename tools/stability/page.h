@@ -1,4 +1,4 @@
-// docs/stability.md.
+// docs/stability.md: what matters of a run; the rows are in the tables of table.h.
 #pragma once
 
 #include <string>

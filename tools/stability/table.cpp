@@ -31,20 +31,26 @@ std::string share(uint64_t part, uint64_t of) {
   return percent < 99.95 && percent >= 0.05 ? print("%.1f", percent) : print("%.3g", percent);
 }
 
-std::string methodOf(const StabilityRow& row) {
-  return row.method == Method::contact ? "contact" : print("%s %u", nameOf(row.method), row.resolution);
-}
-
 std::vector<std::string> cellsOf(const StabilityRow& row) {
   const bool paper = row.method == Method::paper;
   const auto count = [](uint64_t value) { return print("%llu", whole(value)); };
   const auto promised = [&](uint64_t value) { return paper ? "" : count(value); };
   const auto settled = [&](uint64_t value) { return paper ? "" : share(value, row.cases); };
-  return {methodOf(row),          count(row.cases),       count(row.contacts),
-          count(row.missed),      count(row.falseHits),   length(row.late),
-          length(row.early),      promised(row.brackets), promised(row.otherwise),
-          length(row.width),      settled(row.bySelect),  settled(row.byPictures),
-          settled(row.byContact), settled(row.undecided), paper ? "" : print("%.0f", row.microseconds)};
+  return {tierOf(row),
+          count(row.cases),
+          count(row.contacts),
+          count(row.missed),
+          count(row.falseHits),
+          length(row.late),
+          length(row.early),
+          promised(row.brackets),
+          promised(row.otherwise),
+          length(row.width),
+          settled(row.bySelect),
+          settled(row.byPictures),
+          settled(row.byContact),
+          settled(row.undecided),
+          paper ? "" : print("%.0f", row.microseconds)};
 }
 
 const std::vector<std::string> kHeads{"tier, pixels", "cases",   "contacts",  "missed",      "false",
@@ -60,6 +66,10 @@ double medianOf(std::vector<double> values) {
 
 }  // namespace
 
+std::string tierOf(const StabilityRow& row) {
+  return row.method == Method::contact ? "contact" : print("%s %u", nameOf(row.method), row.resolution);
+}
+
 std::string csvOf(const std::vector<StabilityRow>& rows) {
   std::string text =
       "family,tier,resolution,cases,contacts,missed,false,brackets_violated,otherwise_wrong,late_worst,early_worst,"
@@ -72,6 +82,46 @@ std::string csvOf(const std::vector<StabilityRow>& rows) {
                   whole(row.byPictures), whole(row.byContact), whole(row.undecided), row.microseconds);
   }
   return text;
+}
+
+std::string csvOf(const std::vector<StepRow>& rows) {
+  std::string text = "family,tier,steps,flips,excess\n";
+  for (const StepRow& row : rows) {
+    text += print("%s,%s,%llu,%llu,%.2g\n", row.family.c_str(), nameOf(row.method), whole(row.steps), whole(row.flips),
+                  row.excess);
+  }
+  return text;
+}
+
+std::string csvOf(const std::vector<ChangeRow>& rows) {
+  std::string text = "change,tier,cases,contacts,broken\n";
+  for (const ChangeRow& row : rows) {
+    text += print("%s,%s,%llu,%llu,%llu\n", nameOf(row.change), nameOf(row.method), whole(row.cases),
+                  whole(row.contacts), whole(row.broken));
+  }
+  return text;
+}
+
+std::string csvOf(const std::vector<StabilityFamily>& families) {
+  std::string text = "family,parameter,values\n";
+  for (const StabilityFamily& family : families) {
+    text += family.name + ",\"" + family.parameter + "\",";
+    for (const double& value : family.values) text += print(&value == &family.values.front() ? "%g" : " %g", value);
+    text += "\n";
+  }
+  return text;
+}
+
+std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows) {
+  std::vector<StepRow> all;
+  for (const StepRow& row : rows) {
+    auto sum = std::find_if(all.begin(), all.end(), [&](const StepRow& one) { return one.method == row.method; });
+    if (sum == all.end()) sum = all.insert(sum, {.family = "all", .method = row.method});
+    sum->steps += row.steps;
+    sum->flips += row.flips;
+    sum->excess = std::max(sum->excess, row.excess);
+  }
+  return all;
 }
 
 std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows) {
@@ -117,21 +167,6 @@ std::string tableOf(const std::vector<StabilityRow>& rows) {
     for (size_t i = 0; i < cells.size(); ++i) text += print("%*s", i == 0 ? -14 : 12, cells[i].c_str());
   }
   return text + "\n";
-}
-
-std::string markdownOf(const std::vector<StabilityRow>& rows) {
-  std::string text = "|", line = "|";
-  for (const std::string& head : kHeads) {
-    text += " " + head + " |";
-    line += "---|";
-  }
-  text += "\n" + line + "\n";
-  for (const StabilityRow& row : rows) {
-    text += "|";
-    for (const std::string& cell : cellsOf(row)) text += " " + cell + " |";
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace radar::tools

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "report/print.h"
 #include "stability/table.h"
 #include "workloads/stability.h"
 
@@ -17,13 +17,6 @@ denies or does not see; mode `sampled` then says `undecided`, never `clear`. *La
 distances, in units of the greater of the sensor's size and the distance. All rows: [table.csv](stability/table.csv).
 What each family varies: [families.csv](stability/families.csv).
 )";
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[800];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 unsigned long long whole(uint64_t value) {
   return value;

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "report/print.h"
 
 namespace radar::tools {
 
 namespace {
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 unsigned long long whole(uint64_t value) {
   return value;

@@ -1,5 +1,5 @@
-// When a pair of triangles meets, as far as the arithmetic can tell (docs/method.md, "A pair of triangles"). A template:
-// contact.glsl includes it once for each precision, with REAL, REAL3, BOUNDED, MEETING, ALONG and the functions that err
+// When a pair of triangles meets, as far as the arithmetic can tell (docs/exact.md, "On the device: floats and doubles").
+// A template: contact.glsl includes it once for each precision, with REAL, REAL3, BOUNDED, MEETING, ALONG and the functions that err
 // in that precision: sideOf, faceOf, planeOf, quotient, quotientOf, depthOf, depthSlack, squaredOf, neverOf. Parameters are multiples of the
 // direction that ALONG stands for.
 

@@ -111,7 +111,7 @@ Span spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& se
 
 }  // namespace
 
-// The bounds are derived in docs/method.md.
+// The bounds are derived in docs/exact.md.
 bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
   // What is not a number is not within either.
   if (!(a.error + b.error < kMostError)) return true;

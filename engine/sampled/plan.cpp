@@ -12,7 +12,7 @@ namespace radar {
 namespace {
 
 // In halves of the window across, in depths of the picture along: what is larger than this beside them might overflow
-// in products of the identify stage (docs/method.md, "Ranges").
+// in products of the identify stage (docs/method.md, "Ranges, infinities and rounding").
 constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
 
 // Why the pictures cannot be set up, before anything is calculated; empty: they can.

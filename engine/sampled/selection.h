@@ -50,7 +50,8 @@ bool isExcluded(const Query& query, const Object& object, ObjectId id);
 /// Whether no entry of the matrix and no vertex that it places is beyond what a float can say.
 bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh);
 
-/// How far a vertex that a shader places may lie from the true one, world units (docs/method.md, "Placement").
+/// How far a vertex that a shader places may lie from the true one, world units (docs/method.md, "Placement in the
+/// pictures").
 double placementError(const Mesh& mesh, const Affine& frameFromMesh);
 
 }  // namespace radar

@@ -1,5 +1,5 @@
-// Geometry that lies in a host's Vulkan buffers. All of them belong to the HostDevice's VkDevice and queue family, were
-// made with VK_BUFFER_USAGE_TRANSFER_SRC_BIT, and stay the host's.
+// Geometry in a host's Vulkan buffers. All buffers belong to the HostDevice's VkDevice and queue family, have the usage
+// VK_BUFFER_USAGE_TRANSFER_SRC_BIT, and remain the host's.
 #pragma once
 
 #include <optional>
@@ -9,54 +9,55 @@
 
 namespace radar {
 
-/// Where vertices lie.
+/// Vertex positions in a buffer.
 struct HostPositions {
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceSize first = 0;    ///< bytes to the first vertex
-  VkDeviceSize stride = 12;  ///< bytes from vertex to vertex
-  /// Of a position: R32G32B32_SFLOAT, R16G16B16_SFLOAT, _SNORM or _UNORM, or one of those with an A that is skipped.
-  /// A vertex is what a vertex shader would see; of a norm, the float next to the quotient.
+  VkDeviceSize first = 0;    ///< offset of the first vertex, bytes
+  VkDeviceSize stride = 12;  ///< distance between vertices, bytes
+  /// R32G32B32_SFLOAT, R16G16B16_SFLOAT, _SNORM or _UNORM, or one of those with an A component, which is ignored.
+  /// Values are those that a vertex shader reads; a normalised value is the float nearest to the quotient.
   VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;
 };
 
-/// Vertices and triangles. What wrote the buffers has been made available (a fence that was waited for is enough).
+/// Vertices and triangles. Writes to the buffers have been made available (waiting for a fence suffices).
 struct HostMesh {
   HostPositions positions;
   uint32_t vertexCount = 0;
 
-  VkBuffer indices = VK_NULL_HANDLE;             ///< null: each three vertices are a triangle
-  VkDeviceSize firstIndex = 0;                   ///< bytes to the first index
+  VkBuffer indices = VK_NULL_HANDLE;             ///< null: every three vertices are a triangle
+  VkDeviceSize firstIndex = 0;                   ///< offset of the first index, bytes
   VkIndexType indexType = VK_INDEX_TYPE_UINT32;  ///< or UINT16
   uint32_t indexCount = 0;
 
-  std::optional<Bounds> bounds;  ///< as of Scene::addMesh
+  std::optional<Bounds> bounds;  ///< see Scene::addMesh
 };
 
-/// Adds a copy of the mesh, read from the device once: submits to HostDevice::queue and waits, so call it while
-/// loading. Throws as Scene::addMesh does, where there is no queue, for a format or an index type that is not listed,
-/// for a stride shorter than a position, and where a Vulkan call fails.
+/// Adds a copy of the mesh, read from the device once. Submits to HostDevice::queue and waits, so call it while
+/// loading. Throws as Scene::addMesh does, and if there is no queue, a format or index type is not listed, a stride is
+/// shorter than a position, or a Vulkan call fails.
 RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);
 
-/// A mesh whose vertices are elsewhere now: as many as it has, each within the bounds it was added with, those that no
-/// triangle uses, too.
+/// New vertex positions of a mesh: as many as it has, each within the bounds given to addMesh, unused vertices
+/// included.
 struct DeformedMesh {
   MeshId mesh = kNone;
   HostPositions positions;
 };
 
-/// Objects that are elsewhere now: one VkTransformMatrixKHR each (3x4 floats, row-major; also how instances of
-/// acceleration structures begin), in this order. The box of the object's mesh, placed by it in float arithmetic, lies
-/// within Scene::setBounds, or beyond by no more than a millionth of the bounds' largest coordinate. Without
-/// Device::doubles(), a mesh whose middle is farther from its own origin than that, placed, needs room within the
-/// bounds instead: two millionths of that distance.
+/// New transforms of objects: one VkTransformMatrixKHR each (3x4 floats, row-major; also the start of an acceleration
+/// structure's instance), in this order. The box of the object's mesh, transformed in float arithmetic, lies within
+/// Scene::setBounds, or exceeds it by at most a millionth of the bounds' largest coordinate. Without Device::doubles(),
+/// a mesh whose middle, transformed, is farther than that from its own origin needs room within the bounds instead: two
+/// millionths of that distance.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
-  VkDeviceSize first = 0;    ///< bytes to the first transform
-  VkDeviceSize stride = 48;  ///< bytes from transform to transform
+  VkDeviceSize first = 0;    ///< offset of the first transform, bytes
+  VkDeviceSize stride = 48;  ///< distance between transforms, bytes
   std::span<const ObjectId> objects;
 };
 
-/// What of a scene is in the host's buffers when recorded commands are executed; the rest is as the scene says.
+/// The geometry that recorded commands read from the host's buffers when they execute. Everything else comes from the
+/// scene.
 struct HostGeometry {
   std::span<const DeformedMesh> meshes;
   std::span<const MovedObjects> objects;

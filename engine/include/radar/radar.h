@@ -1,19 +1,19 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// The public interface, with cpu_sweeper.h for the CPU alone, pool.h for several devices and recorder.h for a host's
-// own command buffers. Units: any one unit of length, used throughout; angles never appear. Coordinates are left- or
-// right-handed; meshes are two-sided triangle soups, winding is ignored, nothing has to be closed or connected.
+// The public interface; see also cpu_sweeper.h (the CPU alone), pool.h (several devices) and recorder.h (a host's own
+// command buffers). Lengths may be in any one unit; angles never appear. Coordinates may be left- or right-handed.
+// Meshes are two-sided triangle soups: winding is ignored, and they need not be closed or connected.
 //
-// Ranges: mode contact takes all finite numbers; what floats cannot hold is answered on the CPU (recorder.h, which has
-// none beside it, says what that is). Mode sampled answers Status::invalid, with a reason, where coordinates are beyond
-// 2^80, the sensor's size is below 2^-80, an object in reach is more than 2^40 times as large as the sensor, or the
-// components of a direction differ by more than about 2^1000 times.
+// Ranges: mode contact accepts all finite numbers. The CPU answers what floats cannot hold; a Recorder cannot fall back
+// on the CPU, so recorder.h lists these limits. Mode sampled answers Status::invalid, with a reason, if coordinates
+// exceed 2^80, the sensor's size is below 2^-80, an object in reach is more than 2^40 times as large as the sensor, or
+// the components of a direction differ by a factor of more than about 2^1000.
 //
-// Threads: an object of this header may be used by one thread at a time; different objects are independent, except that
-// a Sweeper reads its Scene during run() and scopes().
+// Threads: each object of this header may be used by one thread at a time. Different objects are independent, except
+// that a Sweeper reads its Scene during run() and scopes().
 //
-// Errors: a set-up that fails, and an argument that breaks its contract, throw radar::Error; a query that cannot be
-// answered gets Status::invalid and leaves its neighbours alone.
+// Errors: a failed set-up, or an argument that breaks its contract, throws radar::Error. A query that cannot be
+// answered gets Status::invalid; other queries are unaffected.
 //
 // Method: T. Iida, H. Yamachi, Y. Kambayashi, Y. Tsujimura, "Comparison and Multi-GPU based Implementation of a
 // Collision Detection Method with Z-buffer in Cyber Space". R, M, L, d below are that paper's; docs/method.md has the
@@ -32,7 +32,7 @@
 
 #include <vulkan/vulkan_core.h>
 
-// What a shared library shows.
+// Exports a symbol from a shared library.
 #if defined(_WIN32)
 #define RADAR_API
 #else
@@ -41,7 +41,7 @@
 
 namespace radar {
 
-/// Semantic version of this interface: before 1.0 a new minor version may break what was there, a patch never does.
+/// Semantic version of this interface: before 1.0 a new minor version may break compatibility, a patch never does.
 inline constexpr uint32_t kVersionMajor = 0;
 inline constexpr uint32_t kVersionMinor = 1;
 inline constexpr uint32_t kVersionPatch = 0;
@@ -49,8 +49,8 @@ inline constexpr uint32_t kVersionPatch = 0;
 /// No object, no triangle.
 inline constexpr uint32_t kNone = 0xffffffffu;
 
-/// What went wrong, in words that name the call, the value and what was expected. `reasons` holds one line per device
-/// where no device was usable, else it is empty; `result` is the VkResult of a failed Vulkan call, else VK_SUCCESS.
+/// The message names the call, the value and what was expected. `reasons`: one line per device if no device was usable,
+/// else empty. `result`: the VkResult of a failed Vulkan call, else VK_SUCCESS.
 class RADAR_API Error : public std::runtime_error {
  public:
   explicit Error(const std::string& what, VkResult code = VK_SUCCESS, std::vector<std::string> perDevice = {})
@@ -59,18 +59,19 @@ class RADAR_API Error : public std::runtime_error {
   std::vector<std::string> reasons;
 };
 
-/// A placement: world = M p + t, row-major rows (m0 m1 m2 t), any invertible affine matrix, mirrors too. Vertices are
-/// placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add: that result *is* the geometry.
+/// A placement: world = M p + t, with row-major rows (m0 m1 m2 t). M is any invertible matrix, mirrors included.
+/// Vertices are placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add; this result *is*
+/// the geometry.
 struct Pose {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-/// Where `pose` puts the mesh vertex `p`, by the formula above.
+/// Places the mesh vertex `p` by the formula above.
 RADAR_API std::array<double, 3> place(const Pose& pose, const float* p);
 
-/// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed; the
-/// least free id is given next, so objects added to a fresh scene are 0, 1, 2, ...
+/// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed. New
+/// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ...
 using MeshId = uint32_t;
 using ObjectId = uint32_t;
 
@@ -79,22 +80,22 @@ struct Bounds {
   std::array<double, 3> lo{}, hi{};
 };
 
-/// A triangle mesh as it was given.
+/// A triangle mesh, as passed to addMesh.
 struct MeshView {
   std::span<const float> positions;   ///< 3 floats per vertex
-  std::span<const uint32_t> indices;  ///< 3 vertex numbers per triangle; the triangle's id is its place here
+  std::span<const uint32_t> indices;  ///< 3 vertex numbers per triangle; triangle ids count in this order
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
 
-/// An object of the scene: a mesh, placed.
+/// An object of the scene: a placed mesh.
 struct Object {
   MeshId mesh = kNone;
   Pose worldFromMesh;
-  uint32_t mask = ~0u;  ///< takes part in a query when it shares a bit with the query's mask
+  uint32_t mask = ~0u;  ///< takes part in a query if it shares a bit with the query's mask
 };
 
-/// Meshes, and objects that place them. Plain data on the CPU: a scene knows no device, and any number of
-/// sweepers may read it. Copies everything it is given.
+/// Meshes, and objects that place them. Plain data on the CPU, independent of any device; any number of sweepers may
+/// read it. Input is copied.
 class RADAR_API Scene {
  public:
   Scene();
@@ -103,22 +104,23 @@ class RADAR_API Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
-  /// not a multiple of 3, a number is not finite, an index is out of range, or a bound is above its other or beyond
-  /// 2^120, or, where there are bounds, a position is.
+  /// not a multiple of 3, a number is not finite, or an index is out of range; with `bounds`, also if a lower bound
+  /// exceeds its upper bound, or a bound or position exceeds 2^120.
   ///
-  /// `bounds`, mesh units: the host will deform the mesh on its device (radar/host_geometry.h), within them. The closer
-  /// `positions` are to what it will be (its rest pose), the faster the search; elsewhere they are the mesh.
+  /// `bounds`, mesh units: declares that the host will deform the mesh on its device within them
+  /// (radar/host_geometry.h). `positions` are then the rest pose: the closer they are to the deformed mesh, the faster
+  /// the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
-  /// Throws while an object uses the mesh.
+  /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);
 
   /// Throws if the mesh does not exist, or the pose is singular or not finite.
   ObjectId addObject(const Object& object);
   void setPose(ObjectId object, const Pose& worldFromMesh);
-  /// The host will move the object on its device (radar/host_geometry.h), within `world`, whose size is what it costs;
-  /// elsewhere it is at its pose. Replaces earlier bounds; they end with the object. Throws if the object does not
-  /// exist, or a bound is above its other or beyond 2^120.
+  /// Declares that the host will move the object on its device within `world` (radar/host_geometry.h). Larger bounds
+  /// cost more time. All other calls use the object's pose. Replaces earlier bounds; removing the object removes them.
+  /// Throws if the object does not exist, a lower bound exceeds its upper bound, or a bound exceeds 2^120.
   void setBounds(ObjectId object, const Bounds& world);
   void removeObject(ObjectId object);
 
@@ -132,7 +134,7 @@ class RADAR_API Scene {
   MeshId meshLimit() const;
   ObjectId objectLimit() const;
 
-  /// Rises with every change, of mesh or object.
+  /// Increases with every change of a mesh or object.
   uint64_t version() const;
 
   struct Impl;
@@ -142,7 +144,7 @@ class RADAR_API Scene {
   std::unique_ptr<Impl> impl_;
 };
 
-/// How far the tiers go: the cheapest that settles a query answers it, none beyond this one is asked.
+/// Which method answers a query.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
   contact   ///< the exact search, on the device or on the CPU: never undecided
@@ -155,153 +157,154 @@ struct Query {
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, finite, world units
   Mode mode = Mode::contact;
-  bool decide = false;  ///< only "within D or not" is asked: see Result. Costs less where something is in the way
-  std::vector<ObjectId> exclude;  ///< objects that take no part, such as the sensor's own; at most a handful
-  uint32_t mask = ~0u;            ///< an object takes part when it shares a bit
-  /// Of mode sampled: pixels of the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
+  bool decide = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
+  std::vector<ObjectId> exclude;  ///< objects to ignore, such as the sensor's own; at most a handful
+  uint32_t mask = ~0u;            ///< an object takes part if its mask shares a bit
+  /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
   uint32_t resolution = 0;
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;
 
 enum class Status : uint32_t {
-  hit,        ///< first contact within D, for certain: t*, the exact distance, lies in [lo, hi], hi <= D
+  hit,        ///< certain contact within D: t*, the exact distance, lies in [lo, hi], hi <= D
   clear,      ///< certainly no contact within D
-  overlap,    ///< the surfaces meet at the start, for certain: t = lo = hi = 0
-  undecided,  ///< there is no contact before lo; whether there is one after is not known (hi is NaN)
-  invalid     ///< not answered; Sweeper::reason says why
+  overlap,    ///< certain contact at the start: t = lo = hi = 0
+  undecided,  ///< no contact before lo; later contact is possible (hi is NaN)
+  invalid     ///< not answered; Sweeper::reason gives the reason
 };
 
-/// The stage that settled an answer.
+/// The stage that produced an answer.
 enum class Tier : uint32_t { select, sampled, contact, reference };
 
-/// The paper's first step: is there anything in the target volume?
+/// The paper's first step: whether any surface lies in the target volume.
 enum class Detected : uint32_t {
-  no,        ///< certainly nothing (after sampling: nothing at any pixel centre)
-  yes,       ///< some surface lies there
-  notLooked  ///< the question did not come up
+  no,        ///< certainly none (after sampling: none at any pixel centre)
+  yes,       ///< at least one
+  notLooked  ///< not determined
 };
 
-/// Why a Recorder (radar/recorder.h) has left a query without an answer: bits of Result::flags.
+/// Bits of Result::flags: why a Recorder (radar/recorder.h) gave no answer.
 inline constexpr uint32_t kFlagOpen = 1;  ///< pairs of triangles too close for the device: Recorder::read() decides
 inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates, or a list of the search, was too small
-inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was
-inline constexpr uint32_t kFlagRange = 8;    ///< floats cannot hold the scene, or the sensor or D beside it
-inline constexpr uint32_t kFlagBounds = 16;  ///< a vertex or an object of HostGeometry has left its declared bounds
+inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was too small
+inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene, or the sensor or D relative to it
+inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of HostGeometry has left its declared bounds
 
-/// An answer. Numbers that do not exist are NaN, ids kNone. Layout version 2: 120 bytes, natural alignment.
+/// An answer. Absent numbers are NaN, absent ids kNone. Layout version 2: 120 bytes, natural alignment.
 ///
-/// To a query with `decide` the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
-/// normal do not exist; where it is hit, lo is 0 and hi at most D (in mode contact: D).
+/// If the query has `decide`, the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
+/// normal are absent; for a hit, lo is 0 and hi at most D (in mode contact: D).
 struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
-  uint32_t resolution = 0;       ///< pixels of the window's longer side; 0 where no picture was drawn
+  uint32_t resolution = 0;       ///< pixels along the window's longer side; 0 if no picture was drawn
   double t;                      ///< best estimate of t*, world units; tier sampled: hi
   double lo, hi;                 ///< the certified bracket, world units
-  double fraction;               ///< t / D (0 where D is 0)
-  ObjectId object = kNone;       ///< what is touched
+  double fraction;               ///< t / D (0 if D is 0)
+  ObjectId object = kNone;       ///< the object touched
   uint32_t triB = kNone;         ///< its triangle
   uint32_t triA = kNone;         ///< the sensor's triangle
-  uint32_t flags = 0;            ///< kFlag*: why a Recorder has left the query open; else 0
+  uint32_t flags = 0;            ///< kFlag*: why a Recorder gave no answer; else 0
   std::array<double, 3> point;   ///< world position of the contact at the moment of contact
-  std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
+  std::array<double, 3> normal;  ///< unit, from the object towards the sensor: normal . direction <= 0
   double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
 };
 inline constexpr uint32_t kResultVersion = 2;
 static_assert(sizeof(Result) == 120);
 
-/// Checks what Scene and Query promise of their numbers. Return an empty string, or what is wrong and what was
-/// expected.
+/// Check the contracts of Scene and Query. Return an empty string, or what is wrong and what was expected.
 RADAR_API std::string whatIsWrong(const Pose& worldFromMesh);
 RADAR_API std::string whatIsWrong(const Query& query, const Scene& scene);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// A limit of a physical device that shaders rely on, by its name in VkPhysicalDeviceLimits.
+/// A limit of a physical device that shaders rely on; `name` is its name in VkPhysicalDeviceLimits.
 struct DeviceLimit {
   std::string name;
-  uint64_t needed = 0, has = 0;  ///< at least; the device's own
-  Mode mode = Mode::contact;     ///< which relies on it: what contact needs, sampled needs, too
+  uint64_t needed = 0, has = 0;  ///< the least value needed; the device's value
+  Mode mode = Mode::contact;     ///< the mode that needs it; sampled needs everything that contact needs
 };
 
-/// A physical device as seen from here.
+/// What is known of a physical device.
 struct DeviceReport {
   std::string name, driver, type;
-  std::vector<std::string> reasons;         ///< why it cannot be used; empty: it can
-  std::vector<std::string> sampledReasons;  ///< why it cannot answer in mode sampled; empty: it can
-  std::string version;                      ///< of Vulkan, that the device has: "1.3.224"
-  uint64_t memory = 0;                      ///< bytes of the largest heap that is the device's own
+  std::vector<std::string> reasons;         ///< why it cannot be used; empty if it can
+  std::vector<std::string> sampledReasons;  ///< why it does not support mode sampled; empty if it does
+  std::string version;                      ///< the device's Vulkan version: "1.3.224"
+  uint64_t memory = 0;                      ///< size of the largest device-local heap, bytes
   uint32_t subgroup = 0;                    ///< invocations in a workgroup of the search; 0 before Vulkan 1.3
-  bool doubles = false;                     ///< it has the feature shaderFloat64
+  bool doubles = false;                     ///< supports shaderFloat64
   std::vector<DeviceLimit> limits;          ///< empty before Vulkan 1.3
   bool usable() const { return reasons.empty(); }
 };
 
-/// Every physical device that the Vulkan loader lists, in its order. Throws where there is no loader or no driver at
-/// all.
+/// Lists the Vulkan loader's physical devices, in its order. Throws if there is no loader or no driver.
 RADAR_API std::vector<DeviceReport> listDevices();
 
-/// Vulkan handles of a host that owns them, all of which outlive the Device made from them. `device` has enabled what
-/// requirements() lists. `queue` belongs to family `queueFamily`, which does compute; for mode sampled, graphics, too.
+/// Vulkan handles that the host owns. All outlive the Device made from them. `device` has the features of
+/// requirements() enabled. `queue` belongs to family `queueFamily`, which supports compute and, for mode sampled,
+/// graphics.
 ///
-/// `queue` may be null where every submission is to be the host's own: the engine then never submits. A Recorder works
-/// in full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Nor can the device's doubles be compared with
-/// the CPU's: `doubles` is taken at its word, and answers may be wrong where they differ. Who is not sure says false,
-/// or what Device::doubles() says where the same device and driver were adopted with a queue.
+/// `queue` may be null if the host makes every submission itself. The engine then never submits: a Recorder works in
+/// full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Without a queue the device's doubles cannot be
+/// compared with the CPU's, so `doubles` is trusted: if they differ, answers may be wrong. If unsure, pass false, or
+/// the value that Device::doubles() gave when the same device and driver were adopted with a queue.
 struct HostDevice {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
-  bool doubles = true;      ///< the feature shaderFloat64 is enabled on `device`
-  bool sampled = false;     ///< what requirements(Mode::sampled, ...) lists is enabled on `device`
+  bool doubles = true;      ///< shaderFloat64 is enabled on `device`
+  bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) are enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
-  /// The host's own way to Vulkan: all functions are looked up through it. Null: the loader of this machine.
+  /// Used to look up all Vulkan functions. Null: the system's loader.
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
-  const VkAllocationCallbacks* allocator = nullptr;  ///< for every object made; not for what the loader makes
-  VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline made; any, or none
-  /// Called around each vkQueueSubmit2, on the submitting thread, where other threads use the queue too; both or none.
+  const VkAllocationCallbacks* allocator =
+      nullptr;  ///< for every Vulkan object the engine makes; not for those the loader makes
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;  ///< for every pipeline; optional
+  /// Called around each vkQueueSubmit2, on the submitting thread. Set both if other threads use the queue too, else
+  /// none.
   std::function<void()> lockQueue, unlockQueue;
 };
 
-/// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. A host chains it into its
-/// VkDeviceCreateInfo (without pEnabledFeatures), or copies the features that are on into structs of its own.
+/// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. The host chains it into its
+/// VkDeviceCreateInfo (without pEnabledFeatures), or copies the enabled features into its own structs.
 struct Requirements {
   uint32_t apiVersion = VK_API_VERSION_1_3;  ///< of instance and device
   VkPhysicalDeviceFeatures2 core{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
   VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
   VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  /// For VkDeviceCreateInfo::pNext: all three, chained, then `next`; valid while this object stays where it is.
+  /// For VkDeviceCreateInfo::pNext: chains all three structs, then `next`. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
-/// `mode`: sampled needs what contact needs, and graphics. `doubles`: with shaderFloat64, which is not needed but makes
-/// mode contact leave less to the CPU.
+/// `mode`: sampled needs everything that contact needs, and graphics. `doubles`: includes shaderFloat64, which is
+/// optional but lets mode contact leave less to the CPU.
 RADAR_API Requirements requirements(Mode mode, bool doubles);
 
-/// Why a host's physical device cannot be used for `mode`, a line for each thing it lacks; empty if it can. Looks at
-/// `instance`, `physicalDevice` and `getInstanceProcAddr` only.
+/// Why a host's physical device cannot be used for `mode`: one line per missing item, empty if it can. Reads only
+/// `instance`, `physicalDevice` and `getInstanceProcAddr`.
 RADAR_API std::vector<std::string> reasonsAgainst(const HostDevice& host, Mode mode);
 
 struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
-  /// Receives each warning or error of the validation layers that are active; called on any thread.
+  /// Receives each warning or error of active validation layers, on any thread.
   std::function<void(const std::string&)> onValidation;
-  bool doubles = true;  ///< false: do without them, as where shaderFloat64 is missing
+  bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
 };
 
-/// A logical device with one queue: opened here (and then owned), or a host's (and then only borrowed).
+/// A logical device with one queue: opened here and owned, or borrowed from a host.
 class RADAR_API Device {
  public:
-  /// Throws with the list of devices and reasons if none is usable, or the one asked for is not.
+  /// Throws, listing devices and reasons, if no device or not the requested one is usable.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the bounds.
-  /// While this and a Sweeper of this device run, the host keeps other threads from using `queue`, unless it gives the
-  /// functions that lock it. Submits twice at most, to check the arithmetic, where `host` has a queue. Any number of
-  /// Devices may be made of one VkDevice.
+  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the error
+  /// bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
+  /// it gives the lock functions. If `host` has a queue, submits at most twice, to check the arithmetic. Any number of
+  /// Devices may be made from one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -309,11 +312,11 @@ class RADAR_API Device {
 
   const std::string& name() const;
   const std::string& driver() const;
-  /// Whether queries of this mode can be answered: contact always can; sampled needs graphics.
+  /// Whether the device supports a mode: contact always; sampled needs graphics.
   bool supports(Mode mode) const;
-  /// Whether pairs are solved in double precision on the device: it has doubles, and the checks at opening
-  /// (radar/arithmetic.h) found what they rest on to be as on the CPU, bit for bit. Else they are solved in float, with
-  /// error bounds, and what that leaves open is decided on the CPU: the answers are the same. Adopted without a queue:
+  /// Whether the device solves pairs in double precision. It does if it has doubles and the checks at opening
+  /// (radar/arithmetic.h) found their results equal to the CPU's, bit for bit. Otherwise it solves pairs in float, with
+  /// error bounds, and the CPU decides what that leaves open: the answers are the same. Without a queue:
   /// HostDevice::doubles, untested.
   bool doubles() const;
   const HostDevice& handles() const;
@@ -327,16 +330,16 @@ class RADAR_API Device {
 };
 
 struct SweeperOptions {
-  /// Of mode sampled; false: draw every object for every sensor, the naive baseline. The answers are the same.
+  /// Mode sampled; false: draws every object for every sensor, the naive baseline. The answers are the same.
   bool select = true;
-  bool timestamps = false;  ///< measure each stage; costs a little
-  /// Upper bound on device memory for the pictures of one submission, bytes; a batch that needs more is split. What is
-  /// kept from one submission to the next takes at most twice as much.
+  bool timestamps = false;  ///< measures each stage, at a small cost
+  /// Upper bound on device memory for the pictures of one submission, bytes; larger batches are split. Memory kept
+  /// between submissions is at most twice this.
   uint64_t pictureBytes = 256ull << 20;
-  /// Batches of fewer queries of mode contact are answered on the CPU, with the same answers. 0: none is. kNone: 16,
-  /// but all of them where the device itself runs on the CPU (lavapipe): its search is slower there.
+  /// Batches with fewer queries of mode contact are answered on the CPU, with the same answers. 0: none. kNone: 16, or
+  /// every batch if the device runs on the CPU (lavapipe), where its search is slower.
   uint32_t cpuBatch = kNone;
-  uint32_t cpuThreads = 0;  ///< of the CPU's search; 0: one for each core
+  uint32_t cpuThreads = 0;  ///< threads of the CPU's search; 0: one per core
 };
 
 /// Time of one stage, summed over the submissions of the last run(), milliseconds.
@@ -345,21 +348,21 @@ struct StageTime {
   double ms = 0;
 };
 
-/// What the last run() did.
+/// Statistics of the last run().
 struct SweepStats {
   uint32_t submissions = 0;
   uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
-  uint64_t pairs = 0;             ///< pairs: of triangles that were nominated (sampled), of leaves (contact)
+  uint64_t pairs = 0;             ///< nominated pairs of triangles (sampled), pairs of leaves (contact)
   uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
   uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
-  uint64_t nodePairs = 0;         ///< pairs of nodes of both meshes' trees looked at on the device (contact)
+  uint64_t nodePairs = 0;         ///< node pairs tested on the device (contact)
   uint64_t solves = 0;            ///< pairs of triangles solved on the device (contact)
-  std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps (then CPU stages too)
+  std::vector<StageTime> stages;  ///< with SweeperOptions::timestamps, CPU stages included; else empty
 };
 
 /// The scopes of one query as pictures: row-major from the window's lower left corner, `width` x `height` floats, world
-/// units along the motion; NaN where R is empty, the sensor does not cover the pixel, or there is no L.
+/// units along the motion. NaN: R is empty, the sensor does not cover the pixel, or there is no L.
 struct Scopes {
   uint32_t width = 0, height = 0;
   double pixel = 0;      ///< side of a pixel, world units
@@ -377,30 +380,30 @@ struct Scopes {
 /// Answers batches of queries against one scene on one device.
 class RADAR_API Sweeper {
  public:
-  /// Creates the pipelines of mode contact, where it is answered on the device; those of mode sampled are made when
-  /// first used. `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
+  /// Creates the pipelines of mode contact if the device answers it; those of mode sampled are created at first use.
+  /// `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;
   Sweeper& operator=(Sweeper&&) noexcept;
 
-  /// Brings what changed in the scene since the last call to where it is needed, the device or the tree over objects.
-  /// run() does it too; calling it apart only moves the cost.
+  /// Applies changes of the scene since the last call to the device's copy or to the tree over objects. run() does this
+  /// too; a separate call only moves the cost.
   void sync();
 
-  /// Answers each query as its mode says, in the order given: any number of queries. Those that go to the device are
-  /// one upload, one command buffer, one readback for each mode, or several where they are too many for the device's
-  /// layers or memory, or more than 16,384. The answer to a query does not depend on its batch. Throws if a query
-  /// breaks its contract or has a mode that the device does not support, naming it, before anything is submitted.
-  /// Blocks until the answers are here.
+  /// Answers any number of queries, each in its mode, in the order given. Queries that go to the device take one
+  /// upload, one command buffer and one readback per mode; batches of more than 16,384, or too large for the device's
+  /// layers or memory, take several. The answer to a query does not depend on its batch. Before anything is submitted,
+  /// throws, naming the query, if one breaks its contract or has a mode that the device does not support. Blocks until
+  /// done.
   std::vector<Result> run(std::span<const Query> queries);
 
-  /// The pictures behind the answer to `query` in mode sampled, at the query's resolution. Throws Error where they do
-  /// not fit the device, or it does not support the mode.
+  /// The pictures from which mode sampled answers `query`, at the query's resolution. Throws Error if they do not fit
+  /// the device, or it does not support the mode.
   Scopes scopes(const Query& query);
 
   const SweepStats& stats() const;
-  /// Why the i-th answer of the last run() is invalid; empty if it is not.
+  /// Why the i-th answer of the last run() is invalid; empty if it is valid.
   const std::string& reason(size_t i) const;
 
   struct Impl;

@@ -1,13 +1,13 @@
-// What a radar::Recorder leaves in its buffer, as shaders read it: radar::Result, to the bit. radar/radar.h says what each
-// member means; a number that does not exist is NaN, an id RADAR_NONE.
+// The layout of a radar::Recorder's results for shaders: radar::Result, to the bit. radar/radar.h explains the members.
+// Absent numbers are NaN, absent ids RADAR_NONE.
 //
 //     #extension GL_EXT_scalar_block_layout : require
 //     #extension GL_GOOGLE_include_directive : require
 //     #include "radar/result.glsl"
 //     layout(scalar, binding = 0) readonly buffer Results { RadarResult results[]; };
 //
-// Where a shader has no doubles, define RADAR_NO_DOUBLES before: they are then their bits, for radarFloat(). So they are
-// with RADAR_RESULT_BITS, which keeps NaN: a device may lose one that it handles as a double.
+// In a shader without doubles, define RADAR_NO_DOUBLES first: doubles are then given as their bits, for radarFloat().
+// RADAR_RESULT_BITS does the same to preserve NaN, which a device may lose in double operations.
 #ifndef RADAR_RESULT_GLSL
 #define RADAR_RESULT_GLSL
 
@@ -29,7 +29,7 @@ struct RadarResult {
   uint object;
   uint triB;
   uint triA;
-  uint flags;       // RADAR_OPEN ...: why there is no answer, else 0
+  uint flags;       // RADAR_OPEN ...: why there is no answer; else 0
   RADAR_DOUBLE point[3];
   RADAR_DOUBLE normal[3];
   RADAR_DOUBLE paperMinL;
@@ -56,7 +56,7 @@ const uint RADAR_TOO_LONG = 4;
 const uint RADAR_OUT_OF_RANGE = 8;
 const uint RADAR_OUT_OF_BOUNDS = 16;
 
-// The float next to a double, towards 0; of its bits, low word first.
+// Rounds a double, given as its bits, low word first, to float, towards 0.
 float radarFloat(uvec2 bits) {
   const uint exponent = bits.y >> 20 & 0x7ffu;
   const uint sign = bits.y & 0x80000000u;

@@ -1,5 +1,5 @@
-// What both languages must agree on: structs, sentinels, group sizes, binding numbers. Compiled by C++ and by GLSL
-// (scalar layout); tests/unit compares the offsets.
+// Structs, sentinels, group sizes and binding numbers shared by C++ and GLSL (scalar layout); tests/unit compares the
+// offsets.
 #ifndef RADAR_INTEROP_H
 #define RADAR_INTEROP_H
 
@@ -15,7 +15,7 @@ using PreciseRows = double[12];
 using Point = float[3];
 #define INTEROP_CONST inline constexpr uint
 #else
-// As vectors: lavapipe loads a vector in the time of a number.
+// Vectors, because lavapipe loads a vector as fast as a scalar.
 #define Rows vec4[3]
 #define Point vec3
 #ifdef RADAR_NO_DOUBLES  // the bits of doubles, for shaders that do no arithmetic with them
@@ -29,29 +29,30 @@ using Point = float[3];
 
 INTEROP_CONST kNobody = 0xffffffffu;
 
-// The window is cut into 16 x 16 cells; each nominates the pixel of its least L. One workgroup reduces one sensor, one
-// invocation a cell.
+// The window has 16 x 16 cells; each nominates its pixel of least L. One workgroup reduces one sensor, one invocation
+// one cell.
 INTEROP_CONST kCellsPerSide = 16;
 INTEROP_CONST kCells = 256;
-// Candidates are identified and solved in the order of (L, pixel), kRound at a time, until one meets.
+// Candidates are identified and solved in order of (L, pixel), kRound at a time, until one meets.
 INTEROP_CONST kRound = 64;
-// Pairs of one sensor that the device cannot decide, kept for the CPU, in the order of their candidates: a round of them,
-// which is what a device without doubles leaves to it.
+// Room for pairs of one sensor that the device leaves to the CPU, in order of candidates: one round, which is what a
+// device without doubles leaves.
 INTEROP_CONST kOpenPairs = 64;
-// An identify workgroup takes this many triangles of one draw, each invocation several: loading the draw's matrix costs
-// as much as a triangle.
+// Triangles of one draw per identify workgroup. Each invocation takes several, since loading the draw's matrix costs as
+// much as a triangle.
 INTEROP_CONST kItemTriangles = 512;
 INTEROP_CONST kItemInvocations = 64;
 
 // ---- trees, as both searches walk them ---------------------------------------------------------------------------------
 
-// A node's link: the left child, the right one follows; or, with kLinkLeaf, the first triangle or the object of a leaf, which
-// holds the next triangle, too, where kLinkPair is set.
+// A node's link: the left child, which the right one follows; or, with kLinkLeaf, the first triangle or the object of a
+// leaf. With kLinkPair the leaf also holds the next triangle.
 INTEROP_CONST kLinkLeaf = 0x80000000u;
 INTEROP_CONST kLinkPair = 0x40000000u;
 INTEROP_CONST kLinkItem = 0x3fffffffu;
 
-// Of the tree over a mesh's triangles; a box of normalised vertices, and the slab |normal . q - slabMiddle| <= slabHalf.
+// A node of the tree over a mesh's triangles: a box of normalised vertices, and the slab |normal . q - slabMiddle| <=
+// slabHalf.
 struct MeshNode {
   Point centre;
   uint link;
@@ -61,7 +62,7 @@ struct MeshNode {
   float slabHalf;
 };
 
-// Of the tree over objects: a box of the world, about the tree's anchor.
+// A node of the tree over objects: a world box, relative to the tree's anchor.
 struct ObjectNode {
   Point centre;
   uint link;
@@ -69,34 +70,34 @@ struct ObjectNode {
   uint pad;
 };
 
-// A mesh's vertices and triangles on the device, all meshes' in one buffer each.
+// Vertices and triangles; one buffer each for all meshes.
 struct Vertex {
   Point position;  // as given
   uint pad;
 };
 struct Triangle {
   uint corners[3];  // vertices
-  uint id;          // in its mesh
+  uint id;          // within its mesh
 };
 
 // A mesh in the world, for float arithmetic: its normalised vertices q (engine/scene/scene.h) are at matrix q + position.
 struct Placement {
   Rows coarse;   // the leading 16 bits of the matrix; in [3] of each row the leading bits of the position
-  Rows fine;     // what these leave
-  Rows inverse;  // rows n_k, of which n_k . matrix is about the k-th unit vector; in [3] how far that may put a vertex off
+  Rows fine;     // the remainder
+  Rows inverse;  // rows n_k with n_k . matrix close to the k-th unit vector; in [3] the vertex error that this causes
   Point reach;   // greatest |q|
   uint root;     // of the mesh's nodes
   Point origin;  // q = (vertex - origin) * perUnit
   float perUnit;
-  float error;   // how far coarse + fine may put a vertex off on any axis
-  float size;    // no vertex is farther from the position; the sum over the axes
+  float error;   // bound on the vertex error of coarse + fine on any axis
+  float size;    // bound on a vertex's distance from the position, as a sum over the axes
   uint mask;     // of an object
   uint mesh;
 };
 INTEROP_CONST kPlacementTexels = 12;
 
 struct MeshRecord {
-  Point origin;   // local vertices are relative to it
+  Point origin;   // of local vertices
   Point lo;       // of local vertices
   Point hi;
   float unit;     // normalised vertices = local * perUnit
@@ -116,13 +117,13 @@ INTEROP_SLOT(kSlotMeshNodes, 0, MeshNode);
 INTEROP_SLOT(kSlotObjectNodes, 1, ObjectNode);
 INTEROP_SLOT(kSlotVertices, 2, Vertex);
 INTEROP_SLOT(kSlotTriangles, 3, Triangle);
-INTEROP_SLOT(kSlotPlacements, 4, Placement);  // one an object
+INTEROP_SLOT(kSlotPlacements, 4, Placement);  // one per object
 INTEROP_SLOT(kSlotObjects, 13, ObjectRecord);
 INTEROP_SLOT(kSlotMeshes, 17, MeshRecord);
 
 // ---- the sampled tier --------------------------------------------------------------------------------------------------
 
-// One sensor. Lengths are world units along the motion from the sensor's back plane, unless said otherwise.
+// One sensor. Lengths are in world units along the motion from the sensor's back plane, unless noted otherwise.
 struct View {
   PreciseRows pose;
   double direction[3];
@@ -138,8 +139,8 @@ struct View {
   float rangeScale;      // R = rangeScale * stored
   float maskBase;        // position of the sensor's surface = maskBase - maskScale * stored
   float maskScale;
-  float slack;           // L this far below 0 may be a contact at the start: the rounding of R and M
-  float rangeLimit;      // stored R of d: what lies beyond is not in the target volume
+  float slack;           // rounding of R and M: L this far below 0 may be a contact at the start
+  float rangeLimit;      // stored R of d, the end of the target volume
   uint pad;
 };
 
@@ -147,7 +148,7 @@ struct View {
 struct Draw {
   float clipFromMesh[12];  // local vertices -> normalised device coordinates, w = 1
   Point origin;            // of local vertices
-  float snap;              // how far from a triangle a covered centre may lie, pixels
+  float snap;              // largest distance of a covered pixel centre from a triangle, pixels
   float slack;             // rounding of the depth it stores
   uint view;
   uint layer;              // within the render pass
@@ -155,8 +156,8 @@ struct Draw {
   uint object;             // kNobody: the sensor
 };
 
-// kItemTriangles triangles of a draw. Items of a view stand in the order of (object, triangle), so that the least
-// (item, lane) is the least (object, triangle).
+// kItemTriangles triangles of a draw. A view's items are ordered by (object, triangle), so the least (item, lane) is
+// the least (object, triangle).
 struct Item {
   uint draw;
   uint firstTriangle;
@@ -168,7 +169,7 @@ struct Candidate {
   float range;    // stored R
   float mask;     // stored M
   uint itemB;     // kItemTriangles * item + lane of the scene's triangle there
-  uint itemA;     // and of the sensor's
+  uint itemA;     // the same for the sensor
 };
 
 struct Answer {
@@ -176,7 +177,7 @@ struct Answer {
   uint object;
   uint triB;
   uint triA;
-  uint feature;    // what attains hi, see solve.comp
+  uint feature;    // the feature that attains hi (solve.comp)
   float minL;      // the paper's min(L)
   uint flags;      // kAnswer*
   uint candidates;
@@ -186,7 +187,7 @@ struct Answer {
 };
 
 struct OpenPair {
-  double low;  // it does not meet before, world units
+  double low;  // no contact before this, world units
   uint object;
   uint triB;
   uint triA;
@@ -199,7 +200,7 @@ INTEROP_SLOT(kSlotViews, 5, View);
 INTEROP_SLOT(kSlotDraws, 6, Draw);
 INTEROP_SLOT(kSlotItems, 7, Item);
 INTEROP_SLOT(kSlotCandidates, 8, Candidate);  // kCells per view
-INTEROP_SLOT(kSlotRanks, 9, uint);            // kCells per view: which candidate a cell holds, or kNobody
+INTEROP_SLOT(kSlotRanks, 9, uint);            // kCells per view: the cell's candidate, or kNobody
 INTEROP_SLOT(kSlotAnswers, 10, Answer);
 INTEROP_SLOT(kSlotRange, 11, SampledImage);   // depth of R, one layer per view
 INTEROP_SLOT(kSlotMask, 12, SampledImage);    // depth of M, one layer per view
@@ -213,13 +214,13 @@ INTEROP_CONST kFeatureEdges = 6;
 
 // ---- a host's geometry -------------------------------------------------------------------------------------------------
 
-// What three of are a position.
+// Component type of a vertex position.
 INTEROP_CONST kFloat32 = 0;
 INTEROP_CONST kFloat16 = 1;
 INTEROP_CONST kSnorm16 = 2;
 INTEROP_CONST kUnorm16 = 3;
 
-// What is out of its bounds, or not finite: one vertex, if any, and one object. kNobody: none.
+// One vertex and one object that are outside their bounds, or not finite. kNobody: none.
 struct Stray {
   uint mesh;
   uint vertex;
@@ -230,12 +231,12 @@ struct Stray {
 struct Moved {
   uint object;
   uint mesh;
-  uint firstByte;    // of its transform: 12 floats
-  Point anchor;      // its bounds' middle, world
+  uint firstByte;    // of its transform, which is 12 floats
+  Point anchor;      // middle of its bounds, world
   Point halfExtent;  // of its bounds about the anchor
 };
 
-INTEROP_SLOT(kSlotWords, 5, uint);  // what was copied from the host's buffers
+INTEROP_SLOT(kSlotWords, 5, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 6, Moved);
 INTEROP_SLOT(kSlotStray, 7, Stray);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
@@ -245,7 +246,7 @@ INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest fi
 INTEROP_CONST kTrials = 1024;
 INTEROP_CONST kTrialGroup = 64;
 
-// The operations that are tried. A trial can be told to spoil one of them, which shows that the trial would find it.
+// The operations checked. A check can be told to falsify one of them, to show that it would be found.
 INTEROP_CONST kNoOperation = 0;
 INTEROP_CONST kFloatSum = 1;
 INTEROP_CONST kFloatProduct = 2;
@@ -259,7 +260,7 @@ INTEROP_CONST kFloatSubnormal = 9;
 INTEROP_CONST kDoubleSum = 10;
 INTEROP_CONST kDoubleProduct = 11;
 INTEROP_CONST kDoubleQuotient = 12;
-INTEROP_CONST kDoubleCorrected = 13;  // quotient() of divide.glsl, whatever the device's own quotients are
+INTEROP_CONST kDoubleCorrected = 13;  // quotient() of divide.glsl
 INTEROP_CONST kDoublePlaced = 14;     // the formula of Pose
 INTEROP_CONST kDoubleOrder = 15;
 INTEROP_CONST kDoubleOfFloat = 16;

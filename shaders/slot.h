@@ -1,4 +1,4 @@
-// Typed binding numbers, declared once for C++ and GLSL.
+// Typed binding numbers, shared by C++ and GLSL.
 #ifndef RADAR_SLOT_H
 #define RADAR_SLOT_H
 
@@ -6,13 +6,13 @@
 #include <cstdint>
 namespace radar::gpu {
 
-/// The number of a binding whose buffer has elements of type T (see gpu/kernel.h).
+/// The number of a binding whose buffer has elements of type T (gpu/kernel.h).
 template <class T>
 struct Slot {
   uint32_t number;
 };
 
-/// The T of a slot for an image with its sampler.
+/// Element type of a slot for an image with its sampler.
 struct SampledImage;
 
 }  // namespace radar::gpu

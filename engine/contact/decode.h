@@ -1,4 +1,5 @@
-// What a search left to the host becomes an answer: pairs too close for the device's arithmetic are decided by `exact`.
+// Turns what a search left to the host into answers: `exact` decides pairs that are too close for the device's
+// arithmetic.
 #pragma once
 
 #include <span>
@@ -8,24 +9,24 @@
 
 namespace radar {
 
-/// The pairs that a device has left to the host, by the sensor: all of one, or none where there was no room.
+/// The pairs that a device left to the host, by sensor: all pairs of a sensor, or none if there was no room.
 class UnresolvedPairs {
  public:
-  /// `pairs` stay where they are.
+  /// `pairs` must outlive this, in place.
   explicit UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs);
-  /// In the order of (object, triB, triA).
+  /// Ordered by (object, triB, triA).
   std::span<const gpu::UnresolvedPair* const> of(uint32_t sensor) const;
 
  private:
   std::vector<const gpu::UnresolvedPair*> ordered_;
 };
 
-/// The answer where the device's own has the flag kFlagOpen and `pairs` are all that may be first; of a query that only
-/// asks for a decision no more are decided than it takes. Throws Error with VK_ERROR_UNKNOWN if the search met
-/// something that is not among them.
+/// The answer to a query whose device answer `found` has the flag kFlagOpen; `pairs` are all that may be first. For a
+/// query with `decide`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search met
+/// something that is not among `pairs`.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query);
 
-/// Of a query that has nothing to meet.
+/// The answer to a query with nothing in reach.
 Result clearAnswer();
 
 }  // namespace radar

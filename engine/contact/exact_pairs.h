@@ -1,4 +1,4 @@
-// Pairs of triangles that double precision cannot decide, or order, decided exactly.
+// Exact decisions on pairs of triangles that double precision cannot decide or order.
 #pragma once
 
 #include <compare>
@@ -13,7 +13,7 @@ namespace radar {
 /// 2^-53.
 inline constexpr double kDoubleUnit = 0x1p-53;
 
-/// A pair, in the order in which ties go.
+/// A pair. Of equal contacts the least wins.
 struct PairName {
   ObjectId object;
   uint32_t triB, triA;
@@ -21,17 +21,17 @@ struct PairName {
   friend auto operator<=>(const PairName&, const PairName&) = default;
 };
 
-/// The sensor's triangle and the scene's, placed; corners sorted, as the device numbers them.
+/// The sensor's triangle and the scene's, placed; corners sorted, in the device's numbering.
 struct PlacedPair {
   exact::Triangle a, b;
 };
 PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Impl& scene);
 PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query);
 
-/// Sets t and its bracket t -+ slack, cut to [0, D], and the fraction.
+/// Sets t, its bracket t -+ slack, clipped to [0, D], and the fraction.
 void setBracket(Result& result, double t, double slack, double distance);
 
-/// Finds the first contact among the pairs it is shown.
+/// Finds the first contact among the pairs considered.
 class ExactPairs {
  public:
   explicit ExactPairs(const Query& query) : direction_(scaledDirection(query.direction)), distance_(query.distance) {}

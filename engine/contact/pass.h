@@ -1,4 +1,4 @@
-// The recipe of the contact tier, into any command buffer: rounds of the search, then the answers. Owns its buffers.
+// Records the contact tier into any command buffer: rounds of the search, then the answers. Owns its buffers.
 #pragma once
 
 #include <functional>
@@ -12,14 +12,14 @@
 
 namespace radar {
 
-/// Room for a search's lists, and how it is cut into dispatches. Zeros: chosen for the device and the batch.
+/// Capacities of a search's lists, and its division into dispatches. Zero: chosen for the device and the batch.
 struct SearchRoom {
-  uint32_t tasks = 0;       ///< beside one for each sensor
-  uint32_t candidates = 0;  ///< of all sensors
-  uint32_t unresolved = 0;  ///< pairs left to the host; a sensor's are listed together or not at all
-  uint32_t groups = 0;      ///< workgroups of a round
-  uint32_t budget = 0;      ///< iterations of a workgroup in a round
-  uint32_t width = 0;       ///< fewer tasks than this are split soon
+  uint32_t tasks = 0;       ///< in addition to one per sensor
+  uint32_t candidates = 0;  ///< for all sensors together
+  uint32_t unresolved = 0;  ///< pairs left to the host; all of a sensor's pairs are listed, or none
+  uint32_t groups = 0;      ///< workgroups per round
+  uint32_t budget = 0;      ///< iterations of a workgroup per round
+  uint32_t width = 0;       ///< below this number, tasks are split early
 };
 
 class ContactPass {
@@ -27,32 +27,32 @@ class ContactPass {
   ContactPass(const Device::Impl& device, GpuScene& scene, std::shared_ptr<const ContactKernels> kernels,
               const SearchRoom& room);
 
-  /// Makes room for so many sensors and, beside them, known answers; stage() of no more allocates nothing.
+  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size.
   void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
-  /// Makes room for the batch, and stages it with what changed in the scene. `known`: answers that need no search;
-  /// where they are, those of the batch are placeholders. The device is idle.
+  /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
+  /// given, they include placeholders for those of the batch. The device is idle.
   void stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene);
 
   using OpenStage = std::function<void(const char*)>;
-  /// The copies, and the barrier behind them.
+  /// Records the copies and the barrier after them.
   void recordUpload(const gpu::Commands& commands, const OpenStage& stage);
-  /// The search, in so many rounds, an even number up to kMostRounds; then the answers. `isLast`: what is not finished
-  /// by then is given up. The caller puts the barrier between the answers and what reads them.
+  /// Records the search in `rounds` rounds, an even number up to kMostRounds, then the answers. `isLast`: searches
+  /// still unfinished are abandoned. The caller records the barrier between the answers and their readers.
   void record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast);
-  /// Once the device is done, and `counts` is what it left: stages what it takes to go on.
+  /// Stages the continuation of the search, once the device has finished and left `counts`.
   void stageMore(const gpu::SearchCounts& counts);
-  /// Tasks that the rounds recorded last have left.
+  /// Tasks left over by the rounds recorded last.
   uint32_t tasksLeft(const gpu::SearchCounts& counts) const { return counts.rounds[rounds_].tasks; }
 
   const gpu::Array<Result>& results() const { return results_; }
   const gpu::Array<gpu::SearchCounts>& counts() const { return counts_; }
-  /// On the host: the pairs that were left to it. Valid until the device works again.
+  /// The pairs left to the host, in host memory. Valid until the device works again.
   std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const;
   uint32_t sensorCount() const { return sensorCount_; }
-  /// Where a list had too little room, there will be more the next time. Returns whether that is so for candidates.
+  /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
 
-  /// Iterations that no device ends silently or takes for a hang.
+  /// Few enough iterations that no device aborts the dispatch or reports a hang.
   static constexpr uint32_t kMostBudget = 30'000;
 
  private:
@@ -74,8 +74,8 @@ class ContactPass {
   gpu::Array<gpu::Contender> contenders_;
   gpu::Array<gpu::SearchCounts> counts_;
   gpu::Array<Result> results_;
-  gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< on the host: hardly ever is there any
-  // Rounds go back and forth between the two lists of tasks.
+  gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
+  // Rounds alternate between the two lists of tasks.
   gpu::KernelArguments search_[2], collect_[2], filter_, link_, resolve_;
   std::optional<gpu::KernelArguments> refine_;
   std::vector<gpu::SearchState> stateList_;

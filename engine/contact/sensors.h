@@ -1,4 +1,4 @@
-// Queries of the contact tier become what its passes read.
+// Converts queries of the contact tier to the input of its passes.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace radar {
 
 /// The queries of one submission that are searched on the device.
 struct SensorBatch {
-  std::vector<gpu::Sensor> sensors;  ///< Placement::root is left open: it depends on the device's copy of the scene
+  std::vector<gpu::Sensor> sensors;  ///< without Placement::root, which depends on the device's copy of the scene
   std::vector<gpu::Sweep> sweeps;
   std::vector<uint32_t> excluded;
 
@@ -20,11 +20,11 @@ struct SensorBatch {
 
 enum class Planned {
   added,
-  clear,      ///< there is nothing to meet
-  outOfRange  ///< floats cannot hold it: the sensor, the scene, the distance, or how large one is beside the other
+  clear,      ///< nothing is in reach
+  outOfRange  ///< floats cannot hold the sensor, the scene, the distance or their ratios
 };
 
-/// Adds a query, which keeps its contract; its answer goes to place `result`.
+/// Adds a valid query; its answer gets the index `result`.
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
                   const ObjectTree& tree);
 

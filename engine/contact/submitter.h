@@ -1,4 +1,4 @@
-// The contact tier on a queue of the engine's: one batch at a time.
+// Runs the contact tier on the engine's queue, one batch at a time.
 #pragma once
 
 #include "contact/decode.h"
@@ -7,11 +7,11 @@
 
 namespace radar {
 
-/// What the device says of a batch: valid until the next submit().
+/// The device's answers to a batch; valid until the next submit().
 struct SearchAnswers {
-  std::span<const Result> results;  ///< one a sensor
+  std::span<const Result> results;  ///< one per sensor
   std::span<const gpu::UnresolvedPair> unresolved;
-  bool roomier = false;  ///< the next batch has more room for candidates, of which this one had too little
+  bool roomier = false;  ///< this batch had too little room for candidates; the next one has more
   uint64_t nodePairs = 0, trianglePairs = 0, solves = 0;
 };
 
@@ -20,12 +20,12 @@ class ContactSubmitter {
   ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps,
                    std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room);
 
-  /// Hands the batch to the device, and returns while that works on it; collect() comes next.
+  /// Submits the batch and returns without waiting; call collect() next.
   void submit(SensorBatch& batch, const Scene::Impl& scene);
-  /// Waits; submits more only where the search takes longer than a submission has rounds. A result that is
-  /// Status::invalid says in its flags what the device had no room or range for.
+  /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
+  /// had no room or range for.
   SearchAnswers collect(const Scene::Impl& scene, std::vector<StageTime>& stages);
-  uint32_t submissions() const { return submissions_; }  ///< of the last batch
+  uint32_t submissions() const { return submissions_; }  ///< made for the last batch
 
  private:
   void recordAndSubmit();

@@ -1,4 +1,4 @@
-// The first contact of a query, found among the pairs of triangles that a search shows it.
+// Finds a query's first contact among the pairs of triangles that a search passes to it.
 #pragma once
 
 #include <compare>
@@ -8,7 +8,7 @@
 
 namespace radar::cpu {
 
-/// A pair of triangles, in the order in which ties go.
+/// A pair of triangles. Of equal contacts the least wins.
 struct PairName {
   ObjectId object = kNone;
   uint32_t triB = kNone, triA = kNone;
@@ -18,21 +18,21 @@ struct PairName {
 
 class FirstContact {
  public:
-  /// `decide`: any contact will do. `sensor`, `size`: where it is and how large, roughly. `motion` must
+  /// `decide`: any contact suffices. `sensor`, `size`: the sensor's approximate position and size. `motion` must
   /// outlive this.
   FirstContact(const Motion& motion, bool decide, const Vector& sensor, double size);
 
-  /// Whether nothing more need be shown.
+  /// Whether no further pair matters.
   bool isDecided() const { return decide_ && found_; }
-  /// Nothing that is met later than this, world units, can be the first contact.
+  /// No contact later than this, world units, can be the first.
   double latest() const { return latest_; }
-  /// Whether neither `least` nor any pair behind it can be: the surfaces meet at the start, by a lesser pair.
+  /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
   bool isBefore(const PairName& least) const { return overlap_ && name_ < least; }
 
-  /// Looks at a pair of placed triangles that probably meet first across `axis`.
+  /// Considers a pair of placed triangles that probably meet first along `axis`.
   void consider(const PairName& name, const exact::Triangle& a, const exact::Triangle& b, Axis axis);
 
-  /// Everything but the tier.
+  /// The answer, without the tier.
   Result result() const;
 
  private:

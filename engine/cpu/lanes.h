@@ -1,5 +1,5 @@
-// Four numbers at a time, floats or doubles. By the vector extension of GCC and Clang, so that 64-bit processors of
-// every make do it with the instructions that all of them have.
+// Four floats or doubles at a time, with the vector extension of GCC and Clang: it needs only the instructions that
+// every 64-bit processor has.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace radar::cpu {
 using FourFloats = float __attribute__((vector_size(16)));
 using TwoDoubles = double __attribute__((vector_size(16)));
 
-/// `min`, `max` and `select` compare x with y; where one of them is not a number they give the latter, y or q.
+/// `min`, `max` and `select` compare x with y; if either is NaN they return the second choice, y or q.
 template <class Real>
 struct Lanes;
 
@@ -29,7 +29,7 @@ struct Lanes<float> {
   friend Lanes operator-(const Lanes& x) { return -x.v; }
   friend Lanes min(const Lanes& x, const Lanes& y) { return x.v < y.v ? x.v : y.v; }
   friend Lanes max(const Lanes& x, const Lanes& y) { return x.v > y.v ? x.v : y.v; }
-  /// p where x > y, else q.
+  /// p if x > y, else q.
   friend Lanes select(const Lanes& x, const Lanes& y, const Lanes& p, const Lanes& q) { return x.v > y.v ? p.v : q.v; }
   friend Lanes abs(const Lanes& x) { return FourFloats(Bits(x.v) & ~kSign); }
   /// x, with its sign changed where y is below 0.
@@ -48,7 +48,7 @@ struct Lanes<double> {
   Lanes(TwoDoubles x, TwoDoubles y) : low(x), high(y) {}
   Lanes(FourFloats x) : low{x[0], x[1]}, high{x[2], x[3]} {}  // NOLINT
   double operator[](int i) const { return i < 2 ? low[i] : high[i - 2]; }
-  /// The nearest.
+  /// Rounded to nearest.
   FourFloats floats() const {
     return FourFloats{static_cast<float>(low[0]), static_cast<float>(low[1]), static_cast<float>(high[0]),
                       static_cast<float>(high[1])};
@@ -93,7 +93,7 @@ void cross(const LaneVec<Real>& p, const LaneVec<Real>& q, LaneVec<Real>& out) {
   out[2] = p[0] * q[1] - p[1] * q[0];
 }
 
-/// The columns of four rows.
+/// The columns of the matrix with these rows.
 inline void transpose(const FourFloats (&rows)[4], FourFloats (&out)[4]) {
   const auto& [x, y, z, w] = rows;
   const FourFloats xyLow = __builtin_shufflevector(x, y, 0, 4, 1, 5),

@@ -1,4 +1,4 @@
-// The search for first contact between a sensor and one object: down both meshes' trees, nearest first.
+// Searches for first contact between a sensor and one object: traverses both meshes' trees, nearest first.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace radar::cpu {
 
-/// What searches have done since they were made.
+/// Work of the searches since construction.
 struct SearchStats {
-  uint64_t nodes = 0;       ///< pairs of nodes tested
-  uint64_t pairs = 0;       ///< pairs of triangles tested
-  uint64_t exactPairs = 0;  ///< those of them that needed exact integers
+  uint64_t nodes = 0;       ///< node pairs tested
+  uint64_t pairs = 0;       ///< triangle pairs tested
+  uint64_t exactPairs = 0;  ///< triangle pairs that needed exact integers
 };
 
 /// A mesh and its pose.
@@ -21,7 +21,7 @@ struct PlacedMesh {
   const Pose& pose;
 };
 
-/// A sensor in motion, an object, and how they see each other.
+/// A sensor in motion, an object, and each mesh in the other's frame.
 struct MeshPair {
   PlacedMesh sensor, other;
   ObjectId object;
@@ -29,11 +29,11 @@ struct MeshPair {
   const Sight &fromSensor, &fromOther;
 };
 
-/// Keeps its memory from one search to the next. One thread at a time.
+/// Reuses its memory between searches. For one thread at a time.
 class MeshSearch {
  public:
-  /// Shows `first` all pairs of triangles that may be the first contact. Nothing meets before `near`, in the pair's
-  /// unit of time.
+  /// Passes all pairs of triangles that may be the first contact to `first`. There is no contact before `near`, in the
+  /// pair's unit of time.
   void run(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats);
 
  private:

@@ -1,5 +1,5 @@
-// When nodes of two meshes' trees can meet: four pairs of nodes at a time, by the slabs along their boxes' axes and
-// along their mean normals. The error bounds are derived in docs/method.md.
+// Bounds the times at which nodes of two meshes' trees can meet, for four node pairs at a time, by the slabs along
+// their boxes' axes and along their mean normals. docs/method.md derives the error bounds.
 #pragma once
 
 #include "cpu/lanes.h"
@@ -7,19 +7,19 @@
 
 namespace radar::cpu {
 
-/// What a number of a lane loses in an operation, at most, relative to the result.
+/// Bound on the relative rounding error of an operation in a lane.
 template <class Real>
 inline constexpr double kRounding = sizeof(Real) == sizeof(float) ? 0x1p-24 : kUnit;
 
-/// Speeds below it are taken for it. That moves nothing by more than it is rounded by anyway.
+/// Lower speeds are replaced by this one. The change is no larger than the rounding.
 template <class Real>
 inline constexpr double kLeastSpeed = sizeof(Real) == sizeof(float) ? 0x1p-20 : 0x1p-40;
 
-/// Of larger numbers products of three might overflow.
+/// Products of three larger numbers might overflow.
 template <class Real>
 inline constexpr double kMostMagnitude = sizeof(Real) == sizeof(float) ? 0x1p30 : 0x1p200;
 
-/// Bounds on when each of four pairs can meet; not where from > to.
+/// Time bounds for contact of each of four pairs; a pair with from > to does not meet.
 template <class Real>
 struct Times {
   Lanes<Real> from, to;
@@ -31,20 +31,20 @@ using FourNodes = std::array<const gpu::MeshNode*, 4>;
 template <class Real>
 class NodeTest {
  public:
-  /// `fromA`: how A sees B; `fromB`: how B sees A.
+  /// `fromA`: B in A's frame; `fromB`: A in B's frame.
   NodeTest(const Sight& fromA, const Sight& fromB) : alongA_(fromA), alongB_(fromB) {}
 
   /// In the pair's unit of time; `from` may be before the start.
   Times<Real> operator()(const FourNodes& a, const FourNodes& b) const;
 
  private:
-  /// A Sight, divided by the speed along each axis: a vertex q of the mesh that sees and p of the other are level at
-  /// the time rate q - matrix p - offset, up to slack.
+  /// A Sight, divided by the speed along each axis: a vertex q of the frame's own mesh and p of the other are level at
+  /// time rate q - matrix p - offset, up to slack.
   struct Axes {
     LaneVec<Real> matrix[3], matrixSize[3];
     LaneVec<Real> speed, rate, rateSize, offset;
     LaneVec<Real> slack, normalSlack;
-    bool complete = true;  ///< no axis had to be left out
+    bool complete = true;  ///< no axis was left out
 
     explicit Axes(const Sight& sight);
   };

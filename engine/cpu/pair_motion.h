@@ -1,42 +1,42 @@
-// Two placed meshes, one of them in motion, each as the other one sees it. The bounds are derived in docs/method.md.
+// Two placed meshes, one of them in motion, each in the other's frame. docs/method.md derives the bounds.
 #pragma once
 
 #include "cpu/placement.h"
 
 namespace radar::cpu {
 
-/// What matters of the motion of A past B. Time counts from 0 to 1, which is after `span`.
+/// The motion of A past B. Time runs from 0 to 1; time 1 is distance `span`.
 struct PairMotion {
   Vector gap;       ///< from B's origin to A's
-  Vector travel;    ///< of A in a unit of time
-  Vector rounding;  ///< per world axis: bound on what a position or a displacement is off by
+  Vector travel;    ///< of A per unit of time
+  Vector rounding;  ///< per world axis: bound on the error of a position or a displacement
   double span;      ///< world units; no contact that matters comes later
 
   /// Contacts later than `latest` do not matter.
   PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest);
 
-  /// `distance` in units of time, or a little later; 1 at most.
+  /// `distance` in units of time, rounded up; 1 at most.
   double timeOf(double distance) const { return span > 0 ? std::min((1 + 8 * kUnit) * (distance / span), 1.0) : 1.0; }
 };
 
-/// How one mesh sees the other in its normalised frame: a vertex p of the other is at matrix p + offset + t travel, off
-/// by at most `slack` along each axis.
+/// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error
+/// of at most `slack` along each axis.
 struct Sight {
   Matrix matrix;
   Vector offset, travel, slack;
-  Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on all that is added up to place it
+  Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on the terms summed to place it
 
-  /// `side`: 1 where the other mesh is the one in motion, else -1.
+  /// `side`: 1 if the other mesh is the one in motion, else -1.
   Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side);
 };
 
-/// Bounds on the times of something.
+/// A time interval.
 struct TimeSpan {
   double from = 0, to = 1;
   bool empty() const { return from > to; }
 };
 
-/// Cuts `times` down to those at which the box of a node of the mesh that sees can meet that of a node of the other.
+/// Narrows `times` to those at which the boxes of `own` and `other` can meet.
 void narrow(TimeSpan& times, const Sight& sight, const gpu::MeshNode& own, const gpu::MeshNode& other);
 
 }  // namespace radar::cpu

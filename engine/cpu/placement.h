@@ -1,4 +1,4 @@
-// A mesh placed in the world, as the tests of its tree's boxes need it.
+// A mesh placed in the world, for the box tests of its tree.
 #pragma once
 
 #include "cpu/motion.h"
@@ -8,21 +8,21 @@ namespace radar::cpu {
 
 using Matrix = std::array<Vector, 3>;  ///< rows
 
-/// Places normalised vertices: world = origin + linear * q. The bounds are derived in docs/method.md.
+/// Places normalised vertices: world = origin + linear * q. docs/method.md derives the bounds.
 struct Placement {
   Vector origin;
   Matrix linear;
   Vector extent;  ///< per world axis: bound on |linear * q|
-  Vector error;   ///< per world axis: how far `radar::place` and the formula above may be apart
+  Vector error;   ///< per world axis: bound on the difference between `radar::place` and the formula above
 
   Placement(const Mesh& mesh, const Pose& worldFromMesh);
 };
 
-/// Covectors along a mesh's normalised axes. Any would do: they are the rows of the inverse as far as rounding goes,
-/// and `residual` says how far that is.
+/// Covectors along a mesh's normalised axes: the rows of the inverse, except for rounding, which `residual` bounds. Any
+/// covectors would be valid.
 struct MeshAxes {
   Matrix rows;
-  Vector residual;  ///< of row k: the sum over columns j of |rows[k] . linear[.][j] - (j == k)|, as computed
+  Vector residual;  ///< per row k: the sum over columns j of |rows[k] . linear[.][j] - (j == k)|, as computed
 
   explicit MeshAxes(const Matrix& linear);
 };

@@ -1,4 +1,4 @@
-// The search for the answer to one query, on one thread: nearest first down the tree over the objects.
+// Answers one query on one thread: traverses the tree over the objects, nearest first.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace radar::cpu {
 
-/// Keeps its memory from one query to the next. One thread at a time.
+/// Reuses its memory between queries. For one thread at a time.
 class QuerySearch {
  public:
-  /// The answer to a query that holds its contract, but for the tier. `tree` is the scene's; neither changes meanwhile.
+  /// Answers a valid query, except for the tier. `tree` is the scene's; neither changes meanwhile.
   Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
   const SearchStats& stats() const { return stats_; }
 

@@ -1,5 +1,5 @@
-// When boxes of the tree over objects can be met by a box of the world in motion. The error bounds are derived in
-// docs/method.md.
+// Bounds the distances at which a moving world box meets boxes of the tree over objects. docs/method.md derives the
+// error bounds.
 #pragma once
 
 #include "cpu/lanes.h"
@@ -10,10 +10,10 @@ namespace radar::cpu {
 
 class SweptBox {
  public:
-  /// `tree` is in range.
+  /// `tree` must be in range.
   SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree);
 
-  /// Lower bounds on the distances at which the boxes of two nodes are met; infinite where they are not.
+  /// Lower bounds on the distances at which the boxes of two nodes are met; infinite if they are not.
   TwoDoubles operator()(const gpu::ObjectNode& first, const gpu::ObjectNode& second) const;
 
  private:

@@ -1,5 +1,5 @@
-// The frame in which pairs of triangles are sorted out: its origin at the sensor, two axes across the motion and the
-// motion itself, and the sensor is about as large as its unit.
+// The frame in which pairs of triangles are filtered. Its origin is at the sensor; its axes are two across the motion
+// and the motion itself; its unit is about the sensor's size.
 #pragma once
 
 #include "cpu/motion.h"
@@ -8,19 +8,19 @@ namespace radar::cpu {
 
 struct View {
   Vector origin;
-  double scale;  ///< of world units, a power of two
+  double scale;  ///< view units per world unit, a power of two
   std::array<Vector, 3> axes;
 
-  /// `size`: of the sensor, in the world, roughly.
+  /// `size`: the sensor's approximate size, world units.
   View(const Vector& sensor, double size, const Vector& unit);
 };
 
-/// A triangle placed in the world, as the view sees it.
+/// A placed triangle, in the view's frame.
 struct ViewedTriangle {
   std::array<Vector, 3> corners;
   Vector lo, hi;           ///< their box, widened by `error`
-  double error;            ///< bounds what rounding did to each coordinate of each corner; not finite: nothing is known
-  double area, areaError;  ///< of the triangle seen along the motion, signed, twice; bound on its error
+  double error;            ///< bound on the rounding error of each coordinate; not finite: unknown
+  double area, areaError;  ///< twice the signed area, projected along the motion; bound on its error
 
   ViewedTriangle(const exact::Triangle& world, const View& view);
 };

@@ -1,4 +1,4 @@
-// How a host's buffers hold positions.
+// Formats of positions in a host's buffers.
 #pragma once
 
 #include <cstddef>
@@ -17,19 +17,19 @@ T loadAs(const std::byte* at) {
   return value;
 }
 
-/// Format and stride; empty if nothing is.
+/// Checks format and stride; empty if they are valid.
 std::string whatIsWrong(const HostPositions& positions);
-/// Bytes from the first of `count` elements to the end of the last; 2^62 where there are more.
+/// Bytes from the first of `count` elements to the end of the last; at most 2^62.
 VkDeviceSize spanOf(VkDeviceSize stride, uint64_t count, VkDeviceSize bytes);
 VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount);
 
-/// A format that is not wrong.
+/// A valid format.
 class HostFormat {
  public:
   explicit HostFormat(VkFormat format);
   uint32_t component() const { return component_; }  ///< gpu::kFloat32 ...
   VkDeviceSize bytes() const { return component_ == gpu::kFloat32 ? 4 : 2; }
-  /// A coordinate of the position at `vertex`, as deform.comp reads it.
+  /// One coordinate of the position at `vertex`, with the value that deform.comp reads.
   float load(const std::byte* vertex, int axis) const;
 
  private:

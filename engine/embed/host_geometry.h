@@ -1,5 +1,5 @@
-// What lies in a host's buffers comes into a recorder's copy of the scene, in the host's command buffer: vertices that
-// it deforms, and objects that it moves. Keeps a copy of what it is given.
+// Copies geometry from a host's buffers to a recorder's copy of the scene, in the host's command buffer: vertices that
+// it deforms, and objects that it moves. Keeps a copy of its input.
 #pragma once
 
 #include <map>
@@ -11,23 +11,23 @@
 
 namespace radar {
 
-/// Empty if `geometry` keeps its contracts.
+/// Empty if `geometry` is valid.
 std::string whatIsWrong(const HostGeometry& geometry, const Scene& scene);
 
 class HostGeometryPass {
  public:
   HostGeometryPass(const Device::Impl& device, const GpuScene& resident);
 
-  /// Takes note of it and makes room, while the device is idle; throws where it does not fit the device.
+  /// Stores `geometry` and makes room for it, while the device is idle. Throws if it does not fit the device.
   void stage(const HostGeometry& geometry, const Scene::Impl& scene);
   bool empty() const { return meshes_.empty() && moved_.empty(); }
   GpuScene::Overwritten overwritten() const;
-  /// Behind the upload of the scene; all of it is ready for compute shaders then.
+  /// Call after recording the scene's upload. The geometry is then visible to compute shaders.
   void record(const gpu::Commands& commands);
-  /// Behind the answers: refuses them where something has strayed. A barrier from compute shaders to what reads them
-  /// comes next.
+  /// Call after recording the answers: invalidates them if anything has left its bounds. The caller records the barrier
+  /// from compute shaders to their readers.
   void recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
-  /// Something that has strayed, in words, once the device is done; empty: nothing.
+  /// Describes something that left its bounds, once the device is done; empty if nothing did.
   std::string stray() const;
 
  private:
@@ -39,10 +39,10 @@ class HostGeometryPass {
     VkBuffer buffer;
     VkBufferCopy region;
   };
-  /// The nodes of a mesh that are refitted together: those of one depth.
+  /// Nodes of a mesh at one depth, refitted together.
   struct Level {
     MeshId mesh;
-    uint32_t first, count;  ///< into the list of nodes
+    uint32_t first, count;  ///< in the list of nodes
   };
   uint32_t copyFrom(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes);
   void addMoved(const MovedObjects& objects, const Scene::Impl& scene);
@@ -55,13 +55,13 @@ class HostGeometryPass {
   gpu::Upload upload_;
   gpu::Array<uint32_t> words_, refitNodes_;
   gpu::Array<gpu::Moved> movedBuffer_;
-  gpu::Array<gpu::Stray> stray_;  ///< on the host: hardly ever is there any
+  gpu::Array<gpu::Stray> stray_;  ///< in host memory: rarely written
   std::vector<Source> sources_;
-  VkDeviceSize copied_ = 0;  ///< bytes, of all sources
+  VkDeviceSize copied_ = 0;  ///< bytes, over all sources
   std::vector<Deformed> meshes_;
   std::vector<gpu::Moved> moved_;
   std::vector<uint32_t> nodeList_;
-  std::vector<std::vector<Level>> levels_;  ///< of all meshes; the deepest last
+  std::vector<std::vector<Level>> levels_;  ///< over all meshes; the deepest last
   std::vector<uint64_t> listed_;            ///< versions of the meshes whose nodes are listed
 };
 

@@ -1,12 +1,13 @@
-// A point that two intersecting triangles share.
+// A common point of two intersecting triangles.
 #pragma once
 
 #include "exact/contact.h"
 
 namespace radar::exact {
 
-/// Where an edge of the one best pierces the other, in plain doubles: for pictures and messages, nothing is decided by
-/// it, and the order of corners does not matter. NaN where no edge does (triangles in one plane, or degenerate).
+/// The clearest crossing of an edge of one triangle with the other, in plain doubles: for pictures and messages only,
+/// no decision depends on it. The order of corners does not matter. NaN if no edge crosses (triangles in one plane, or
+/// degenerate).
 Vector commonPoint(const Triangle& a, const Triangle& b);
 
 }  // namespace radar::exact

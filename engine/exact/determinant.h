@@ -1,6 +1,6 @@
-// Determinants of differences of points, in three strengths: doubles, twofold doubles, exact. The first two come with a
-// proven bound on their error (docs/exact.md), which holds for all finite input, underflow included; where something
-// overflows, the bound is not finite, so that every test against it fails and the next strength is asked.
+// Determinants of differences of points at three precisions: doubles, twofold doubles, exact. The first two have a
+// proven error bound (docs/exact.md) for all finite input, underflow included. On overflow the bound is not finite, so
+// every test against it fails and the next precision is used.
 #pragma once
 
 #include <cmath>
@@ -34,19 +34,19 @@ Estimate estimate(const Determinant& d);
 FineEstimate fineEstimate(const Determinant& d);
 Dyadic exactly(const Determinant& d);
 
-/// -1, 0 or 1, by doubles where they suffice.
+/// -1, 0 or 1; uses doubles if they suffice.
 int sign(const Determinant& d);
-/// The same where doubles are known not to suffice.
+/// The same, if doubles are known not to suffice.
 int exactSign(const Determinant& d);
 
 /// Sign of component `axis` of v cross w.
 int crossSign(const Difference& v, const Difference& w, int axis);
 
-// Each summand w_k (x_i y_j) passes 8 roundings at most: three differences, two products, three sums. The magnitude is
-// itself rounded, so 16 where 8 (1 + O(u)) would do. (J. R. Shewchuk, "Adaptive precision floating-point arithmetic and
-// fast robust geometric predicates", 1997, section 4, has this kind of bound.)
+// Each summand w_k (x_i y_j) passes at most 8 roundings: three differences, two products, three sums. 8 (1 + O(u))
+// would do; 16 covers the rounding of the magnitude. (J. R. Shewchuk, "Adaptive precision floating-point arithmetic and
+// fast robust geometric predicates", 1997, section 4, derives bounds of this kind.)
 inline constexpr double kRelative = 16 * 0x1p-53;
-// Each product may lose less than 2^-1070 to underflow, and is then multiplied by a component of w.
+// Underflow costs each product less than 2^-1070; the product is then multiplied by a component of w.
 inline constexpr double kUnderflow = 0x1p-1000;
 
 /// The determinant of three differences whose components were rounded once. `floor` is at least kUnderflow (1 + |w|).
@@ -72,10 +72,10 @@ inline int signOf(double v) {
   return v > 0 ? 1 : v < 0 ? -1 : 0;
 }
 
-/// The origin: makes a difference of a vector.
+/// The origin, to treat a vector as a difference.
 inline constexpr Vector kOrigin{};
 
-/// To be called wherever exact integers had to decide: keeps the count that exactDecisions() gives.
+/// Call for each decision with exact integers: counts for exactDecisions().
 void countExactDecision();
 
 }  // namespace radar::exact

@@ -1,9 +1,9 @@
-// Integers times powers of two, exactly: what sums and products of doubles are. Sign and magnitude, 64-bit limbs, fixed
-// room, no allocation; only the limbs in use are ever touched.
+// Exact integers times powers of two, closed under sums and products of doubles. Sign and magnitude, 64-bit limbs,
+// fixed size, no allocation; only limbs in use are touched.
 //
-// The room suffices for every expression of this floor over *all* finite doubles. The largest is
-// num^2 * |direction|^2 - D^2 * den^2, with num and den determinants of three differences: its unit is at least
-// 2^-8592 and its value below 2^8207, so 263 limbs.
+// The size suffices for every expression of engine/exact over *all* finite doubles. The largest is num^2 *
+// |direction|^2 - D^2 * den^2, with num and den determinants of three differences: its unit is at least 2^-8592 and its
+// value below 2^8207, so 263 limbs.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class Dyadic {
   friend Dyadic operator*(const Dyadic& p, const Dyadic& q);
   friend Dyadic operator+(const Dyadic& p, const Dyadic& q) { return sum(p, q, false); }
   friend Dyadic operator-(const Dyadic& p, const Dyadic& q) { return sum(p, q, true); }
-  /// num / den rounded to the nearest double, ties to even; subnormal, zero or infinite where that is nearest.
+  /// num / den rounded to the nearest double, ties to even; the result may be subnormal, zero or infinite.
   friend double quotient(const Dyadic& num, const Dyadic& den);
 
  private:

@@ -1,5 +1,5 @@
-// Construction of events. The makers expect features that are incident as seen along the direction and whose
-// determinant with it is not zero.
+// Construction of events. The features must be incident as seen along the direction, and their determinant with it not
+// zero.
 #pragma once
 
 #include "exact/contact.h"
@@ -15,18 +15,18 @@ Event vertexEdge(const Vector& direction, const Vector& a, const Vector& b0, con
 Event edgeVertex(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b, int axis);
 Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b);
 
-/// An event's parameter as the exact fraction it is.
+/// An event's parameter as an exact fraction.
 struct Ratio {
   Dyadic num, den;
 };
 Ratio ratio(const Event& event);
 /// -1, 0 or 1.
 int compare(const Ratio& p, const Ratio& q);
-/// The same of two events' parameters, if floating point suffices to tell.
+/// The same for two events' parameters, if floating point suffices.
 std::optional<int> compareRoughly(const Event& p, const Event& q);
 
-/// A total order of the events of one direction by kind and coordinates. Two events of which neither precedes the other
-/// are the same.
+/// A total order of the events of one direction, by kind and coordinates. If neither of two events precedes the other,
+/// they are the same.
 bool precedes(const Event& p, const Event& q);
 
 }  // namespace radar::exact

@@ -26,7 +26,7 @@ inline Twofold difference(double p, double q) {
   return sum(p, -q);
 }
 
-/// high + low = p * q exactly, unless something over- or underflows.
+/// high + low = p * q exactly, barring overflow and underflow.
 inline Twofold product(double p, double q) {
   constexpr double kSplit = 0x1p27 + 1;
   const double pc = kSplit * p, qc = kSplit * q;

@@ -1,5 +1,5 @@
-// Points as 64-bit integers times a common power of two: the fast lane of exact arithmetic. Nearly all coordinates fit
-// that are not spread over more than sixty binary places; the others take the long way (dyadic.h).
+// Points as 64-bit integers times a common power of two: the fast path of exact arithmetic. It takes nearly all
+// coordinates that span at most sixty binary places; dyadic.h takes the others.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline WholeVec operator-(const WholeVec& p, const WholeVec& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
-/// 192 bits of two's complement.
+/// 192 bits, two's complement.
 class WholeDeterminant {
  public:
   int sign() const;

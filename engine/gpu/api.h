@@ -1,10 +1,9 @@
-// The Vulkan functions that the engine calls, through the loader or the dispatch that a host names: the engine links
-// none.
+// The Vulkan functions that the engine calls, loaded through the system's loader or the host's; the engine links none.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
-// The formatter does not settle on lists like these.
+// clang-format's output for these lists is not stable.
 // clang-format off
 #define RADAR_GLOBAL_FUNCTIONS(X) \
   X(CreateInstance) X(EnumerateInstanceExtensionProperties)
@@ -30,7 +29,7 @@
   X(GetQueryPoolResults) X(MapMemory) X(QueueSubmit2) X(ResetCommandBuffer) X(ResetFences) X(UpdateDescriptorSets) \
   X(WaitForFences)
 
-// Of the extension VK_EXT_debug_utils: null where the instance does not have it.
+// Of VK_EXT_debug_utils: null if the instance lacks it.
 #define RADAR_DEBUG_FUNCTIONS(X) \
   X(CmdBeginDebugUtilsLabelEXT) X(CmdEndDebugUtilsLabelEXT) X(CreateDebugUtilsMessengerEXT) \
   X(DestroyDebugUtilsMessengerEXT) X(SetDebugUtilsObjectNameEXT)
@@ -38,13 +37,13 @@
 
 namespace radar::gpu {
 
-/// vkGetInstanceProcAddr of the Vulkan loader of this machine, opened at first use and kept. Throws where there is
-/// none.
+/// vkGetInstanceProcAddr of the system's Vulkan loader, opened at first use and kept. Throws if there is none.
 PFN_vkGetInstanceProcAddr systemLoader();
 
-/// The functions, without their "vk". Each step fills in more; it throws, naming the function, if one is missing.
+/// The functions, without the prefix "vk". The constructor and load() fill them in step by step; each throws, naming
+/// the function, if one is missing.
 struct Api {
-  /// What needs no instance. Null: through the system's loader.
+  /// Loads the functions that need no instance. Null: uses the system's loader.
   explicit Api(PFN_vkGetInstanceProcAddr get);
   void load(VkInstance instance);
   void load(VkDevice device);

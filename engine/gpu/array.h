@@ -18,8 +18,8 @@ class Array {
   Array(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage = 0)
       : buffer_(device, name, residence, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
 
-  /// Makes room for at least `count` elements; its contents are lost if it grows. Returns whether it grew; if so, set
-  /// the KernelArguments that use it again. The device must not be using it.
+  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew; if so, set the
+  /// KernelArguments that use it again. The device must not be using it.
   bool reserve(VkDeviceSize count) { return buffer_.reserve(count * sizeof(T)); }
 
   /// In elements.
@@ -27,7 +27,7 @@ class Array {
   /// Size of the buffer, at least that of `capacity()` elements.
   VkDeviceSize bytes() const { return buffer_.capacity(); }
   VkBuffer get() const { return buffer_.get(); }
-  /// Host address; only where not resident on the device. Coherent.
+  /// Host address, unless resident on the device. Coherent.
   T* mapped() const { return reinterpret_cast<T*>(buffer_.mapped()); }
 
   const Buffer& buffer() const { return buffer_; }
@@ -38,7 +38,7 @@ class Array {
   Buffer buffer_;
 };
 
-/// Elements that shaders read as texels (`textureBuffer`, `samplerBuffer`), one or more to an element, or access as a
+/// Elements that shaders read as texels (`textureBuffer`, `samplerBuffer`), one or more per element, or access as a
 /// storage buffer.
 template <class T>
 class TexelArray {

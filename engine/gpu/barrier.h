@@ -5,28 +5,28 @@
 
 namespace radar::gpu {
 
-/// A batch's upload is read by depth passes (vertices, indices, draws) and by compute shaders, there also as texels.
+/// Depth passes (vertices, indices, draws) and compute shaders (also as texels) read a batch's upload.
 void uploadToRead(const Commands& commands);
-/// What was copied, or filled, is read (also as texels) and written by compute shaders.
+/// Compute shaders read (also as texels) and write what was copied or filled.
 void transferToComputeReadWrite(const Commands& commands);
-/// A compute shader's buffers are read (also as texels), or written again, by the next one.
+/// The next compute shader reads (also as texels) or overwrites a compute shader's buffers.
 void computeWriteToComputeReadWrite(const Commands& commands);
-/// A compute shader's buffers are read (also as texels), or written again, by an indirect dispatch, and its workgroup
-/// counts are in one of them. Any barrier from compute shaders then lets the counts be overwritten.
+/// An indirect dispatch reads (also as texels) or overwrites a compute shader's buffers, one of which holds its
+/// workgroup counts. After any later barrier from compute shaders the counts may be overwritten.
 void computeWriteToIndirect(const Commands& commands);
-/// A compute shader's buffers are copied.
+/// Copies read a compute shader's buffers.
 void computeWriteToCopy(const Commands& commands);
-/// What was copied is read by the host after the fence.
+/// The host reads what was copied, after the fence.
 void copyToHost(const Commands& commands);
-/// What was copied, or written by a compute shader, is read by the host after the fence.
+/// The host reads what was copied or a compute shader wrote, after the fence.
 void writtenToHost(const Commands& commands);
-/// Depth that a render pass left in SHADER_READ_ONLY layout is copied; the layout changes to TRANSFER_SRC.
+/// Copies read depth that a render pass left in SHADER_READ_ONLY layout; the layout becomes TRANSFER_SRC.
 void sampledDepthToCopy(const Commands& commands, VkImage image);
 
-/// A depth image's contents are given up; its layout becomes SHADER_READ_ONLY, before compute shaders and whatever
-/// waits for them.
+/// Discards a depth image's contents; its layout becomes SHADER_READ_ONLY before compute shaders and all that waits for
+/// them.
 void undefinedToSampledDepth(const Commands& commands, VkImage image);
-/// Profiling runs only: everything before has ended before anything after begins.
+/// A full barrier, for profiling only.
 void everythingToEverything(const Commands& commands);
 
 }  // namespace radar::gpu

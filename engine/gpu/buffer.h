@@ -1,4 +1,4 @@
-// Buffers that grow, as bytes or as texels, and the one staging buffer through which a batch reaches the device.
+// Growable buffers of bytes or texels, and the staging buffer that uploads a batch.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace radar::gpu {
 
-/// Of the elements.
+/// Size of the elements.
 template <class T>
 VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
@@ -21,16 +21,16 @@ class Buffer {
  public:
   Buffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage);
 
-  /// Makes the buffer hold at least `bytes`; its contents are lost if it grows. Returns whether the handle changed. The
-  /// device must not be using it.
+  /// Makes the buffer hold at least `bytes`; growing loses the contents. Returns whether the handle changed. The device
+  /// must not be using it.
   bool reserve(VkDeviceSize bytes);
 
   VkBuffer get() const { return buffer_.get(); }
   const char* name() const { return name_; }
   VkDeviceSize capacity() const { return capacity_; }
-  /// Unique to this VkBuffer, unlike its handle, which Vulkan may reuse.
+  /// Unique, unlike the VkBuffer handle, which Vulkan may reuse.
   uint64_t identity() const { return identity_; }
-  /// Host address; only where not resident on the device. Coherent.
+  /// Host address, unless resident on the device. Coherent.
   std::byte* mapped() const { return mapped_; }
 
  private:
@@ -48,13 +48,13 @@ class Buffer {
 /// A buffer with a view, through which shaders read it as texels.
 class TexelBuffer {
  public:
-  /// `format`: R32, R32G32 or R32G32B32A32, each as UINT, SINT or SFLOAT. Every device reads these as texels; throws on
-  /// any other.
+  /// `format`: R32, R32G32 or R32G32B32A32, each as UINT, SINT or SFLOAT. Every device supports these as texels; throws
+  /// for any other.
   TexelBuffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
               VkFormat format);
 
-  /// As Buffer::reserve; a new buffer has a new view. Throws Error, and changes nothing, if `bytes` are more texels
-  /// than the device's maxTexelBufferElements.
+  /// As Buffer::reserve; a new buffer has a new view. Throws Error, and changes nothing, if `bytes` exceed the device's
+  /// maxTexelBufferElements.
   bool reserve(VkDeviceSize bytes);
 
   const Buffer& buffer() const { return buffer_; }
@@ -79,12 +79,12 @@ class Upload {
  public:
   explicit Upload(const Device::Impl& device);
 
-  /// Bytes that `add` would need room for, aligned. Call begin with the sum before the first add.
+  /// Space that `add` takes for `bytes`. Call begin with the sum before the first add.
   static VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 7) & ~VkDeviceSize{7}; }
   void begin(VkDeviceSize bytes);
-  /// Copies `data` to `offset` in `target`; nothing happens for empty data.
+  /// Copies `data` to `offset` in `target`; does nothing for empty data.
   void add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset = 0);
-  /// Records all copies. The caller puts the barriers.
+  /// Records all copies. The caller records the barriers.
   void record(const Commands& commands) const;
 
  private:
@@ -97,7 +97,7 @@ class Upload {
   std::vector<Copy> copies_;
 };
 
-/// A memory type with all of `needed`, and of `wanted` if there is one. Throws where there is none.
+/// A memory type with all `needed` properties, and if possible all `wanted` ones. Throws if there is none.
 uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryPropertyFlags needed,
                     VkMemoryPropertyFlags wanted);
 

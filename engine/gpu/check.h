@@ -1,4 +1,4 @@
-// A VkResult that is not success becomes a radar::Error naming the call.
+// Turns a failed VkResult into a radar::Error that names the call.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace radar::gpu {
 
 const char* resultName(VkResult result);
 
-/// Throws if `result` is an error. `call` names what was called, with the size it asked for where there is one.
+/// Throws if `result` is an error. `call` names the call and the size requested, if any.
 void check(VkResult result, const std::string& call);
 
 }  // namespace radar::gpu

@@ -1,5 +1,5 @@
-// A square 2D-array depth image, one layer per sensor, drawn by a classic render pass (whose depth write -> sample
-// hazards the validation layer sees, unlike dynamic rendering's) and then sampled.
+// A square 2D-array depth image, one layer per sensor, drawn by a classic render pass and then sampled. With dynamic
+// rendering the validation layer would not see hazards between depth writes and sampling.
 #pragma once
 
 #include <map>
@@ -9,11 +9,11 @@
 
 namespace radar::gpu {
 
-/// Clears to 1, stores, leaves SHADER_READ_ONLY layout; waits for compute shaders that still read the image, and makes
-/// the depth available to those that follow.
+/// Clears to 1, stores, and leaves SHADER_READ_ONLY layout. Waits for compute shaders that still read the image, and
+/// makes the depth available to later ones.
 RenderPass depthRenderPass(const Device::Impl& device);
 
-/// Nearest, clamped: for exact texels and gathers.
+/// Nearest, clamped, for exact texels and gathers.
 Sampler texelSampler(const Device::Impl& device);
 
 class DepthArray {
@@ -25,14 +25,14 @@ class DepthArray {
   VkImageView view() const { return view_.get(); }
   uint32_t layers() const { return layers_; }
 
-  /// Before the passes of a submission, while none is pending. Puts all layers in SHADER_READ_ONLY layout where they
+  /// Call before the passes of a submission, while none is pending. Puts all layers in SHADER_READ_ONLY layout if they
   /// are not, since a batch may draw only some of them.
   void recordFirstUse(const Commands& commands);
-  /// Begins the render pass on `count` layers from `first`, over `side` x `side` pixels from the corner; made on first
-  /// use, so callers keep to few distinct ranges.
+  /// Begins the render pass on `count` layers from `first`, over `side` x `side` pixels from the corner. Each distinct
+  /// range of layers keeps a framebuffer, so use few.
   void beginPass(const Commands& commands, uint32_t first, uint32_t count, uint32_t side);
-  /// Copies the corner of a layer that compute shaders have read, `width` x `height` floats, to `offset` in `target`.
-  /// All layers lose their contents.
+  /// Copies the corner of a layer that compute shaders have read, `width` x `height` floats, to byte `offset` of
+  /// `target`. All layers lose their contents.
   void recordCopy(const Commands& commands, uint32_t layer, uint32_t width, uint32_t height, VkBuffer target,
                   VkDeviceSize offset);
 

@@ -1,4 +1,4 @@
-// A logical device with one queue, opened or adopted. Opening is making the handles, then adopting them.
+// A logical device with one queue, opened or adopted. Opening creates the handles, then adopts them.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Device::Impl {
   Impl(const HostDevice& host);
   ~Impl();
 
-  /// Only where opened here; declared first, so destroyed last.
+  /// Only if opened here. Declared first, so destroyed last.
   struct Owned {
     gpu::Api vk{nullptr};
     VkInstance instance = VK_NULL_HANDLE;
@@ -34,23 +34,23 @@ struct Device::Impl {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
-  std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled cannot be answered; empty: it can
+  std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled is not supported; empty if it is
   uint32_t maxLayers = 0;
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
-  bool choosesSubgroupSize = false;  ///< a compute pipeline may ask for a size; else all have the same
-  bool doubles = false;              ///< shaders may calculate with them
-  bool dividesRight = false;         ///< quotients of doubles have the CPU's bits; else shaders/divide.glsl makes them
+  bool choosesSubgroupSize = false;  ///< a compute pipeline may request a size; else all have the same
+  bool doubles = false;              ///< shaders may compute with them
+  bool dividesRight = false;  ///< quotients of doubles have the CPU's bits; else shaders/divide.glsl computes them
 
   /// The specialization constants of shaders that include shaders/divide.glsl.
   std::array<uint32_t, 1> divisionConstants() const { return {dividesRight ? 1u : 0u}; }
 
   VkDevice device() const { return host.device; }
-  /// Throws with the reasons, in the name of `who`, where the device cannot answer in mode sampled.
+  /// Throws with the reasons, naming `who`, if the device does not support mode sampled.
   void requireSampled(const std::string& who) const;
-  /// Throws, in the name of `who`, where the host gave no queue to submit to.
+  /// Throws, naming `who`, if the host gave no queue.
   void requireQueue(const char* who) const;
-  /// Where a test makes a device fail, or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
-  /// vkWaitForFences, with that name; an error stands for the call's own. Empty otherwise.
+  /// Lets a test make the device fail or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
+  /// vkWaitForFences, with that name; an error replaces the call's result. Empty otherwise.
   std::function<VkResult(std::string_view call)> fault;
   VkResult faultAt(std::string_view call) const { return fault ? fault(call) : VK_SUCCESS; }
   /// Names an object for debuggers and validation messages.

@@ -1,4 +1,4 @@
-// One move-only handle for every child object of a VkDevice: destroys what it owns. The device outlives it.
+// A move-only owning handle for child objects of a VkDevice, which must outlive it.
 #pragma once
 
 #include <utility>

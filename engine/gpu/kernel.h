@@ -1,5 +1,5 @@
-// Compute shaders that check what they are given: a wrong buffer, a missing one or a push struct of the wrong size is
-// an error, because layouts and sizes are read from the shader's SPIR-V.
+// Compute shaders with checked arguments: a wrong or missing buffer, or a push struct of the wrong size, is an error.
+// Layouts and sizes are read from the shader's SPIR-V.
 #pragma once
 
 #include <initializer_list>
@@ -21,8 +21,8 @@ constexpr uint32_t groupsFor(uint64_t items, uint32_t perGroup) {
 }
 
 enum class Subgroups {
-  any,  ///< of any size, as the device likes
-  full  ///< of Device::Impl::subgroupSize invocations, all of them there: a workgroup of that size is one subgroup
+  any,  ///< of any size, chosen by the device
+  full  ///< all of Device::Impl::subgroupSize invocations: a workgroup of that size is one subgroup
 };
 
 /// A compute pipeline and its layouts. Immutable, so any number of users on any thread may share it.
@@ -35,7 +35,7 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// What every device supports.
+  /// Supported by every device.
   static constexpr uint32_t kMaxPushBytes = 128;
 
  private:
@@ -50,18 +50,18 @@ class Kernel {
   Pipeline pipeline_;
 };
 
-/// A slot and what is bound to it. A buffer of another element type does not compile.
+/// A slot and the resource bound to it. A buffer of another element type does not compile.
 class Argument {
  public:
-  /// To a storage buffer.
+  /// Binds a storage buffer.
   template <class T>
   Argument(Slot<T> slot, const Array<T>& array)
       : binding_(slot.number), elementBytes_(sizeof(T)), buffer_(&array.buffer()) {}
-  /// To a uniform texel buffer or a storage buffer, whichever the shader declares.
+  /// Binds a uniform texel buffer or a storage buffer, whichever the shader declares.
   template <class T>
   Argument(Slot<T> slot, const TexelArray<T>& array)
       : binding_(slot.number), elementBytes_(sizeof(T)), buffer_(&array.buffer()), texels_(array.view()) {}
-  /// To an image with its sampler; its layout is SHADER_READ_ONLY_OPTIMAL.
+  /// Binds an image in SHADER_READ_ONLY_OPTIMAL layout, with its sampler.
   Argument(Slot<SampledImage> slot, VkImageView image, VkSampler sampler)
       : binding_(slot.number), image_(image), sampler_(sampler) {}
 
@@ -80,25 +80,23 @@ class KernelArguments {
  public:
   explicit KernelArguments(const Kernel& kernel);
 
-  /// Sets every binding of the shader, each once, in any order. Cheap if no buffer has changed since the last call;
-  /// else, and always with an image, no dispatch with these arguments may be pending. Call it again after a buffer has
-  /// grown. A storage buffer is bound up to the device's maxStorageBufferRange. Throws Error, naming kernel and
+  /// Sets every binding of the shader, each once, in any order. Cheap if no buffer has changed since the last call.
+  /// Otherwise, and always with an image, no dispatch with these arguments may be pending. Call it again after a buffer
+  /// has grown. Binds a storage buffer up to the device's maxStorageBufferRange. Throws Error, naming kernel and
   /// binding, and changes nothing, if a binding is missing, unknown, given twice or of another descriptor type, or if
-  /// sizeof(T) differs from the stride of the shader's runtime array, or from the size of its struct where it has none.
+  /// sizeof(T) differs from the stride of the shader's runtime array, or from the size of its struct if it has none.
   void set(std::initializer_list<Argument> arguments);
 
-  /// Binds the pipeline and the set, pushes, dispatches; the caller puts the barriers. Records nothing if `groups` is
-  /// 0. More than 65535 workgroups are laid out in rows, and a few more than `groups` may run: shaders compare
-  /// workgroupIndex() (shaders/workgroup.glsl) with their number of items.
-  /// Throws Error if `set` has not been called, or if sizeof(Push) differs from the size of the shader's push
-  /// constants.
+  /// Binds the pipeline and the set, pushes constants and dispatches; the caller records the barriers. Records nothing
+  /// if `groups` is 0. More than 65535 workgroups are laid out in rows, and a few more than `groups` may run: shaders
+  /// compare workgroupIndex() (shaders/workgroup.glsl) with their number of items. Throws Error if `set` has not been
+  /// called, or if sizeof(Push) differs from the size of the shader's push constants.
   void dispatch(const Commands& commands, uint32_t groups) const { record(commands, groups, {}); }
   template <class Push>
   void dispatch(const Commands& commands, uint32_t groups, const Push& push) const {
     record(commands, groups, bytesOfPush(push));
   }
-  /// The same with the counts of the VkDispatchIndirectCommand at `offset` in `buffer`, which has the usage
-  /// INDIRECT_BUFFER.
+  /// The same with the VkDispatchIndirectCommand at byte `offset` of `buffer`, which has the usage INDIRECT_BUFFER.
   void dispatchIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset) const {
     recordIndirect(commands, buffer, offset, {});
   }

@@ -1,4 +1,4 @@
-// One descriptor set, one pipeline layout: every shader of the engine binds the same numbers (shaders/interop.h).
+// Descriptor sets and pipelines. All shaders of the engine use the binding numbers of shaders/interop.h.
 #pragma once
 
 #include <initializer_list>
@@ -20,7 +20,7 @@ class Bindings {
  public:
   Bindings(const Device::Impl& device, std::span<const Binding> bindings, uint32_t pushBytes);
 
-  /// What lies beyond the device's maxStorageBufferRange is not bound, nor is a buffer that has no room yet.
+  /// Binds at most the device's maxStorageBufferRange; ignores an empty buffer.
   void setBuffer(uint32_t number, const Buffer& buffer);
   void setImage(uint32_t number, VkImageView view, VkSampler sampler);
   /// Binds the set for compute shaders.
@@ -36,13 +36,13 @@ class Bindings {
   VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
-/// `constants`: values of specialization constants 0, 1, ..., where the shader leaves some open. `fullSubgroups`: all
-/// subgroups have Device::Impl::subgroupSize invocations; the local size is a multiple of it.
+/// `constants`: values of specialization constants 0, 1, ..., if the shader has any. `fullSubgroups`: all subgroups
+/// have Device::Impl::subgroupSize invocations; the local size is a multiple of it.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants = {}, bool fullSubgroups = false);
 
-/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0, each `stride` bytes
-/// after the last; viewport and scissor are dynamic; a fragment survives if its depth is less.
+/// Depth only, no fragment shader, nothing culled; positions are float x3 at vertex binding 0, `stride` bytes apart;
+/// viewport and scissor are dynamic; the depth test is less.
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
                        std::span<const uint32_t> spirv, const char* name, uint32_t stride);
 

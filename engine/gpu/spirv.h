@@ -12,23 +12,23 @@ namespace radar::gpu {
 /// One binding of descriptor set 0.
 struct Descriptor {
   uint32_t binding = 0;
-  std::string name;  ///< of the variable, or of its block where the variable has none; empty in a stripped module
+  std::string name;  ///< of the variable, or of its block if it has none; empty in a stripped module
   /// STORAGE_BUFFER, UNIFORM_TEXEL_BUFFER (textureBuffer, samplerBuffer) or COMBINED_IMAGE_SAMPLER.
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   /// Of a storage buffer whose last member is a runtime array: the array's stride and its offset, bytes; else 0.
   uint32_t stride = 0;
   uint32_t arrayOffset = 0;
-  /// Of any other storage buffer: the size of its struct, as sizeof gives it in C++; else 0.
+  /// Of any other storage buffer: the size of its struct, as C++ sizeof; else 0.
   uint32_t bytes = 0;
 };
 
 struct ComputeInterface {
   std::vector<Descriptor> descriptors;  ///< in the order of their bindings, each binding once
-  uint32_t pushBytes = 0;               ///< size of the push constants, as sizeof gives it in C++; 0: none
+  uint32_t pushBytes = 0;               ///< size of the push constants, as C++ sizeof; 0: none
 };
 
-/// Expects one compute shader, "main", with descriptors of the types above in set 0, each with a binding of its own.
-/// Throws Error naming anything else. `name` stands for the shader in messages.
+/// Expects one compute shader, "main", with descriptors of the types above in set 0, each with its own binding. Throws
+/// Error naming anything else. `name`: of the shader, for messages.
 ComputeInterface reflectCompute(std::span<const uint32_t> spirv, const char* name);
 
 }  // namespace radar::gpu

@@ -1,4 +1,4 @@
-// One command buffer at a time: begin, record, submit, wait; with timestamps between its stages on request.
+// One command buffer at a time: begin, record, submit, wait; optionally with timestamps between stages.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace radar::gpu {
 
-/// Adds to the stage of that name, which is made if it is not there.
+/// Adds to the stage of that name, creating it if needed.
 void addStageTime(std::vector<StageTime>& stages, const std::string& name, double ms);
 
 class Submission {
@@ -18,14 +18,14 @@ class Submission {
   Submission(const Device::Impl& device, bool timestamps);
 
   Commands begin();
-  /// Opens a stage: a debug label, and the end of the stage before it.
+  /// Ends the current stage and begins another, with a debug label.
   void stage(const char* name);
-  /// Hands what was recorded to the queue, and returns while the device works on it; wait() comes before anything else.
+  /// Submits the recorded commands without waiting; call wait() before anything else.
   void submit();
-  /// Blocks until the device is done with what was submitted. Throws Error with VK_ERROR_DEVICE_LOST if it is lost.
+  /// Blocks until the submission is done. Throws Error with VK_ERROR_DEVICE_LOST if the device is lost.
   void wait();
   void submitAndWait();
-  /// Adds the milliseconds of each stage of the last submission to those of its name; nothing without timestamps.
+  /// Adds the milliseconds of the last submission's stages to those of the same name; nothing without timestamps.
   void addTimes(std::vector<StageTime>& stages) const;
 
  private:

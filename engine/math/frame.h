@@ -1,4 +1,4 @@
-// The frame in which a sensor looks along its motion.
+// Frames along a sensor's motion.
 #pragma once
 
 #include "math/vector.h"
@@ -10,15 +10,15 @@ namespace radar {
 /// world axes, exactly.
 std::array<Vector, 3> axesAlong(const Vector& direction);
 
-/// `direction` times a power of two that makes its largest component 1 to 2: the same motion, far from underflow. As it
-/// is, where components are too different in size for that to be exact.
+/// `direction`, scaled by a power of two so that its largest component is 1 to 2: the same motion, far from underflow.
+/// Unchanged if the components differ too much in size for that to be exact.
 Vector scaledDirection(const Vector& direction);
 
-/// Length of `v`, without overflow or underflow on the way.
+/// Length of `v`, without intermediate overflow or underflow.
 double lengthOf(const Vector& v);
 
-/// frameFromMesh for a mesh whose vertices are given relative to `centre`: axes * (pose(centre + q) - origin), with the
-/// difference taken in the world, before turning.
+/// The transform from a mesh's vertices, relative to `centre`, to a frame: axes * (pose(centre + q) - origin). The
+/// difference is taken in the world, before the rotation.
 Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& worldFromMesh,
                       const Vector& centre);
 

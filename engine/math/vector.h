@@ -1,4 +1,4 @@
-// Points and vectors of the world, and the maps between frames, in double precision.
+// Vectors and affine maps in double precision.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where batches wait and workers take chunks of them. Every function may be called from any thread.
+// The queue of batches, from which workers take chunks. Any thread may call any function.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@
 
 namespace radar {
 
-/// A batch on its way. Queries of one mode stand together, so that a chunk is one submission: `place` says where each
-/// stood.
+/// A batch in progress. Its queries are grouped by mode, so that a chunk is one submission; `place` holds their
+/// original indices.
 struct Job {
   std::vector<Query> queries;
   std::vector<uint32_t> place;
@@ -21,14 +21,14 @@ struct Job {
   std::promise<PoolAnswers> promise;
   PoolAnswers answers;
   size_t taken = 0, answered = 0;
-  std::vector<bool> took, passed;  ///< by worker: has taken some, has let others go first
+  std::vector<bool> took, passed;  ///< by worker: has taken a chunk, has deferred to others
 };
 
 /// Queries [first, first + count) of a job.
 struct Chunk {
   std::shared_ptr<Job> job;
   size_t first = 0, count = 0;
-  bool outOfMemory = false;  ///< a device has failed to allocate for it
+  bool outOfMemory = false;  ///< an allocation for it has failed on one device
 
   std::span<const Query> queries() const { return std::span<const Query>(job->queries).subspan(first, count); }
 };
@@ -40,22 +40,22 @@ class Exchange {
   std::future<PoolAnswers> post(std::vector<Query> queries, std::stop_token stop, const Scene& scene);
   void edit(const std::function<void()>& change);
   void drain();
-  /// Answers what is not taken, and lets workers go.
+  /// Answers queries not yet taken as invalid, and lets workers end.
   void close();
   std::vector<PoolDevice> devices() const;
 
-  // For workers.
+  // Called by workers.
 
-  /// The next chunk for a worker with so many queries in flight. Sleeps until there is one, unless it has some in
-  /// flight; nothing then, or when it is to go.
+  /// The next chunk for a worker with `inFlight` queries in flight. If there is none: sleeps, unless the worker has
+  /// queries in flight or is to end; then returns nothing.
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
-  /// `deviceMs`: how long the device was at it; 0 if that says nothing of its speed.
+  /// `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
   void deliver(const Chunk& chunk, std::span<const Result> results, const std::map<size_t, std::string>& reasons,
                const SweepStats& stats, ChunkTrace trace, double deviceMs);
-  /// The worker ends; its chunks go to the others.
+  /// Ends the worker; its chunks go to the others.
   void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
-  /// The worker gets no more chunks, and is about to retire; false, and nothing changes, if no other is left. Of two
-  /// that ask at once, one stays.
+  /// Gives the worker no more chunks: it is about to retire. Returns false, and changes nothing, if it is the only one
+  /// left; if the last two call at once, one stays.
   bool leave(uint32_t worker);
 
   /// Milliseconds since this was made.
@@ -78,8 +78,8 @@ class Exchange {
   std::condition_variable work_, settled_, edited_;
   std::vector<PoolDevice> devices_;
   Share share_;
-  std::deque<std::shared_ptr<Job>> jobs_;   // with queries that nobody has taken
-  std::deque<Chunk> returned_;              // by retired workers
+  std::deque<std::shared_ptr<Job>> jobs_;   // with queries not yet taken
+  std::deque<Chunk> returned_;              // from retired workers
   std::vector<std::shared_ptr<Job>> open_;  // not yet answered, in the order of submission
   bool editing_ = false, closed_ = false;
 };

@@ -1,4 +1,4 @@
-// How much a device takes at a time: guided self-scheduling, weighted by speed. Knows no device and no clock.
+// Computes chunk sizes: guided self-scheduling, weighted by speed. Independent of devices and clocks.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,22 @@ class Share {
  public:
   explicit Share(size_t workers) : workers_(workers) {}
 
-  /// `worker` took `ms` for `queries`, of which it is now rid.
+  /// `worker` has finished `queries` in `ms`.
   void finished(size_t worker, size_t queries, double ms);
-  /// A batch went by without it, since it was thought too slow. That may no longer be true, and it will be tried again.
+  /// A batch was done without the worker, which seemed too slow. Raises its estimated speed, so that it is tried again
+  /// eventually.
   void passed(size_t worker);
-  /// It takes no more.
+  /// The worker takes no more.
   void retire(size_t worker) { workers_[worker].alive = false; }
   size_t alive() const;
 
-  /// How many queries `worker` should take now; 0: better none, others will be done sooner. `batch`: what is left of
-  /// the batch that it would take from, at least 1; `all`: of all batches; `inFlight`: queries it is working on.
+  /// How many queries `worker` should take now; 0: none, since others will finish sooner. `batch`: queries left in its
+  /// batch, at least 1; `all`: in all batches; `inFlight`: queries it is working on.
   size_t take(size_t worker, size_t batch, size_t all, size_t inFlight) const;
 
  private:
   struct Worker {
-    double rate = 0;  // queries per ms; 0: not known
+    double rate = 0;  // queries per ms; 0: unknown
     bool alive = true;
   };
   double rateOf(size_t worker) const;

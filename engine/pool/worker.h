@@ -1,4 +1,4 @@
-// One thread, one queue: takes chunks from the exchange and keeps its device at work.
+// One thread per queue: takes chunks from the exchange and keeps its device busy.
 #pragma once
 
 #include <memory>
@@ -11,20 +11,20 @@ namespace radar {
 
 class Worker {
  public:
-  /// Begins at once. All arguments but `options` must outlive the worker; `number`: its place in the pool.
+  /// Starts at once. All arguments but `options` must outlive the worker. `number`: its index in the pool.
   Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, Exchange& exchange);
-  /// Waits until the exchange has let the thread go.
+  /// Waits until the exchange lets the thread end.
   ~Worker() { thread_.join(); }
 
  private:
-  /// Two of them: while the device works on one, the other is encoded or decoded.
+  /// Two, so that one is encoded or decoded while the device works on the other.
   static constexpr size_t kLanes = 2;
   struct Lane {
-    std::unique_ptr<Sweeper::Impl> sweep;  // made on first use: its pipelines take a while
+    std::unique_ptr<Sweeper::Impl> sweep;  // made on first use, since pipelines take time
     Chunk chunk;
     ChunkTrace trace;
     std::vector<Result> results;
-    std::array<bool, 2> warm{};  // by mode: its pipelines have run
+    std::array<bool, 2> warm{};  // by mode: whether its pipelines have run
   };
 
   void run();
@@ -40,10 +40,10 @@ class Worker {
   Exchange& exchange_;
   std::shared_ptr<GpuScene> copy_;
   std::array<Lane, kLanes> lanes_;
-  size_t oldest_ = 0, inFlight_ = 0;  // lanes in flight: from the oldest on, in a ring
+  size_t oldest_ = 0, inFlight_ = 0;  // a ring: `inFlight_` lanes from `oldest_` on
   uint64_t seenVersion_ = 0;
   double lastDone_ = 0;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last, since it uses the others
 };
 
 }  // namespace radar

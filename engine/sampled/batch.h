@@ -1,4 +1,4 @@
-// Plans become what one submission uploads and draws.
+// Packs plans for one submission.
 #pragma once
 
 #include <span>
@@ -27,15 +27,15 @@ struct SampledBatch {
   std::vector<gpu::Item> items;
   std::vector<DrawCall> calls;
   std::vector<DepthPass> rangePasses, maskPasses;
-  uint32_t layers = 0;      ///< one a view
+  uint32_t layers = 0;      ///< one per view
   uint32_t resolution = 0;  ///< the greatest
   uint64_t triangles = 0;
-  uint64_t objects = 0;  ///< drawn for R
+  uint64_t objects = 0;  ///< objects drawn for R
 
   void clear();
 };
 
-/// `plans`: ascending by resolution, each with something in reach. View i is plan i, in layer i.
+/// `plans`: in ascending resolution, each with at least one object in reach. Plan i becomes view i, in layer i.
 void packBatch(SampledBatch& batch, std::span<const ViewPlan* const> plans);
 
 }  // namespace radar

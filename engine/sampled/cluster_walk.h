@@ -1,4 +1,4 @@
-// The clusters of a placed mesh: triangles near each other, few enough to be taken or left together.
+// The clusters of a placed mesh: small groups of neighbouring triangles, drawn or skipped together.
 #pragma once
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 namespace radar {
 
-/// Triangles of a cluster, at most.
+/// Largest number of triangles in a cluster.
 inline constexpr uint32_t kClusterTriangles = 64;
 
-/// Around what a node of a mesh's tree holds, placed, each vertex up to `error` off. `frameFromNormalised` takes
-/// normalised vertices.
+/// A box, in the frame, around the contents of a mesh tree's node, whose placed vertices are off by up to `error`.
+/// `frameFromNormalised` takes normalised vertices.
 inline Box turned(const gpu::MeshNode& node, const Affine& frameFromNormalised, double error) {
   Box box;
   for (int row = 0; row < 3; ++row) {
@@ -29,8 +29,8 @@ inline Box turned(const gpu::MeshNode& node, const Affine& frameFromNormalised, 
   return box;
 }
 
-/// Calls found(MeshTree::Below, box) for each cluster, in the order of their triangles, that `wanted`(box) holds for,
-/// as it must for every box around a wanted one.
+/// Calls found(MeshTree::Below, box) for each cluster with wanted(box), in the order of their triangles. `wanted` must
+/// hold for every box around a wanted one.
 template <class Wanted, class Found>
 void walkClusters(const Mesh& mesh, const Affine& frameFromLocal, double error, const Wanted& wanted,
                   const Found& found) {

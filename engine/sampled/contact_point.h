@@ -1,4 +1,4 @@
-// Where two triangles touch.
+// Point and normal of a contact of two triangles.
 #pragma once
 
 #include "math/frame.h"
@@ -7,11 +7,11 @@ namespace radar {
 
 using Corners = std::array<Vector, 3>;
 
-/// Corners of an edge of a triangle, by the edge's number.
+/// End corners of each edge of a triangle.
 inline constexpr int kEdgeFrom[] = {0, 1, 0}, kEdgeTo[] = {1, 2, 2};
 
-/// Sets the result's point and normal, given its t: those of `feature` (shaders/interop.h, "Features") of the sensor's
-/// triangle at the start and the scene's.
+/// Sets the result's point and normal, given its t and the `feature` that touches (shaders/interop.h, "Features").
+/// `sensor`: the triangle at the start.
 void describe(Result& result, uint32_t feature, const Corners& sensor, const Corners& scene, const Vector& direction);
 
 }  // namespace radar

@@ -1,4 +1,4 @@
-// What the shaders wrote becomes a Result.
+// Converts the shaders' output to a Result.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace radar {
 
-/// Of a sensor with nothing in reach: certainly clear.
+/// The answer to a query with nothing in reach: certainly clear.
 Result decodeClear();
 
-/// Of a sensor whose scopes were drawn; `resolution` is its window's. Open pairs that may come before what the device
-/// found are decided exactly, and counted in `cpuPairs`; where only a decision is asked, no more than it takes.
+/// The answer to a query whose scopes were drawn, in a window of `resolution`. Open pairs that may come before the
+/// device's contact are decided exactly, and counted in `cpuPairs`; for a query with `decide`, only until one meets.
 Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
                      const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
 

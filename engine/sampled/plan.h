@@ -1,5 +1,5 @@
-// A query becomes a plan: the window and depth range of its view, the objects in reach, and the matrices they are drawn
-// with. CPU only; looks at boxes, never at triangle pairs.
+// Plans a query: the window and depth range of its view, the objects in reach, and the matrices to draw them with. CPU
+// only; tests boxes, never triangle pairs.
 #pragma once
 
 #include <string>
@@ -10,52 +10,51 @@
 
 namespace radar {
 
-/// Triangles that stand together in a mesh's cluster order.
+/// Consecutive triangles in a mesh's cluster order.
 struct Run {
   uint32_t first, count;
 };
 
-/// A mesh in the window: clip coordinates from recentred vertices, for R or M.
+/// A mesh in the window, for R or M.
 struct Placed {
   ObjectId object = kNone;  ///< kNone: the sensor
   MeshId mesh = kNone;
-  bool fits = true;  ///< floats hold it; if not, nothing below is told
+  bool fits = true;  ///< floats hold it; if not, nothing below is set
   std::array<float, 12> clipFromMesh{};
-  std::array<float, 3> origin{};    ///< of the mesh's local vertices
-  float snap = 0;                   ///< how far from a triangle a covered centre may lie, pixels
+  std::array<float, 3> origin{};    ///< of local vertices
+  float snap = 0;                   ///< largest distance of a covered pixel centre from the triangle, pixels
   float slack = 0;                  ///< rounding of stored depth
-  uint32_t firstRun = 0, runs = 0;  ///< what of it is drawn, ascending: into ViewPlan::runs
+  uint32_t firstRun = 0, runs = 0;  ///< the runs drawn, ascending, in ViewPlan::runs
 };
 
-/// What a view draws. The picture within the window, and so the answer, is the same but for pixels of M where R is
-/// empty.
+/// What a view draws. Pictures differ only in pixels of M where R is empty; answers are the same.
 enum class Drawn {
   everything,  ///< every object, whole: the naive baseline
-  wholeMask,   ///< clusters in reach, and the sensor whole: M as a picture
-  inReach      ///< clusters in reach, and of the sensor those that pass over them
+  wholeMask,   ///< clusters in reach, and the whole sensor: shows all of M
+  inReach      ///< clusters in reach, and those of the sensor that pass over them
 };
 
-/// Everything a submission needs to know of one query.
+/// A submission's data for one query.
 struct ViewPlan {
   gpu::View view{};             ///< all but `layer`
   Placed mask;                  ///< the sensor, from the far end
-  std::vector<Placed> inReach;  ///< by object; empty: certainly clear
-  std::vector<Placed> others;   ///< drawn too, only for Drawn::everything
-  std::vector<Run> runs;        ///< of all that is drawn
-  std::string outOfRange;       ///< why floats cannot hold the view: then nothing else counts; empty: they can
+  std::vector<Placed> inReach;  ///< in order of objects; empty: certainly clear
+  std::vector<Placed> others;   ///< also drawn, only for Drawn::everything
+  std::vector<Run> runs;        ///< of everything drawn
+  std::string outOfRange;       ///< why floats cannot hold the view: then the rest is invalid; empty if they can
   uint64_t triangles = 0;       ///< drawn, R and M
-  uint64_t items = 0;           ///< what the identify stage takes them in, without the others'
+  uint64_t items = 0;           ///< number of gpu::Item, without `others`
 
   std::array<Vector, 3> axes{};
   Vector corner{};  ///< world position of the window's lower left corner at the back plane
   double pixel = 0, length = 0, d = 0;
 };
 
-/// `subPixelBits`: of the device.
+/// `subPixelBits`: the device's subpixel precision.
 ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn);
 
-/// The window's longer side, pixels, where the query leaves it open: four pixels to the sensor's mean triangle edge, so
-/// that a triangle is seen by some pixel centres, in powers of two from 64 to 512.
+/// The window's longer side, pixels, if the query does not set it: four pixels to the sensor's mean triangle edge, so
+/// that some pixel centres see each triangle, in powers of two from 64 to 512.
 uint32_t chooseResolution(double windowSide, double meanEdge);
 
 }  // namespace radar

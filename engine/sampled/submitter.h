@@ -1,4 +1,4 @@
-// Records a batch of mode sampled: its pictures, its buffers, and the barriers between its stages.
+// Runs batches of mode sampled on the engine's queue. Owns the pictures and buffers.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace radar {
 
-/// What the shaders say of a batch, by view; open pairs: kOpenPairs per view. Valid until the next submission.
+/// The shaders' output, by view; kOpenPairs open pairs per view. Valid until the next submission.
 struct SampledAnswers {
   std::span<const gpu::Answer> answers;
   std::span<const gpu::OpenPair> openPairs;
@@ -25,13 +25,13 @@ struct StoredScopes {
 
 class SampledSubmitter {
  public:
-  /// `resident`: the scene's copy, shared with others of the device.
+  /// `resident`: the scene's copy, shared by users of the device.
   SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
-  /// One upload, one command buffer, one readback; returns while the device works on it, and collect() comes next, with
-  /// the same arguments. With `scopes`, the pictures of view 0 come too.
+  /// Submits one upload, one command buffer and one readback without waiting; call collect() next, with the same
+  /// arguments. `scopes`: also reads back the pictures of view 0.
   void submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes = false);
-  /// Waits for what was submitted, and adds each stage's time to `stages`.
+  /// Waits for the submission, and adds each stage's time to `stages`.
   SampledAnswers collect(const SampledBatch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
                          StoredScopes* scopes = nullptr);
 

@@ -14,19 +14,18 @@ struct FloatBox {
 };
 
 struct BoxTree {
-  /// A leaf holds the items order[first] to order[first + count - 1]; so do all leaves below an inner node together.
+  /// A leaf holds the items order[first] to order[first + count - 1]; for an inner node, the leaves below hold them.
   struct Node {
     FloatBox box;
     uint32_t first = 0, count = 0;
-    uint32_t child = 0;  ///< the left one, the right one follows; 0: a leaf
+    uint32_t child = 0;  ///< left child; the right one follows it; 0: a leaf
   };
-  std::vector<Node> nodes;      ///< the root first, children behind their parents; none without items
-  std::vector<uint32_t> order;  ///< numbers of the boxes, leaf by leaf
-  uint32_t depth = 0;           ///< nodes on the longest way from the root to a leaf
+  std::vector<Node> nodes;      ///< the root first, children after their parents; empty without items
+  std::vector<uint32_t> order;  ///< indices of the boxes, leaf by leaf
+  uint32_t depth = 0;           ///< nodes on the longest path from the root to a leaf
 };
 
-/// Leaves hold at most `leafSize` boxes, which are finite. Equal boxes give the same tree, whatever the number of
-/// threads; 0: one for each core.
+/// Leaves hold at most `leafSize` boxes. Boxes are finite. `threads`: 0: one per core; the tree does not depend on it.
 BoxTree buildBoxTree(std::span<const FloatBox> boxes, uint32_t leafSize, unsigned threads = 0);
 
 }  // namespace radar

@@ -1,4 +1,4 @@
-// A scene's copy on a device: meshes, their trees, objects and the tree over them, each kind in one buffer.
+// A scene's copy on a device: meshes, their trees, objects and the tree over them, one buffer per kind.
 #pragma once
 
 #include <memory>
@@ -16,41 +16,41 @@ class GpuScene {
 
   struct Buffers {
     gpu::TexelArray<gpu::Vertex> vertices;
-    gpu::TexelArray<gpu::Triangle> triangles;  ///< in the order of their mesh's tree
+    gpu::TexelArray<gpu::Triangle> triangles;  ///< in the order of the mesh's tree
     gpu::TexelArray<gpu::MeshNode> meshNodes;
     gpu::Array<gpu::MeshRecord> meshes;
     gpu::Array<gpu::ObjectRecord> objects;
     gpu::TexelArray<gpu::Placement> placements;
     gpu::TexelArray<gpu::ObjectNode> objectNodes;
-    gpu::Array<uint32_t> indices;  ///< 3 vertices a triangle, for drawing; empty until needIndices()
+    gpu::Array<uint32_t> indices;  ///< 3 vertices per triangle, for drawing; empty until needIndices()
   };
 
-  /// From the next prepare() on the buffer of indices is there, too.
+  /// Makes the next prepare() fill the index buffer, too.
   void needIndices() { hasIndices_ = true; }
   bool hasIndices() const { return hasIndices_; }
 
-  /// Meshes and objects that commands behind the next upload overwrite. What those behind the last one have
-  /// overwritten, and these do not, is staged as the scene has it.
+  /// Declares the meshes and objects that commands after the next upload overwrite. Those overwritten after the last
+  /// upload, and not now, are staged again from the scene.
   struct Overwritten {
     std::vector<MeshId> meshes;
     std::vector<ObjectId> objects;
   };
   void willOverwrite(Overwritten next);
 
-  /// Works out what changed and makes room for it; returns the bytes that `upload` will stage. Throws where a buffer of
-  /// the device cannot hold it.
+  /// Finds the changes and makes room for them; returns the bytes that `upload` will stage. Throws if they do not fit a
+  /// buffer of the device.
   VkDeviceSize prepare(const Scene::Impl& scene);
   /// Stages the changes found by the last `prepare`.
   void upload(const Scene::Impl& scene, gpu::Upload& upload);
-  /// What was staged has arrived: until then a failed submission leaves it to be staged again.
+  /// Marks staged changes as uploaded. Without this call, as after a failed submission, they are staged again.
   void confirm(const Scene::Impl& scene);
-  /// Brings what changed to the device, whose queue is there, and waits.
+  /// Uploads the changes and waits. The device must have a queue.
   void sync(const Scene::Impl& scene);
-  /// Nothing that was staged has arrived for certain: all of it is staged again.
+  /// Marks all uploads as uncertain: everything is staged again.
   void forget();
 
   const Buffers& buffers() const { return buffers_; }
-  /// Where a mesh is, after prepare().
+  /// A mesh's place in the buffers, after prepare().
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
 
  private:
@@ -75,7 +75,7 @@ class GpuScene {
     gpu::Upload upload;
     gpu::Submission submission;
   };
-  std::unique_ptr<Sync> sync_;  ///< made when first needed: there may be no queue
+  std::unique_ptr<Sync> sync_;  ///< made when first needed, since there may be no queue
 };
 
 }  // namespace radar

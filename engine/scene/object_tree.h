@@ -1,4 +1,4 @@
-// The bounding-volume tree over a scene's objects, as both searches walk it.
+// The bounding-volume tree over a scene's objects, for the searches on the device and on the CPU.
 #pragma once
 
 #include <array>
@@ -11,26 +11,27 @@
 
 namespace radar {
 
-/// Follows a scene: built when objects come or go, refitted when they move, rebuilt when refitting has made it bad.
+/// Follows a scene: rebuilt if objects are added or removed, refitted if they move, rebuilt if refitting has degraded
+/// it.
 class ObjectTree {
  public:
   /// Brings the tree up to date.
   void update(const Scene::Impl& scene);
 
-  /// Boxes in floats, world coordinates less anchor(), that hold the objects' world boxes. A leaf's link is kLinkLeaf
-  /// and its object's id. None where there are no objects.
+  /// Float boxes, in world coordinates minus anchor(), that contain the objects' world boxes. A leaf's link is
+  /// kLinkLeaf plus its object's id. Empty without objects.
   const std::vector<gpu::ObjectNode>& nodes() const { return nodes_; }
-  /// Amid the objects as they were when the tree was built, so that a scene far from its origin keeps its precision.
+  /// A point amid the objects when the tree was built; keeps a scene far from its origin precise.
   const Vector& anchor() const { return anchor_; }
-  /// Of all objects; empty where there are none.
+  /// The box of all objects; empty without objects.
   const Box& worldBox() const { return world_; }
-  /// Of one, world coordinates: where it is, and where a host may move it.
+  /// An object's world box, its bounds from setBounds included.
   const Box& boxOf(ObjectId object) const { return boxes_[object]; }
-  /// Nodes on the longest way from the root to a leaf.
+  /// Nodes on the longest path from the root to a leaf.
   uint32_t depth() const { return depth_; }
-  /// Whether all boxes are within the range in which floats can hold the tree (kMostCoordinate).
+  /// Whether floats can hold the tree (kMostCoordinate).
   bool inRange() const { return inRange_; }
-  /// Rises with every change of the tree; unlike that of any other.
+  /// Increases with every change of the tree; unique over all trees.
   uint64_t version() const { return version_; }
 
  private:
@@ -39,7 +40,7 @@ class ObjectTree {
   double cost() const;
 
   std::vector<gpu::ObjectNode> nodes_;
-  std::vector<Box> boxes_;  // of every object id
+  std::vector<Box> boxes_;  // by object id
   Vector anchor_{};
   Box world_;
   uint32_t depth_ = 0;
@@ -48,8 +49,8 @@ class ObjectTree {
   uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0;
 };
 
-/// Coordinates and sizes of which floats can hold squares and cubes, with room for what they are compared with: world
-/// units beyond, and below its inverse, are left to double precision.
+/// Floats hold squares and cubes of coordinates and sizes up to this, with room for the values they are compared with.
+/// Larger world coordinates, and sizes below its inverse, are left to double precision.
 inline constexpr double kMostCoordinate = 0x1p80;
 
 }  // namespace radar

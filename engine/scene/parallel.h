@@ -1,4 +1,4 @@
-// Loops on all cores.
+// Parallel loops.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,13 @@
 
 namespace radar {
 
-/// Calls work(worker, first, last) for consecutive chunks [first, last) of 0 ... count - 1, each of `chunk` numbers at
-/// most, on up to `threads` threads (0: one for each core), the caller's among them; a thread takes the next chunk when
-/// it is done with its last. `worker` is below the number of threads, and no two calls with one run at a time. What a
-/// call throws is thrown here, once all threads have ended.
+/// Calls work(worker, first, last) for consecutive chunks [first, last) of 0 ... count - 1, of at most `chunk` numbers
+/// each, on up to `threads` threads (0: one per core), including the caller's. `worker` is below the number of threads;
+/// no two calls with the same one run at a time. Rethrows an exception of a call once all threads have ended.
 void parallelFor(size_t count, size_t chunk, unsigned threads,
                  const std::function<void(unsigned worker, size_t first, size_t last)>& work);
 
-/// `threads`, or the number of cores where that is 0.
+/// `threads`, or the number of cores if it is 0.
 unsigned threadCount(unsigned threads);
 
 }  // namespace radar

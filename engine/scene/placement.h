@@ -1,4 +1,4 @@
-// A placed mesh as the device's search reads it.
+// A placed mesh for the device's search.
 #pragma once
 
 #include "scene/scene.h"
@@ -6,11 +6,11 @@
 
 namespace radar {
 
-/// All members but `mask`, `root` and `mesh`. Where floats cannot hold the mesh or its pose (kMostCoordinate), perUnit
-/// is 0.
+/// Sets all members but `mask`, `root` and `mesh`. perUnit is 0 if floats cannot hold the mesh or its pose
+/// (kMostCoordinate).
 gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh);
 
-/// Whether floats hold it.
+/// Whether floats hold the mesh and its pose.
 inline bool isInRange(const gpu::Placement& placement) {
   return placement.perUnit > 0;
 }

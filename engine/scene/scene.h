@@ -1,4 +1,4 @@
-// The scene as the engine sees it: what radar::Scene holds, and what is derived from a mesh once, when it is added.
+// The contents of radar::Scene, and the data derived from each mesh when it is added.
 #pragma once
 
 #include <array>
@@ -21,26 +21,26 @@ struct Mesh {
   std::vector<uint32_t> indices;
   bool used = false;
   bool deforms = false;  ///< a host may move its vertices, within `reach` of the origin
-  uint32_t objects = 0;  ///< how many place it
-  uint64_t version = 0;  ///< unique over all meshes of all scenes: what a device copy is compared with
+  uint32_t objects = 0;  ///< number of objects that use it
+  uint64_t version = 0;  ///< unique over all meshes of all scenes; compared with a device copy's
 
   /// Derived. A local vertex is position - origin, so that a part modelled far from its origin keeps its float
-  /// precision. The origin is of floats that make this difference exact: 0 along an axis on which the mesh spans or
-  /// nears 0, the middle on the others. One array per axis, so that loops over vertices vectorise.
+  /// precision. The origin's components are floats that make this difference exact: 0 on axes where the mesh spans or
+  /// is near 0, its middle on the others. One array per axis, so that loops over vertices vectorise.
   Vector origin{};
   std::array<std::vector<float>, 3> local;
-  Box box;                       ///< of local vertices, and of what a host may make of them
+  Box box;                       ///< of local vertices, declared bounds included
   std::array<float, 3> reach{};  ///< greatest |coordinate| in the box
   double meanEdge = 0;           ///< mean length of the triangles' edges
 
-  /// A power of two: normalised vertices, local / unit, are below 2 on all axes. Exact, since floats are binary.
+  /// A power of two such that normalised vertices, local / unit, are below 2 on all axes. The division is exact.
   double unit = 1;
   MeshTree tree;
 
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
   float normalised(uint32_t vertex, int axis) const {
-    return static_cast<float>(local[axis][vertex] * (1 / unit));  // in doubles: no float holds the inverse of 2^-149
+    return static_cast<float>(local[axis][vertex] * (1 / unit));  // in doubles: 1 / 2^-149 is no float
   }
 };
 
@@ -52,24 +52,24 @@ struct Scene::Impl {
     Object object;
     bool used = false;
   };
-  /// Unlike that of any other scene: a Scene may be moved into another's place, where versions mean nothing.
+  /// Unique. A Scene may be moved into another's place, and versions of different scenes are not comparable.
   uint64_t identity;
   std::vector<Mesh> meshes;
   std::vector<ObjectSlot> objects;
   FreeIds freeMeshes, freeObjects;  ///< the least is given next
-  /// Rise with every change of their kind; a reader that has seen the current value has nothing to do.
+  /// Increase with every change of their kind; a reader that has seen the current value is up to date.
   uint64_t meshVersion = 0;
   uint64_t structureVersion = 0;  ///< objects added or removed
   uint64_t poseVersion = 0;       ///< any object changed
   /// For each object, the poseVersion at which it last changed.
   std::vector<uint64_t> changedAt;
-  std::map<ObjectId, Box> bounds;  ///< where a host may move them, with some room; world
+  std::map<ObjectId, Box> bounds;  ///< where a host may move objects, with a margin, world coordinates
 
-  /// The tree over the objects' world boxes, up to date; built or refitted at the first call after a change. Any thread
-  /// may call it while the scene does not change.
+  /// The up-to-date tree over the objects' world boxes, built or refitted at the first call after a change. Any thread
+  /// may call this while the scene does not change.
   const ObjectTree& objectTree() const;
 
-  /// Null: nowhere.
+  /// Null if a host does not move the object.
   const Box* boundsOf(ObjectId object) const {
     const auto found = bounds.find(object);
     return found == bounds.end() ? nullptr : &found->second;
@@ -80,15 +80,14 @@ struct Scene::Impl {
   mutable ObjectTree tree_;
 };
 
-/// A box around the placed mesh, in a frame: parentFromMesh is row-major 3x4 in double precision. Holds every vertex
-/// that `place` computes and every one a shader computes from the local floats.
+/// A box around the transformed mesh. It contains every vertex that `place` computes, and every one that a shader
+/// computes from the local floats.
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 
-/// The same for a matrix that takes local vertices. What double precision loses on the way to that matrix is the
-/// caller's to add.
+/// The same for a matrix that takes local vertices. The caller adds the rounding error of that matrix.
 Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
 
-/// Of the 3x3 part.
+/// The determinant of the 3x3 part.
 double determinant(const Pose& pose);
 
 }  // namespace radar

@@ -1,4 +1,4 @@
-// A batch at hand: what a tier reads and writes of it.
+// The current batch: what tiers read and write.
 #pragma once
 
 #include <chrono>
@@ -20,12 +20,12 @@ struct Asked {
   std::span<const Query> asked;
   std::span<Result> answers;  ///< one for each query
   SweepStats stats;
-  std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its place
+  std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its index
   std::optional<Error> failure;           ///< the first Vulkan call that failed
   Clock::time_point deviceDone;
   bool timestamps = false;
 
-  /// The query has no answer, since a Vulkan call failed; throws what is another error.
+  /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
   void giveUp(size_t query, const Error& error);
   void addCpuTime(const char* name, double ms);
 };

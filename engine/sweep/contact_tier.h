@@ -1,5 +1,5 @@
-// Mode contact: where a search goes, to the device or to the processor's cores, and in which submissions. Both give the
-// same answers, to the bit.
+// Mode contact: sends each search to the device or to the CPU's cores, and divides batches into submissions. Both give
+// the same bits.
 #pragma once
 
 #include "contact/submitter.h"
@@ -10,15 +10,15 @@ namespace radar {
 
 class ContactTier {
  public:
-  /// `kernels`: null: the device's, made here unless isOnCpu().
+  /// `kernels`: null: the device's, created here unless isOnCpu().
   ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, Asked& batch);
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
-  /// Plans these queries and submits them; on return the last submission may still be with the device.
+  /// Plans and submits these queries; on return the last submission may still be running.
   void run(std::span<const size_t> which);
-  /// Waits for it, and sees to what the device had no room or range for.
+  /// Waits, and answers the queries that the device had no room or range for.
   void finish();
 
  private:
@@ -33,13 +33,13 @@ class ContactTier {
   GpuScene& resident_;
   std::shared_ptr<const ContactKernels> kernels_;
   const SearchRoom room_;
-  const size_t mostSensors_;  ///< of one submission
+  const size_t mostSensors_;  ///< per submission
   Asked& batch_;
-  std::optional<ContactSubmitter> submitter_;  ///< made when first needed: batches may all be small
+  std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   SensorBatch sensors_;
-  std::vector<size_t> planned_, flying_;  ///< the queries of `sensors_`, and those with the device
-  std::vector<size_t> cramped_;           ///< those that the device had no room for, and now has
+  std::vector<size_t> planned_, flying_;  ///< the queries in `sensors_`, and those on the device
+  std::vector<size_t> cramped_;           ///< queries to repeat, now that the device has room for them
 };
 
 }  // namespace radar

@@ -1,5 +1,5 @@
-// Mode sampled: slices of a batch, planned on the CPU, in as few submissions as fit. One of them is with the device at
-// a time; it lands before the next is staged.
+// Mode sampled: plans slices of a batch on the CPU and submits them in as few submissions as fit. One submission runs
+// at a time, and is decoded before the next is staged.
 #pragma once
 
 #include "sampled/submitter.h"
@@ -12,20 +12,20 @@ class SampledTier {
   SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               Asked& batch);
 
-  /// Plans these queries and submits them; on return the last submission may still be with the device.
+  /// Plans and submits these queries; on return the last submission may still be running.
   void run(std::span<const size_t> which);
-  /// Waits for it and decodes it.
+  /// Waits for the last submission and decodes it.
   void land();
-  /// The pictures behind the answer to a query, which keeps its contract. Nothing is with the device.
+  /// The pictures from which a valid query is answered. No submission may be running.
   Scopes scopes(const Query& query);
 
  private:
-  /// One query of a slice on its way to the device.
+  /// A planned query of a slice.
   struct Pending {
     size_t query;
     ViewPlan plan;
   };
-  /// What one submission has to hold.
+  /// The size of a submission.
   struct Load {
     uint64_t views = 0, draws = 0, items = 0;
     uint32_t resolution = 0;
@@ -44,8 +44,8 @@ class SampledTier {
   Asked& batch_;
   SampledSubmitter recorder_;
   uint64_t bufferBytes_;
-  uint64_t maxItems_;           ///< items name triangles in 32 bits
-  std::vector<size_t> flying_;  ///< the queries with the device, in the order of `drawn_.views`
+  uint64_t maxItems_;           ///< so that item and lane fit 32 bits (gpu::Candidate)
+  std::vector<size_t> flying_;  ///< the queries on the device, in the order of `drawn_.views`
   SampledBatch drawn_;
 };
 

@@ -1,4 +1,4 @@
-// A sweep in two halves: whoever has two of these encodes one batch while the device works on the other.
+// A sweep in two halves, begin() and finish(), so that two instances overlap CPU and GPU work.
 #pragma once
 
 #include "sweep/contact_tier.h"
@@ -7,14 +7,14 @@
 namespace radar {
 
 struct Sweeper::Impl : Asked {
-  /// `copy` may be shared with others of the same device and scene, used by the same thread; a scene that changed is
-  /// then brought there by sync(), while nothing is with the device. `kernels`: null: the device's.
+  /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
+  /// the scene, while nothing is running on the device. `kernels`: null: the device's.
   Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchRoom& room = {}, std::shared_ptr<const ContactKernels> kernels = nullptr);
 
   void sync();
-  /// Encodes `queries`, which keep their contracts, and submits them; on return the last submission is still with the
-  /// device. `queries` and `results`, one for each, stay where they are until finish(), which comes next.
+  /// Encodes and submits valid `queries`; on return the last submission may still be running. `queries` and `results`,
+  /// of the same length, must stay in place until finish(); call that next.
   void begin(std::span<const Query> queries, std::span<Result> results);
   void finish();
 
@@ -26,7 +26,7 @@ struct Sweeper::Impl : Asked {
   const Scene& scene;
   SweeperOptions options;
   std::shared_ptr<GpuScene> copy;
-  std::optional<SampledTier> sampledTier;  ///< made when first needed: pipelines take a while
+  std::optional<SampledTier> sampledTier;  ///< made when first needed, since pipelines take time
   ContactTier contactTier;
 };
 

@@ -1,6 +1,6 @@
-// What the contact tier's passes share with each other and with C++ (engine/contact). Units are the scene's, unless a
-// member is "scaled": then lengths are multiplied by Sensor::scale, a power of two that makes the sensor about 1 large, so
-// that floats hold what a search deals with, whatever the scene's unit.
+// Structs of the contact tier's passes, shared with C++ (engine/contact). Units are the scene's, except for "scaled"
+// members: those lengths are multiplied by Sensor::scale, a power of two that makes the sensor's size about 1, so that
+// floats suffice for a search in any unit.
 #ifndef RADAR_CONTACT_INTEROP_H
 #define RADAR_CONTACT_INTEROP_H
 
@@ -15,7 +15,7 @@ namespace gpu {
 #define INTEROP_CONST const uint
 #endif
 
-// What a search asks.
+// The input of a search.
 struct Sensor {
   Placement placement;
   Rows frame;      // world axes of the sensor's frame: across, across, along the motion
@@ -24,11 +24,11 @@ struct Sensor {
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
   float distance;  // D, scaled, rounded up
   Point halfExtent;
-  float enough;    // scaled: a contact certainly before this ends the search; below 0 unless only "within D or not" is asked
+  float enough;    // scaled: a certain contact before this ends the search; negative unless the query has `decide`
   uint mask;
-  uint firstExcluded;  // of the excluded objects' ids
+  uint firstExcluded;  // in the list of excluded objects
   uint endExcluded;
-  float unscale;  // 1 / scale; not every device divides by a power of two exactly
+  float unscale;  // 1 / scale; since some devices divide by powers of two inexactly
 };
 INTEROP_CONST kSensorTexels = 19;
 
@@ -38,42 +38,42 @@ struct Sweep {
   double direction[3];
   double directionLength;
   double distance;  // D
-  uint decides;     // only "within D or not" is asked
-  uint result;      // where its answer goes
-  float scale;      // as of the Sensor
-  float start;      // Sensor::distance: what SearchState::hi is as long as nothing is met
+  uint decides;     // the query has `decide`
+  uint result;      // index of its answer
+  float scale;      // see Sensor
+  float start;      // Sensor::distance, the initial SearchState::hi
 };
 
 struct SearchState {
-  uint hi;     // bits of a float of at least 0: first contact is certainly no later, scaled; at first Sensor::distance
+  uint hi;     // bits of a float, at least 0: upper bound on first contact, scaled; initially Sensor::distance
   uint flags;  // kSearch*
 };
 INTEROP_CONST kSearchLost = 1;        // a list was full
-INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small, beside the sensor, for floats
-INTEROP_CONST kSearchUnfinished = 4;  // the rounds recorded were not enough
+INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small relative to the sensor, for floats
+INTEROP_CONST kSearchUnfinished = 4;  // more rounds were needed than recorded
 
-// A pair of nodes, or a node of the tree over objects, that is yet to be searched.
+// A pair of nodes, or a node of the tree over objects, still to be searched.
 struct SearchTask {
   uint sensor;
   uint object;  // kNobody: `b` is a link of the tree over objects
-  uint a;       // the node that stays; or, with kLinkLeaf, the left of two children that are tried, as
-  uint b;       // the other side's
-  float gap;    // nothing below meets before, scaled
+  uint a;       // a node of the sensor's mesh; or, with kLinkLeaf, the left of two children to try
+  uint b;       // a node of the object's mesh; or, without kLinkLeaf in `a`, the left of two children to try
+  float gap;    // no contact below before this, scaled
 };
 
-// A pair of triangles that may be first, as far as floats can tell.
+// A pair of triangles that may be first, according to floats.
 struct PairCandidate {
   uint sensor;
   uint object;
   uint slotA;  // Triangle
   uint slotB;
-  float low;   // it does not meet before, scaled
+  float low;   // no contact before this, scaled
 };
 
-// One of those that may be first once the search has ended; in double precision where the device has it.
+// A pair that may still be first after the search; in double precision if the device has it.
 struct Contender {
-  double low;    // it does not meet before
-  double at;     // of the feature that certainly meets, in multiples of the direction, and how far that may be off;
+  double low;    // no contact before this
+  double at;     // contact of the certain feature, in multiples of the direction, and its error bound;
   double error;  // only if kContenderMeets
   uint sensor;
   uint object;
@@ -86,9 +86,9 @@ struct Contender {
 };
 INTEROP_CONST kContenderPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kContenderMeets = 0x200;    // certainly, no later than at + error
-INTEROP_CONST kContenderSharp = 0x100;    // certainly first at `at`, and nothing of it may come earlier
+INTEROP_CONST kContenderSharp = 0x100;    // certainly begins at `at`, no earlier
 
-// A pair that the device cannot decide, for the host: its name, its corners as given, and the object's pose.
+// A pair that the device leaves to the host: its ids, its mesh corners, and the object's pose.
 struct UnresolvedPair {
   uint sensor;
   uint object;
@@ -99,24 +99,24 @@ struct UnresolvedPair {
   PreciseRows pose;
 };
 
-// Of one round of the search.
+// Counts of one round of the search.
 struct SearchRound {
-  uint tasks;    // there are
-  uint taken;    // of these; may be more
-  uint spilled;  // left behind by those that ran out of time
+  uint tasks;    // number of tasks
+  uint taken;    // tasks taken; may exceed `tasks`
+  uint spilled;  // tasks left by invocations that ran out of budget
 };
 INTEROP_CONST kMostRounds = 64;
 
-// Of a submission.
+// Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
   uint candidates;       // found, kept up to the capacity
   uint contenders;
   uint unresolved;       // found, kept up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups
-  uint nodePairs;        // looked at; low word
+  uint nodePairs;        // tested; low word
   uint nodePairsHigh;
-  uint trianglePairs;    // that reached the triangle test
+  uint trianglePairs;    // triangle pairs tested
   uint trianglePairsHigh;
   uint solves;
   uint solvesHigh;
@@ -127,13 +127,13 @@ struct SearchPush {
   uint round;
   uint taskCapacity;
   uint candidateCapacity;
-  uint budget;  // iterations after which an invocation leaves the rest behind
-  uint width;   // fewer tasks than this are split soon
+  uint budget;  // iterations after which an invocation stops
+  uint width;   // below this number, tasks are split early
 };
 struct CollectPush {
   uint round;
   uint taskCapacity;
-  uint isLast;  // no round follows, nor is the search gone on with
+  uint isLast;  // no round follows, and the search is not continued
 };
 struct FilterPush {
   uint candidateCapacity;
@@ -158,7 +158,7 @@ INTEROP_SLOT(kSlotSweeps, 12, Sweep);
 INTEROP_SLOT(kSlotExcluded, 14, uint);
 INTEROP_SLOT(kSlotResults, 15, Result);
 INTEROP_SLOT(kSlotUnresolved, 16, UnresolvedPair);
-INTEROP_SLOT(kSlotHeads, 18, uint);  // one a sensor: its first Contender, linked by `next`, or kNobody
+INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first Contender, linked by `next`, or kNobody
 
 #ifdef __cplusplus
 }  // namespace gpu

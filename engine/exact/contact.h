@@ -53,8 +53,8 @@ int sign(const Event& event);
 int compare(const Event& p, const Event& q);
 /// -1, 0 or 1: the event's distance s * |direction| is below, equal to or above `distance`, which is not negative.
 int compareToDistance(const Event& event, double distance);
-/// The event's parameter: an approximation with a relative error below 2^-60, rounded to the nearest double. Events of
-/// the same features have the same bits.
+/// The event's parameter: the double nearest to an approximation with a relative error below 2^-60. Events of the same
+/// features have the same bits.
 double parameter(const Event& event);
 /// |direction|, rounded to the nearest double.
 double length(const Vector& direction);

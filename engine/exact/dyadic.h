@@ -1,5 +1,5 @@
-// Exact integers times powers of two, closed under sums and products of doubles. Sign and magnitude, 64-bit limbs,
-// fixed size, no allocation; only limbs in use are touched.
+// Exact integers times powers of two: sums and products of doubles, unrounded. Sign and magnitude, 64-bit limbs, fixed
+// size, no allocation; only limbs in use are touched.
 //
 // The size suffices for every expression of engine/exact over *all* finite doubles. The largest is num^2 *
 // |direction|^2 - D^2 * den^2, with num and den determinants of three differences: its unit is at least 2^-8592 and its

@@ -21,7 +21,7 @@ constexpr uint32_t groupsFor(uint64_t items, uint32_t perGroup) {
 }
 
 enum class Subgroups {
-  any,  ///< of any size, chosen by the device
+  any,  ///< of any size
   full  ///< all of Device::Impl::subgroupSize invocations: a workgroup of that size is one subgroup
 };
 

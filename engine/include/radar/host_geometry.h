@@ -47,8 +47,8 @@ struct DeformedMesh {
 /// New transforms of objects: one VkTransformMatrixKHR each (3x4 floats, row-major; also the start of an acceleration
 /// structure's instance), in this order. The box of the object's mesh, transformed in float arithmetic, lies within
 /// Scene::setBounds, or exceeds it by at most a millionth of the bounds' largest coordinate. Without Device::doubles(),
-/// a mesh whose middle, transformed, is farther than that from its own origin needs room within the bounds instead: two
-/// millionths of that distance.
+/// a mesh whose transformed middle is farther from its own origin than the bounds' largest coordinate needs room within
+/// the bounds instead: two millionths of that distance.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes

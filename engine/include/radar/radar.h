@@ -208,7 +208,7 @@ struct RADAR_API Result {
   uint32_t triA = kNone;         ///< the sensor's triangle
   uint32_t flags = 0;            ///< kFlag*: why a Recorder gave no answer; else 0
   std::array<double, 3> point;   ///< world position of the contact at the moment of contact
-  std::array<double, 3> normal;  ///< unit, from the object towards the sensor: normal . direction <= 0
+  std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
   double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
 };
@@ -263,9 +263,8 @@ struct HostDevice {
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
   /// Used to look up all Vulkan functions. Null: the system's loader.
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
-  const VkAllocationCallbacks* allocator =
-      nullptr;  ///< for every Vulkan object the engine makes; not for those the loader makes
-  VkPipelineCache pipelineCache = VK_NULL_HANDLE;  ///< for every pipeline; optional
+  const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline; optional
   /// Called around each vkQueueSubmit2, on the submitting thread. Set both if other threads use the queue too, else
   /// none.
   std::function<void()> lockQueue, unlockQueue;
@@ -299,7 +298,7 @@ struct DeviceOptions {
 /// A logical device with one queue: opened here and owned, or borrowed from a host.
 class RADAR_API Device {
  public:
-  /// Throws, listing devices and reasons, if no device or not the requested one is usable.
+  /// Throws, listing devices and reasons, if no device is usable, or the requested one is not.
   static Device open(const DeviceOptions& options = {});
   /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the error
   /// bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
@@ -315,8 +314,8 @@ class RADAR_API Device {
   /// Whether the device supports a mode: contact always; sampled needs graphics.
   bool supports(Mode mode) const;
   /// Whether the device solves pairs in double precision. It does if it has doubles and the checks at opening
-  /// (radar/arithmetic.h) found their results equal to the CPU's, bit for bit. Otherwise it solves pairs in float, with
-  /// error bounds, and the CPU decides what that leaves open: the answers are the same. Without a queue:
+  /// (radar/arithmetic.h) found the operations involved to match the CPU's, bit for bit. Otherwise it solves pairs in
+  /// float, with error bounds, and the CPU decides what that leaves open: the answers are the same. Without a queue:
   /// HostDevice::doubles, untested.
   bool doubles() const;
   const HostDevice& handles() const;
@@ -362,7 +361,7 @@ struct SweepStats {
 };
 
 /// The scopes of one query as pictures: row-major from the window's lower left corner, `width` x `height` floats, world
-/// units along the motion. NaN: R is empty, the sensor does not cover the pixel, or there is no L.
+/// units along the motion. NaN if R is empty, the sensor does not cover the pixel, or there is no L.
 struct Scopes {
   uint32_t width = 0, height = 0;
   double pixel = 0;      ///< side of a pixel, world units

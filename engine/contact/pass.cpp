@@ -130,7 +130,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   for (uint32_t i = 0; i < sensorCount_; ++i) {
     gpu::Sensor& sensor = batch.sensors[i];
     sensor.placement.root = scene_.record(sensor.placement.mesh).firstNode;
-    stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0});
+    stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
     taskList_.push_back({i, gpu::kNobody, gpu::kNobody, root, 0.0f});
   }
   gpu::SearchCounts counts{};

@@ -20,7 +20,7 @@ void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (i >= min(counts.candidates, push.candidateCapacity)) return;
   const PairCandidate c = candidates[i];
-  if (c.low > uintBitsToFloat(states[c.sensor].hi)) return;
+  if (c.low > uintBitsToFloat(states[c.sensor].hi) || c.object > states[c.sensor].least) return;
   contenders[atomicAdd(counts.contenders, 1)] = Contender(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.sensor,
                                                           c.object, c.slotA, c.slotB, 0, kNobody, c.low, 0);
 }

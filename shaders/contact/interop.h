@@ -47,6 +47,7 @@ struct Sweep {
 struct SearchState {
   uint hi;     // bits of a float, at least 0: upper bound on first contact, scaled; initially Sensor::distance
   uint flags;  // kSearch*
+  uint least;  // the least object that certainly meets at the start, or kNobody: of those, no other can be the answer
 };
 INTEROP_CONST kSearchLost = 1;        // a list was full
 INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small relative to the sensor, for floats

@@ -56,6 +56,7 @@ bool tasksLeft;
 // Of a lane.
 uint sensor, object;
 float limit;                         // nothing beyond counts, scaled
+uint least;                          // SearchState::least: no object beyond counts
 uvec3 stack[kStack];                 // as SearchTask's a, b, gap; of the tree over objects: kNobody, link, gap
 uint depth, objectDepth;             // entries in use; those of the tree over objects come first
 uvec3 current;                       // the pair to try next; x is kNobody: none
@@ -69,10 +70,15 @@ uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
 uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
 
 // Nothing beyond counts. Where only a decision is asked, a certain contact ends the search; so does what makes it fail.
-float limitOf(uint s, float enoughOfS) {
-  const SearchState state = states[s];
+float limitOf(SearchState state, float enoughOfS) {
   const float hi = uintBitsToFloat(state.hi);
   return hi < enoughOfS || state.flags != 0 ? -1.0 : hi;
+}
+
+// For an object: where another with a lesser number meets at the start, it cannot be the answer.
+float limitOf(uint s, uint objectB) {
+  const SearchState state = states[s];
+  return objectB > state.least ? -1.0 : limitOf(state, sensorTexel(s, kTexelHalfExtent).w);
 }
 
 void pushLeaves(bool has, Node a, Node b, float gap) {
@@ -113,7 +119,8 @@ void loadSensor() {
 uint begin(SearchTask task) {
   sensor = task.sensor;
   loadSensor();
-  if (task.gap > limitOf(sensor, enough)) return kNobody;
+  const SearchState state = states[sensor];
+  if (task.gap > limitOf(state, enough) || (task.object != kNobody && task.object > state.least)) return kNobody;
   if (task.object == kNobody) {
     stack[0] = uvec3(kNobody, task.b, floatBitsToUint(task.gap));
     depth = objectDepth = 1;
@@ -178,7 +185,7 @@ void spill() {
       }
     }
     current.x = kNobody;
-    const bool keeps = has && uintBitsToFloat(entry.z) <= limit;
+    const bool keeps = has && uintBitsToFloat(entry.z) <= limit && (named == kNobody || named <= least);
     const uvec4 who = subgroupBallot(keeps);
     uint first = 0;
     if (subgroupElect()) first = atomicAdd(counts.rounds[push.round].spilled, subgroupBallotBitCount(who));
@@ -205,7 +212,7 @@ uint findObjects(uint named) {
     if (searching) {
       const uvec3 entry = stack[--depth];
       const bool near = uintBitsToFloat(entry.z) <= limit, leaf = isLeaf(entry.y);
-      if (near && leaf) named = entry.y & kLinkItem;
+      if (near && leaf && (entry.y & kLinkItem) <= least) named = entry.y & kLinkItem;
       const int t = near && !leaf ? int(2 * entry.y) : 0;
       const uvec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
       const vec2 at0 = meetsBox(box, uintBitsToFloat(x0), uintBitsToFloat(texelFetch(objectNodeTexels, t + 1))),
@@ -280,7 +287,7 @@ void descend() {
     bool leaves0 = false, leaves1 = false;
     Node a0, a1, b0, b1;
     Approach at0, at1;
-    const bool near = tries && uintBitsToFloat(current.z) <= limit;
+    const bool near = tries && uintBitsToFloat(current.z) <= limit && object <= least;
     if (near) {
       ++nodePairs;
       const bool intoA = isLeaf(current.x);
@@ -325,7 +332,7 @@ void tryLeaves(bool all) {
     uvec4 entry = uvec4(0);
     if (at < leafTail) {
       entry = leafQueue[at % kQueue];
-      const float bound = limitOf(entry.w, sensorTexel(entry.w, kTexelHalfExtent).w);
+      const float bound = limitOf(entry.w, entry.z);
       if (leafGaps[at % kQueue] <= bound) {
         ++trianglePairs;
         const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
@@ -373,10 +380,11 @@ void solvePairs(bool all) {
       const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
       const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(m.earliest, m.unknown), 0.0);
-      float bound = limitOf(pair.w, sensorTexel(pair.w, kTexelHalfExtent).w);
+      float bound = limitOf(pair.w, pair.z);
       // A subnormal number might be taken for 0 later.
       const float by = m.ahead ? max(m.by, 1e-37) : kMiss;
       if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
+      if (m.ahead && m.by < 0.0) atomicMin(states[pair.w].least, pair.z);
       bound = min(bound, by);
       keeps = m.latest >= 0.0 && low <= bound;
     }
@@ -410,6 +418,7 @@ void main() {
   sensor = object = depth = objectDepth = 0;
   current = uvec3(kNobody, 0, 0);
   limit = scale = unscale = enough = 0.0;
+  least = kNobody;
   nodePairs = trianglePairs = solves = 0;
   bool last = false;
   while (!last) {
@@ -418,7 +427,8 @@ void main() {
       ++work;
       uint named = takeTasks();
       named = shareTasks(named);
-      limit = limitOf(sensor, enough);
+      limit = limitOf(states[sensor], enough);
+      least = states[sensor].least;
       named = findObjects(named);
       enterObjects(named);
       descend();

@@ -147,7 +147,7 @@ const std::vector<Expected>& sharedStructs() {
        sizeof(Sweep),
        {MEMBER(Sweep, pose), MEMBER(Sweep, direction), MEMBER(Sweep, directionLength), MEMBER(Sweep, distance),
         MEMBER(Sweep, decides), MEMBER(Sweep, result), MEMBER(Sweep, scale), MEMBER(Sweep, start)}},
-      {"SearchState", sizeof(SearchState), {MEMBER(SearchState, hi), MEMBER(SearchState, flags)}},
+      {"SearchState", sizeof(SearchState), {MEMBER(SearchState, hi), MEMBER(SearchState, flags), MEMBER(SearchState, least)}},
       {"SearchTask",
        sizeof(SearchTask),
        {MEMBER(SearchTask, sensor), MEMBER(SearchTask, object), MEMBER(SearchTask, a), MEMBER(SearchTask, b),

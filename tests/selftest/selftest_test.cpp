@@ -93,9 +93,10 @@ TEST_CASE("a wrong answer, a wrong bit and a part that failed make the report sa
   CHECK_THAT(textOf(report), Contains("failed: vkQueueSubmit2 failed"));
 }
 
-TEST_CASE("a selftest can be read whenever it is interrupted, and every part has what there was time for") {
+TEST_CASE("a selftest can be read whenever it is interrupted, and every part has at least its first row") {
   SelftestReport report;
-  lookAtDevices({.minutes = 0.15}, report);
+  // So little that every part is over when it begins: what is measured does not depend on the machine.
+  lookAtDevices({.minutes = 1e-6}, report);
   REQUIRE(report.devices.size() == 2);
   std::vector<Part> begun;
   runSelftest(report, [&] {
@@ -150,6 +151,8 @@ TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
   refused("--out file", "expected a folder");
   refused("--device 99 --out none", "device 99 does not exist");
   refused("--device some --out none", "--device");
+  refused("--device 1,1 --out none", "device 1 is named twice");
   refused("--minutes 0 --out none", "--minutes");
+  refused("--minutes nan --out none", "--minutes");
   refused("", "--out");
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -47,6 +48,8 @@ void tellProgress(const SelftestReport& report) {
 
 int selftest(Options options) {
   options.settings.devices = devicesFrom(options.device);
+  // A range check of the parser lets through what is not a number.
+  if (std::isnan(options.settings.minutes)) throw InputError("--minutes", "nan", "expected a number of minutes");
   const std::filesystem::path folder = options.out;
   std::error_code error;
   std::filesystem::create_directories(folder, error);

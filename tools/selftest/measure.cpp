@@ -95,8 +95,9 @@ class Race {
 
 // Whether so many queries, at the pace of the last batch, fit in what is left.
 bool fits(const std::vector<ThroughputRow>& rows, const char* workload, uint64_t queries, const Deadline& deadline) {
+  if (rows.empty()) return true;
   if (deadline.isOver()) return false;
-  if (rows.empty() || rows.back().workload != workload) return true;
+  if (rows.back().workload != workload) return true;
   const double us = rows.back().deviceUs + rows.back().cpuUs;
   return 1e-6 * us * static_cast<double>(queries) < deadline.left();
 }
@@ -208,7 +209,7 @@ bool measureExactness(const Device& device, uint32_t number, const Deadline& dea
         variant.asking = std::make_unique<RandomQueries>(*variant.own);
       }
       for (size_t f = 0; f < families.size(); ++f) {
-        if (deadline.isOver()) return round > 0;
+        if (deadline.isOver() && !rows.empty()) return round > 0;
         if (round == 0) rows.push_back({families[f], variant.doubles, {}});
         rows[v * families.size() + f].tally.add(variant.asking->run(
             {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const std::string&) {}, [](uint64_t) {}));

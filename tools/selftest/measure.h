@@ -1,5 +1,5 @@
-// The measurements of a selftest. Each stops at its deadline, with what it has by then; it returns false if the
-// deadline kept it from something.
+// The measurements of a selftest. Each makes its first row whatever the time is, and stops at its deadline; it returns
+// false if the deadline kept it from something.
 #pragma once
 
 #include <chrono>
@@ -20,8 +20,8 @@ class Deadline {
   std::chrono::steady_clock::time_point end_;
 };
 
-/// Random queries of all families in turn, with doubles where the device has them and without, until the time is up:
-/// at the least each family is asked once.
+/// Random queries of all families in turn, with doubles where the device has them and without, until the time is up.
+/// Returns true once every family has been asked.
 bool measureExactness(const Device& device, uint32_t number, const Deadline& deadline, std::vector<ExactnessRow>& rows);
 
 /// Batches of 1 to 10^6 small sensors among 30,000 boxes (light), of teapots (heavy), and of teapots that all move from

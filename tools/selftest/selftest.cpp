@@ -55,6 +55,9 @@ void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
   std::vector<std::string> reasons;
   bool isSomeUsable = false;
   for (const uint32_t number : numbers) {
+    if (std::count(numbers.begin(), numbers.end(), number) > 1) {
+      throw Error("device " + std::to_string(number) + " is named twice");
+    }
     if (number >= all.size()) {
       throw Error("device " + std::to_string(number) + " does not exist: there are " + std::to_string(all.size()));
     }

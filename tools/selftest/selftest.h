@@ -100,8 +100,8 @@ struct SelftestSettings {
   double minutes = 5;             ///< in all
 };
 
-/// Fills in the facts of every device asked for. Throws Error if one does not exist, or none is usable; one that is not
-/// usable stays in the report, with its reasons.
+/// Fills in the facts of every device asked for. Throws Error if one does not exist or is named twice, or if none is
+/// usable. A device that is not usable stays in the report, with its reasons.
 void lookAtDevices(const SelftestSettings& settings, SelftestReport& report);
 
 /// Makes every part on every usable device of `report`; `onChange` is called whenever a part begins or ends.

@@ -3,18 +3,13 @@
 #include <catch2/catch.hpp>
 
 #include "agreement/compare.h"
+#include "report/median.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
 using test::Tally;
-
-double median(std::vector<double> values) {
-  REQUIRE_FALSE(values.empty());
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 }  // namespace
 
@@ -34,14 +29,14 @@ TEST_CASE("at 256 nearly all contacts of Table 1 are found, less than a pixel la
       test::compareWithReference(tools::makeWorkload(tools::Table1{.boxes = 10'000, .shape = shape}), 256);
   CAPTURE(tally.contacts, tally.found);
   CHECK(tally.found >= 0.95 * tally.contacts);
-  CHECK(median(tally.excessInPixels) < 1);
+  CHECK(tools::median(tally.excessInPixels) < 1);
 }
 
 TEST_CASE("at 256 nearly all contacts of Figure 7 are found, less than a pixel late") {
   const Tally tally = test::compareWithReference(tools::makeWorkload(tools::Figure7{.teapots = 10, .steps = 12}), 256);
   CAPTURE(tally.contacts, tally.found);
   CHECK(tally.found >= 0.95 * tally.contacts);
-  CHECK(median(tally.excessInPixels) < 1);
+  CHECK(tools::median(tally.excessInPixels) < 1);
 }
 
 TEST_CASE("the error falls as the resolution grows") {

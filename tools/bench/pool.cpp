@@ -8,6 +8,7 @@
 #include "commit/commit.h"
 #include "gpu/device.h"
 #include "radar/pool.h"
+#include "report/median.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -17,11 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> times) {
-  std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
-  return times[times.size() / 2];
 }
 
 template <class Work>
@@ -50,8 +46,8 @@ void overhead(const Device& device, const Scene& scene, std::vector<Query> queri
     plain.push_back(one);
     pooled.push_back(other);
   }
-  std::printf("%-10s sweeper %9.3f ms, pool of one device %9.3f ms: %+.1f%%\n", scenario.name, median(plain),
-              median(pooled), 100 * (median(pooled) / median(plain) - 1));
+  std::printf("%-10s sweeper %9.3f ms, pool of one device %9.3f ms: %+.1f%%\n", scenario.name, tools::median(plain),
+              tools::median(pooled), 100 * (tools::median(pooled) / tools::median(plain) - 1));
 }
 
 /// The device takes `factor` times as long: what its thread waits, it waits again.
@@ -82,7 +78,7 @@ void unequal(std::span<const Device> devices, const Scene& scene, const std::vec
     }
   }
   devices[1].impl().fault = nullptr;
-  const double a = median(times[0]), b = median(times[1]), ab = median(times[2]);
+  const double a = tools::median(times[0]), b = tools::median(times[1]), ab = tools::median(times[2]);
   std::printf(
       "%zu queries, second device %.0f times slower: alone %.1f ms and %.1f ms, together %.1f ms: %.0f%% of the "
       "ideal\n",

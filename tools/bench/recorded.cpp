@@ -11,6 +11,7 @@
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
+#include "report/median.h"
 #include "scene/scene.h"
 #include "workloads/generate.h"
 
@@ -21,11 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kRepeats = 15;
 constexpr Capacity kRoom{.queries = 64, .candidates = 1u << 16, .openPairs = 1u << 14};
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -136,10 +132,10 @@ int main() {
       const Result &p = way.results[i], &q = ways[0].results[i];
       unequal += p.status == Status::clear ? q.status != p.status : std::memcmp(&p, &q, sizeof(Result)) != 0;
     }
-    std::printf(
-        "  %-20s recording %7.3f  executing %7.3f  of standing %5.2f  (%zu hits, %zu answers differ)\n", way.label,
-        median(way.recording), median(way.executing),
-        (median(way.recording) + median(way.executing)) / (median(ways[0].recording) + median(ways[0].executing)), hits,
-        unequal);
+    std::printf("  %-20s recording %7.3f  executing %7.3f  of standing %5.2f  (%zu hits, %zu answers differ)\n",
+                way.label, tools::median(way.recording), tools::median(way.executing),
+                (tools::median(way.recording) + tools::median(way.executing)) /
+                    (tools::median(ways[0].recording) + tools::median(ways[0].executing)),
+                hits, unequal);
   }
 }

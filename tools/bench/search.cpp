@@ -14,9 +14,11 @@
 #include "commit/commit.h"
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
+#include "report/median.h"
 #include "workloads/drop_cutter.h"
 #include "workloads/generate.h"
 #include "workloads/interlocking.h"
+#include "workloads/same_answer.h"
 
 namespace {
 
@@ -99,11 +101,6 @@ double secondsOf(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 struct Way {
   const char* name;
   std::function<std::vector<Result>(std::span<const Query>)> run;
@@ -115,14 +112,6 @@ struct Way {
 struct Measured {
   double us, hostUs;
 };
-
-/// Of the numbers that both have, and of what they name.
-bool sameAnswer(const Result& a, const Result& b) {
-  const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
-  bool all = a.status == b.status && a.object == b.object && a.triA == b.triA && a.triB == b.triB && same(a.t, b.t);
-  for (int k = 0; k < 3; ++k) all = all && same(a.point[k], b.point[k]) && same(a.normal[k], b.normal[k]);
-  return all;
-}
 
 class Bench {
  public:
@@ -226,10 +215,10 @@ class Bench {
     const Way &contact = ways[0], &device = ways[1], &cpu = ways[2], &one = ways[3];
     size_t differ = 0;
     for (const Way& way : ways) {
-      for (size_t i = 0; i < one.answers.size(); ++i) differ += !sameAnswer(way.answers[i], one.answers[i]);
+      for (size_t i = 0; i < one.answers.size(); ++i) differ += !tools::sameAnswer(way.answers[i], one.answers[i]);
     }
-    const double ofContact = median(contact.us), ofDevice = median(device.us), host = median(device.hostUs),
-                 ofCpu = median(cpu.us), ofOne = median(one.us);
+    const double ofContact = tools::median(contact.us), ofDevice = tools::median(device.us),
+                 host = tools::median(device.hostUs), ofCpu = tools::median(cpu.us), ofOne = tools::median(one.us);
     std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7zu\n", name.c_str(), batch, ofContact,
                 ofDevice, host, ofCpu, ofOne, ofDevice / ofCpu, ofContact / ofCpu, differ);
     std::fflush(stdout);

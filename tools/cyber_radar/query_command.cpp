@@ -10,6 +10,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
+#include "report/median.h"
 
 namespace radar::tools {
 
@@ -30,12 +31,6 @@ struct Options {
   uint32_t repeat = 1;
   bool measure = false;
 };
-
-double medianOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 std::string statsOf(const Workload& workload, const Answering& answering, const Answering::Pass& pass, double loadMs,
                     double setupMs, double sweepMs) {
@@ -97,7 +92,7 @@ int query(const Options& options) {
     Answering profile(workload, engine);
     profile.setUp();
     pass.stages = profile.run("measuring stages").stages;
-    writeWhole(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, medianOf(times)));
+    writeWhole(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, median(times)));
   }
   const std::string lines = linesOf(workload, pass.answers);
   if (options.out.empty()) {

@@ -8,7 +8,9 @@
 
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
+#include "report/median.h"
 #include "workloads/generate.h"
+#include "workloads/same_answer.h"
 
 namespace radar::tools {
 
@@ -23,18 +25,6 @@ double secondsOf(const std::function<void()>& work) {
   const Clock::time_point start = Clock::now();
   work();
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-bool sameAnswer(const Result& a, const Result& b) {
-  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
-  bool all = a.status == b.status && a.object == b.object && a.triA == b.triA && a.triB == b.triB && same(a.t, b.t);
-  for (int k = 0; k < 3; ++k) all = all && same(a.point[k], b.point[k]) && same(a.normal[k], b.normal[k]);
-  return all;
 }
 
 // The first `count` queries of one scene's, over and over.

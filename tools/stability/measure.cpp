@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "radar/cpu_sweeper.h"
+#include "report/median.h"
 #include "stability/promises.h"
 #include "workloads/workload.h"
 
@@ -13,13 +14,6 @@ namespace radar::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// What a row's medians are taken of.
 struct Filling {
@@ -187,8 +181,8 @@ void Measuring::run(const StabilityFamily& family, uint64_t cases, const std::fu
     return std::pair(a.row.method, a.row.resolution) < std::pair(b.row.method, b.row.resolution);
   });
   for (Filling& filled : fillings_) {
-    filled.row.width = medianOf(std::move(filled.widths));
-    filled.row.microseconds = medianOf(std::move(filled.microseconds));
+    filled.row.width = median(std::move(filled.widths));
+    filled.row.microseconds = median(std::move(filled.microseconds));
     report_.rows.push_back(filled.row);
   }
 }

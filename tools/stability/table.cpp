@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/median.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -51,11 +52,9 @@ const std::vector<std::string> kHeads{"tier, pixels", "cases",   "contacts",  "m
                                       "late",         "early",   "brackets",  "otherwise",   "width",
                                       "select %",     "pict. %", "contact %", "undecided %", "us a query"};
 
-double medianOf(std::vector<double> values) {
+double medianOfNumbers(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return NAN;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
+  return median(std::move(values));
 }
 
 }  // namespace
@@ -146,8 +145,8 @@ std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows) {
     times[at].push_back(row.microseconds);
   }
   for (size_t i = 0; i < all.size(); ++i) {
-    all[i].width = medianOf(widths[i]);
-    all[i].microseconds = medianOf(times[i]);
+    all[i].width = medianOfNumbers(widths[i]);
+    all[i].microseconds = medianOfNumbers(times[i]);
   }
   return all;
 }

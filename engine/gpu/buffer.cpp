@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "gpu/check.h"
+#include "gpu/limit_error.h"
 
 namespace radar::gpu {
 
@@ -118,8 +119,8 @@ void TexelBuffer::makeView() {
 
 bool TexelBuffer::reserve(VkDeviceSize bytes) {
   if (bytes > maxBytes()) {
-    throw Error(std::string(buffer_.name()) + ": " + std::to_string((bytes + texelBytes_ - 1) / texelBytes_) +
-                " texels, but the device's maxTexelBufferElements is " + std::to_string(maxBytes() / texelBytes_));
+    throw LimitError(std::string(buffer_.name()) + ": " + std::to_string((bytes + texelBytes_ - 1) / texelBytes_) +
+                     " texels, but the device's maxTexelBufferElements is " + std::to_string(maxBytes() / texelBytes_));
   }
   const bool grew = buffer_.reserve(bytes);
   if (grew) view_ = {};

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "gpu/barrier.h"
+#include "gpu/limit_error.h"
 #include "scene/placement.h"
 
 namespace radar {
@@ -22,8 +23,8 @@ template <class T>
 void refuseAbove(const Device::Impl& device, const char* what, uint64_t count) {
   const uint64_t bytes = count * sizeof(T), limit = device.properties.limits.maxStorageBufferRange;
   if (bytes <= limit) return;
-  throw Error(std::string("the scene's ") + what + " need a buffer of " + std::to_string(bytes) +
-              " bytes, the device allows " + std::to_string(limit));
+  throw gpu::LimitError(std::string("the scene's ") + what + " need a buffer of " + std::to_string(bytes) +
+                        " bytes, the device allows " + std::to_string(limit));
 }
 
 void copyPoint(const Vector& from, float (&to)[3]) {
@@ -89,7 +90,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
   }
   refuseAbove<gpu::MeshRecord>(*device_, "meshes", records_.size());
   if (vertices > gpu::kLinkItem || triangles > gpu::kLinkItem || nodes > gpu::kLinkItem) {
-    throw Error("the scene's meshes exceed 2^30 vertices, triangles or nodes");
+    throw gpu::LimitError("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
   buffers_.vertices.reserve(vertices);
   buffers_.triangles.reserve(triangles);

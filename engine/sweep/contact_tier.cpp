@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gpu/limit_error.h"
 #include "scene/parallel.h"
 
 namespace radar {
@@ -111,13 +112,10 @@ void ContactTier::submit() {
   try {
     if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
     submitter_->submit(sensors_, scene_.impl());
+  } catch (const gpu::LimitError&) {
+    answerOnCpu(std::exchange(flying_, {}));
   } catch (const Error& error) {
-    const std::vector<size_t> grounded = std::exchange(flying_, {});
-    if (error.result == VK_SUCCESS) {  // no call failed: the device's limits are too small for the scene
-      answerOnCpu(grounded);
-    } else {
-      for (const size_t query : grounded) batch_.giveUp(query, error);
-    }
+    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
   }
   sensors_.clear();
 }

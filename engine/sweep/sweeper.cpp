@@ -3,6 +3,8 @@
 
 #include <cassert>
 
+#include "gpu/limit_error.h"
+
 namespace radar {
 
 Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given,
@@ -52,9 +54,8 @@ void Sweeper::Impl::sync() {
   }
   try {
     copy->sync(scene.impl());
-  } catch (const Error& error) {
-    // Where the device's limits are too small for the scene, the CPU answers mode contact.
-    if (error.result != VK_SUCCESS || copy->hasIndices()) throw;
+  } catch (const gpu::LimitError&) {
+    if (copy->hasIndices()) throw;  // mode sampled draws it; mode contact is answered on the CPU
   }
 }
 

@@ -6,6 +6,8 @@
 #include <deque>
 #include <random>
 
+#include "embed/host_format.h"
+#include "embed/host_geometry.h"
 #include "embed/on_device.h"
 #include "embed/renderer.h"
 #include "exact/dyadic.h"
@@ -13,8 +15,6 @@
 #include "radar/recorder.h"
 #include "support/buffer_words.h"
 #include "support/exact_placement.h"
-#include "embed/host_format.h"
-#include "embed/host_geometry.h"
 #include "workloads/families.h"
 #include "workloads/shapes.h"
 

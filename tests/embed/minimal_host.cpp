@@ -14,7 +14,8 @@ int main() {
   radar::HostDevice host{.instance = instance, .doubles = false, .getInstanceProcAddr = vkGetInstanceProcAddr};
   uint32_t count = 1;
   vkEnumeratePhysicalDevices(instance, &count, &host.physicalDevice);
-  for (const std::string& reason : radar::reasonsAgainst(host, radar::Mode::contact)) std::printf("this device %s\n", reason.c_str());
+  for (const std::string& reason : radar::reasonsAgainst(host, radar::Mode::contact))
+    std::printf("this device %s\n", reason.c_str());
 
   radar::Requirements needed = radar::requirements(radar::Mode::contact, host.doubles);
   const float priority = 1;

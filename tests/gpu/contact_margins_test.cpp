@@ -7,8 +7,8 @@
 #include "contact/sensors.h"
 #include "gpu/contact_margins_interop.h"
 #include "gpu/kernel_fixture.h"
-#include "scene/gpu_scene.h"
 #include "math/rounding.h"
+#include "scene/gpu_scene.h"
 #include "spirv/contact_margins_comp.h"
 #include "workloads/shapes.h"
 

@@ -74,7 +74,8 @@ struct Raster {
     }
   }
 
-  void addAt(size_t at, const Vector& centre, const Vector (&p)[3], double sign, double error, double snap, double pixel) {
+  void addAt(size_t at, const Vector& centre, const Vector (&p)[3], double sign, double error, double snap,
+             double pixel) {
     int left = 0, right = 0;
     for (int i = 0; i < 3; ++i) {
       const Vector &a = p[i], &b = p[(i + 1) % 3];

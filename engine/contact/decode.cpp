@@ -28,14 +28,14 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
   ExactPairs exact(query);
   for (const gpu::UnresolvedPair* pair : pairs) {
     exact.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query));
-    if (query.decide && exact.found()) break;
+    if (query.anyHit && exact.found()) break;
   }
   Result result;
   result.tier = Tier::contact;
   result.status = Status::clear;
   if (!exact.found()) {
     if (found.detected == Detected::yes) throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
-  } else if (query.decide) {
+  } else if (query.anyHit) {
     result.status = Status::hit;
     result.detected = Detected::yes;
     result.lo = 0;

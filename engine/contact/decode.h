@@ -21,8 +21,8 @@ class UnresolvedPairs {
   std::vector<const gpu::UnresolvedPair*> ordered_;
 };
 
-/// The answer to a query whose device answer `found` has the flag kFlagOpen; `pairs` are all that may be first. For a
-/// query with `decide`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search met
+/// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
+/// For a query with `anyHit`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search met
 /// something that is not among `pairs`.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query);
 

@@ -10,9 +10,10 @@ namespace radar {
 
 namespace {
 
-exact::Triangle corners(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
+exact::Triangle corners(const Mesh& mesh, const Transform& pose, uint32_t triangle) {
   exact::Triangle p;
-  for (int i = 0; i < 3; ++i) p[i] = place(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
+  for (int i = 0; i < 3; ++i)
+    p[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
   std::sort(p.begin(), p.end());
   return p;
 }
@@ -26,12 +27,12 @@ PlacedPair placedPair(const PairName& name, const Query& query, const Scene::Imp
 }
 
 PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query) {
-  Pose pose;
+  Transform pose;
   std::copy(std::begin(pair.pose), std::end(pair.pose), pose.m.begin());
   PlacedPair placed;
   for (int i = 0; i < 3; ++i) {
-    placed.a[i] = place(query.worldFromMesh, pair.a[i]);
-    placed.b[i] = place(pose, pair.b[i]);
+    placed.a[i] = transformPoint(query.worldFromMesh, pair.a[i]);
+    placed.b[i] = transformPoint(pose, pair.b[i]);
   }
   std::sort(placed.a.begin(), placed.a.end());
   std::sort(placed.b.begin(), placed.b.end());

@@ -16,17 +16,17 @@
 // collect   tasks                                  counts, states, the other     computeWriteToComputeReadWrite
 //   (rounds of both)                               list of tasks
 //                                                                                computeWriteToIndirect
-// filter    states, counts, candidates             counts, contenders            computeWriteToComputeReadWrite
-// refine    scene, sweeps, counts                  contenders, states            computeWriteToComputeReadWrite
+// filter    states, counts, candidates             counts, refined pairs            computeWriteToComputeReadWrite
+// refine    scene, sweeps, counts                  refined pairs, states            computeWriteToComputeReadWrite
 //   (where the device has doubles)
-// link      states, counts                         contenders, heads             computeWriteToComputeReadWrite
+// link      states, counts                         refined pairs, heads             computeWriteToComputeReadWrite
 // resolve   scene, sweeps, states, heads,          counts, results, unresolved   (the caller's)
-//           contenders
+//           refined pairs
 
 namespace radar {
 
+using gpu::BufferDomain;
 using gpu::bytesOf;
-using gpu::Residence;
 using gpu::Upload;
 
 namespace {
@@ -55,18 +55,18 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
       kernels_(std::move(kernels)),
       room_(room),
       upload_(device),
-      sensors_(device, "sensors", Residence::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
-      sweeps_(device, "sweeps", Residence::device, kUploaded),
-      states_(device, "search states", Residence::device, kUploaded),
-      heads_(device, "contender lists", Residence::device, kUploaded),
-      excluded_(device, "excluded objects", Residence::device, kUploaded),
-      tasks_(device, "search tasks", Residence::device, kUploaded),
-      spilled_(device, "spilled search tasks", Residence::device),
-      candidates_(device, "pair candidates", Residence::device),
-      contenders_(device, "contenders", Residence::device),
-      counts_(device, "search counts", Residence::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
-      results_(device, "results", Residence::device, kReadBack),
-      unresolved_(device, "unresolved pairs", Residence::readback),
+      sensors_(device, "sensors", BufferDomain::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
+      sweeps_(device, "sweeps", BufferDomain::device, kUploaded),
+      states_(device, "search states", BufferDomain::device, kUploaded),
+      heads_(device, "refined pair lists", BufferDomain::device, kUploaded),
+      excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
+      tasks_(device, "search tasks", BufferDomain::device, kUploaded),
+      spilled_(device, "spilled search tasks", BufferDomain::device),
+      candidates_(device, "candidate pairs", BufferDomain::device),
+      refinedPairs_(device, "refined pairs", BufferDomain::device),
+      counts_(device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
+      results_(device, "results", BufferDomain::device, kReadBack),
+      unresolved_(device, "unresolved pairs", BufferDomain::readback),
       search_{gpu::KernelArguments(kernels_->search), gpu::KernelArguments(kernels_->search)},
       collect_{gpu::KernelArguments(kernels_->collect), gpu::KernelArguments(kernels_->collect)},
       filter_(kernels_->filter),
@@ -95,12 +95,12 @@ void ContactPass::reserveLists(uint32_t sensors) {
       room_.unresolved != 0 ? room_.unresolved
                             : std::clamp(std::max(kUnresolved * sensors, wantedUnresolved_), 4096u, kMostUnresolved);
   taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
-  candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::Contender)));
+  candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::RefinedPair)));
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
   tasks_.reserve(taskRoom_);
   spilled_.reserve(taskRoom_);
   candidates_.reserve(candidateRoom_);
-  contenders_.reserve(candidateRoom_);
+  refinedPairs_.reserve(candidateRoom_);
   unresolved_.reserve(unresolvedRoom_);
 }
 
@@ -149,7 +149,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
 
 void ContactPass::stageMore(const gpu::SearchCounts& before) {
   gpu::SearchCounts counts = before;
-  counts.contenders = counts.unresolved = 0;
+  counts.refinedPairs = counts.unresolved = 0;
   const uint32_t tasks = tasksLeft(before);
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;
@@ -172,28 +172,28 @@ void ContactPass::setArguments() {
                     {kSlotCounts, counts_},
                     {kSlotTasks, from},
                     {kSlotSpilled, to},
-                    {kSlotPairCandidates, candidates_},
+                    {kSlotCandidatePairs, candidates_},
                     {kSlotExcluded, excluded_}});
     collect_[i].set({{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
   }
   filter_.set({{kSlotStates, states_},
                {kSlotCounts, counts_},
-               {kSlotPairCandidates, candidates_},
-               {kSlotContenders, contenders_}});
+               {kSlotCandidatePairs, candidates_},
+               {kSlotRefinedPairs, refinedPairs_}});
   if (refine_) {
     refine_->set({{kSlotStates, states_},
                   {kSlotCounts, counts_},
-                  {kSlotContenders, contenders_},
+                  {kSlotRefinedPairs, refinedPairs_},
                   {kSlotVertices, scene.vertices},
                   {kSlotTriangles, scene.triangles},
                   {kSlotSweeps, sweeps_},
                   {kSlotObjects, scene.objects}});
   }
-  link_.set({{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotContenders, contenders_}});
+  link_.set({{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
   resolve_.set({{kSlotStates, states_},
                 {kSlotHeads, heads_},
                 {kSlotCounts, counts_},
-                {kSlotContenders, contenders_},
+                {kSlotRefinedPairs, refinedPairs_},
                 {kSlotVertices, scene.vertices},
                 {kSlotTriangles, scene.triangles},
                 {kSlotSweeps, sweeps_},

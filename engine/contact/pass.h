@@ -70,8 +70,8 @@ class ContactPass {
   gpu::Array<gpu::SearchState> states_;
   gpu::Array<uint32_t> heads_, excluded_;
   gpu::Array<gpu::SearchTask> tasks_, spilled_;
-  gpu::Array<gpu::PairCandidate> candidates_;
-  gpu::Array<gpu::Contender> contenders_;
+  gpu::Array<gpu::CandidatePair> candidates_;
+  gpu::Array<gpu::RefinedPair> refinedPairs_;
   gpu::Array<gpu::SearchCounts> counts_;
   gpu::Array<Result> results_;
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used

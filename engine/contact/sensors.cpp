@@ -74,7 +74,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sensor.scale = static_cast<float>(scale);
   sensor.unscale = static_cast<float>(1 / scale);
   sensor.distance = roundUp(distance);
-  sensor.enough = query.decide ? roundDown(distance) : -1.0f;
+  sensor.enough = query.anyHit ? roundDown(distance) : -1.0f;
   setBox(sensor, box, tree.anchor(), farthest);
   sensor.mask = query.mask;
   sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
@@ -87,7 +87,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   std::copy(direction.begin(), direction.end(), sweep.direction);
   sweep.directionLength = exact::length(direction);
   sweep.distance = query.distance;
-  sweep.decides = query.decide ? 1 : 0;
+  sweep.anyHit = query.anyHit ? 1 : 0;
   sweep.result = result;
   sweep.scale = sensor.scale;
   sweep.start = sensor.distance;

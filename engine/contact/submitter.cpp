@@ -27,7 +27,7 @@ ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, 
     : scene_(scene),
       submission_(device, timestamps),
       pass_(device, scene, std::move(kernels), room),
-      readback_(device, "contact readback", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+      readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {
   return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());

@@ -23,7 +23,7 @@ void CpuSweeper::sync() {
 
 std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (const std::string wrong = whatIsWrong(queries[i], impl_->scene); !wrong.empty()) {
+    if (const std::string wrong = validate(queries[i], impl_->scene); !wrong.empty()) {
       throw Error("run: query " + std::to_string(i) + ": " + wrong);
     }
   }

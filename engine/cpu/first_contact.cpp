@@ -19,8 +19,8 @@ int compareToEnd(const exact::Event& event, const Motion& motion) {
 
 }  // namespace
 
-FirstContact::FirstContact(const Motion& motion, bool decide, const Vector& sensor, double size)
-    : motion_(motion), view_(sensor, size, motion.unit), decide_(decide), latest_(motion.distance) {}
+FirstContact::FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size)
+    : motion_(motion), view_(sensor, size, motion.unit), anyHit_(anyHit), latest_(motion.distance) {}
 
 void FirstContact::consider(const PairName& name, const exact::Triangle& a, const exact::Triangle& b, Axis axis) {
   if (isBefore(name)) return;
@@ -63,7 +63,7 @@ Result FirstContact::result() const {
   result.status = Status::clear;
   if (!found_) return result;
   result.detected = Detected::yes;
-  if (decide_) {
+  if (anyHit_) {
     result.status = Status::hit;
     result.lo = 0;
     result.hi = motion_.distance;

@@ -18,12 +18,12 @@ struct PairName {
 
 class FirstContact {
  public:
-  /// `decide`: any contact suffices. `sensor`, `size`: the sensor's approximate position and size. `motion` must
+  /// `anyHit`: any contact suffices. `sensor`, `size`: the sensor's approximate position and size. `motion` must
   /// outlive this.
-  FirstContact(const Motion& motion, bool decide, const Vector& sensor, double size);
+  FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size);
 
   /// Whether no further pair matters.
-  bool isDecided() const { return decide_ && found_; }
+  bool isDecided() const { return anyHit_ && found_; }
   /// No contact later than this, world units, can be the first.
   double latest() const { return latest_; }
   /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
@@ -42,7 +42,7 @@ class FirstContact {
 
   const Motion& motion_;
   View view_;
-  bool decide_;
+  bool anyHit_;
   bool found_ = false;
   bool overlap_ = false;  // t* = 0
   PairName name_;

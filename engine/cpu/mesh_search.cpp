@@ -29,7 +29,7 @@ exact::Triangle placed(const PlacedMesh& from, uint32_t triangle) {
   exact::Triangle out;
   for (int i = 0; i < 3; ++i) {
     const uint32_t vertex = from.mesh.indices[3 * size_t{triangle} + i];
-    out[i] = radar::place(from.pose, &from.mesh.positions[3 * size_t{vertex}]);
+    out[i] = radar::transformPoint(from.pose, &from.mesh.positions[3 * size_t{vertex}]);
   }
   return out;
 }

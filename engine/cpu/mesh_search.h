@@ -18,7 +18,7 @@ struct SearchStats {
 /// A mesh and its pose.
 struct PlacedMesh {
   const Mesh& mesh;
-  const Pose& pose;
+  const Transform& pose;
 };
 
 /// A sensor in motion, an object, and each mesh in the other's frame.

@@ -12,7 +12,7 @@ constexpr float kThin = 0.5f;
 
 /// Not below `x`, which is 0 or more, and no subnormal.
 template <class Real>
-Real upward(double x) {
+Real roundedUp(double x) {
   return static_cast<Real>(x * (1 + 4 * kRounding<Real>));
 }
 
@@ -56,7 +56,9 @@ NodeTest<Real>::Axes::Axes(const Sight& sight) {
     rate[k] = usable ? static_cast<Real>(inverse) : Real(0);
     rateSize[k] = usable ? static_cast<Real>(std::abs(inverse)) : Real(0);
     offset[k] = usable ? static_cast<Real>(inverse * sight.offset[k]) : Real(0);
-    const auto inTime = [&](double width) { return usable ? upward<Real>(std::abs(inverse) * width) : Real(INFINITY); };
+    const auto inTime = [&](double width) {
+      return usable ? roundedUp<Real>(std::abs(inverse) * width) : Real(INFINITY);
+    };
     slack[k] = inTime(wide + 16 * kRounding<Real> * magnitude);
     normalSlack[k] = inTime(wide + 128 * kRounding<Real> * magnitude);
     complete = complete && usable;

@@ -37,7 +37,7 @@ Matrix roughInverse(Matrix m) {
 
 }  // namespace
 
-Placement::Placement(const Mesh& mesh, const Pose& worldFromMesh) {
+Placement::Placement(const Mesh& mesh, const Transform& worldFromMesh) {
   for (int i = 0; i < 3; ++i) {
     const double* row = &worldFromMesh.m[4 * i];
     double magnitude = std::abs(row[3]);

@@ -15,7 +15,7 @@ struct Placement {
   Vector extent;  ///< per world axis: bound on |linear * q|
   Vector error;   ///< per world axis: bound on the difference between `radar::place` and the formula above
 
-  Placement(const Mesh& mesh, const Pose& worldFromMesh);
+  Placement(const Mesh& mesh, const Transform& worldFromMesh);
 };
 
 /// Covectors along a mesh's normalised axes: the rows of the inverse, except for rounding, which `residual` bounds. Any

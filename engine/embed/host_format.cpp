@@ -35,7 +35,7 @@ float fromHalf(uint16_t bits) {
 
 }  // namespace
 
-std::string whatIsWrong(const HostPositions& positions) {
+std::string validate(const HostPositions& positions) {
   if (componentOf(positions.format) == gpu::kNobody) {
     return "format: expected three or four components of 32-bit float, or of 16-bit float, snorm or unorm, got "
            "VkFormat " +

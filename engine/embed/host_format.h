@@ -6,7 +6,7 @@
 #include <string>
 
 #include "radar/host_geometry.h"
-#include "shaders/interop.h"
+#include "shaders/embed/interop.h"
 
 namespace radar {
 
@@ -18,7 +18,7 @@ T loadAs(const std::byte* at) {
 }
 
 /// Checks format and stride; empty if they are valid.
-std::string whatIsWrong(const HostPositions& positions);
+std::string validate(const HostPositions& positions);
 /// Bytes from the first of `count` elements to the end of the last; at most 2^62.
 VkDeviceSize spanOf(VkDeviceSize stride, uint64_t count, VkDeviceSize bytes);
 VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount);

@@ -5,51 +5,46 @@
 #include "embed/host_format.h"
 #include "gpu/barrier.h"
 #include "math/rounding.h"
-#include "spirv/deform_comp.h"
-#include "spirv/move_comp.h"
-#include "spirv/move_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/refit_comp.h"
-#include "spirv/refuse_comp.h"
+#include "shaders/contact/interop.h"
+#include "spirv/embed_deform_comp.h"
+#include "spirv/embed_invalidate_comp.h"
+#include "spirv/embed_move_comp.h"
+#include "spirv/embed_move_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/embed_refit_comp.h"
 
 // pass    reads                              writes                     barrier behind it
 // ------- ---------------------------------- -------------------------- -------------------------------
 // copy    staging, the host's buffers        moved, words, refit nodes, transferToComputeReadWrite
-//                                            stray
-// deform  words, meshes                      vertices, stray
-// move    words, moved, meshes               placements, objects, stray computeWriteToComputeReadWrite
+//                                            violation
+// deform  words, meshes                      vertices, violation
+// move    words, moved, meshes               placements, objects,       computeWriteToComputeReadWrite
+//                                            violation
 // refit   vertices, triangles, meshes, refit nodes                      computeWriteToComputeReadWrite
 //   (one    nodes, nodes
 //   a depth)
 //
 // Behind the answers:
 //
-// refuse  stray                              results                    before: computeWriteTo-
-//                                                                       ComputeReadWrite; the caller's
+// invali- violation                          results                    before: computeWriteTo-
+//   date                                                                ComputeReadWrite; the caller's
 
 namespace radar {
 
-using gpu::Residence;
+using gpu::BufferDomain;
 
 namespace {
 
 constexpr VkDeviceSize kTransformBytes = 48;
-constexpr uint32_t kGroup = 64;  ///< invocations in a workgroup of deform, move and refuse
-
-struct DeformPush {
-  uint32_t count, mesh, firstByte, stride, format;
-};
-struct RefitPush {
-  uint32_t first, count, mesh;
-};
 
 // Made once for a device.
 struct HostGeometryKernels {
   explicit HostGeometryKernels(const Device::Impl& device)
-      : deform(device, k_deform_comp, "deform"),
-        refit(device, k_refit_comp, "refit"),
-        move(device, device.doubles ? std::span<const uint32_t>(k_move_comp) : k_move_comp_RADAR_NO_DOUBLES, "move"),
-        refuse(device, k_refuse_comp, "refuse") {}
-  gpu::Kernel deform, refit, move, refuse;
+      : deform(device, k_embed_deform_comp, "deform"),
+        refit(device, k_embed_refit_comp, "refit"),
+        move(device, device.doubles ? std::span<const uint32_t>(k_embed_move_comp) : k_embed_move_comp_RADAR_NO_DOUBLES,
+             "move"),
+        invalidate(device, k_embed_invalidate_comp, "invalidate") {}
+  gpu::Kernel deform, refit, move, invalidate;
 };
 
 bool repeats(std::vector<uint32_t> ids) {
@@ -59,14 +54,14 @@ bool repeats(std::vector<uint32_t> ids) {
 
 }  // namespace
 
-std::string whatIsWrong(const HostGeometry& geometry, const Scene& scene) {
+std::string validate(const HostGeometry& geometry, const Scene& scene) {
   std::vector<MeshId> meshes;
   for (const DeformedMesh& deformed : geometry.meshes) {
     const std::string name = "mesh " + std::to_string(deformed.mesh);
     if (!scene.hasMesh(deformed.mesh)) return name + " does not exist";
     if (!scene.impl().meshes[deformed.mesh].deforms) return name + " was added without bounds";
     if (deformed.positions.buffer == VK_NULL_HANDLE) return name + ": expected a buffer of positions";
-    if (std::string wrong = whatIsWrong(deformed.positions); !wrong.empty()) return name + ": " + wrong;
+    if (std::string wrong = validate(deformed.positions); !wrong.empty()) return name + ": " + wrong;
     meshes.push_back(deformed.mesh);
   }
   if (repeats(std::move(meshes))) return "meshes: expected each at most once";
@@ -93,13 +88,13 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
       deform_(device.shared<HostGeometryKernels>().deform),
       refit_(device.shared<HostGeometryKernels>().refit),
       move_(device.shared<HostGeometryKernels>().move),
-      refuse_(device.shared<HostGeometryKernels>().refuse),
+      invalidate_(device.shared<HostGeometryKernels>().invalidate),
       upload_(device),
-      words_(device, "words of the host's", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      refitNodes_(device, "nodes to refit", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      movedBuffer_(device, "moved objects", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      stray_(device, "stray", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-  stray_.reserve(1);
+      words_(device, "host words", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      refitNodes_(device, "nodes to refit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      movedBuffer_(device, "moved objects", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+  violation_.reserve(1);
 }
 
 // Returns where in `words_` the bytes will be.
@@ -192,8 +187,10 @@ GpuScene::Overwritten HostGeometryPass::overwritten() const {
 void HostGeometryPass::setArguments() {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = resident_.buffers();
-  deform_.set(
-      {{kSlotVertices, scene.vertices}, {kSlotMeshes, scene.meshes}, {kSlotStray, stray_}, {kSlotWords, words_}});
+  deform_.set({{kSlotVertices, scene.vertices},
+               {kSlotMeshes, scene.meshes},
+               {kSlotBoundsViolation, violation_},
+               {kSlotWords, words_}});
   refit_.set({{kSlotVertices, scene.vertices},
               {kSlotTriangles, scene.triangles},
               {kSlotMeshes, scene.meshes},
@@ -203,7 +200,7 @@ void HostGeometryPass::setArguments() {
              {kSlotObjects, scene.objects},
              {kSlotPlacements, scene.placements},
              {kSlotMoved, movedBuffer_},
-             {kSlotStray, stray_},
+             {kSlotBoundsViolation, violation_},
              {kSlotWords, words_}});
 }
 
@@ -212,40 +209,42 @@ void HostGeometryPass::record(const gpu::Commands& commands) {
   for (const Source& source : sources_) {
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
   }
-  commands->CmdFillBuffer(commands, stray_.get(), 0, sizeof(gpu::Stray), kNone);
+  commands->CmdFillBuffer(commands, violation_.get(), 0, sizeof(gpu::BoundsViolation), kNone);
   gpu::transferToComputeReadWrite(commands);
   setArguments();
   for (const Deformed& d : meshes_) {
-    deform_.dispatch(commands, gpu::groupsFor(d.vertices, kGroup),
-                     DeformPush{d.vertices, d.mesh, d.firstByte, d.stride, d.component});
+    deform_.dispatch(commands, gpu::groupsFor(d.vertices, gpu::kHostGroup),
+                     gpu::DeformPush{d.vertices, d.mesh, d.firstByte, d.stride, d.component});
   }
   const auto moved = static_cast<uint32_t>(moved_.size());
-  move_.dispatch(commands, gpu::groupsFor(moved, kGroup), moved);
+  move_.dispatch(commands, gpu::groupsFor(moved, gpu::kHostGroup), gpu::MovePush{moved});
   gpu::computeWriteToComputeReadWrite(commands);
   if (meshes_.empty()) return;
   for (size_t depth = levels_.size(); depth-- > 0;) {
     for (const Level& level : levels_[depth]) {
-      refit_.dispatch(commands, gpu::groupsFor(level.count, kGroup), RefitPush{level.first, level.count, level.mesh});
+      refit_.dispatch(commands, gpu::groupsFor(level.count, gpu::kHostGroup),
+                      gpu::RefitPush{level.first, level.count, level.mesh});
     }
     gpu::computeWriteToComputeReadWrite(commands);
   }
 }
 
-void HostGeometryPass::recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count) {
+void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results,
+                                        uint32_t count) {
   gpu::computeWriteToComputeReadWrite(commands);
-  refuse_.set({{gpu::kSlotResults, results}, {gpu::kSlotStray, stray_}});
-  refuse_.dispatch(commands, gpu::groupsFor(count, kGroup), count);
+  invalidate_.set({{gpu::kSlotResults, results}, {gpu::kSlotBoundsViolation, violation_}});
+  invalidate_.dispatch(commands, gpu::groupsFor(count, gpu::kHostGroup), gpu::InvalidatePush{count});
 }
 
-std::string HostGeometryPass::stray() const {
+std::string HostGeometryPass::boundsViolation() const {
   if (empty()) return {};
-  const gpu::Stray& stray = *stray_.mapped();
-  if (stray.mesh != kNone) {
-    return "mesh " + std::to_string(stray.mesh) + ": vertex " + std::to_string(stray.vertex) +
+  const gpu::BoundsViolation& violation = *violation_.mapped();
+  if (violation.mesh != kNone) {
+    return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(violation.vertex) +
            " is out of its bounds, or not finite";
   }
-  if (stray.object == kNone) return {};
-  return "object " + std::to_string(stray.object) +
+  if (violation.object == kNone) return {};
+  return "object " + std::to_string(violation.object) +
          ": its mesh's box is out of its bounds, or its transform not finite";
 }
 

@@ -8,11 +8,12 @@
 #include "gpu/kernel.h"
 #include "radar/host_geometry.h"
 #include "scene/gpu_scene.h"
+#include "shaders/embed/interop.h"
 
 namespace radar {
 
 /// Empty if `geometry` is valid.
-std::string whatIsWrong(const HostGeometry& geometry, const Scene& scene);
+std::string validate(const HostGeometry& geometry, const Scene& scene);
 
 class HostGeometryPass {
  public:
@@ -26,9 +27,9 @@ class HostGeometryPass {
   void record(const gpu::Commands& commands);
   /// Call after recording the answers: invalidates them if anything has left its bounds. The caller records the barrier
   /// from compute shaders to their readers.
-  void recordRefusal(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
+  void recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
   /// Describes something that left its bounds, once the device is done; empty if nothing did.
-  std::string stray() const;
+  std::string boundsViolation() const;
 
  private:
   struct Deformed {
@@ -51,11 +52,11 @@ class HostGeometryPass {
 
   const Device::Impl* device_;
   const GpuScene& resident_;
-  gpu::KernelArguments deform_, refit_, move_, refuse_;
+  gpu::KernelArguments deform_, refit_, move_, invalidate_;
   gpu::Upload upload_;
   gpu::Array<uint32_t> words_, refitNodes_;
   gpu::Array<gpu::Moved> movedBuffer_;
-  gpu::Array<gpu::Stray> stray_;  ///< in host memory: rarely written
+  gpu::Array<gpu::BoundsViolation> violation_;  ///< in host memory: rarely written
   std::vector<Source> sources_;
   VkDeviceSize copied_ = 0;  ///< bytes, over all sources
   std::vector<Deformed> meshes_;

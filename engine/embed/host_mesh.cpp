@@ -18,7 +18,7 @@ struct Range {
 std::vector<std::byte> download(const Device::Impl& device, const std::vector<Range>& ranges) {
   VkDeviceSize total = 0;
   for (const Range& range : ranges) total += range.bytes;
-  gpu::Buffer readback(device, "host mesh", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  gpu::Buffer readback(device, "host mesh", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   readback.reserve(total);
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();
@@ -38,7 +38,7 @@ std::vector<std::byte> download(const Device::Impl& device, const std::vector<Ra
 
 MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   device.impl().requireQueue("addMesh of a HostMesh");
-  if (std::string wrong = whatIsWrong(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
+  if (std::string wrong = validate(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
   if (mesh.positions.buffer == VK_NULL_HANDLE) throw Error("addMesh: positions: expected a buffer");
   const HostFormat format(mesh.positions.format);
   const VkDeviceSize indexSize = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;

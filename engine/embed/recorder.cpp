@@ -22,7 +22,7 @@ constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
 
 SearchRoom roomFor(const Capacity& capacity) {
-  return {.candidates = capacity.candidates, .unresolved = capacity.openPairs};
+  return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }
 
 Result outOfRange() {
@@ -42,15 +42,15 @@ struct Recorder::Impl {
         copy(openDevice),
         geometry(openDevice, copy),
         pass(openDevice, copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(given)),
-        readback(openDevice, "recorded results", gpu::Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-    refuseTooLarge();
+        readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+    checkCapacity();
     pass.reserve(capacity.queries, capacity.queries, kExcluded * capacity.queries);
     readback.reserve(kFirstResult + capacity.queries * sizeof(Result));
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  void refuseTooLarge() const;
-  void refuseWrong(std::span<const Query> queries) const;
+  void checkCapacity() const;
+  void validateAll(std::span<const Query> queries) const;
   void plan(std::span<const Query> queries);
 
   const Device::Impl& device;
@@ -65,7 +65,7 @@ struct Recorder::Impl {
   std::vector<Result> known;
 };
 
-void Recorder::Impl::refuseTooLarge() const {
+void Recorder::Impl::checkCapacity() const {
   const uint64_t limit = device.properties.limits.maxStorageBufferRange;
   const auto refuse = [](const char* what, uint64_t got, uint64_t most) {
     if (got <= most) return;
@@ -73,22 +73,23 @@ void Recorder::Impl::refuseTooLarge() const {
                 std::to_string(got));
   };
   refuse("queries", capacity.queries, limit / sizeof(gpu::Sweep));
-  refuse("candidates", capacity.candidates, limit / sizeof(gpu::Contender));
+  refuse("candidates", capacity.candidates, limit / sizeof(gpu::RefinedPair));
   refuse("rounds", capacity.rounds, gpu::kMostRounds);
-  refuse("openPairs", capacity.openPairs, limit / sizeof(gpu::UnresolvedPair));
+  refuse("unresolvedPairs", capacity.unresolvedPairs, limit / sizeof(gpu::UnresolvedPair));
   if (capacity.rounds == 0 || capacity.rounds % 2 != 0) {
     throw Error("Capacity::rounds: expected an even number from 2 on, got " + std::to_string(capacity.rounds));
   }
-  if (capacity.candidates == 0 || capacity.openPairs == 0) throw Error("Capacity: expected room for a pair, got none");
+  if (capacity.candidates == 0 || capacity.unresolvedPairs == 0)
+    throw Error("Capacity: expected room for a pair, got none");
 }
 
-void Recorder::Impl::refuseWrong(std::span<const Query> queries) const {
+void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
-    std::string wrong = whatIsWrong(queries[i], scene);
+    std::string wrong = validate(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -112,8 +113,8 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
 void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries, const HostGeometry& geometry) {
   Impl& self = *impl_;
-  self.refuseWrong(queries);
-  if (std::string wrong = whatIsWrong(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  self.validateAll(queries);
+  if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.asked.clear();  // until all is recorded there is nothing to read
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
@@ -134,7 +135,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   }
   self.pass.record(commands, stage, self.capacity.rounds, true);
   if (!self.geometry.empty()) {
-    self.geometry.recordRefusal(commands, self.pass.results(), static_cast<uint32_t>(queries.size()));
+    self.geometry.recordInvalidate(commands, self.pass.results(), static_cast<uint32_t>(queries.size()));
   }
   gpu::computeWriteToCopy(commands);
   stage("readback");
@@ -167,14 +168,14 @@ std::vector<Result> Recorder::read() {
   for (uint32_t i = 0; i < self.sensors.count(); ++i) {
     const uint32_t query = self.sensors.sweeps[i].result;
     const auto pairs = unresolved.of(i);
-    if (results[query].flags != kFlagOpen || pairs.empty()) continue;
+    if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
     results[query] = decideUnresolved(results[query], pairs, self.asked[query]);
   }
   return results;
 }
 
-std::string Recorder::stray() const {
-  return impl_->geometry.stray();
+std::string Recorder::boundsViolation() const {
+  return impl_->geometry.boundsViolation();
 }
 
 }  // namespace radar

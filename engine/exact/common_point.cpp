@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-// Shaders compute the same, operation by operation (shaders/twofold.glsl).
+// Shaders compute the same, operation by operation (shaders/double_double.glsl).
 
 namespace radar::exact {
 

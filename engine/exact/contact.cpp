@@ -4,7 +4,7 @@
 
 #include "exact/determinant.h"
 #include "exact/event.h"
-#include "exact/whole.h"
+#include "exact/scaled_int.h"
 
 namespace radar::exact {
 
@@ -101,7 +101,7 @@ class Signs {
       const std::array<const Vector*, 6> corners{&a_[0], &a_[1], &a_[2], &b_[0], &b_[1], &b_[2]};
       const std::array<const Vector*, 1> way{&direction_};
       int exponent;
-      fit_ = toWhole(corners, corners_, exponent) && toWhole(way, way_, exponent) ? Fit::yes : Fit::no;
+      fit_ = toScaledInts(corners, corners_, exponent) && toScaledInts(way, way_, exponent) ? Fit::yes : Fit::no;
     }
     if (fit_ == Fit::no) return exactSign({{kOrigin, direction_}, {a_[i], b_[k]}, {a_[j], b_[l]}});
     countExactDecision();
@@ -112,8 +112,8 @@ class Signs {
   const Triangle &a_, &b_;
   const Vector& direction_;
   Fit fit_ = Fit::unknown;
-  std::array<WholeVec, 6> corners_;
-  std::array<WholeVec, 1> way_;
+  std::array<IntVector, 6> corners_;
+  std::array<IntVector, 1> way_;
 };
 
 /// Both triangles lie on one line as seen along the direction, or on two points: a problem in a plane that contains the

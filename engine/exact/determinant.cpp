@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include "exact/whole.h"
+#include "exact/scaled_int.h"
 
 namespace radar::exact {
 
 namespace {
 
-// Twofold: two products of 7 u^2 and three sums of 3 u^2 make 23 u^2; differences are exact.
+// DoubleDouble: two products of 7 u^2 and three sums of 3 u^2 make 23 u^2; differences are exact.
 constexpr double kFineRelative = 0x1p-99;
 thread_local uint64_t decisions = 0;
 
@@ -28,17 +28,17 @@ Estimate estimate(const Determinant& d) {
 }
 
 FineEstimate fineEstimate(const Determinant& d) {
-  Twofold w[3], x[3], y[3];
+  DoubleDouble w[3], x[3], y[3];
   for (int k = 0; k < 3; ++k) {
     w[k] = difference(d.w.to[k], d.w.from[k]);
     x[k] = difference(d.x.to[k], d.x.from[k]);
     y[k] = difference(d.y.to[k], d.y.from[k]);
   }
-  Twofold value;
+  DoubleDouble value;
   double magnitude = 0, size = 1;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    const Twofold p = x[i] * y[j], q = x[j] * y[i];
+    const DoubleDouble p = x[i] * y[j], q = x[j] * y[i];
     value = value + w[k] * (p - q);
     magnitude += std::abs(w[k].high) * (std::abs(p.high) + std::abs(q.high));
     size += std::abs(w[k].high);
@@ -67,14 +67,14 @@ Dyadic longDeterminant(const Determinant& d) {
 }  // namespace
 
 Dyadic exactly(const Determinant& d) {
-  const auto w = whole(d.w), x = whole(d.x), y = whole(d.y);
+  const auto w = scaledVector(d.w), x = scaledVector(d.x), y = scaledVector(d.y);
   if (!w || !x || !y) return longDeterminant(d);
   return determinant(w->c, x->c, y->c).value(w->exponent + x->exponent + y->exponent);
 }
 
 int exactSign(const Determinant& d) {
   countExactDecision();
-  const auto w = whole(d.w), x = whole(d.x), y = whole(d.y);
+  const auto w = scaledVector(d.w), x = scaledVector(d.x), y = scaledVector(d.y);
   return w && x && y ? determinant(w->c, x->c, y->c).sign() : longDeterminant(d).sign();
 }
 
@@ -88,7 +88,7 @@ int crossSign(const Difference& v, const Difference& w, int axis) {
   const double p = (v.to[i] - v.from[i]) * (w.to[j] - w.from[j]), q = (v.to[j] - v.from[j]) * (w.to[i] - w.from[i]);
   if (std::abs(p - q) > kRelative * (std::abs(p) + std::abs(q)) + kUnderflow) return signOf(p - q);
   countExactDecision();
-  const auto a = whole(v), b = whole(w);
+  const auto a = scaledVector(v), b = scaledVector(w);
   if (a && b) return determinant({axis == 0, axis == 1, axis == 2}, a->c, b->c).sign();
   return (component(v, i) * component(w, j) - component(v, j) * component(w, i)).sign();
 }

@@ -1,4 +1,4 @@
-// Determinants of differences of points at three precisions: doubles, twofold doubles, exact. The first two have a
+// Determinants of differences of points at three precisions: doubles, double-doubles, exact. The first two have a
 // proven error bound (docs/exact.md) for all finite input, underflow included. On overflow the bound is not finite, so
 // every test against it fails and the next precision is used.
 #pragma once
@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "exact/contact.h"
+#include "exact/double_double.h"
 #include "exact/dyadic.h"
-#include "exact/twofold.h"
 
 namespace radar::exact {
 
@@ -26,7 +26,7 @@ struct Estimate {
   double value, error;  ///< |value - exact| <= error
 };
 struct FineEstimate {
-  Twofold value;
+  DoubleDouble value;
   double error;
 };
 

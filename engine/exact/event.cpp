@@ -50,16 +50,16 @@ Triangle sorted(Triangle t) {
 }
 
 struct FineParameter {
-  Twofold s;
+  DoubleDouble s;
   double error;
 };
 
-/// The parameter as a twofold: one step of long division. Its own error is below 2^-102 |s|.
+/// The parameter as a double-double: one step of long division. Its own error is below 2^-102 |s|.
 FineParameter fineParameter(const Event& e) {
   const FineEstimate num = fineEstimate(numerator(e)), den = fineEstimate(denominator(e));
   const double first = num.value.high / den.value.high;
-  const Twofold rest = num.value - Twofold{first, 0} * den.value;
-  const Twofold s = quickSum(first, rest.high / den.value.high);
+  const DoubleDouble rest = num.value - DoubleDouble{first, 0} * den.value;
+  const DoubleDouble s = quickSum(first, rest.high / den.value.high);
   const double sure = std::abs(den.value.high) * (1 - 2 * kUnit) - den.error, size = std::abs(s.high);
   const double error =
       sure > 0 ? (1 + 8 * kUnit) * ((num.error + size * den.error) / sure) + 0x1p-100 * size + 0x1p-1000 : INFINITY;
@@ -126,7 +126,7 @@ std::optional<int> compareRoughly(const Event& p, const Event& q) {
   // Equal estimates are a tie, most likely, which only exact arithmetic can tell.
   if (apart == 0) return std::nullopt;
   const FineParameter fp = fineParameter(p), fq = fineParameter(q);
-  const Twofold fine = fp.s - fq.s;
+  const DoubleDouble fine = fp.s - fq.s;
   if (std::abs(fine.high) > (1 + 8 * kUnit) * (fp.error + fq.error)) return signOf(fine.high);
   return std::nullopt;
 }
@@ -186,7 +186,7 @@ double length(const Vector& d) {
   const double root = std::hypot(d[0], d[1], d[2]);
   if (!std::isfinite(root)) return root;
   if (root < 0x1p-400 || root > 0x1p400) return exactLength(d, root);
-  Twofold square;
+  DoubleDouble square;
   for (double c : d) square = square + product(c, c);
   // |d| - root = (|d|^2 - root^2) / (|d| + root), of which 40 bits are right.
   const double rest = (square - product(root, root)).high / (2 * root),
@@ -217,15 +217,16 @@ Vector point(const Event& e, double s) {
   }
   // The resting edge from y0 to y1 crosses the moving one where the orientations of its ends say.
   const Difference d{kOrigin, e.direction};
-  const Twofold p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
-  const Twofold q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
+  const DoubleDouble p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
+  const DoubleDouble q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
   const double share = p.high / (p - q).high;
   return withoutZeroSigns(along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1})));
 }
 
 namespace {
 
-/// The square root of 1 <= x < 16 by what every device rounds alike, so that shaders find the same bits (twofold.glsl).
+/// The square root of 1 <= x < 16 by what every device rounds alike, so that shaders find the same bits
+/// (double_double.glsl).
 double rootOf(double x) {
   double root = 0.5 * (1 + x);
   for (int i = 0; i < 7; ++i) root = 0.5 * (root + x / root);
@@ -236,13 +237,13 @@ double rootOf(double x) {
 
 Vector normal(const Event& e) {
   if (e.kind > Kind::edgeEdge) return {NAN, NAN, NAN};
-  Twofold x[3], y[3];
+  DoubleDouble x[3], y[3];
   for (int k = 0; k < 3; ++k) {
     x[k] = difference(e.x1[k], e.x0[k]);
     y[k] = difference(e.y1[k], e.y0[k]);
   }
   // Scaled by powers of two, so that tiny and huge edges neither under- nor overflow.
-  for (Twofold* v : {x, y}) {
+  for (DoubleDouble* v : {x, y}) {
     const int size = std::ilogb(std::max({std::abs(v[0].high), std::abs(v[1].high), std::abs(v[2].high)}));
     for (int k = 0; k < 3; ++k) v[k] = {std::ldexp(v[k].high, -size), std::ldexp(v[k].low, -size)};
   }

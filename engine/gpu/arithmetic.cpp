@@ -121,9 +121,9 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint
                                 Slot<Trial> trialSlot, Slot<Outcome> outcomeSlot) {
   const Kernel kernel(device, spirv, name, constants);
   Upload upload(device);
-  Array<Trial> given(device, "trials", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  Array<Outcome> computed(device, "outcomes", Residence::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  Buffer readback(device, "outcome readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  Array<Trial> given(device, "trials", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  Array<Outcome> computed(device, "outcomes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  Buffer readback(device, "outcome readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const VkBufferCopy copy{0, 0, kTrials * sizeof(Outcome)};
   given.reserve(kTrials);
   computed.reserve(kTrials);
@@ -350,9 +350,9 @@ bool checkBits(Findings& findings, const char* operation, const std::vector<Doub
 }
 
 double placedOf(const DoubleTrial& t) {
-  Pose pose;
+  Transform pose;
   std::copy(std::begin(t.row), std::end(t.row), pose.m.begin());
-  return place(pose, t.p)[0];
+  return transformPoint(pose, t.p)[0];
 }
 
 void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<DoubleTrial>& trials,

@@ -3,7 +3,7 @@
 
 #include "gpu/device.h"
 #include "radar/arithmetic.h"
-#include "shaders/interop.h"
+#include "shaders/arithmetic/interop.h"
 
 namespace radar::gpu {
 

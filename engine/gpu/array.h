@@ -15,8 +15,8 @@ class Array {
 
  public:
   /// `usage`: in addition to STORAGE_BUFFER.
-  Array(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage = 0)
-      : buffer_(device, name, residence, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+  Array(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
+      : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
 
   /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew; if so, set the
   /// KernelArguments that use it again. The device must not be using it.
@@ -47,9 +47,9 @@ class TexelArray {
  public:
   /// `usage`: in addition to STORAGE_BUFFER and UNIFORM_TEXEL_BUFFER. `format`: see TexelBuffer. Throws Error if
   /// sizeof(T) is not a multiple of a texel's size.
-  TexelArray(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
+  TexelArray(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
              VkFormat format)
-      : buffer_(device, name, residence, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, format) {
+      : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, format) {
     if (sizeof(T) % buffer_.texelBytes() != 0) {
       throw Error(std::string(name) + ": elements of " + std::to_string(sizeof(T)) + " bytes are not whole texels of " +
                   std::to_string(buffer_.texelBytes()));

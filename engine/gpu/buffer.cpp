@@ -21,8 +21,8 @@ uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryProper
   throw Error("no memory type has the properties " + std::to_string(needed));
 }
 
-Buffer::Buffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage)
-    : device_(&device), name_(name), residence_(residence), usage_(usage) {
+Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
+    : device_(&device), name_(name), domain_(domain), usage_(usage) {
   reserve(1024);
 }
 
@@ -39,13 +39,13 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   VkMemoryRequirements requirements;
   device_->vk.GetBufferMemoryRequirements(device_->device(), handle, &requirements);
   constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool onDevice = residence_ == Residence::device;
+  const bool onDevice = domain_ == BufferDomain::device;
   const VkMemoryAllocateInfo allocate{
       .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
       .allocationSize = requirements.size,
       .memoryTypeIndex = memoryType(*device_, requirements.memoryTypeBits, onDevice ? 0 : kMapped,
                                     onDevice                            ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
-                                    : residence_ == Residence::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                    : domain_ == BufferDomain::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                                                         : 0)};
   VkDeviceMemory memory;
   check(device_->faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
@@ -90,12 +90,12 @@ uint32_t bytesOfTexel(VkFormat format, const char* name) {
 
 }  // namespace
 
-TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
+TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
                          VkFormat format)
     : device_(&device),
       format_(format),
       texelBytes_(bytesOfTexel(format, name)),
-      buffer_(device, name, residence, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {
+      buffer_(device, name, domain, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {
   makeView();
 }
 
@@ -129,7 +129,7 @@ bool TexelBuffer::reserve(VkDeviceSize bytes) {
 }
 
 Upload::Upload(const Device::Impl& device)
-    : staging_(device, "staging", Residence::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {}
+    : staging_(device, "staging", BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {}
 
 void Upload::begin(VkDeviceSize bytes) {
   staging_.reserve(bytes);

@@ -15,11 +15,11 @@ VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
-enum class Residence { device, upload, readback };
+enum class BufferDomain { device, upload, readback };
 
 class Buffer {
  public:
-  Buffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage);
+  Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage);
 
   /// Makes the buffer hold at least `bytes`; growing loses the contents. Returns whether the handle changed. The device
   /// must not be using it.
@@ -36,7 +36,7 @@ class Buffer {
  private:
   const Device::Impl* device_;
   const char* name_;
-  Residence residence_;
+  BufferDomain domain_;
   VkBufferUsageFlags usage_;
   DeviceMemory memory_;
   BufferHandle buffer_;
@@ -50,7 +50,7 @@ class TexelBuffer {
  public:
   /// `format`: R32, R32G32 or R32G32B32A32, each as UINT, SINT or SFLOAT. Every device supports these as texels; throws
   /// for any other.
-  TexelBuffer(const Device::Impl& device, const char* name, Residence residence, VkBufferUsageFlags usage,
+  TexelBuffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
               VkFormat format);
 
   /// As Buffer::reserve; a new buffer has a new view. Throws Error, and changes nothing, if `bytes` exceed the device's

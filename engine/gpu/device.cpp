@@ -29,7 +29,7 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   subgroupSize = subgroups.size;
   choosesSubgroupSize = subgroups.canChoose;
   if (host.sampled) {
-    reasonsAgainstSampled = gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice), Mode::sampled);
+    reasonsAgainstSampled = gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), Mode::sampled);
     if (reasonsAgainstSampled.empty() && !gpu::doesGraphics(vk, host.physicalDevice, host.queueFamily)) {
       reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does no graphics"};
     }
@@ -75,10 +75,10 @@ Device::Impl::Shared& Device::Impl::sharedOf(std::type_index type) const {
   return shared_[type];
 }
 
-std::vector<std::string> reasonsAgainst(const HostDevice& host, Mode mode) {
+std::vector<std::string> unsupportedReasons(const HostDevice& host, Mode mode) {
   gpu::Api vk(host.getInstanceProcAddr);
   vk.load(host.instance);
-  return gpu::reasonsAgainst(gpu::factsOf(vk, host.physicalDevice), mode);
+  return gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), mode);
 }
 
 namespace {
@@ -94,7 +94,7 @@ std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks
 }  // namespace
 
 Device Device::adopt(const HostDevice& host) {
-  const std::vector<std::string> reasons = reasonsAgainst(host, Mode::contact);
+  const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   auto impl = std::make_unique<Impl>(host);
   // Without a queue nothing can be tried; composed quotients are right wherever doubles are.

@@ -11,7 +11,7 @@
 #include "gpu/array.h"
 #include "gpu/handle.h"
 #include "gpu/spirv.h"
-#include "shaders/slot.h"
+#include "shaders/shared/slot.h"
 
 namespace radar::gpu {
 

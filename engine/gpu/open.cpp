@@ -125,8 +125,8 @@ DeviceReport report(const gpu::Api& vk, VkPhysicalDevice device) {
   return {properties.deviceName,
           gpu::driverText(vk, device, properties),
           typeText(properties.deviceType),
-          gpu::reasonsAgainst(facts, Mode::contact),
-          gpu::reasonsAgainst(facts, Mode::sampled),
+          gpu::unsupportedReasons(facts, Mode::contact),
+          gpu::unsupportedReasons(facts, Mode::sampled),
           gpu::versionText(facts.apiVersion),
           memoryOf(vk, device),
           facts.subgroups.size,
@@ -144,7 +144,7 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
   for (uint32_t i = 0; i < devices.size(); ++i) {
     VkPhysicalDeviceProperties properties;
     vk.GetPhysicalDeviceProperties(devices[i], &properties);
-    const std::vector<std::string> reasons = gpu::reasonsAgainst(gpu::factsOf(vk, devices[i]), Mode::contact);
+    const std::vector<std::string> reasons = gpu::unsupportedReasons(gpu::factsOf(vk, devices[i]), Mode::contact);
     for (const std::string& reason : reasons) {
       lines.push_back("device " + std::to_string(i) + ", " + properties.deviceName + ": " + reason);
     }
@@ -184,7 +184,7 @@ Device Device::open(const DeviceOptions& options) {
                                       .pQueuePriorities = &priority};
   const gpu::DeviceFacts facts = gpu::factsOf(owned->vk, host.physicalDevice);
   host.doubles = options.doubles && facts.doubles;
-  host.sampled = gpu::reasonsAgainst(facts, Mode::sampled).empty();
+  host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
   Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),

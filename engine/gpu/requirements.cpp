@@ -4,6 +4,7 @@
 
 #include "gpu/kernel.h"
 #include "shaders/contact/interop.h"
+#include "shaders/sampled/interop.h"
 
 namespace radar::gpu {
 
@@ -115,7 +116,7 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   return facts;
 }
 
-std::vector<std::string> reasonsAgainst(const DeviceFacts& facts, Mode mode) {
+std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode) {
   std::vector<std::string> reasons;
   if (facts.apiVersion < VK_API_VERSION_1_3) {
     return {"Vulkan 1.3 is needed, it has " + versionText(facts.apiVersion)};

@@ -1,4 +1,4 @@
-// The requirements on a physical device, in one list for both reasonsAgainst() and requirements().
+// The requirements on a physical device, in one list for both unsupportedReasons() and requirements().
 #pragma once
 
 #include <string>
@@ -48,7 +48,7 @@ constexpr uint32_t searchSharedBytes(uint32_t lanes, uint32_t queue = 0) {
 std::string versionText(uint32_t version);
 
 /// One line per item missing for `mode`; empty if the device is usable.
-std::vector<std::string> reasonsAgainst(const DeviceFacts& facts, Mode mode);
+std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode);
 
 /// The queue family to use: the first with graphics and compute, else the first with compute, else kNone.
 uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device);

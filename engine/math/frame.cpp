@@ -47,7 +47,7 @@ std::array<Vector, 3> axesAlong(const Vector& direction) {
   return {cross(up, forward), up, forward};
 }
 
-Vector transform(const Pose& pose, const Vector& p) {
+Vector transform(const Transform& pose, const Vector& p) {
   Vector out;
   for (int k = 0; k < 3; ++k) {
     const double* r = &pose.m[4 * k];
@@ -56,7 +56,8 @@ Vector transform(const Pose& pose, const Vector& p) {
   return out;
 }
 
-Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& pose, const Vector& centre) {
+Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Transform& pose,
+                      const Vector& centre) {
   Vector offset = transform(pose, centre);
   for (int k = 0; k < 3; ++k) offset[k] -= origin[k];
   Affine out;

@@ -19,10 +19,10 @@ double lengthOf(const Vector& v);
 
 /// The transform from a mesh's vertices, relative to `centre`, to a frame: axes * (pose(centre + q) - origin). The
 /// difference is taken in the world, before the rotation.
-Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Pose& worldFromMesh,
+Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Transform& worldFromMesh,
                       const Vector& centre);
 
 /// worldFromMesh applied to a double-precision point.
-Vector transform(const Pose& worldFromMesh, const Vector& p);
+Vector transform(const Transform& worldFromMesh, const Vector& p);
 
 }  // namespace radar

@@ -72,7 +72,7 @@ struct Pool::Impl {
 
   const Scene& scene;
   const Device::Impl* withoutSampled = nullptr;  // a device that does not support the mode
-  Exchange exchange;
+  WorkQueue exchange;
   std::vector<std::unique_ptr<Worker>> workers;  // their threads end before the exchange does
 };
 

@@ -24,8 +24,8 @@ void nameThread([[maybe_unused]] uint32_t number) {
 }  // namespace
 
 Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options,
-               Exchange& exchange)
-    : number_(number), device_(device), scene_(scene), options_(options), exchange_(exchange), thread_([this] {
+               WorkQueue& exchange)
+    : number_(number), device_(device), scene_(scene), options_(options), queue_(exchange), thread_([this] {
         run();
       }) {}
 
@@ -44,7 +44,7 @@ void Worker::run() {
       } catch (const std::exception&) {  // the first error is the one to tell
       }
     }
-    exchange_.retire(number_, error.what(), std::move(chunks));
+    queue_.retire(number_, error.what(), std::move(chunks));
   }
 }
 
@@ -59,7 +59,7 @@ bool Worker::serve() {
   if (inFlight_ < kLanes) {
     size_t queries = 0;
     for (const Chunk& chunk : chunksInFlight()) queries += chunk.count;
-    if (std::optional<Chunk> chunk = exchange_.take(number_, queries)) {
+    if (std::optional<Chunk> chunk = queue_.take(number_, queries)) {
       begin(lanes_[(oldest_ + inFlight_) % kLanes], std::move(*chunk));
       return true;
     }
@@ -72,7 +72,7 @@ bool Worker::serve() {
 void Worker::begin(Lane& lane, Chunk chunk) {
   lane.chunk = std::move(chunk);
   ++inFlight_;
-  lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = exchange_.now()};
+  lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
   lane.results.assign(lane.chunk.count, Result());
   if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_, scene_, options_, copy_);
   // The scene changes only while nothing is in flight, so the copy that both lanes read may be written now.
@@ -81,20 +81,20 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     seenVersion_ = version;
   }
   lane.sweep->begin(lane.chunk.queries(), lane.results);
-  lane.trace.submitted = exchange_.now();
+  lane.trace.submitted = queue_.now();
 }
 
 void Worker::finish(Lane& lane) {
   Sweeper::Impl& sweep = *lane.sweep;
-  lane.trace.awaited = exchange_.now();
+  lane.trace.awaited = queue_.now();
   sweep.finish();
-  lane.trace.done = std::max(lane.trace.submitted, exchange_.at(sweep.deviceDone));
-  lane.trace.decoded = exchange_.now();
+  lane.trace.done = std::max(lane.trace.submitted, queue_.at(sweep.deviceDone));
+  lane.trace.decoded = queue_.now();
   lane.trace.stages = sweep.stats.stages;
   // Any other failed call is the trouble of the queries at hand.
   if (sweep.failure) {
     const bool forMemory = isOutOfMemory(sweep.failure->result);
-    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !exchange_.leave(number_));
+    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
@@ -106,8 +106,8 @@ void Worker::finish(Lane& lane) {
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;
-  exchange_.deliver(std::exchange(lane.chunk, {}), lane.results, sweep.reasons, sweep.stats, std::move(lane.trace),
-                    deviceMs);
+  queue_.deliver(std::exchange(lane.chunk, {}), lane.results, sweep.reasons, sweep.stats, std::move(lane.trace),
+                 deviceMs);
 }
 
 }  // namespace radar

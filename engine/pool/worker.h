@@ -4,7 +4,7 @@
 #include <memory>
 #include <thread>
 
-#include "pool/exchange.h"
+#include "pool/work_queue.h"
 #include "sweep/sweeper.h"
 
 namespace radar {
@@ -12,7 +12,7 @@ namespace radar {
 class Worker {
  public:
   /// Starts at once. All arguments but `options` must outlive the worker. `number`: its index in the pool.
-  Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, Exchange& exchange);
+  Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, WorkQueue& exchange);
   /// Waits until the exchange lets the thread end.
   ~Worker() { thread_.join(); }
 
@@ -37,7 +37,7 @@ class Worker {
   const Device& device_;
   const Scene& scene_;
   const SweeperOptions options_;
-  Exchange& exchange_;
+  WorkQueue& queue_;
   std::shared_ptr<GpuScene> copy_;
   std::array<Lane, kLanes> lanes_;
   size_t oldest_ = 0, inFlight_ = 0;  // a ring: `inFlight_` lanes from `oldest_` on

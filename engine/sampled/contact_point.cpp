@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "shaders/interop.h"
+#include "shaders/sampled/interop.h"
 
 namespace radar {
 

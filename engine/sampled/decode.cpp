@@ -7,9 +7,10 @@ namespace radar {
 
 namespace {
 
-Corners corners(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
+Corners corners(const Mesh& mesh, const Transform& pose, uint32_t triangle) {
   Corners p;
-  for (int i = 0; i < 3; ++i) p[i] = place(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
+  for (int i = 0; i < 3; ++i)
+    p[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
   return p;
 }
 
@@ -50,7 +51,7 @@ Result decodeClear() {
   return result;
 }
 
-Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
+Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> open, const Query& query,
                      const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs) {
   Result result;
   result.tier = Tier::sampled;
@@ -58,11 +59,11 @@ Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> o
   result.lo = 0;
   result.status = Status::undecided;
   if (answer.object != kNone) setFound(result, answer, query, scene);
-  // An open pair can improve on that only if it may meet before.
+  // An unresolved pair can improve on that only if it may meet before.
   ExactPairs exact(query);
-  for (const gpu::OpenPair& pair : open.first(answer.openPairs)) {
+  for (const gpu::SampledUnresolved& pair : open.first(answer.unresolvedPairs)) {
     if (answer.object != kNone && pair.low >= answer.hi) continue;
-    if (query.decide && (answer.object != kNone || exact.found())) break;
+    if (query.anyHit && (answer.object != kNone || exact.found())) break;
     const PairName name{pair.object, pair.triB, pair.triA};
     exact.consider(name, placedPair(name, query, scene));
     ++cpuPairs;
@@ -78,7 +79,7 @@ Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> o
   }
   result.detected = (answer.flags & gpu::kAnswerDetected) != 0 ? Detected::yes : Detected::no;
   if ((answer.flags & gpu::kAnswerHasL) != 0) result.paperMinL = answer.minL;
-  return query.decide ? decisionOf(result) : result;
+  return query.anyHit ? decisionOf(result) : result;
 }
 
 }  // namespace radar

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scene/scene.h"
-#include "shaders/interop.h"
+#include "shaders/sampled/interop.h"
 
 namespace radar {
 
@@ -12,8 +12,8 @@ namespace radar {
 Result decodeClear();
 
 /// The answer to a query whose scopes were drawn, in a window of `resolution`. Open pairs that may come before the
-/// device's contact are decided exactly, and counted in `cpuPairs`; for a query with `decide`, only until one meets.
-Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::OpenPair> open, const Query& query,
+/// device's contact are decided exactly, and counted in `cpuPairs`; for a query with `anyHit`, only until one meets.
+Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> open, const Query& query,
                      const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
 
 }  // namespace radar

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sampled/selection.h"
-#include "shaders/interop.h"
+#include "shaders/sampled/interop.h"
 
 namespace radar {
 

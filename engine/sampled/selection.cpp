@@ -13,7 +13,7 @@ double largest(const Vector& v) {
 }
 
 // What double precision may lose between `place` and the frame, world units.
-double doubleError(const Mesh& mesh, const Pose& pose, const Vector& origin) {
+double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
   double worst = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &pose.m[4 * row];

@@ -4,11 +4,11 @@
 #include <tuple>
 
 #include "gpu/barrier.h"
-#include "spirv/depth_vert.h"
-#include "spirv/identify_comp.h"
-#include "spirv/reduce_comp.h"
-#include "spirv/solve_comp.h"
-#include "spirv/solve_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/sampled_depth_vert.h"
+#include "spirv/sampled_identify_comp.h"
+#include "spirv/sampled_reduce_comp.h"
+#include "spirv/sampled_solve_comp.h"
+#include "spirv/sampled_solve_comp_RADAR_NO_DOUBLES.h"
 
 // pass       reads                                     writes                     barrier behind it
 // ---------- ----------------------------------------- -------------------------- ------------------------------
@@ -17,13 +17,13 @@
 // mask       draws, positions, indices                 M                          the render pass's own
 // reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
 // identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
-// solve      scene, views, draws, items, candidates    answers, open pairs        computeWriteToCopy
-// readback   answers, open pairs (R, M for pictures)   readback                   copyToHost
+// solve      scene, views, draws, items, candidates    answers, unresolved pairs  computeWriteToCopy
+// readback   answers, unresolved pairs (pictures: R, M) readback                  copyToHost
 
 namespace radar {
 
+using gpu::BufferDomain;
 using gpu::bytesOf;
-using gpu::Residence;
 using gpu::Upload;
 
 namespace {
@@ -35,10 +35,11 @@ constexpr gpu::Binding kDraws[] = {{gpu::kSlotDraws.number, VK_DESCRIPTOR_TYPE_S
 // The compute passes, made once for a device.
 struct SampledKernels {
   explicit SampledKernels(const Device::Impl& device)
-      : reduce(device, k_reduce_comp, "reduce"),
-        identify(device, k_identify_comp, "identify"),
-        solve(device, device.doubles ? std::span<const uint32_t>(k_solve_comp) : k_solve_comp_RADAR_NO_DOUBLES, "solve",
-              device.divisionConstants()) {}
+      : reduce(device, k_sampled_reduce_comp, "reduce"),
+        identify(device, k_sampled_identify_comp, "identify"),
+        solve(device,
+              device.doubles ? std::span<const uint32_t>(k_sampled_solve_comp) : k_sampled_solve_comp_RADAR_NO_DOUBLES,
+              "solve", device.divisionConstants()) {}
   gpu::Kernel reduce, identify, solve;
 };
 
@@ -54,16 +55,16 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       drawBindings_(device, kDraws, sizeof(uint32_t)),
       renderPass_(gpu::depthRenderPass(device)),
       sampler_(gpu::texelSampler(device)),
-      depth_(gpu::depthPipeline(device, drawBindings_.layout(), renderPass_.get(), k_depth_vert, "depth",
+      depth_(gpu::depthPipeline(device, drawBindings_.layout(), renderPass_.get(), k_sampled_depth_vert, "depth",
                                 sizeof(gpu::Vertex))),
-      views_(device, "views", Residence::device, kUploaded),
-      draws_(device, "draws", Residence::device, kUploaded),
-      items_(device, "items", Residence::device, kUploaded),
-      candidates_(device, "candidates", Residence::device, kComputed),
-      ranks_(device, "ranks", Residence::device, kComputed),
-      answers_(device, "answers", Residence::device, kComputed),
-      openPairs_(device, "open pairs", Residence::device, kComputed),
-      readback_(device, "readback", Residence::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      views_(device, "views", BufferDomain::device, kUploaded),
+      draws_(device, "draws", BufferDomain::device, kUploaded),
+      items_(device, "items", BufferDomain::device, kUploaded),
+      candidates_(device, "candidates", BufferDomain::device, kComputed),
+      ranks_(device, "ranks", BufferDomain::device, kComputed),
+      answers_(device, "answers", BufferDomain::device, kComputed),
+      unresolvedPairs_(device, "unresolved pairs", BufferDomain::device, kComputed),
+      readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       reduce_(device.shared<SampledKernels>().reduce),
       identify_(device.shared<SampledKernels>().identify),
       solve_(device.shared<SampledKernels>().solve) {}
@@ -88,7 +89,7 @@ void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene
   candidates_.reserve(batch.views.size() * gpu::kCells);
   ranks_.reserve(batch.views.size() * gpu::kCells);
   answers_.reserve(batch.views.size());
-  openPairs_.reserve(batch.views.size() * gpu::kOpenPairs);
+  unresolvedPairs_.reserve(batch.views.size() * gpu::kUnresolvedPerView);
   upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
                 Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
   resident_.upload(scene, upload_);
@@ -125,7 +126,7 @@ void SampledSubmitter::bind(const Pictures& pictures) {
               {kSlotItems, items_},
               {kSlotCandidates, candidates_},
               {kSlotAnswers, answers_},
-              {kSlotOpenPairs, openPairs_}});
+              {kSlotSampledUnresolved, unresolvedPairs_}});
 }
 
 void SampledSubmitter::drawScopes(const gpu::Commands& commands, const SampledBatch& batch,
@@ -145,7 +146,7 @@ void SampledSubmitter::drawScopes(const gpu::Commands& commands, const SampledBa
 // Where the parts of the readback lie.
 SampledSubmitter::Readback SampledSubmitter::readbackOf(const SampledBatch& batch, bool scopes) {
   const VkDeviceSize views = batch.views.size();
-  return {views * sizeof(gpu::Answer), views * gpu::kOpenPairs * sizeof(gpu::OpenPair),
+  return {views * sizeof(gpu::Answer), views * gpu::kUnresolvedPerView * sizeof(gpu::SampledUnresolved),
           scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
 }
 
@@ -183,7 +184,7 @@ void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scen
   gpu::computeWriteToComputeReadWrite(commands);
   submission_.stage("identify");
   const auto items = static_cast<uint32_t>(batch.items.size());
-  identify_.dispatch(commands, items, items);
+  identify_.dispatch(commands, items, gpu::IdentifyPush{items});
   gpu::computeWriteToComputeReadWrite(commands);
   submission_.stage("solve");
   solve_.dispatch(commands, views);
@@ -192,7 +193,7 @@ void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scen
   submission_.stage("readback");
   const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
   commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  commands->CmdCopyBuffer(commands, openPairs_.get(), readback_.get(), 1, &openCopy);
+  commands->CmdCopyBuffer(commands, unresolvedPairs_.get(), readback_.get(), 1, &openCopy);
   if (scopes) {
     const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
     pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
@@ -215,7 +216,8 @@ SampledAnswers SampledSubmitter::collect(const SampledBatch& batch, const Scene:
   }
   const size_t views = batch.views.size();
   return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
-          {reinterpret_cast<const gpu::OpenPair*>(readback_.mapped() + answerBytes), views * gpu::kOpenPairs}};
+          {reinterpret_cast<const gpu::SampledUnresolved*>(readback_.mapped() + answerBytes),
+           views * gpu::kUnresolvedPerView}};
 }
 
 }  // namespace radar

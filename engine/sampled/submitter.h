@@ -12,10 +12,10 @@
 
 namespace radar {
 
-/// The shaders' output, by view; kOpenPairs open pairs per view. Valid until the next submission.
+/// The shaders' output, by view; kUnresolvedPerView unresolved pairs per view. Valid until the next submission.
 struct SampledAnswers {
   std::span<const gpu::Answer> answers;
-  std::span<const gpu::OpenPair> openPairs;
+  std::span<const gpu::SampledUnresolved> unresolvedPairs;
 };
 
 /// Depth of one view, as stored: 0 near, 1 empty.
@@ -42,7 +42,7 @@ class SampledSubmitter {
 
   /// Bytes of each part.
   struct Readback {
-    VkDeviceSize answers, openPairs, picture;
+    VkDeviceSize answers, unresolvedPairs, picture;
   };
 
   static Readback readbackOf(const SampledBatch& batch, bool scopes);
@@ -67,7 +67,7 @@ class SampledSubmitter {
   gpu::Array<gpu::Candidate> candidates_;
   gpu::Array<uint32_t> ranks_;
   gpu::Array<gpu::Answer> answers_;
-  gpu::Array<gpu::OpenPair> openPairs_;
+  gpu::Array<gpu::SampledUnresolved> unresolvedPairs_;
   gpu::Buffer readback_;
   gpu::KernelArguments reduce_, identify_, solve_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side

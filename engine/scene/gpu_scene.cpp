@@ -9,7 +9,7 @@
 
 namespace radar {
 
-using gpu::Residence;
+using gpu::BufferDomain;
 using gpu::Upload;
 
 namespace {
@@ -20,7 +20,7 @@ constexpr VkFormat kTexels = VK_FORMAT_R32G32B32A32_UINT;
 
 // A texel buffer may be as large as it likes, a storage buffer not.
 template <class T>
-void refuseAbove(const Device::Impl& device, const char* what, uint64_t count) {
+void checkLimit(const Device::Impl& device, const char* what, uint64_t count) {
   const uint64_t bytes = count * sizeof(T), limit = device.properties.limits.maxStorageBufferRange;
   if (bytes <= limit) return;
   throw gpu::LimitError(std::string("the scene's ") + what + " need a buffer of " + std::to_string(bytes) +
@@ -41,14 +41,14 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
 
 GpuScene::GpuScene(const Device::Impl& device)
     : device_(&device),
-      buffers_{{device, "vertices", Residence::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels},
-               {device, "triangles", Residence::device, kUploaded, kTexels},
-               {device, "mesh nodes", Residence::device, kUploaded, kTexels},
-               {device, "meshes", Residence::device, kUploaded},
-               {device, "objects", Residence::device, kUploaded},
-               {device, "placements", Residence::device, kUploaded, kTexels},
-               {device, "object nodes", Residence::device, kUploaded, kTexels},
-               {device, "indices", Residence::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
+      buffers_{{device, "vertices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels},
+               {device, "triangles", BufferDomain::device, kUploaded, kTexels},
+               {device, "mesh nodes", BufferDomain::device, kUploaded, kTexels},
+               {device, "meshes", BufferDomain::device, kUploaded},
+               {device, "objects", BufferDomain::device, kUploaded},
+               {device, "placements", BufferDomain::device, kUploaded, kTexels},
+               {device, "object nodes", BufferDomain::device, kUploaded, kTexels},
+               {device, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
 
 void GpuScene::willOverwrite(Overwritten next) {
   next_ = std::move(next);
@@ -63,7 +63,7 @@ void GpuScene::forget() {
 
 VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
   if (seenScene_ != scene.identity) forget();
-  refuseTooLargeToWrite(scene);
+  checkWriteLimits(scene);
   const VkDeviceSize meshes = prepareMeshes(scene);
   return meshes + prepareIndices(scene) + prepareObjects(scene);
 }
@@ -88,7 +88,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
     nodes += mesh.tree.nodes.size();
     changedMeshes_.push_back(i);
   }
-  refuseAbove<gpu::MeshRecord>(*device_, "meshes", records_.size());
+  checkLimit<gpu::MeshRecord>(*device_, "meshes", records_.size());
   if (vertices > gpu::kLinkItem || triangles > gpu::kLinkItem || nodes > gpu::kLinkItem) {
     throw gpu::LimitError("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
@@ -99,16 +99,16 @@ void GpuScene::layOut(const Scene::Impl& scene) {
 }
 
 // What shaders write is bound as storage buffers, of which they reach only as much as the device allows.
-void GpuScene::refuseTooLargeToWrite(const Scene::Impl& scene) const {
-  if (!next_.objects.empty()) refuseAbove<gpu::Placement>(*device_, "placements", scene.objects.size());
+void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
+  if (!next_.objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
   if (next_.meshes.empty()) return;
   uint64_t vertices = 0, nodes = 0;
   for (const Mesh& mesh : scene.meshes) {
     vertices += mesh.vertexCount();
     nodes += mesh.tree.nodes.size();
   }
-  refuseAbove<gpu::Vertex>(*device_, "vertices", vertices);
-  refuseAbove<gpu::MeshNode>(*device_, "mesh nodes", nodes);
+  checkLimit<gpu::Vertex>(*device_, "vertices", vertices);
+  checkLimit<gpu::MeshNode>(*device_, "mesh nodes", nodes);
 }
 
 VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
@@ -144,7 +144,7 @@ VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
 }
 
 VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
-  refuseAbove<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
+  checkLimit<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
   const bool grew = buffers_.objects.reserve(scene.objects.size());
   if (buffers_.placements.reserve(scene.objects.size()) || grew) seenPoses_ = 0;
   changedObjects_.clear();

@@ -6,7 +6,7 @@
 #include "gpu/array.h"
 #include "gpu/submission.h"
 #include "scene/scene.h"
-#include "shaders/contact/interop.h"
+#include "shaders/shared/interop.h"
 
 namespace radar {
 
@@ -54,7 +54,7 @@ class GpuScene {
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
 
  private:
-  void refuseTooLargeToWrite(const Scene::Impl& scene) const;
+  void checkWriteLimits(const Scene::Impl& scene) const;
   VkDeviceSize prepareMeshes(const Scene::Impl& scene);
   VkDeviceSize prepareIndices(const Scene::Impl& scene);
   VkDeviceSize prepareObjects(const Scene::Impl& scene);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "shaders/interop.h"
+#include "shaders/shared/interop.h"
 
 namespace radar {
 

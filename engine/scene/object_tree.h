@@ -7,7 +7,7 @@
 
 #include "math/box.h"
 #include "radar/radar.h"
-#include "shaders/interop.h"
+#include "shaders/shared/interop.h"
 
 namespace radar {
 

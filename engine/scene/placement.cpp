@@ -59,7 +59,7 @@ bool setInverse(gpu::Placement& out, const Matrix& matrix) {
 
 }  // namespace
 
-gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh) {
+gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh) {
   gpu::Placement out{};
   Matrix matrix;
   double size = 0, magnitude = 0, most = 0;

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "scene/scene.h"
-#include "shaders/contact/interop.h"
+#include "shaders/shared/interop.h"
 
 namespace radar {
 
 /// Sets all members but `mask`, `root` and `mesh`. perUnit is 0 if floats cannot hold the mesh or its pose
 /// (kMostCoordinate).
-gpu::Placement placementOf(const Mesh& mesh, const Pose& worldFromMesh);
+gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh);
 
 /// Whether floats hold the mesh and its pose.
 inline bool isInRange(const gpu::Placement& placement) {

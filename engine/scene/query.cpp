@@ -7,12 +7,12 @@
 
 namespace radar {
 
-std::string whatIsWrong(const Pose& pose) {
+std::string validate(const Transform& pose) {
   for (double value : pose.m) {
     if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
   }
   // Columns, then rows scaled to length 1, so that an honest 1e-5 scale along one axis is no singular matrix.
-  Pose scaled = pose;
+  Transform scaled = pose;
   for (int k = 0; k < 3; ++k) {
     const double length = std::hypot(pose.m[k], pose.m[4 + k], pose.m[8 + k]);
     if (length == 0) return "expected an invertible matrix, got a singular one, with a zero column";
@@ -28,9 +28,9 @@ std::string whatIsWrong(const Pose& pose) {
   return {};
 }
 
-std::string whatIsWrong(const Query& query, const Scene& scene) {
+std::string validate(const Query& query, const Scene& scene) {
   if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
-  if (std::string wrong = whatIsWrong(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
+  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
   double largest = 0;
   for (double value : query.direction) {
     if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + std::to_string(value);

@@ -137,12 +137,12 @@ Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
   return box;
 }
 
-double determinant(const Pose& pose) {
+double determinant(const Transform& pose) {
   const std::array<double, 12>& m = pose.m;
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
-Vector place(const Pose& pose, const float* p) {
+Vector transformPoint(const Transform& pose, const float* p) {
   const double x = p[0], y = p[1], z = p[2];
   Vector out;
   for (int k = 0; k < 3; ++k) {
@@ -219,7 +219,7 @@ void Scene::removeMesh(MeshId mesh) {
 
 ObjectId Scene::addObject(const Object& object) {
   if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
-  if (std::string wrong = whatIsWrong(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
+  if (std::string wrong = validate(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
   const ObjectId id = takeSlot(impl_->objects, impl_->freeObjects);
   impl_->objects[id] = {object, true};
   ++impl_->meshes[object.mesh].objects;
@@ -228,9 +228,9 @@ ObjectId Scene::addObject(const Object& object) {
   return id;
 }
 
-void Scene::setPose(ObjectId object, const Pose& worldFromMesh) {
-  if (!hasObject(object)) throw Error("setPose: " + idText("object", object) + " does not exist");
-  if (std::string wrong = whatIsWrong(worldFromMesh); !wrong.empty()) throw Error("setPose: " + wrong);
+void Scene::setTransform(ObjectId object, const Transform& worldFromMesh) {
+  if (!hasObject(object)) throw Error("setTransform: " + idText("object", object) + " does not exist");
+  if (std::string wrong = validate(worldFromMesh); !wrong.empty()) throw Error("setTransform: " + wrong);
   impl_->objects[object].object.worldFromMesh = worldFromMesh;
   impl_->poseVersion = impl_->changedAt[object] = nextVersion();
 }

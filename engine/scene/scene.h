@@ -88,6 +88,6 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
 
 /// The determinant of the 3x3 part.
-double determinant(const Pose& pose);
+double determinant(const Transform& pose);
 
 }  // namespace radar

@@ -42,7 +42,7 @@ uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
 
 ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
                          GpuScene& resident, std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room,
-                         Asked& batch)
+                         QueryBatch& batch)
     : device_(device),
       scene_(scene),
       options_(options),
@@ -107,31 +107,31 @@ void ContactTier::run(std::span<const size_t> which) {
 
 void ContactTier::submit() {
   if (planned_.empty()) return;
-  land();
-  flying_.swap(planned_);
+  collect();
+  inFlight_.swap(planned_);
   try {
     if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
     submitter_->submit(sensors_, scene_.impl());
   } catch (const gpu::LimitError&) {
-    answerOnCpu(std::exchange(flying_, {}));
+    answerOnCpu(std::exchange(inFlight_, {}));
   } catch (const Error& error) {
-    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
+    for (const size_t query : std::exchange(inFlight_, {})) batch_.fail(query, error);
   }
   sensors_.clear();
 }
 
 void ContactTier::finish() {
-  land();
+  collect();
   while (!cramped_.empty()) {
     const std::vector<size_t> again = std::exchange(cramped_, {});
     run(again);
-    land();
+    collect();
   }
 }
 
-void ContactTier::land() {
-  const std::vector<size_t> landing = std::exchange(flying_, {});
-  if (landing.empty()) return;
+void ContactTier::collect() {
+  const std::vector<size_t> collected = std::exchange(inFlight_, {});
+  if (collected.empty()) return;
   try {
     const SearchAnswers found = submitter_->collect(scene_.impl(), batch_.stats.stages);
     batch_.deviceDone = Clock::now();
@@ -139,34 +139,34 @@ void ContactTier::land() {
     batch_.stats.nodePairs += found.nodePairs;
     batch_.stats.pairs += found.trianglePairs;
     batch_.stats.solves += found.solves;
-    decode(found, landing);
+    decode(found, collected);
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
   } catch (const Error& error) {
-    for (const size_t query : landing) batch_.giveUp(query, error);
+    for (const size_t query : collected) batch_.fail(query, error);
   }
 }
 
-void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> landing) {
+void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> collected) {
   const UnresolvedPairs unresolved(found.unresolved);
   std::vector<uint32_t> open;
   std::vector<size_t> left;
-  for (uint32_t i = 0; i < landing.size(); ++i) {
+  for (uint32_t i = 0; i < collected.size(); ++i) {
     const Result& result = found.results[i];
     if (result.flags == 0 && result.status != Status::invalid) {
-      batch_.answers[landing[i]] = result;
+      batch_.answers[collected[i]] = result;
     } else if (result.flags == 0) {
       throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
-    } else if (result.flags == kFlagOpen && isDecidable(unresolved.of(i))) {
+    } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
     } else if (found.roomier && result.flags == kFlagCandidates) {
-      cramped_.push_back(landing[i]);
+      cramped_.push_back(collected[i]);
     } else {
-      left.push_back(landing[i]);
+      left.push_back(collected[i]);
     }
   }
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
-      const size_t query = landing[open[k]];
+      const size_t query = collected[open[k]];
       batch_.answers[query] = decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query]);
     }
   });

@@ -4,7 +4,7 @@
 
 #include "contact/submitter.h"
 #include "cpu/search.h"
-#include "sweep/asked.h"
+#include "sweep/query_batch.h"
 
 namespace radar {
 
@@ -12,7 +12,7 @@ class ContactTier {
  public:
   /// `kernels`: null: the device's, created here unless isOnCpu().
   ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
-              std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, Asked& batch);
+              std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, QueryBatch& batch);
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
@@ -23,7 +23,7 @@ class ContactTier {
 
  private:
   void submit();
-  void land();
+  void collect();
   void decode(const SearchAnswers& found, std::span<const size_t> landing);
   void answerOnCpu(std::span<const size_t> which);
 
@@ -34,12 +34,12 @@ class ContactTier {
   std::shared_ptr<const ContactKernels> kernels_;
   const SearchRoom room_;
   const size_t mostSensors_;  ///< per submission
-  Asked& batch_;
+  QueryBatch& batch_;
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   SensorBatch sensors_;
-  std::vector<size_t> planned_, flying_;  ///< the queries in `sensors_`, and those on the device
-  std::vector<size_t> cramped_;           ///< queries to repeat, now that the device has room for them
+  std::vector<size_t> planned_, inFlight_;  ///< the queries in `sensors_`, and those on the device
+  std::vector<size_t> cramped_;             ///< queries to repeat, now that the device has room for them
 };
 
 }  // namespace radar

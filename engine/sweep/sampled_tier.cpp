@@ -9,7 +9,7 @@
 namespace radar {
 
 SampledTier::SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
-                         GpuScene& resident, Asked& batch)
+                         GpuScene& resident, QueryBatch& batch)
     : device_(device),
       scene_(scene),
       options_(options),
@@ -50,12 +50,12 @@ ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
 
 void SampledTier::submit(std::span<Pending> part) {
   if (part.empty()) return;
-  land();
+  collect();
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
   for (const Pending& pending : part) {
     plans.push_back(&pending.plan);
-    flying_.push_back(pending.query);
+    inFlight_.push_back(pending.query);
   }
   packBatch(drawn_, plans);
   batch_.addCpuTime("encode", msSince(start));
@@ -65,26 +65,26 @@ void SampledTier::submit(std::span<Pending> part) {
   try {
     recorder_.submit(drawn_, scene_.impl());
   } catch (const Error& error) {
-    for (const size_t query : std::exchange(flying_, {})) batch_.giveUp(query, error);
+    for (const size_t query : std::exchange(inFlight_, {})) batch_.fail(query, error);
   }
 }
 
-void SampledTier::land() {
-  const std::vector<size_t> landing = std::exchange(flying_, {});
-  if (landing.empty()) return;
+void SampledTier::collect() {
+  const std::vector<size_t> collected = std::exchange(inFlight_, {});
+  if (collected.empty()) return;
   try {
     const SampledAnswers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages);
     batch_.deviceDone = Clock::now();
-    for (size_t i = 0; i < landing.size(); ++i) {
-      const size_t query = landing[i];
-      batch_.answers[query] =
-          decodeSampled(found.answers[i], found.openPairs.subspan(i * gpu::kOpenPairs, gpu::kOpenPairs),
-                        batch_.asked[query], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
+    for (size_t i = 0; i < collected.size(); ++i) {
+      const size_t query = collected[i];
+      batch_.answers[query] = decodeSampled(
+          found.answers[i], found.unresolvedPairs.subspan(i * gpu::kUnresolvedPerView, gpu::kUnresolvedPerView),
+          batch_.asked[query], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
       batch_.stats.pairs += found.answers[i].pairs;
     }
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
   } catch (const Error& error) {
-    for (const size_t query : landing) batch_.giveUp(query, error);
+    for (const size_t query : collected) batch_.fail(query, error);
   }
 }
 
@@ -147,7 +147,7 @@ Scopes SampledTier::scopes(const Query& query) {
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()
-                                    : decodeSampled(found.answers[0], found.openPairs, query, scene_.impl(),
+                                    : decodeSampled(found.answers[0], found.unresolvedPairs, query, scene_.impl(),
                                                     plan.view.resolution, batch_.stats.cpuPairs);
   out.width = plan.view.width;
   out.height = plan.view.height;

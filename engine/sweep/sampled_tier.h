@@ -3,19 +3,19 @@
 #pragma once
 
 #include "sampled/submitter.h"
-#include "sweep/asked.h"
+#include "sweep/query_batch.h"
 
 namespace radar {
 
 class SampledTier {
  public:
   SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
-              Asked& batch);
+              QueryBatch& batch);
 
   /// Plans and submits these queries; on return the last submission may still be running.
   void run(std::span<const size_t> which);
   /// Waits for the last submission and decodes it.
-  void land();
+  void collect();
   /// The pictures from which a valid query is answered. No submission may be running.
   Scopes scopes(const Query& query);
 
@@ -41,11 +41,11 @@ class SampledTier {
   const Device::Impl& device_;
   const Scene& scene_;
   const SweeperOptions options_;
-  Asked& batch_;
+  QueryBatch& batch_;
   SampledSubmitter recorder_;
   uint64_t bufferBytes_;
-  uint64_t maxItems_;           ///< so that item and lane fit 32 bits (gpu::Candidate)
-  std::vector<size_t> flying_;  ///< the queries on the device, in the order of `drawn_.views`
+  uint64_t maxItems_;             ///< so that item and lane fit 32 bits (gpu::Candidate)
+  std::vector<size_t> inFlight_;  ///< the queries on the device, in the order of `drawn_.views`
   SampledBatch drawn_;
 };
 

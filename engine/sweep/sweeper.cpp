@@ -33,15 +33,15 @@ void Sweeper::Impl::runSampled(std::span<const size_t> which) {
   try {
     sampled();
   } catch (const Error& error) {
-    for (const size_t query : which) giveUp(query, error);
+    for (const size_t query : which) fail(query, error);
     return;
   }
   sampledTier->run(which);
 }
 
-void Sweeper::Impl::refuseWrong(std::span<const Query> queries) const {
+void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = whatIsWrong(queries[i], scene);
+    const std::string wrong = validate(queries[i], scene);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
     if (queries[i].mode == Mode::sampled) device.requireSampled("query " + std::to_string(i));
   }
@@ -74,7 +74,7 @@ void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> resu
   deviceDone = Clock::now();  // in case nothing goes there
   try {
     runSampled(ofSampled);
-    if (sampledTier && !ofContact.empty()) sampledTier->land();
+    if (sampledTier && !ofContact.empty()) sampledTier->collect();
     contactTier.run(ofContact);
   } catch (...) {
     finish();  // nothing stays with the device behind an exception
@@ -83,7 +83,7 @@ void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> resu
 }
 
 void Sweeper::Impl::finish() {
-  if (sampledTier) sampledTier->land();
+  if (sampledTier) sampledTier->collect();
   contactTier.finish();
 }
 
@@ -100,7 +100,7 @@ void Sweeper::sync() {
 }
 
 std::vector<Result> Sweeper::run(std::span<const Query> queries) {
-  impl_->refuseWrong(queries);
+  impl_->validateAll(queries);
   std::vector<Result> results(queries.size());
   impl_->begin(queries, results);
   impl_->finish();
@@ -108,7 +108,7 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
 }
 
 Scopes Sweeper::scopes(const Query& query) {
-  impl_->refuseWrong({&query, 1});
+  impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
   impl_->stats = {};
   return impl_->sampled().scopes(query);

@@ -6,7 +6,7 @@
 
 namespace radar {
 
-struct Sweeper::Impl : Asked {
+struct Sweeper::Impl : QueryBatch {
   /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
   /// the scene, while nothing is running on the device. `kernels`: null: the device's.
   Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
@@ -18,7 +18,7 @@ struct Sweeper::Impl : Asked {
   void begin(std::span<const Query> queries, std::span<Result> results);
   void finish();
 
-  void refuseWrong(std::span<const Query> queries) const;
+  void validateAll(std::span<const Query> queries) const;
   SampledTier& sampled();
   void runSampled(std::span<const size_t> which);
 

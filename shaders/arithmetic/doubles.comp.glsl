@@ -2,9 +2,9 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "divide.glsl"
+#include "shared/divide.glsl"
 #include "interop.h"
-#include "widen.glsl"
+#include "shared/widen.glsl"
 
 layout(local_size_x = kTrialGroup) in;
 layout(constant_id = 1) const uint kSpoiled = kNoOperation;

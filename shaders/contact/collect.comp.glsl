@@ -4,8 +4,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
-#include "contact/interop.h"
-#include "workgroup.glsl"
+#include "interop.h"
+#include "shared/workgroup.glsl"
 
 layout(local_size_x = kContactGroup) in;
 

@@ -3,24 +3,24 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
-#include "contact/interop.h"
-#include "double_bits.glsl"
-#include "workgroup.glsl"
+#include "interop.h"
+#include "shared/double_bits.glsl"
+#include "shared/workgroup.glsl"
 
 layout(local_size_x = kContactGroup) in;
 
 layout(scalar, binding = kSlotStates) readonly restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotPairCandidates) readonly restrict buffer Candidates { PairCandidate candidates[]; };
-layout(scalar, binding = kSlotContenders) writeonly restrict buffer Contenders { Contender contenders[]; };
+layout(scalar, binding = kSlotCandidatePairs) readonly restrict buffer Candidates { CandidatePair candidates[]; };
+layout(scalar, binding = kSlotRefinedPairs) writeonly restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
 
 layout(push_constant) uniform PushConstants { FilterPush push; };
 
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (i >= min(counts.candidates, push.candidateCapacity)) return;
-  const PairCandidate c = candidates[i];
+  const CandidatePair c = candidates[i];
   if (c.low > uintBitsToFloat(states[c.sensor].hi) || c.object > states[c.sensor].least) return;
-  contenders[atomicAdd(counts.contenders, 1)] = Contender(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.sensor,
+  refinedPairs[atomicAdd(counts.refinedPairs, 1)] = RefinedPair(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.sensor,
                                                           c.object, c.slotA, c.slotB, 0, kNobody, c.low, 0);
 }

@@ -4,7 +4,7 @@
 #ifndef RADAR_CONTACT_INTEROP_H
 #define RADAR_CONTACT_INTEROP_H
 
-#include "../interop.h"
+#include "../shared/interop.h"
 
 #ifdef __cplusplus
 namespace radar {
@@ -24,7 +24,7 @@ struct Sensor {
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
   float distance;  // D, scaled, rounded up
   Point halfExtent;
-  float enough;    // scaled: a certain contact before this ends the search; negative unless the query has `decide`
+  float enough;    // scaled: a certain contact before this ends the search; negative unless the query has `anyHit`
   uint mask;
   uint firstExcluded;  // in the list of excluded objects
   uint endExcluded;
@@ -38,7 +38,7 @@ struct Sweep {
   double direction[3];
   double directionLength;
   double distance;  // D
-  uint decides;     // the query has `decide`
+  uint anyHit;      // the query has `anyHit`
   uint result;      // index of its answer
   float scale;      // see Sensor
   float start;      // Sensor::distance, the initial SearchState::hi
@@ -63,7 +63,7 @@ struct SearchTask {
 };
 
 // A pair of triangles that may be first, according to floats.
-struct PairCandidate {
+struct CandidatePair {
   uint sensor;
   uint object;
   uint slotA;  // Triangle
@@ -72,22 +72,22 @@ struct PairCandidate {
 };
 
 // A pair that may still be first after the search; in double precision if the device has it.
-struct Contender {
+struct RefinedPair {
   double low;    // no contact before this
   double at;     // contact of the certain feature, in multiples of the direction, and its error bound;
-  double error;  // only if kContenderMeets
+  double error;  // only if kPairMeets
   uint sensor;
   uint object;
   uint slotA;
   uint slotB;
-  uint flags;    // kContender*, and the feature that attains `at` in the low bits
+  uint flags;    // kPair*, and the feature that attains `at` in the low bits
   uint next;
   float first;   // `low`, scaled, rounded down
   uint padding;
 };
-INTEROP_CONST kContenderPierces = 0x400;  // certainly meets at the start
-INTEROP_CONST kContenderMeets = 0x200;    // certainly, no later than at + error
-INTEROP_CONST kContenderSharp = 0x100;    // certainly begins at `at`, no earlier
+INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
+INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
+INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier
 
 // A pair that the device leaves to the host: its ids, its mesh corners, and the object's pose.
 struct UnresolvedPair {
@@ -112,7 +112,7 @@ INTEROP_CONST kMostRounds = 64;
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
   uint candidates;       // found, kept up to the capacity
-  uint contenders;
+  uint refinedPairs;
   uint unresolved;       // found, kept up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups
   uint nodePairs;        // tested; low word
@@ -153,13 +153,13 @@ INTEROP_SLOT(kSlotStates, 6, SearchState);
 INTEROP_SLOT(kSlotCounts, 7, SearchCounts);
 INTEROP_SLOT(kSlotTasks, 8, SearchTask);
 INTEROP_SLOT(kSlotSpilled, 9, SearchTask);
-INTEROP_SLOT(kSlotPairCandidates, 10, PairCandidate);
-INTEROP_SLOT(kSlotContenders, 11, Contender);
+INTEROP_SLOT(kSlotCandidatePairs, 10, CandidatePair);
+INTEROP_SLOT(kSlotRefinedPairs, 11, RefinedPair);
 INTEROP_SLOT(kSlotSweeps, 12, Sweep);
 INTEROP_SLOT(kSlotExcluded, 14, uint);
 INTEROP_SLOT(kSlotResults, 15, Result);
 INTEROP_SLOT(kSlotUnresolved, 16, UnresolvedPair);
-INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first Contender, linked by `next`, or kNobody
+INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first RefinedPair, linked by `next`, or kNobody
 
 #ifdef __cplusplus
 }  // namespace gpu

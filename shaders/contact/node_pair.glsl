@@ -40,7 +40,7 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
 
   MeshPair p;
-  // Asked before it is multiplied. Where floats cannot hold an object, its perUnit is 0.
+  // QueryBatch before it is multiplied. Where floats cannot hold an object, its perUnit is 0.
   p.inRange = objectTexel(object, kTexelOrigin).w > 0.0 && most < kMostRatio && error < kMostError &&
               max(mostOf(a0, a1, a2), mostOf(b0, b1, b2)) < kMostRatio * unscale &&
               max(mostOf(na0, na1, na2), mostOf(nb0, nb1, nb2)) < kMostRatio * scale;

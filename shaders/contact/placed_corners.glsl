@@ -1,6 +1,6 @@
 // A triangle's corners in the world, in double precision, by the formula of radar.h; sorted, so that what two triangles share
 // has the same bits in both. Included after contact/scene.glsl.
-#include "widen.glsl"
+#include "shared/widen.glsl"
 bool before(dvec3 p, dvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
 }

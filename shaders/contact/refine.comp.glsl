@@ -1,19 +1,19 @@
-// Solves the contenders in double precision, which brings down what is certainly met.
+// Solves the refined pairs in double precision, which brings down what is certainly met.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "contact/interop.h"
-#include "contact.glsl"
-#include "contact/scene.glsl"
-#include "contact/placed_corners.glsl"
-#include "workgroup.glsl"
+#include "interop.h"
+#include "shared/triangle_pair_bounds.glsl"
+#include "shared/scene.glsl"
+#include "placed_corners.glsl"
+#include "shared/workgroup.glsl"
 
 layout(local_size_x = kContactGroup) in;
 
 layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotContenders) restrict buffer Contenders { Contender contenders[]; };
+layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 
@@ -24,23 +24,23 @@ const double kRoundedFloat = 2.4e-7LF;
 
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
-  if (i >= counts.contenders) return;
-  const Contender c = contenders[i];
+  if (i >= counts.refinedPairs) return;
+  const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
-  const Meeting m = meetingOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
   // One that comes after the start alone counts as never.
   const double low = m.latest >= 0.0LF ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
-  contenders[i].low = low;
-  contenders[i].at = m.at;
-  contenders[i].error = m.error;
-  contenders[i].flags = (m.ahead ? kContenderMeets : 0) | (m.ahead && m.by < 0.0LF ? kContenderPierces : 0) |
-                        (sharp ? kContenderSharp : 0) | (m.feature & 0xffu);
+  refinedPairs[i].low = low;
+  refinedPairs[i].at = m.at;
+  refinedPairs[i].error = m.error;
+  refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && m.by < 0.0LF ? kPairPierces : 0) |
+                        (sharp ? kPairSharp : 0) | (m.feature & 0xffu);
   const double scale = double(sweep.scale), by = max(m.at + m.error, 0.0LF) * sweep.directionLength * scale;
-  contenders[i].first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
+  refinedPairs[i].first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
   if (m.ahead && by < double(uintBitsToFloat(states[c.sensor].hi))) {
     atomicMin(states[c.sensor].hi, floatBitsToUint(float(by * (1.0LF + kRoundedFloat)) + 1e-37));
   }

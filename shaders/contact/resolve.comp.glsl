@@ -5,18 +5,18 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "contact/interop.h"
-#include "contact/scene.glsl"
+#include "interop.h"
+#include "shared/scene.glsl"
 #define RADAR_RESULT_BITS
 #include "radar/result.glsl"
-#include "workgroup.glsl"
+#include "shared/workgroup.glsl"
 
 layout(local_size_x = kContactGroup) in;
 
 layout(scalar, binding = kSlotStates) readonly restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotHeads) readonly restrict buffer Heads { uint heads[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotContenders) readonly restrict buffer Contenders { Contender contenders[]; };
+layout(scalar, binding = kSlotRefinedPairs) readonly restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kSlotResults) writeonly restrict buffer Results { RadarResult results[]; };
@@ -32,7 +32,7 @@ const uint kMostListed = 16384;
 uint s;
 
 // Ties go by this.
-uvec3 nameOf(Contender c) { return uvec3(c.object, triangleAt(c.slotB).w, triangleAt(c.slotA).w); }
+uvec3 nameOf(RefinedPair c) { return uvec3(c.object, triangleAt(c.slotB).w, triangleAt(c.slotA).w); }
 bool isLess(uvec3 p, uvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
 }
@@ -52,20 +52,20 @@ uint roomFor(uint pairs) {
   return kNobody;
 }
 
-void list(uint at, Contender c) {
+void list(uint at, RefinedPair c) {
   const uvec3 name = nameOf(c);
   unresolved[at] =
       UnresolvedPair(s, name.x, name.y, name.z, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
 }
 
 #ifndef RADAR_NO_DOUBLES
-#include "divide.glsl"
+#include "shared/divide.glsl"
 // 0 has no sign: what a device makes of it is its own.
 uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
 uvec2[3] bitsOf(dvec3 v) { return uvec2[3](bitsOf(v.x), bitsOf(v.y), bitsOf(v.z)); }
 double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
 #else
-#include "double_bits.glsl"
+#include "shared/double_bits.glsl"
 uvec2 bitsOf(uvec2 x) { return x; }
 // Times a power of two, by the exponent.
 uvec2 unscaled(float x, float scale) {
@@ -104,7 +104,7 @@ RadarResult within() {
 
 RadarResult undecided(bool met, uvec2 low) {
   RadarResult r = nothing(RADAR_UNDECIDED);
-  r.flags = RADAR_OPEN;
+  r.flags = RADAR_UNRESOLVED;
   if (met) r.detected = RADAR_DETECTED;
   const uvec2 distance = bitsOf(sweeps[s].distance);
   r.lo = isAbove(low, distance) ? distance : low;
@@ -112,17 +112,17 @@ RadarResult undecided(bool met, uvec2 low) {
 }
 
 #ifndef RADAR_NO_DOUBLES
-#include "contact/placed_corners.glsl"
-#include "twofold.glsl"
+#include "placed_corners.glsl"
+#include "double_double.glsl"
 const double kNever = 1.0e200LF;
 const double kRounded = 8.0LF * 1.1102230246251565e-16LF;
 
-// The corners of a contender's triangles: the sensor's, the scene's.
+// The corners of a refined pair's triangles: the sensor's, the scene's.
 struct Corners {
   dvec3 a[3], b[3];
 };
 
-Corners cornersOf(Contender c) {
+Corners cornersOf(RefinedPair c) {
   Corners corners;
   placedCorners(sweeps[s].pose, c.slotA, corners.a);
   placedCorners(objects[c.object].pose, c.slotB, corners.b);
@@ -137,7 +137,7 @@ bool sameParts(uint featureP, Corners cornersP, uint featureQ, Corners cornersQ)
   return kindP == kindQ && p.from == q.from && p.to == q.to && p.x0 == q.x0 && p.x1 == q.x1 && p.y0 == q.y0 && p.y1 == q.y1;
 }
 
-// Tells of the contender's first contact, at s > 0; false where rounding is not certain.
+// Tells of the refined pair's first contact, at s > 0; false where rounding is not certain.
 bool tellHit(uint feature, Corners corners, inout RadarResult r) {
   const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
   const Event e = eventOf(feature, corners.a, corners.b);
@@ -166,9 +166,9 @@ void tellOverlap(Corners corners, inout RadarResult r) {
   if (commonPoint(corners.a, corners.b, point)) r.point = bitsOf(point);
 }
 
-// What of a sensor's contenders may be first.
+// What of a sensor's refined pairs may be first.
 struct Kept {
-  uint count;            // of all contenders
+  uint count;            // of all refined pairs
   double limit;          // none is first that begins beyond
   double low;            // they do not meet before
   uint open;             // that may be first
@@ -178,19 +178,19 @@ struct Kept {
 Kept keep(uint first, double hi) {
   const double length = sweeps[s].directionLength;
   Kept kept = Kept(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody));
-  for (uint i = first; i != kNobody && kept.count < kMostListed; i = contenders[i].next) {
-    const Contender c = contenders[i];
-    if ((c.flags & kContenderMeets) != 0) kept.limit = min(kept.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
+  for (uint i = first; i != kNobody && kept.count < kMostListed; i = refinedPairs[i].next) {
+    const RefinedPair c = refinedPairs[i];
+    if ((c.flags & kPairMeets) != 0) kept.limit = min(kept.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
     ++kept.count;
   }
-  for (uint i = first, k = 0; k < kept.count; i = contenders[i].next, ++k) {
-    const Contender c = contenders[i];
+  for (uint i = first, k = 0; k < kept.count; i = refinedPairs[i].next, ++k) {
+    const RefinedPair c = refinedPairs[i];
     if (c.low > kept.limit) continue;
     kept.low = min(kept.low, c.low);
     ++kept.open;
     const uvec3 name = nameOf(c);
     if (isLess(name, kept.least.xyz)) kept.least = uvec4(name, i);
-    if ((c.flags & kContenderPierces) != 0 && isLess(name, kept.pierced.xyz)) kept.pierced = uvec4(name, i);
+    if ((c.flags & kPairPierces) != 0 && isLess(name, kept.pierced.xyz)) kept.pierced = uvec4(name, i);
   }
   return kept;
 }
@@ -198,19 +198,19 @@ Kept keep(uint first, double hi) {
 // Tells of what may be first where all of it certainly is, with the same features; where something certainly meets at the
 // start: where nothing of a lesser name may, too. False where that is not certain.
 bool tell(uint first, Kept kept, inout RadarResult r) {
-  if (kept.count > kMostCompared || sweeps[s].decides != 0) return false;
+  if (kept.count > kMostCompared || sweeps[s].anyHit != 0) return false;
   const bool pierces = kept.pierced.w != kNobody;
   const uvec4 winner = pierces ? kept.pierced : kept.least;
-  const Contender one = contenders[winner.w];
+  const RefinedPair one = refinedPairs[winner.w];
   const Corners corners = cornersOf(one);
-  bool certain = pierces || (one.flags & kContenderSharp) != 0;
-  for (uint i = first; i != kNobody && certain; i = contenders[i].next) {
-    const Contender c = contenders[i];
+  bool certain = pierces || (one.flags & kPairSharp) != 0;
+  for (uint i = first; i != kNobody && certain; i = refinedPairs[i].next) {
+    const RefinedPair c = refinedPairs[i];
     if (c.low > kept.limit) continue;
     if (pierces) {
-      certain = (c.flags & kContenderPierces) != 0 || !isLess(nameOf(c), winner.xyz);
+      certain = (c.flags & kPairPierces) != 0 || !isLess(nameOf(c), winner.xyz);
     } else {
-      certain = (c.flags & kContenderSharp) != 0 && c.at == one.at &&
+      certain = (c.flags & kPairSharp) != 0 && c.at == one.at &&
                 sameParts(one.flags & 0xffu, corners, c.flags & 0xffu, cornersOf(c));
     }
   }
@@ -226,32 +226,32 @@ bool tell(uint first, Kept kept, inout RadarResult r) {
 
 RadarResult answer(SearchState state) {
   const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
-  if (sweeps[s].decides != 0 && met) return within();
+  if (sweeps[s].anyHit != 0 && met) return within();
   const Kept kept = keep(heads[s], hiOf(state));
   if (kept.least.w == kNobody) return noContact(met);
   if (kept.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
   RadarResult r = nothing(RADAR_UNDECIDED);
   if (tell(heads[s], kept, r)) return r;
   uint at = roomFor(kept.open);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = contenders[i].next) {
-    if (contenders[i].low <= kept.limit) list(at++, contenders[i]);
+  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
+    if (refinedPairs[i].low <= kept.limit) list(at++, refinedPairs[i]);
   }
   return undecided(met, bitsOf(kept.low));
 }
 #else
 RadarResult answer(SearchState state) {
   const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
-  if (sweeps[s].decides != 0 && met) return within();
+  if (sweeps[s].anyHit != 0 && met) return within();
   if (heads[s] == kNobody) return noContact(met);
   // What is in the list was held against `hi`.
   float low = 3.0e38;
   uint count = 0;
-  for (uint i = heads[s]; i != kNobody && count < kMostListed; i = contenders[i].next, ++count) {
-    low = min(low, contenders[i].first);
+  for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
+    low = min(low, refinedPairs[i].first);
   }
   if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
   uint at = roomFor(count);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = contenders[i].next) list(at++, contenders[i]);
+  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) list(at++, refinedPairs[i]);
   return undecided(met, unscaled(low, sweeps[s].scale));
 }
 #endif

@@ -12,11 +12,11 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_vote : require
 #define RADAR_NO_DOUBLES
-#include "contact/interop.h"
-#include "contact.glsl"
-#include "contact/scene.glsl"
-#include "contact/nodes.glsl"
-#include "workgroup.glsl"
+#include "interop.h"
+#include "shared/triangle_pair_bounds.glsl"
+#include "shared/scene.glsl"
+#include "nodes.glsl"
+#include "shared/workgroup.glsl"
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint kLanes = 32;
@@ -27,13 +27,13 @@ layout(scalar, binding = kSlotStates) restrict buffer States { SearchState state
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
 layout(scalar, binding = kSlotTasks) readonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSpilled) writeonly restrict buffer Spilled { SearchTask spilled[]; };
-layout(scalar, binding = kSlotPairCandidates) writeonly restrict buffer Candidates { PairCandidate candidates[]; };
+layout(scalar, binding = kSlotCandidatePairs) writeonly restrict buffer Candidates { CandidatePair candidates[]; };
 layout(scalar, binding = kSlotExcluded) readonly restrict buffer Excluded { uint excluded[]; };
 
 layout(push_constant) uniform PushConstants { SearchPush push; };
 
-#include "contact/node_pair.glsl"
-#include "contact/triangle_pair.glsl"
+#include "node_pair.glsl"
+#include "triangle_pair.glsl"
 
 // Lanes that must be at work in a loop for it to go on while the others could fetch work: fewer leave it.
 const uint kFew = (kLanes + 1) / 2;
@@ -359,7 +359,7 @@ void keepCandidate(bool keeps, uvec4 pair, float low) {
   if (subgroupElect()) first = atomicAdd(counts.candidates, subgroupBallotBitCount(who));
   const uint at = subgroupBroadcastFirst(first) + rankOf(who);
   if (keeps && at < push.candidateCapacity) {
-    candidates[at] = PairCandidate(pair.w, pair.z, pair.x, pair.y, low);
+    candidates[at] = CandidatePair(pair.w, pair.z, pair.x, pair.y, low);
   } else if (keeps) {
     atomicOr(states[pair.w].flags, kSearchLost);
   }
@@ -378,7 +378,7 @@ void solvePairs(bool all) {
       pair = pairQueue[at % kQueue];
       const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(pair.x).x), vertexAt(triangleAt(pair.y).x));
       const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
-      const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
+      const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(m.earliest, m.unknown), 0.0);
       float bound = limitOf(pair.w, pair.z);
       // A subnormal number might be taken for 0 later.

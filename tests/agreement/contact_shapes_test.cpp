@@ -22,7 +22,7 @@ MeshId add(Scene& scene, const MeshData& mesh) {
   return scene.addMesh(mesh.positions, mesh.indices);
 }
 
-Pose at(const Vec3& place, const Vec3& scale = kFull) {
+Transform at(const Vec3& place, const Vec3& scale = kFull) {
   return tools::makePose(kUpright, scale, place);
 }
 
@@ -84,9 +84,10 @@ TEST_CASE("interlocked shapes meet when and where the CPU says, either one as th
   std::vector<Query> queries;
   for (int i = 0; i < 24; ++i) {
     const Vec3 home{40.0 * (i % 5), 40.0 * (i / 5), 0};
-    const Pose poses[] = {tools::makePose(smallRotation(random, 0.05), kFull, home),
-                          tools::makePose(smallRotation(random, 0.05), kFull,
-                                          {home[0] + shapes.offset[0], home[1] + shapes.offset[1], shapes.offset[2]})};
+    const Transform poses[] = {
+        tools::makePose(smallRotation(random, 0.05), kFull, home),
+        tools::makePose(smallRotation(random, 0.05), kFull,
+                        {home[0] + shapes.offset[0], home[1] + shapes.offset[1], shapes.offset[2]})};
     scene.addObject({swapped ? first : second, poses[swapped ? 0 : 1], ~0u});
     queries.push_back({.mesh = swapped ? second : first,
                        .worldFromMesh = poses[swapped ? 1 : 0],

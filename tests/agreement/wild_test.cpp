@@ -42,7 +42,7 @@ TEST_CASE("contact has the CPU's bits at every scale, far away and in poses that
     make(seed, most, made);
     for (const bool decide : {false, true}) {
       CAPTURE(decide);
-      for (Query& query : made.queries) query.decide = decide;
+      for (Query& query : made.queries) query.anyHit = decide;
       Sweeper sweeper(test::device(), made.scene, {.cpuBatch = 0});
       const std::vector<Result> found = sweeper.run(made.queries), exact = CpuSweeper(made.scene, 1).run(made.queries);
       onDevice += made.queries.size() - sweeper.stats().cpuQueries;
@@ -62,7 +62,7 @@ TEST_CASE("a distance of any size is heeded, the least that doubles hold too") {
   const MeshId mesh = scene.addMesh(corners, triangle);
   const double scale = GENERATE(1.0, 0x1p-70, 0x1p70);
   CAPTURE(scale);
-  const auto placed = [&](double z) { return Pose{{scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, z * scale}}; };
+  const auto placed = [&](double z) { return Transform{{scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, z * scale}}; };
   for (const double z : {0x1p-140, 1e-30, 0x1p-20, 1.0, 1e11}) scene.addObject({mesh, placed(z), ~0u});
   std::vector<Query> queries;
   for (const double distance : {0.0, 0x1p-1000, 0x1p-200, 0x1p-141, 0x1p-140, 0x1p-139, 1e-31, 1e-30, 1e-29, 1.0, 1e10,

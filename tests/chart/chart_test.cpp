@@ -62,7 +62,7 @@ struct Ran {
 };
 
 Ran run(const RunSettings& settings, const std::string& origin, const test::ScratchFolder& folder) {
-  const std::vector<PeerRow> none;
+  const std::vector<BaselineRow> none;
   const std::vector<Planned> plan = planOf(settings, none, origin);
   Record start;
   start.workloads = {{"locked", "Interlocking shapes"}, {"flight", "Teapots in flight"}};
@@ -215,12 +215,12 @@ TEST_CASE("the page and the documents stand by themselves and name every method"
   Record record;
   record.command = "cyber-radar chart --out <here>";
   record.workloads = {{"w", "Shapes & more"}};
-  record.notes = {"Peer: cannot <that>"};
+  record.notes = {"Baseline: cannot <that>"};
   record.cells = {madeUp("sampled", 3, 0.1, 2), madeUp("contact", 2, 0), madeUp("FCL steps", 1, 0, 10)};
   record.cells[2].errorWorst = NAN;
   const std::string page = pageOf(record);
   CHECK_THAT(page, Contains("<svg") && Contains("Shapes &amp; more") && Contains("prefers-color-scheme:dark") &&
-                       Contains("--out &lt;here>") && Contains("FCL steps") && Contains("Peer: cannot &lt;that>"));
+                       Contains("--out &lt;here>") && Contains("FCL steps") && Contains("Baseline: cannot &lt;that>"));
   CHECK_THAT(page, !Contains("http") && !Contains("nan") && !Contains("inf "));
   const std::string accuracy = accuracyDocument(record, "chart"), performance = performanceDocument(record, "chart");
   CHECK_THAT(accuracy, Contains("](chart/front-w.svg)") && Contains("](chart/chart.html)"));

@@ -37,7 +37,7 @@ struct Boxes {
 TEST_CASE("an adopted device answers like an opened one and is still the host's afterwards") {
   Boxes boxes;
   test::Host host;
-  CHECK(reasonsAgainst(host.handles, Mode::sampled).empty());
+  CHECK(unsupportedReasons(host.handles, Mode::sampled).empty());
   for (const Mode mode : kModes) {
     const Result expected = boxes.ask(test::device(), mode);
     const Result result = boxes.ask(Device::adopt(host.handles), mode);
@@ -115,10 +115,10 @@ TEST_CASE("several sweepers share one device and one scene") {
   Sweeper first(test::device(), scene, kOnDevice), second(test::device(), scene, kOnDevice);
   for (const Mode mode : kModes) {
     const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = mode};
-    scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
+    scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
     CHECK(first.run({&query, 1})[0].t == Approx(3));
     CHECK(second.run({&query, 1})[0].t == Approx(3));
-    scene.setPose(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
+    scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
     CHECK(second.run({&query, 1})[0].t == Approx(5));
     CHECK(first.run({&query, 1})[0].t == Approx(5));
   }

@@ -39,7 +39,7 @@ Told tell(std::span<const Query> queries, const std::vector<Result>& read, const
     CHECK(std::isnan(read[i].t));
     CHECK(std::isnan(read[i].hi));
     CHECK(read[i].object == kNone);
-    if (read[i].flags == kFlagOpen) {
+    if (read[i].flags == kFlagUnresolved) {
       ++told.open;
       CHECK(read[i].status == Status::undecided);
       CHECK(read[i].lo <= (truth[i].status == Status::clear ? queries[i].distance : truth[i].hi));
@@ -61,7 +61,7 @@ struct FamilyQueries {
     const tools::Workload workload = tools::makeWorkload({.family = family, .queries = count, .seed = 6});
     tools::replaceBy(workload, 0, scene);
     queries = test::queriesOf(workload);
-    for (size_t i = 0; i < queries.size(); i += 5) queries[i].decide = true;
+    for (size_t i = 0; i < queries.size(); i += 5) queries[i].anyHit = true;
     truth = truthOf(scene, queries);
   }
   Told told(const Capacity& capacity, uint32_t flags) const {
@@ -103,8 +103,8 @@ TEST_CASE("with too little room for candidates queries are refused by that flag,
     const FamilyQueries asked(family);
     for (const uint32_t candidates : {1u, 200u, 1000u, 1u << 17}) {
       CAPTURE(tools::nameOf(family), candidates);
-      const Told told =
-          asked.told({.queries = 48, .candidates = candidates, .rounds = 64, .openPairs = 1u << 17}, kFlagCandidates);
+      const Told told = asked.told({.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17},
+                                   kFlagCandidates);
       refused += told.refused;
       answered += told.answered;
       CHECK(told.open == 0);
@@ -124,33 +124,33 @@ TEST_CASE("with too few rounds a long search is refused by that flag, and a shor
   CHECK(read[0].flags == kFlagRounds);
   CHECK(tell(asked.queries, read, asked.truth, kFlagRounds).answered == 1);
   Recorder patient(test::device(), asked.scene,
-                   {.queries = 2, .candidates = 1u << 18, .rounds = 64, .openPairs = 1u << 16});
+                   {.queries = 2, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 16});
   CHECK(tell(asked.queries, execute(patient, asked.queries), asked.truth, 0).answered == 2);
 }
 
-TEST_CASE("with too little room for open pairs queries stay open, with a lower bound that holds", "[subgroups]") {
+TEST_CASE("with too little room for unresolved pairs queries stay open, with a lower bound that holds", "[subgroups]") {
   // Boxes flush along the way: contact at a whole number, where nothing but exact arithmetic is certain.
   const FamilyQueries asked(tools::Family::lattice);
   size_t open = 0, answered = 0;
-  for (const uint32_t openPairs : {1u, 20u, 100u}) {
-    CAPTURE(openPairs);
-    const Told told = asked.told({.queries = 48, .rounds = 64, .openPairs = openPairs}, kFlagOpen);
+  for (const uint32_t unresolvedPairs : {1u, 20u, 100u}) {
+    CAPTURE(unresolvedPairs);
+    const Told told = asked.told({.queries = 48, .rounds = 64, .unresolvedPairs = unresolvedPairs}, kFlagUnresolved);
     open += told.open;
     answered += told.answered;
     CHECK(told.refused == 0);
-    if (openPairs == 1) CHECK(told.open > 10);
+    if (unresolvedPairs == 1) CHECK(told.open > 10);
   }
   CHECK(answered > 10);
   CHECK(open > 20);
-  CHECK(asked.told({.queries = 48, .rounds = 64, .openPairs = 1u << 17}, 0).answered == 48);
+  CHECK(asked.told({.queries = 48, .rounds = 64, .unresolvedPairs = 1u << 17}, 0).answered == 48);
 }
 
 TEST_CASE("with too little room for everything at once no answer is wrong", "[subgroups]") {
   for (const tools::Family family : tools::kFamilies) {
     CAPTURE(tools::nameOf(family));
     const FamilyQueries asked(family, 24);
-    asked.told({.queries = 24, .candidates = 100, .rounds = 2, .openPairs = 10},
-               kFlagOpen | kFlagCandidates | kFlagRounds);
+    asked.told({.queries = 24, .candidates = 100, .rounds = 2, .unresolvedPairs = 10},
+               kFlagUnresolved | kFlagCandidates | kFlagRounds);
   }
 }
 
@@ -192,11 +192,11 @@ TEST_CASE("more room than a device has, or none, is refused by the member that a
   refused({.queries = 1u << 31}, "Capacity::queries: this device allows");
   refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");
   refused({.rounds = 66}, "Capacity::rounds: this device allows 64, got 66");
-  refused({.openPairs = 1u << 30}, "Capacity::openPairs: this device allows");
+  refused({.unresolvedPairs = 1u << 30}, "Capacity::unresolvedPairs: this device allows");
   refused({.rounds = 3}, "Capacity::rounds: expected an even number from 2 on, got 3");
   refused({.rounds = 0}, "Capacity::rounds: expected an even number from 2 on, got 0");
   refused({.candidates = 0}, "expected room for a pair");
-  refused({.openPairs = 0}, "expected room for a pair");
+  refused({.unresolvedPairs = 0}, "expected room for a pair");
 }
 
 TEST_CASE("an object that floats cannot hold makes the queries that reach it out of range, and no other") {
@@ -206,7 +206,7 @@ TEST_CASE("an object that floats cannot hold makes the queries that reach it out
   for (float& x : huge.positions) x *= 0x1p100f;
   const MeshId cube = scene.addMesh(box.positions, box.indices), mountain = scene.addMesh(huge.positions, huge.indices);
   const auto at = [](double x, double scale, double squashed) {
-    return Pose{{scale, 0, 0, x, 0, scale, 0, 0.1, 0, 0, squashed, 5}};
+    return Transform{{scale, 0, 0, x, 0, scale, 0, 0.1, 0, 0, squashed, 5}};
   };
   // Too small; too small beside the sensor; too flat; of a mesh that is too large, made small again; and a usual one.
   scene.addObject({cube, at(0, 1e-30, 1e-30), ~0u});

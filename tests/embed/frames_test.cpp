@@ -49,7 +49,7 @@ TEST_CASE("a thousand frames of all families allocate nothing, submit nothing an
   {
     const Device device = Device::adopt(host.handles);
     Scene scene;
-    constexpr Capacity kRoom{.queries = 30, .candidates = 1u << 16, .rounds = 64, .openPairs = 1u << 16};
+    constexpr Capacity kRoom{.queries = 30, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 16};
     constexpr uint32_t kInFlight = 2, kFrames = 1000;
     Renderer renderers[kInFlight] = {Renderer(hosts), Renderer(hosts)};
     Recorder recorders[kInFlight] = {Recorder(device, scene, kRoom), Recorder(device, scene, kRoom)};
@@ -101,12 +101,12 @@ TEST_CASE("frames in which objects move allocate nothing, and see them where the
     for (uint32_t frame = 0; frame < kFrames; ++frame) {
       if (frame == kWarm) allocations = test::counts().allocations;
       for (ObjectId id = 0; id < 8; ++id) {
-        row.scene.setPose(id, {{1, 0, 0, 1.1 * id, 0, 1, 0, 0.2, 0, 0, 1, 4.0 + id + 0.001 * frame}});
+        row.scene.setTransform(id, {{1, 0, 0, 1.1 * id, 0, 1, 0, 0.2, 0, 0, 1, 4.0 + id + 0.001 * frame}});
       }
       renderer.record(recorder, row.queries);
       renderer.submitAndWait();
       const Renderer::Seen& seen = renderer.seen(4);
-      hits += seen.status == static_cast<uint32_t>(Status::hit) || (seen.flags == kFlagOpen && !device.doubles());
+      hits += seen.status == static_cast<uint32_t>(Status::hit) || (seen.flags == kFlagUnresolved && !device.doubles());
     }
     CHECK(hits == kFrames);
     CHECK(test::counts().allocations == allocations);

@@ -38,7 +38,7 @@ Bounds around(std::span<const float> positions) {
 }
 
 /// The box of a box, placed.
-Bounds placed(const Bounds& box, const Pose& pose) {
+Bounds placed(const Bounds& box, const Transform& pose) {
   Bounds out;
   for (int k = 0; k < 3; ++k) {
     const double* r = &pose.m[4 * static_cast<size_t>(k)];
@@ -142,7 +142,7 @@ class Hosted {
 /// A scene's copy on the device, with what a host has put in place of it.
 struct OnDeviceScene {
   OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : resident(test::device().impl()) {
-    CHECK(whatIsWrong(geometry, scene).empty());
+    CHECK(validate(geometry, scene).empty());
     const Device::Impl& device = test::device().impl();
     HostGeometryPass pass(device, resident);
     gpu::Upload upload(device);
@@ -156,7 +156,7 @@ struct OnDeviceScene {
     gpu::transferToComputeReadWrite(commands);
     pass.record(commands);
     submission.submitAndWait();
-    CHECK(pass.stray().empty());
+    CHECK(pass.boundsViolation().empty());
   }
   GpuScene resident;
 };
@@ -233,18 +233,19 @@ void meetHosted(uint32_t rounds) {
     const Hosted hosted(workload, seed, scene);
     tools::replaceBy(workload, 0, truth);
     std::vector<Query> queries = test::queriesOf(workload);
-    for (size_t q = 0; q < queries.size(); q += 7) queries[q].decide = true;
+    for (size_t q = 0; q < queries.size(); q += 7) queries[q].anyHit = true;
     const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, hosted.geometry());
     for (size_t q = 0; q < queries.size(); ++q) {
       CAPTURE(tools::nameOf(family), seed, q, got[q].flags, got[q].t, expected[q].t);
       ++answers;
       if (got[q].flags != 0) {
         // Rest poses at random make every node as large as the mesh: room may run out, and nothing else.
-        CHECK((got[q].flags & (kFlagOpen | kFlagCandidates | kFlagRounds)) != 0);
-        CHECK(got[q].status == (got[q].flags == kFlagOpen ? Status::undecided : Status::invalid));
-        if (got[q].flags == kFlagOpen && expected[q].status != Status::clear) CHECK_FALSE(got[q].lo > expected[q].hi);
+        CHECK((got[q].flags & (kFlagUnresolved | kFlagCandidates | kFlagRounds)) != 0);
+        CHECK(got[q].status == (got[q].flags == kFlagUnresolved ? Status::undecided : Status::invalid));
+        if (got[q].flags == kFlagUnresolved && expected[q].status != Status::clear)
+          CHECK_FALSE(got[q].lo > expected[q].hi);
         ++refused;
-      } else if (queries[q].decide) {
+      } else if (queries[q].anyHit) {
         CHECK(got[q].status == expected[q].status);
         CHECK_FALSE(expected[q].lo > got[q].hi);
       } else if (expected[q].tier == Tier::select || got[q].tier == Tier::select) {
@@ -357,9 +358,9 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
   }
   std::vector<std::byte> bytes;
   std::vector<ObjectId> objects;
-  std::vector<Pose> poses;
+  std::vector<Transform> poses;
   for (uint32_t i = 0; i < 1200; ++i) {
-    Pose pose;
+    Transform pose;
     const double scale = powerOfTwo(smallest, largest), away = i % 3 == 0 ? 0 : powerOfTwo(smallest - 10, largest + 25);
     for (double& value : pose.m) value = static_cast<float>(scale * uniform(-1, 1));
     // Some are flat, or nearly.

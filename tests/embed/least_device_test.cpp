@@ -84,7 +84,7 @@ void checkSame(const std::vector<Result>& found, const std::vector<Result>& exac
 
 TEST_CASE("a device with the least limits, no doubles and no graphics answers mode contact as the CPU does") {
   LeastDevice least;
-  CHECK(reasonsAgainst(least.host.handles, Mode::contact).empty());
+  CHECK(unsupportedReasons(least.host.handles, Mode::contact).empty());
   const Device device = Device::adopt(least.host.handles);
   CHECK(device.supports(Mode::contact));
   CHECK_FALSE(device.supports(Mode::sampled));
@@ -147,7 +147,7 @@ TEST_CASE("what a host writes must fit a storage buffer, though what is read nee
   const MeshId mesh = scene.addMesh(positions, triangle, Bounds{{-1, -1, -1}, {1, 1, 1}});
   scene.addObject({.mesh = mesh});
   Recorder recorder(device, scene);
-  gpu::Buffer host(device.impl(), "host's", gpu::Residence::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  gpu::Buffer host(device.impl(), "host's", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   host.reserve(12);
   const DeformedMesh deformed{mesh, {.buffer = host.get()}};
   gpu::Submission submission(device.impl(), false);
@@ -159,7 +159,7 @@ TEST_CASE("what a host writes must fit a storage buffer, though what is read nee
 TEST_CASE("mode sampled is refused, with all that the device lacks for it, before anything is answered") {
   LeastDevice least;
   least.host.handles.sampled = true;
-  const std::vector<std::string> reasons = reasonsAgainst(least.host.handles, Mode::sampled);
+  const std::vector<std::string> reasons = unsupportedReasons(least.host.handles, Mode::sampled);
   REQUIRE(reasons.size() == 4);
   const Device device = Device::adopt(least.host.handles);
   Scene scene;

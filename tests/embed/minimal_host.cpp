@@ -14,7 +14,7 @@ int main() {
   radar::HostDevice host{.instance = instance, .doubles = false, .getInstanceProcAddr = vkGetInstanceProcAddr};
   uint32_t count = 1;
   vkEnumeratePhysicalDevices(instance, &count, &host.physicalDevice);
-  for (const std::string& reason : radar::reasonsAgainst(host, radar::Mode::contact))
+  for (const std::string& reason : radar::unsupportedReasons(host, radar::Mode::contact))
     std::printf("this device %s\n", reason.c_str());
 
   radar::Requirements needed = radar::requirements(radar::Mode::contact, host.doubles);
@@ -40,7 +40,7 @@ int main() {
     const radar::ObjectId wall = scene.addObject({.mesh = mesh});
     radar::Sweeper sweeper(device, scene);
     for (int frame = 0; frame < 3; ++frame) {
-      scene.setPose(wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5.0 + frame}});
+      scene.setTransform(wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5.0 + frame}});
       const std::vector<radar::Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10}};
       for (const radar::Result& result : sweeper.run(queries)) std::printf("free for %g\n", result.t);
     }

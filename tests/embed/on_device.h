@@ -16,7 +16,7 @@ namespace radar::test {
 class OnDevice {
  public:
   explicit OnDevice(const std::vector<std::byte>& bytes)
-      : buffer_(test::device().impl(), "host's", gpu::Residence::device,
+      : buffer_(test::device().impl(), "host's", gpu::BufferDomain::device,
                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {
     const Device::Impl& device = test::device().impl();
     gpu::Upload upload(device);
@@ -42,7 +42,7 @@ void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
 }
 
 /// For what the tests record.
-inline constexpr Capacity kRoom{.queries = 48, .candidates = 1u << 17, .rounds = 64, .openPairs = 1u << 17};
+inline constexpr Capacity kRoom{.queries = 48, .candidates = 1u << 17, .rounds = 64, .unresolvedPairs = 1u << 17};
 
 inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries,
                                    const HostGeometry& geometry = {}) {

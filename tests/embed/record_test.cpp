@@ -24,7 +24,7 @@ TEST_CASE("recorded answers are those of a sweeper, bit for bit, on the device a
     const tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = 5});
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries = test::queriesOf(workload);
-    for (size_t i = 0; i < queries.size(); i += 7) queries[i].decide = true;
+    for (size_t i = 0; i < queries.size(); i += 7) queries[i].anyHit = true;
 
     renderer.record(recorder, queries);
     renderer.submitAndWait();

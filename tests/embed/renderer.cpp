@@ -18,7 +18,7 @@ Renderer::Renderer(const Device& device)
           std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
           sizeof(uint32_t)),
       pipeline_(gpu::computePipeline(device_, bindings_.layout(), k_read_results_comp, "host's pass")),
-      seen_(device_, "what the host sees", gpu::Residence::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
+      seen_(device_, "what the host sees", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
   seen_.reserve(4096 * sizeof(Seen));
   bindings_.setBuffer(1, seen_);
 }
@@ -46,7 +46,7 @@ void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool w
 }
 
 bool isSeen(const Renderer::Seen& seen, const Result& expected) {
-  if (seen.flags == kFlagOpen) {
+  if (seen.flags == kFlagUnresolved) {
     CHECK(seen.status == static_cast<uint32_t>(Status::undecided));
     CHECK(std::isnan(seen.t));
     return true;
@@ -70,7 +70,7 @@ Row::Row(uint32_t sensors) {
     scene.addObject({mesh, {{1, 0, 0, 1.1 * i, 0, 1, 0, 0.2, 0, 0, 1, 4.0 + i}}, ~0u});
   }
   for (uint32_t i = 0; i < sensors; ++i) {
-    const Pose pose{{0.9, 0.1, 0.2, 0.7 * i - 1.2, -0.1, 0.9, 0.3, 0.1, -0.2, -0.3, 0.9, 0.01 * i}};
+    const Transform pose{{0.9, 0.1, 0.2, 0.7 * i - 1.2, -0.1, 0.9, 0.3, 0.1, -0.2, -0.3, 0.9, 0.01 * i}};
     queries.push_back({.mesh = mesh, .worldFromMesh = pose, .direction = {0, 0.01, 1}, .distance = 20});
   }
 }

@@ -34,7 +34,7 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
 // SweeperOptions::cpuBatch: all on the device, all beside it.
 constexpr uint32_t kOnDevice = 0, kAlone = kNone - 1;
 
-Pose at(double x, double y, double z) {
+Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 

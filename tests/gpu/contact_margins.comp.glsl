@@ -5,8 +5,8 @@
 #extension GL_GOOGLE_include_directive : require
 #define RADAR_NO_DOUBLES
 #include "tests/gpu/contact_margins_interop.h"
-#include "shaders/contact.glsl"
-#include "shaders/contact/scene.glsl"
+#include "shaders/shared/triangle_pair_bounds.glsl"
+#include "shaders/shared/scene.glsl"
 #include "shaders/contact/nodes.glsl"
 #include "shaders/contact/node_pair.glsl"
 #include "shaders/contact/triangle_pair.glsl"
@@ -40,7 +40,7 @@ void main() {
   told.errorA = a.error;
   told.errorB = b.error;
   told.mayMeet = mayMeet(a, b, t.limit) ? 1 : 0;
-  const MeetingFloat m = meetingOf(a.corners, b.corners, differenceError(a, b));
+  const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
   told.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
   tellings[i] = told;
 }

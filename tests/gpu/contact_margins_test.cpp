@@ -21,7 +21,7 @@ using test::Touch;
 using Real = long double;
 using Place = std::array<Real, 3>;
 
-Place placed(const Pose& pose, const std::array<double, 3>& p) {
+Place placed(const Transform& pose, const std::array<double, 3>& p) {
   Place out;
   for (int k = 0; k < 3; ++k) {
     out[k] = pose.m[4 * k + 3];
@@ -40,9 +40,9 @@ double magnitude(tools::Random& random, double mostExponent) {
 
 /// Turned in its own coordinates, which float rounds.
 tools::MeshData turned(tools::MeshData mesh, tools::Random& random) {
-  const Pose pose = tools::makePose(random.rotation(), {1, 0.3, 1.7}, {0.1, 5, -30});
+  const Transform pose = tools::makePose(random.rotation(), {1, 0.3, 1.7}, {0.1, 5, -30});
   for (size_t v = 0; v < mesh.positions.size(); v += 3) {
-    const std::array<double, 3> p = place(pose, &mesh.positions[v]);
+    const std::array<double, 3> p = transformPoint(pose, &mesh.positions[v]);
     for (int k = 0; k < 3; ++k) mesh.positions[v + k] = static_cast<float>(p[k]);
   }
   return mesh;
@@ -73,7 +73,7 @@ class Margins {
     const std::vector<MeshId> meshes = addMeshes();
     for (int i = 0; i < 48; ++i) {
       const double far = random_.oneIn(3) ? magnitude(random_, 20) : 1;
-      Pose pose = poseOf(magnitude(random_, 12), far);
+      Transform pose = poseOf(magnitude(random_, 12), far);
       scene_.addObject({meshes[random_.below(static_cast<uint32_t>(meshes.size()))], pose, ~0u});
     }
     for (int i = 0; i < 400; ++i) addCase(meshes[random_.below(static_cast<uint32_t>(meshes.size()))]);
@@ -98,12 +98,12 @@ class Margins {
   }
 
   /// `size` large, and so many times that from the origin.
-  Pose poseOf(double size, double far) {
-    Pose pose = tools::makePose(random_.rotation(), {1, 1, 1}, {});
+  Transform poseOf(double size, double far) {
+    Transform pose = tools::makePose(random_.rotation(), {1, 1, 1}, {});
     if (random_.oneIn(2)) pose = tools::randomAffine(random_, {});
     if (random_.oneIn(6))
       pose = tools::makePose(random_.rotation(), {1, magnitude(random_, 14), magnitude(random_, 14)}, {});
-    if (random_.oneIn(4)) pose = Pose();
+    if (random_.oneIn(4)) pose = Transform();
     for (int row = 0; row < 3; ++row) {
       for (int k = 0; k < 3; ++k) pose.m[4 * row + k] *= size;
       pose.m[4 * row + 3] = size * far * random_.uniform(-1, 1);
@@ -178,8 +178,8 @@ std::array<Place, 3> frameOf(const gpu::Sensor& sensor, const std::array<double,
 }
 
 /// How far a triangle's corners are off what they are in the world, on any axis; scaled.
-Real offBy(const float (&corners)[3][3], const Mesh& mesh, uint32_t triangle, const Pose& pose, const Place& anchor,
-           const std::array<Place, 3>& frame, Real scale) {
+Real offBy(const float (&corners)[3][3], const Mesh& mesh, uint32_t triangle, const Transform& pose,
+           const Place& anchor, const std::array<Place, 3>& frame, Real scale) {
   Real most = 0;
   for (int i = 0; i < 3; ++i) {
     const Place p = placed(pose, vertex(mesh, mesh.indices[3 * triangle + i]));
@@ -252,9 +252,9 @@ void Margins::check() {
   };
   const auto sensors = upload(
       batch.sensors,
-      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::Residence::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
-  const auto asked = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::Residence::upload));
-  gpu::Array<Told> answers(test::impl(), "told", gpu::Residence::readback);
+      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
+  const auto asked = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
+  gpu::Array<Told> answers(test::impl(), "told", gpu::BufferDomain::readback);
   answers.reserve(touches.size());
   const gpu::Kernel kernel(test::impl(), k_contact_margins_comp, "margins");
   gpu::KernelArguments arguments(kernel);

@@ -72,7 +72,7 @@ struct FamilyQueries {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries) {
       queries.push_back(tools::toQuery(spec, Mode::contact));
-      queries.back().decide = queries.size() % 4 == 0;
+      queries.back().anyHit = queries.size() % 4 == 0;
     }
   }
   tools::Workload workload;
@@ -80,7 +80,7 @@ struct FamilyQueries {
   std::vector<Query> queries;
 };
 
-Pose at(double x, double y, double z) {
+Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("70,000 pairs that all may be first, more than a loop may be long on l
     scene.addObject({triangle, at(i % kSide, double(i / kSide), height), ~0u});
   }
   // The last is the nearest, if not all are alike.
-  if (!level) scene.setPose(kCount - 1, at(1, 2, 4.5));
+  if (!level) scene.setTransform(kCount - 1, at(1, 2, 4.5));
   const Query query{.mesh = wing, .worldFromMesh = at(0, 0, 0), .direction = {0, 0, 2}, .distance = 20};
   Searching searching(scene, {.candidates = 100'000});
   const Result result = searching.run({&query, 1})[0];
@@ -145,7 +145,7 @@ TEST_CASE("what floats cannot hold is answered on the processor: as on the devic
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   const double size = GENERATE(1e-40, 1.0, 1e30, 1e80);
   CAPTURE(size);
-  const auto placed = [&](double x) { return Pose{{size, 0, 0, x * size, 0, size, 0, 0, 0, 0, size, 0}}; };
+  const auto placed = [&](double x) { return Transform{{size, 0, 0, x * size, 0, size, 0, 0, 0, 0, size, 0}}; };
   scene.addObject({mesh, placed(3), ~0u});
   const Query query{.mesh = mesh, .worldFromMesh = placed(0), .direction = {1, 0, 0}, .distance = 5 * size};
   Searching searching(scene);

@@ -79,7 +79,7 @@ void checkCopy(const GpuScene& copy, const Scene& scene) {
   CHECK(sameBits(elementsOf(copy.buffers().objectNodes, 0, nodes.size()), nodes));
 }
 
-Pose randomPose(tools::Random& random) {
+Transform randomPose(tools::Random& random) {
   return tools::randomAffine(random, random.inBox({-20, -20, -20}, {20, 20, 20}));
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("the device's copy follows every change of a scene") {
     const auto any = [&] { return filled.objects[random.below(uint32_t(filled.objects.size()))]; };
     switch (round % 6) {
       case 0:
-        for (int i = 0; i < 3; ++i) filled.scene.setPose(any(), randomPose(random));
+        for (int i = 0; i < 3; ++i) filled.scene.setTransform(any(), randomPose(random));
         break;
       case 1:  // the objects' buffers grow
         for (int i = 0; i < round; ++i) {
@@ -154,7 +154,7 @@ TEST_CASE("only what changed is staged") {
   CHECK(all > 10'000);
   filled.copy.sync(filled.scene.impl());
   CHECK(filled.staged() == 0);
-  filled.scene.setPose(filled.objects[5], randomPose(filled.random));
+  filled.scene.setTransform(filled.objects[5], randomPose(filled.random));
   const VkDeviceSize objectBytes = sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement);
   const VkDeviceSize treeBytes = filled.scene.impl().objectTree().nodes().size() * sizeof(gpu::ObjectNode);
   CHECK(filled.staged() == objectBytes + treeBytes);
@@ -170,7 +170,7 @@ TEST_CASE("what has not arrived is staged again") {
   const VkDeviceSize all = filled.staged();
   CHECK(filled.staged() == all);
   filled.copy.sync(filled.scene.impl());
-  filled.scene.setPose(2, randomPose(filled.random));
+  filled.scene.setTransform(2, randomPose(filled.random));
   const VkDeviceSize one = filled.staged();
   CHECK(one > 0);
   CHECK(filled.staged() == one);  // as after a submission that failed

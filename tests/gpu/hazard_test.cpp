@@ -7,6 +7,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submission.h"
 #include "shaders/contact/interop.h"
+#include "shaders/sampled/interop.h"
 #include "spirv/contact_collect_comp.h"
 #include "support/test_device.h"
 
@@ -14,11 +15,11 @@ namespace {
 
 using namespace radar;
 using gpu::Array;
-using gpu::Residence;
+using gpu::BufferDomain;
 
 template <class T>
 Array<T> zeros(const char* name) {
-  Array<T> array(test::device().impl(), name, Residence::upload, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  Array<T> array(test::device().impl(), name, BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   std::memset(array.mapped(), 0, array.bytes());
   return array;
 }

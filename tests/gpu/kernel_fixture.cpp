@@ -34,7 +34,7 @@ void run(const std::function<void(const gpu::Commands&)>& record) {
 }
 
 gpu::Array<uint32_t> numbers(const char* name, uint32_t count) {
-  gpu::Array<uint32_t> array(impl(), name, gpu::Residence::upload);
+  gpu::Array<uint32_t> array(impl(), name, gpu::BufferDomain::upload);
   array.reserve(count);
   std::iota(array.mapped(), array.mapped() + count, 0u);
   return array;

@@ -2,7 +2,7 @@
 #ifndef RADAR_KERNEL_INTEROP_H
 #define RADAR_KERNEL_INTEROP_H
 
-#include "shaders/slot.h"
+#include "shaders/shared/slot.h"
 
 #ifdef __cplusplus
 namespace radar::test {

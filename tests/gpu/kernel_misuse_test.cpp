@@ -11,9 +11,9 @@ using namespace radar;
 using namespace radar::test;
 using gpu::Argument;
 using gpu::Array;
+using gpu::BufferDomain;
 using gpu::Commands;
 using gpu::KernelArguments;
-using gpu::Residence;
 using gpu::Slot;
 using gpu::TexelArray;
 
@@ -32,8 +32,8 @@ constexpr Slot<gpu::SampledImage> kValuesAsImage{kSlotValues.number};
 
 struct Buffers {
   Array<uint32_t> values = numbers("values", 10), results = numbers("results", 10);
-  Array<Node> nodes{impl(), "nodes", Residence::device};
-  Array<Groups> groups{impl(), "groups", Residence::device};
+  Array<Node> nodes{impl(), "nodes", BufferDomain::device};
+  Array<Groups> groups{impl(), "groups", BufferDomain::device};
 };
 
 std::string messageOf(const std::function<void()>& call) {

@@ -9,15 +9,15 @@ namespace {
 using namespace radar;
 using namespace radar::test;
 using gpu::Array;
+using gpu::BufferDomain;
 using gpu::Commands;
 using gpu::KernelArguments;
-using gpu::Residence;
 
 constexpr uint32_t kUntouched = 0xdeadbeef;
 
 // A number more than `count`, so that one too many is seen.
 Array<uint32_t> untouched(uint32_t count) {
-  Array<uint32_t> array(impl(), "results", Residence::readback);
+  Array<uint32_t> array(impl(), "results", BufferDomain::readback);
   array.reserve(count + 1);
   std::fill_n(array.mapped(), count + 1, kUntouched);
   return array;
@@ -59,7 +59,7 @@ TEST_CASE("more workgroups than one axis takes are laid out in rows") {
 
 TEST_CASE(
     "an indirect dispatch runs as many workgroups as a kernel before it wrote, and the count may be written again") {
-  Array<Groups> command(impl(), "command", Residence::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   KernelArguments count(kernels().countGroups), scale(kernels().scaleAndAdd5);
   const uint32_t most = 70000;
   const Array<uint32_t> values = numbers("values", most), results = untouched(most);
@@ -81,7 +81,7 @@ TEST_CASE(
 }
 
 TEST_CASE("without its barrier an indirect dispatch is reported as a hazard") {
-  Array<Groups> command(impl(), "command", Residence::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   KernelArguments count(kernels().countGroups), scale(kernels().scale);
   const Array<uint32_t> values = numbers("values", 1), results = untouched(1);
   count.set({{kSlotGroups, command}});
@@ -164,8 +164,8 @@ TEST_CASE("setting arguments writes the descriptors whose buffers changed, and n
   CHECK(updatesOf(set) == 0);
   // A buffer in the place of another may have its handle, too.
   for (int i = 0; i < 8; ++i) {
-    values = Array<uint32_t>(impl(), "none", Residence::device);
-    values = Array<uint32_t>(impl(), "values", Residence::device);
+    values = Array<uint32_t>(impl(), "none", BufferDomain::device);
+    values = Array<uint32_t>(impl(), "values", BufferDomain::device);
     CHECK(updatesOf(set) == 1);
   }
 }

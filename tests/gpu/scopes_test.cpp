@@ -34,7 +34,7 @@ struct Window {
 
 // Placement error of a mesh where floats are rounded to nearest, half of what docs/method.md allows for any rounding: 8
 // u times the greatest coordinate of its turned box about the sensor.
-double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scopes, const Vector& about) {
+double placementError(const MeshView& mesh, const Transform& pose, const Scopes& scopes, const Vector& about) {
   std::array<float, 3> lo{3e38f, 3e38f, 3e38f}, hi{-3e38f, -3e38f, -3e38f};
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
@@ -45,7 +45,7 @@ double placementError(const MeshView& mesh, const Pose& pose, const Scopes& scop
   double worst = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const float p[3] = {corner & 1 ? hi[0] : lo[0], corner & 2 ? hi[1] : lo[1], corner & 4 ? hi[2] : lo[2]};
-    Vector world = place(pose, p);
+    Vector world = transformPoint(pose, p);
     for (int k = 0; k < 3; ++k) world[k] -= about[k];
     for (const Vector& axis : {scopes.right, scopes.up, scopes.forward})
       worst = std::max(worst, std::abs(dot(world, axis)));
@@ -112,10 +112,12 @@ struct Raster {
   std::vector<char> unsure;
 };
 
-void addMesh(Raster& raster, const Window& window, const MeshView& mesh, const Pose& pose, double sign, double error) {
+void addMesh(Raster& raster, const Window& window, const MeshView& mesh, const Transform& pose, double sign,
+             double error) {
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
     Vector p[3];
-    for (size_t k = 0; k < 3; ++k) p[k] = window(place(pose, &mesh.positions[3 * size_t{mesh.indices[i + k]}]));
+    for (size_t k = 0; k < 3; ++k)
+      p[k] = window(transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[i + k]}]));
     raster.add(p, sign, error, window.snap, window.scopes.pixel);
   }
 }
@@ -198,7 +200,7 @@ MeshId addSquare(Scene& scene, float side) {
   return scene.addMesh(positions, indices);
 }
 
-Pose at(double x, double y, double z) {
+Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 
@@ -227,7 +229,7 @@ TEST_CASE("R, M and L of two squares are the paper's: R + M - d is the free dist
   const MeshId square = addSquare(scene, 2), small = addSquare(scene, 1);
   scene.addObject({small, at(0.45, 0.5, 5), ~0u});
   // The sensor leans: its side at +x lies one unit further along the motion than its side at -x.
-  const Pose leaning{{1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1, 0}};
+  const Transform leaning{{1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1, 0}};
   const Query query{.mesh = square,
                     .worldFromMesh = leaning,
                     .direction = {0, 0, 3},

@@ -113,7 +113,7 @@ TEST_CASE("edits of the scene are followed: objects move, come and go, and ids o
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  const auto at = [](double z) { return Pose{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
+  const auto at = [](double z) { return Transform{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
   const ObjectId far = scene.addObject({mesh, at(7), ~0u});
   const ObjectId near = scene.addObject({mesh, at(4), ~0u});
   const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10, .mode = Mode::sampled};
@@ -122,7 +122,7 @@ TEST_CASE("edits of the scene are followed: objects move, come and go, and ids o
 
   CHECK(answer().object == near);
   CHECK(answer().t == Approx(3).epsilon(1e-6));
-  scene.setPose(near, at(5));
+  scene.setTransform(near, at(5));
   CHECK(answer().t == Approx(4).epsilon(1e-6));
   scene.removeObject(near);
   CHECK(answer().object == far);
@@ -181,7 +181,7 @@ TEST_CASE("a mesh of more triangles than a shader invocation has loop iterations
   const MeshId sphere = scene.addMesh(ball.positions, ball.indices), cube = scene.addMesh(box.positions, box.indices);
   scene.addObject({sphere, {}, ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Pose start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
+  const Transform start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
   const Query query{.mesh = cube,
                     .worldFromMesh = start,
                     .direction = {0, 0, 1},

@@ -11,13 +11,13 @@ namespace {
 using namespace radar;
 using namespace radar::test;
 using gpu::Array;
+using gpu::BufferDomain;
 using gpu::Commands;
 using gpu::KernelArguments;
-using gpu::Residence;
 using gpu::TexelArray;
 
 TexelArray<Node> makeNodes() {
-  return {impl(), "nodes", Residence::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_FORMAT_R32G32B32A32_UINT};
+  return {impl(), "nodes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_FORMAT_R32G32B32A32_UINT};
 }
 
 // Of a node whose words count on from `first`.
@@ -87,7 +87,7 @@ TEST_CASE("texels are what a kernel wrote as storage, and without its barrier th
 }
 
 TEST_CASE("a texel array larger than the device can see is refused with both numbers, and stays as it was") {
-  TexelArray<uint32_t> words(impl(), "words", Residence::device, 0, VK_FORMAT_R32_UINT);
+  TexelArray<uint32_t> words(impl(), "words", BufferDomain::device, 0, VK_FORMAT_R32_UINT);
   const VkBufferView view = words.view();
   const uint64_t most = std::min<uint64_t>(impl().properties.limits.maxTexelBufferElements, INT32_MAX);
   CHECK_THROWS_WITH(words.reserve(most + 1), "words: " + std::to_string(most + 1) +
@@ -100,8 +100,8 @@ TEST_CASE("a texel array larger than the device can see is refused with both num
 
 TEST_CASE("an element is made of whole texels, of a format that every device reads") {
   using Triple = uint32_t[3];
-  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", Residence::device, 0, VK_FORMAT_R32G32_UINT),
+  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32_UINT),
                     "triples: elements of 12 bytes are not whole texels of 8");
-  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", Residence::device, 0, VK_FORMAT_R32G32B32_UINT),
+  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32B32_UINT),
                     "triples: not every device reads texels of VkFormat 104");
 }

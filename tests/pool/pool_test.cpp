@@ -73,14 +73,14 @@ TEST_CASE("edits wait for the batches before them and reach every device") {
   Scene scene;
   const tools::MeshData& mesh = boxes.workload.meshes[query.mesh];
   const MeshId id = scene.addMesh(mesh.positions, mesh.indices);
-  const auto at = [](double z) { return Pose{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
+  const auto at = [](double z) { return Transform{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
   const ObjectId object = scene.addObject({id, at(100), ~0u});
   const std::vector<Query> many(64, Query{.mesh = id, .direction = {0, 0, 1}, .distance = 200});
   Pool pool(twoDevices(), scene, test::kOnDevice);
   std::vector<std::future<PoolAnswers>> futures;
   for (int step = 0; step < 20; ++step) {
     futures.push_back(pool.submit(many));
-    pool.edit([&] { scene.setPose(object, at(100 - step - 1)); });
+    pool.edit([&] { scene.setTransform(object, at(100 - step - 1)); });
   }
   double before = 0;
   for (auto& future : futures) {

@@ -66,7 +66,7 @@ TEST_CASE("where methods fail, whether there is a contact within D is decided ri
   AtContact asking;
   for (const StabilityFamily& family : stabilityFamilies()) {
     asking.show(family);
-    for (Query& query : asking.queries) query.decide = true;
+    for (Query& query : asking.queries) query.anyHit = true;
     const std::vector<Result> contact = answersBy(Method::contact, asking.sweeper, asking.queries, 0);
     const std::vector<Result> sampled = answersBy(Method::sampled, asking.sweeper, asking.queries, kResolution);
     for (size_t i = 0; i < asking.queries.size(); ++i) {

@@ -16,7 +16,7 @@ std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count) {
       device,
       std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}}, 4);
   const gpu::Pipeline pipeline = gpu::computePipeline(device, bindings.layout(), k_copy_words_comp, "copy words");
-  gpu::Buffer out(device, "words", gpu::Residence::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  gpu::Buffer out(device, "words", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   out.reserve(4 * count);
   bindings.setBuffer(0, buffer);
   bindings.setBuffer(1, out);

@@ -38,15 +38,15 @@ Dyadic placedBy(const gpu::Placement& placement, int row, const Corner& q) {
 }
 
 // matrix * q, where the matrix is the pose's times the mesh's unit.
-Dyadic turned(const Mesh& mesh, const Pose& pose, int row, const Corner& q) {
+Dyadic turned(const Mesh& mesh, const Transform& pose, int row, const Corner& q) {
   Dyadic sum(0.0);
   for (int k = 0; k < 3; ++k) sum = sum + Dyadic(pose.m[4 * row + k]) * Dyadic(mesh.unit) * Dyadic(q[k]);
   return sum;
 }
 
-void checkVertices(const Mesh& mesh, const Pose& pose, const gpu::Placement& placement, BoundsUsed& used) {
+void checkVertices(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used) {
   for (const uint32_t vertex : mesh.indices) {
-    const std::array<double, 3> truth = place(pose, &mesh.positions[3 * size_t{vertex}]);
+    const std::array<double, 3> truth = transformPoint(pose, &mesh.positions[3 * size_t{vertex}]);
     const Corner q{mesh.normalised(vertex, 0), mesh.normalised(vertex, 1), mesh.normalised(vertex, 2)};
     Dyadic sum(0.0);
     for (int row = 0; row < 3; ++row) {
@@ -64,7 +64,7 @@ void checkVertices(const Mesh& mesh, const Pose& pose, const gpu::Placement& pla
 }
 
 // What is farthest within reach is farthest off.
-void checkInverse(const Mesh& mesh, const Pose& pose, const gpu::Placement& placement, BoundsUsed& used) {
+void checkInverse(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used) {
   for (int corner = 0; corner < 8; ++corner) {
     Corner q;
     for (int k = 0; k < 3; ++k) q[k] = (corner >> k & 1) != 0 ? placement.reach[k] : -placement.reach[k];
@@ -81,7 +81,7 @@ void checkInverse(const Mesh& mesh, const Pose& pose, const gpu::Placement& plac
 
 }  // namespace
 
-void checkPlacement(const Mesh& mesh, const Pose& pose, const gpu::Placement& placement, BoundsUsed& used) {
+void checkPlacement(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used) {
   CHECK(placement.perUnit * mesh.unit == 1);
   for (int k = 0; k < 3; ++k) CHECK(double{placement.origin[k]} == mesh.origin[k]);
   checkVertices(mesh, pose, placement, used);

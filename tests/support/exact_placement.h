@@ -13,6 +13,6 @@ struct BoundsUsed {
 /// Checks that the placement puts every vertex of the mesh where radar.h says that the pose puts it, but for
 /// Placement::error; that none is farther away than Placement::size and Placement::reach say; and that the inverse's
 /// rows give back whatever is within reach, but for what they say.
-void checkPlacement(const Mesh& mesh, const Pose& pose, const gpu::Placement& placement, BoundsUsed& used);
+void checkPlacement(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used);
 
 }  // namespace radar::test

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/answer_file.h"
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "support/scratch_folder.h"
 
 using namespace radar;
@@ -74,11 +74,11 @@ TEST_CASE("any id survives") {
 
 TEST_CASE("a file is written whole or not at all") {
   const radar::test::ScratchFolder folder;
-  writeWhole(folder.path() / "a", "first");
-  writeWhole(folder.path() / "a", "second");
+  writeAtomically(folder.path() / "a", "first");
+  writeAtomically(folder.path() / "a", "second");
   CHECK(folder.read("a") == "second");
-  CHECK_THROWS_WITH(writeWhole(folder.path() / "no" / "a", "x"), Catch::Matchers::Contains("no/a"));
+  CHECK_THROWS_WITH(writeAtomically(folder.path() / "no" / "a", "x"), Catch::Matchers::Contains("no/a"));
   std::filesystem::create_directory(folder.path() / "b");
-  CHECK_THROWS(writeWhole(folder.path() / "b", "x"));
+  CHECK_THROWS(writeAtomically(folder.path() / "b", "x"));
   CHECK(folder.list() == "a b");
 }

@@ -1,5 +1,5 @@
 // The search on the CPU's cores held against itself: on one thread and on several, by a sweeper that has followed the
-// scene and by a new one, with and without `decide`. Brute force is its truth elsewhere.
+// scene and by a new one, with and without `anyHit`. Brute force is its truth elsewhere.
 #pragma once
 
 #include <cstring>
@@ -22,7 +22,7 @@ class Sides {
   void check(std::vector<radar::Query> queries) {
     const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries);
     compare(queries, exact);
-    for (radar::Query& query : queries) query.decide = true;
+    for (radar::Query& query : queries) query.anyHit = true;
     const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries);
     compare(queries, decided);
     for (size_t i = 0; i < queries.size(); ++i) {

@@ -10,9 +10,10 @@ using namespace radar::cpu;
 
 namespace {
 
-exact::Triangle placed(const Mesh& mesh, const Pose& pose, uint32_t triangle) {
+exact::Triangle placed(const Mesh& mesh, const Transform& pose, uint32_t triangle) {
   exact::Triangle out;
-  for (size_t i = 0; i < 3; ++i) out[i] = place(pose, &mesh.positions[3 * size_t{mesh.indices[3 * triangle + i]}]);
+  for (size_t i = 0; i < 3; ++i)
+    out[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * triangle + i]}]);
   return out;
 }
 
@@ -24,7 +25,7 @@ bool holds(const MeshTree& tree, size_t node, uint32_t triangle) {
 /// A query and one object.
 struct Pair {
   const Mesh &a, &b;
-  const Pose &poseA, &poseB;
+  const Transform &poseA, &poseB;
   Motion motion;
   Placement placementA, placementB;
   PairMotion pairMotion;

@@ -7,7 +7,7 @@ using soups::at;
 
 namespace {
 
-Query sweep(MeshId mesh, const Pose& pose, std::array<double, 3> direction, double distance) {
+Query sweep(MeshId mesh, const Transform& pose, std::array<double, 3> direction, double distance) {
   Query query;
   query.mesh = mesh;
   query.worldFromMesh = pose;
@@ -93,10 +93,10 @@ TEST_CASE("a mesh inside another that its way does not reach is clear") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   const MeshId hall = add(scene, soups::box(10, 10, 10));
-  scene.addObject({hall, Pose{}});
+  scene.addObject({hall, Transform{}});
   CpuSweeper sweeper(scene);
-  REQUIRE(test::answer(sweeper, sweep(box, Pose{}, {1, 0, 0}, 8)).status == Status::clear);
-  REQUIRE(test::answer(sweeper, sweep(box, Pose{}, {1, 0, 0}, 9)).t == 9);
+  REQUIRE(test::answer(sweeper, sweep(box, Transform{}, {1, 0, 0}, 8)).status == Status::clear);
+  REQUIRE(test::answer(sweeper, sweep(box, Transform{}, {1, 0, 0}, 9)).t == 9);
 }
 
 TEST_CASE("the object behind is found when the one in front is excluded or masked") {
@@ -105,7 +105,7 @@ TEST_CASE("the object behind is found when the one in front is excluded or maske
   const ObjectId front = scene.addObject({box, at(0, 0, 5), 1});
   const ObjectId back = scene.addObject({box, at(0, 0, 9), 2});
   CpuSweeper sweeper(scene);
-  Query query = sweep(box, Pose{}, {0, 0, 1}, 20);
+  Query query = sweep(box, Transform{}, {0, 0, 1}, 20);
   REQUIRE(test::answer(sweeper, query).object == front);
   query.exclude = {front};
   REQUIRE(test::answer(sweeper, query).object == back);
@@ -122,7 +122,7 @@ TEST_CASE("of many objects hit at the same time the least is named") {
   const MeshId plank = add(scene, soups::box(40, 1, 1));
   for (int i = 0; i < 20; ++i) scene.addObject({box, at(3.0 * ((7 * i) % 20) - 30, 0, 5)});
   CpuSweeper sweeper(scene);
-  const Result result = test::answer(sweeper, sweep(plank, Pose{}, {0, 0, 1}, 20));
+  const Result result = test::answer(sweeper, sweep(plank, Transform{}, {0, 0, 1}, 20));
   REQUIRE(result.t == 3);
   REQUIRE(result.object == 0);
   REQUIRE(result.triB == 0);
@@ -132,13 +132,13 @@ TEST_CASE("the CPU follows edits of the scene") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   CpuSweeper sweeper(scene);
-  const Query query = sweep(box, Pose{}, {0, 0, 1}, 20);
+  const Query query = sweep(box, Transform{}, {0, 0, 1}, 20);
   REQUIRE(test::answer(sweeper, query).status == Status::clear);
   const ObjectId first = scene.addObject({box, at(0, 0, 10)});
   REQUIRE(test::answer(sweeper, query).t == 8);
   const ObjectId second = scene.addObject({box, at(0, 0, 6)});
   REQUIRE(test::answer(sweeper, query).t == 4);
-  scene.setPose(second, at(0, 0, 12));
+  scene.setTransform(second, at(0, 0, 12));
   REQUIRE(test::answer(sweeper, query).object == first);
   scene.removeObject(first);
   REQUIRE(test::answer(sweeper, query).t == 10);
@@ -155,9 +155,9 @@ TEST_CASE("the CPU follows edits of the scene") {
 TEST_CASE("the CPU refuses a query that breaks its contract") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
-  scene.addObject({box, Pose{}});
+  scene.addObject({box, Transform{}});
   CpuSweeper sweeper(scene);
-  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box, Pose{}, {0, 0, 0}, 1)), Error);
-  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box, Pose{}, {0, 0, 1}, -1)), Error);
-  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box + 1, Pose{}, {0, 0, 1}, 1)), Error);
+  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box, Transform{}, {0, 0, 0}, 1)), Error);
+  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box, Transform{}, {0, 0, 1}, -1)), Error);
+  REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box + 1, Transform{}, {0, 0, 1}, 1)), Error);
 }

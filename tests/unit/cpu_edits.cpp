@@ -18,7 +18,7 @@ std::vector<Query> queriesThrough(Random& random, const std::vector<MeshId>& mes
   return queries;
 }
 
-Pose somewhere(Random& random) {
+Transform somewhere(Random& random) {
   auto at = random.inBall();
   for (double& c : at) c *= 4;
   return random.pose(random.uniform(0.3, 1.5), at);
@@ -45,7 +45,7 @@ TEST_CASE("the CPU's answers follow objects that are moved, added and removed, a
         scene.addObject({meshes[static_cast<size_t>(random.integer(0, static_cast<int>(meshes.size()) - 1))],
                          somewhere(random), random.chance(0.1) ? 2u : ~0u});
       } else if (what < 6) {
-        scene.setPose(id, somewhere(random));
+        scene.setTransform(id, somewhere(random));
       } else if (what < 8) {
         scene.removeObject(id);
       } else {
@@ -94,9 +94,9 @@ TEST_CASE("the CPU's answers follow an object that leaves the range of the tree 
   agreement::Sides sides(scene);
   for (const double far : {0.0, 1e30, 1e200, 0.0}) {
     INFO("far " << far);
-    Pose pose = somewhere(random);
+    Transform pose = somewhere(random);
     pose.m[3] += far;
-    scene.setPose(2, pose);
+    scene.setTransform(2, pose);
     sides.check(queriesThrough(random, meshes));
   }
 }
@@ -107,7 +107,7 @@ TEST_CASE("the CPU finds what it meets among boxes that overflow") {
   const MeshId mesh =
       scene.addMesh(std::array{0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 1.0f, 1.0f, 1.0f}, std::array<uint32_t, 3>{0, 1, 2});
   const MeshId box = add(scene, soups::box(0.25, 0.25, 0.25));
-  Pose pose;
+  Transform pose;
   pose.m = {1.5e308, -1.5e308, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   scene.addObject({mesh, pose});
   Query query;
@@ -125,7 +125,7 @@ TEST_CASE("the CPU meets meshes that are so small that no float holds the invers
   soups::Mesh small = soups::box(1, 1, 1);
   for (float& c : small.positions) c *= 0x1p-140f;
   const MeshId mesh = add(scene, small);
-  Pose large;
+  Transform large;
   large.m = {0x1p140, 0, 0, 0, 0, 0x1p140, 0, 0, 0, 0, 0x1p140, 5};
   scene.addObject({mesh, large});
   large.m[11] = 0;

@@ -12,7 +12,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-Query sweep(MeshId mesh, const Pose& pose, const Vector& direction, double distance) {
+Query sweep(MeshId mesh, const Transform& pose, const Vector& direction, double distance) {
   Query query;
   query.mesh = mesh;
   query.worldFromMesh = pose;
@@ -21,8 +21,8 @@ Query sweep(MeshId mesh, const Pose& pose, const Vector& direction, double dista
   return query;
 }
 
-Result alone(const soups::Mesh& a, const Pose& poseA, const soups::Mesh& b, const Pose& poseB, const Vector& direction,
-             double distance) {
+Result alone(const soups::Mesh& a, const Transform& poseA, const soups::Mesh& b, const Transform& poseB,
+             const Vector& direction, double distance) {
   Scene scene;
   const MeshId sensor = add(scene, a);
   scene.addObject({add(scene, b), poseB});
@@ -53,7 +53,7 @@ Vector turned(const Vector& v, const Vector& sign, const std::array<int, 3>& ord
   return out;
 }
 
-Pose at(const Vector& v) {
+Transform at(const Vector& v) {
   return soups::at(v[0], v[1], v[2]);
 }
 
@@ -65,7 +65,7 @@ TEST_CASE("boxes that slide past each other touch at gap zero and not one place 
     const Vector ahead = turned({0, 0, 1}, sign, order);
     for (double side : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
       // 1 - ulp / 2 is placed on -1/2 + 1: the boxes have sides one place apart exactly where it exceeds 1.
-      const Result result = alone(box, Pose{}, box, at(turned({side, 0.25, 4}, sign, order)), ahead, 10);
+      const Result result = alone(box, Transform{}, box, at(turned({side, 0.25, 4}, sign, order)), ahead, 10);
       REQUIRE(result.status == (side > 1 ? Status::clear : Status::hit));
       if (side <= 1) REQUIRE(result.t == 3);
     }
@@ -81,7 +81,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
     const Vector graze{4, 5, z};
     everyWay([&](const Vector& sign, const std::array<int, 3>& order) {
       const Vector d = turned(direction, sign, order);
-      const Result touch = alone(box, Pose{}, box, at(turned(graze, sign, order)), d, 100);
+      const Result touch = alone(box, Transform{}, box, at(turned(graze, sign, order)), d, 100);
       REQUIRE(touch.status == Status::hit);
       REQUIRE(touch.lo <= 3 * std::sqrt(21.0));
       REQUIRE(touch.hi >= 3 * std::sqrt(21.0));
@@ -92,7 +92,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
           // Apart if contact begins later in x (or z = 13), or ends earlier in y (or z = 11).
           const bool apart = (k == 0 && way > 0) || (k == 1 && way < 0) || (k == 2 && z == 13 && way > 0) ||
                              (k == 2 && z == 11 && way < 0);
-          const Result result = alone(box, Pose{}, box, at(turned(w, sign, order)), d, 100);
+          const Result result = alone(box, Transform{}, box, at(turned(w, sign, order)), d, 100);
           REQUIRE(result.status == (apart ? Status::clear : Status::hit));
         }
       }
@@ -102,18 +102,19 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
 
 TEST_CASE("contact at D and one place before D are told apart where |direction| is rational") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
-  for (const auto& [direction, length] : {std::pair{Vector{2, 3, 6}, 7.0}, {Vector{1, 4, 8}, 9.0}, {Vector{0, 3, -4}, 5.0}}) {
+  for (const auto& [direction, length] :
+       {std::pair{Vector{2, 3, 6}, 7.0}, {Vector{1, 4, 8}, 9.0}, {Vector{0, 3, -4}, 5.0}}) {
     // b begins to be met at s = 3 in the largest component, and well inside in the others.
     Vector w;
     for (size_t k = 0; k < 3; ++k) w[k] = 3 * direction[k];
     const size_t largest = 2;
     w[largest] += direction[largest] > 0 ? 1 : -1;
     const double t = 3 * length;
-    const Result touch = alone(box, Pose{}, box, at(w), direction, t);
+    const Result touch = alone(box, Transform{}, box, at(w), direction, t);
     REQUIRE(touch.status == Status::hit);
     REQUIRE(touch.t == t);
     REQUIRE(touch.hi == t);
-    REQUIRE(alone(box, Pose{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
+    REQUIRE(alone(box, Transform{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
   }
 }
 
@@ -123,13 +124,13 @@ TEST_CASE("lattice soups moved by single places equal brute force") {
     Scene scene;
     const MeshId sensor = add(scene, soups::lattice(random, random.integer(1, 8), 3));
     for (int i = random.integer(1, 3); i-- > 0;) {
-      Pose pose = soups::at(random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 8));
+      Transform pose = soups::at(random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 8));
       double& c = pose.m[static_cast<size_t>(4 * random.integer(0, 2) + 3)];
       if (random.chance(0.7)) c = std::nextafter(c, random.chance(0.5) ? 100 : -100);
       scene.addObject({add(scene, soups::lattice(random, random.integer(1, 8), 3)), pose});
     }
     CpuSweeper sweeper(scene);
-    Query query = sweep(sensor, Pose{}, {}, random.integer(0, 12));
+    Query query = sweep(sensor, Transform{}, {}, random.integer(0, 12));
     while (query.direction == Vector{}) {
       for (double& c : query.direction) c = random.chance(0.4) ? 0 : random.integer(-3, 3);
     }
@@ -148,9 +149,9 @@ TEST_CASE("swapping the roles and reversing the direction keeps every bit of t")
       return grid ? soups::at(random.integer(-1, 1), random.integer(-1, 1), z) : random.pose(1, {0.1, 0.2, 0.6 * z});
     };
     const soups::Mesh a = mesh(), b = mesh();
-    const Pose poseA = pose(0), poseB = pose(random.integer(0, 6));
+    const Transform poseA = pose(0), poseB = pose(random.integer(0, 6));
     const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
-                       : Vector{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
+                          : Vector{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
     requireSameBits(alone(a, poseA, b, poseB, d, 20), alone(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
   }
 }
@@ -178,9 +179,9 @@ TEST_CASE("the order of triangles and vertices changes no bit of t") {
       return out;
     };
     const soups::Mesh a = mesh(), b = mesh();
-    const Pose poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
+    const Transform poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
     const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, 0, 2} : Vector{random.uniform(-0.2, 0.2), 0.1, 1};
-    requireSameBits(alone(a, Pose{}, b, poseB, d, 20), alone(shuffled(a), Pose{}, shuffled(b), poseB, d, 20));
+    requireSameBits(alone(a, Transform{}, b, poseB, d, 20), alone(shuffled(a), Transform{}, shuffled(b), poseB, d, 20));
   }
 }
 
@@ -198,7 +199,7 @@ TEST_CASE("a shift that keeps every coordinate exact changes no bit of t") {
     const Vector d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
     const double z = random.integer(0, 3), size = std::ldexp(1, random.integer(0, 39));
     const Vector shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
-    requireSameBits(alone(a, Pose{}, b, soups::at(0, 0, z), d, 20),
+    requireSameBits(alone(a, Transform{}, b, soups::at(0, 0, z), d, 20),
                     alone(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
   }
 }

@@ -29,13 +29,13 @@ inline soups::Mesh mesh(Random& random, double scale) {
   return out;
 }
 
-inline std::array<double, 9> linearOf(const radar::Pose& pose) {
+inline std::array<double, 9> linearOf(const radar::Transform& pose) {
   const auto& m = pose.m;
   return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
 }
 
 /// A rotation, often scaled differently along its axes, sheared, mirrored, or flattened until hardly invertible.
-inline radar::Pose pose(Random& random, double scale, const std::array<double, 3>& at) {
+inline radar::Transform pose(Random& random, double scale, const std::array<double, 3>& at) {
   for (;;) {
     const std::array<double, 9> p = linearOf(random.pose(1, {})), q = linearOf(random.pose(1, {}));
     std::array<double, 3> stretch{1, 1, 1};
@@ -44,7 +44,7 @@ inline radar::Pose pose(Random& random, double scale, const std::array<double, 3
     }
     if (random.chance(0.2)) stretch[static_cast<size_t>(random.integer(0, 2))] *= power(random, 11.5);
     double shear = random.chance(0.2) ? power(random, 5) : 0;
-    radar::Pose out;
+    radar::Transform out;
     for (size_t i = 0; i < 3; ++i) {
       for (size_t k = 0; k < 3; ++k) {
         double sum = 0;
@@ -57,7 +57,7 @@ inline radar::Pose pose(Random& random, double scale, const std::array<double, 3
     if (random.chance(0.2)) {  // axis-aligned
       out.m = {scale * stretch[0], 0, 0, at[0], 0, scale * stretch[1], 0, at[1], 0, 0, scale * stretch[2], at[2]};
     }
-    if (radar::whatIsWrong(out).empty()) return out;
+    if (radar::validate(out).empty()) return out;
   }
 }
 

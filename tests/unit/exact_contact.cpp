@@ -107,9 +107,9 @@ TEST_CASE("the contact interval is exact for triangles in general position, need
   for (int i = 0; i < 6000; ++i) {
     INFO("case " << i);
     const soups::Mesh mesh = soups::soup(random, 2, random.uniform(0.3, 2), 0.4);
-    const radar::Pose pose = random.pose(1, {0, 0, 0});
+    const radar::Transform pose = random.pose(1, {0, 0, 0});
     const radar::MeshView view{mesh.positions, mesh.indices};
-    check(oracle::corners(view, radar::Pose{}, 0), oracle::corners(view, pose, 1), random.inBall());
+    check(oracle::corners(view, radar::Transform{}, 0), oracle::corners(view, pose, 1), random.inBall());
   }
 }
 

@@ -1,9 +1,9 @@
-// The integers and twofold doubles under engine/exact, against boost's rationals.
+// The integers and double-doubles under engine/exact, against boost's rationals.
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "exact/double_double.h"
 #include "exact/dyadic.h"
-#include "exact/twofold.h"
 #include "exact_oracle.h"
 #include "soups.h"
 
@@ -89,8 +89,8 @@ TEST_CASE("twofold sums and products keep their bounds") {
       const double high = std::ldexp(random.uniform(-1, 1), random.integer(-60, 60));
       return quickSum(high, high * 0x1p-53 * random.uniform(-1, 1));
     };
-    const auto exact = [](const Twofold& t) { return Rational(t.high) + Rational(t.low); };
-    const Twofold p = any(), q = random.chance(0.2) ? quickSum(-p.high, p.low * random.uniform(-1, 1)) : any();
+    const auto exact = [](const DoubleDouble& t) { return Rational(t.high) + Rational(t.low); };
+    const DoubleDouble p = any(), q = random.chance(0.2) ? quickSum(-p.high, p.low * random.uniform(-1, 1)) : any();
     const Rational s = exact(p) + exact(q), m = exact(p) * exact(q);
     REQUIRE(abs(exact(p + q) - s) <= 4 * square * abs(s));
     REQUIRE(abs(exact(p * q) - m) <= 8 * square * abs(m));

@@ -166,9 +166,9 @@ struct Answer {
   uint32_t triB = radar::kNone, triA = radar::kNone;
 };
 
-inline Corners corners(const radar::MeshView& mesh, const radar::Pose& pose, uint32_t triangle) {
+inline Corners corners(const radar::MeshView& mesh, const radar::Transform& pose, uint32_t triangle) {
   Corners out;
-  for (int i = 0; i < 3; ++i) out[i] = radar::place(pose, &mesh.positions[3 * mesh.indices[3 * triangle + i]]);
+  for (int i = 0; i < 3; ++i) out[i] = radar::transformPoint(pose, &mesh.positions[3 * mesh.indices[3 * triangle + i]]);
   return out;
 }
 

@@ -12,7 +12,10 @@
 
 #include "engine_shaders.h"
 #include "radar/radar.h"
+#include "shaders/arithmetic/interop.h"
 #include "shaders/contact/interop.h"
+#include "shaders/embed/interop.h"
+#include "shaders/sampled/interop.h"
 #include "spirv/shared_structs_comp.h"
 #include "spirv/shared_structs_comp_RADAR_NO_DOUBLES.h"
 
@@ -110,12 +113,14 @@ const std::vector<Expected>& sharedStructs() {
        sizeof(Answer),
        {MEMBER(Answer, hi), MEMBER(Answer, object), MEMBER(Answer, triB), MEMBER(Answer, triA), MEMBER(Answer, feature),
         MEMBER(Answer, minL), MEMBER(Answer, flags), MEMBER(Answer, candidates), MEMBER(Answer, pairs),
-        MEMBER(Answer, openPairs), MEMBER(Answer, pad)}},
-      {"OpenPair",
-       sizeof(OpenPair),
-       {MEMBER(OpenPair, low), MEMBER(OpenPair, object), MEMBER(OpenPair, triB), MEMBER(OpenPair, triA),
-        MEMBER(OpenPair, pad)}},
-      {"Stray", sizeof(Stray), {MEMBER(Stray, mesh), MEMBER(Stray, vertex), MEMBER(Stray, object)}},
+        MEMBER(Answer, unresolvedPairs), MEMBER(Answer, pad)}},
+      {"SampledUnresolved",
+       sizeof(SampledUnresolved),
+       {MEMBER(SampledUnresolved, low), MEMBER(SampledUnresolved, object), MEMBER(SampledUnresolved, triB),
+        MEMBER(SampledUnresolved, triA), MEMBER(SampledUnresolved, pad)}},
+      {"BoundsViolation",
+       sizeof(BoundsViolation),
+       {MEMBER(BoundsViolation, mesh), MEMBER(BoundsViolation, vertex), MEMBER(BoundsViolation, object)}},
       {"Moved",
        sizeof(Moved),
        {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, firstByte), MEMBER(Moved, anchor),
@@ -146,21 +151,23 @@ const std::vector<Expected>& sharedStructs() {
       {"Sweep",
        sizeof(Sweep),
        {MEMBER(Sweep, pose), MEMBER(Sweep, direction), MEMBER(Sweep, directionLength), MEMBER(Sweep, distance),
-        MEMBER(Sweep, decides), MEMBER(Sweep, result), MEMBER(Sweep, scale), MEMBER(Sweep, start)}},
-      {"SearchState", sizeof(SearchState), {MEMBER(SearchState, hi), MEMBER(SearchState, flags), MEMBER(SearchState, least)}},
+        MEMBER(Sweep, anyHit), MEMBER(Sweep, result), MEMBER(Sweep, scale), MEMBER(Sweep, start)}},
+      {"SearchState",
+       sizeof(SearchState),
+       {MEMBER(SearchState, hi), MEMBER(SearchState, flags), MEMBER(SearchState, least)}},
       {"SearchTask",
        sizeof(SearchTask),
        {MEMBER(SearchTask, sensor), MEMBER(SearchTask, object), MEMBER(SearchTask, a), MEMBER(SearchTask, b),
         MEMBER(SearchTask, gap)}},
-      {"PairCandidate",
-       sizeof(PairCandidate),
-       {MEMBER(PairCandidate, sensor), MEMBER(PairCandidate, object), MEMBER(PairCandidate, slotA),
-        MEMBER(PairCandidate, slotB), MEMBER(PairCandidate, low)}},
-      {"Contender",
-       sizeof(Contender),
-       {MEMBER(Contender, low), MEMBER(Contender, at), MEMBER(Contender, error), MEMBER(Contender, sensor),
-        MEMBER(Contender, object), MEMBER(Contender, slotA), MEMBER(Contender, slotB), MEMBER(Contender, flags),
-        MEMBER(Contender, next), MEMBER(Contender, first), MEMBER(Contender, padding)}},
+      {"CandidatePair",
+       sizeof(CandidatePair),
+       {MEMBER(CandidatePair, sensor), MEMBER(CandidatePair, object), MEMBER(CandidatePair, slotA),
+        MEMBER(CandidatePair, slotB), MEMBER(CandidatePair, low)}},
+      {"RefinedPair",
+       sizeof(RefinedPair),
+       {MEMBER(RefinedPair, low), MEMBER(RefinedPair, at), MEMBER(RefinedPair, error), MEMBER(RefinedPair, sensor),
+        MEMBER(RefinedPair, object), MEMBER(RefinedPair, slotA), MEMBER(RefinedPair, slotB), MEMBER(RefinedPair, flags),
+        MEMBER(RefinedPair, next), MEMBER(RefinedPair, first), MEMBER(RefinedPair, padding)}},
       {"UnresolvedPair",
        sizeof(UnresolvedPair),
        {MEMBER(UnresolvedPair, sensor), MEMBER(UnresolvedPair, object), MEMBER(UnresolvedPair, triB),
@@ -171,7 +178,7 @@ const std::vector<Expected>& sharedStructs() {
        {MEMBER(SearchRound, tasks), MEMBER(SearchRound, taken), MEMBER(SearchRound, spilled)}},
       {"SearchCounts",
        sizeof(SearchCounts),
-       {MEMBER(SearchCounts, filterGroups), MEMBER(SearchCounts, candidates), MEMBER(SearchCounts, contenders),
+       {MEMBER(SearchCounts, filterGroups), MEMBER(SearchCounts, candidates), MEMBER(SearchCounts, refinedPairs),
         MEMBER(SearchCounts, unresolved), MEMBER(SearchCounts, broken), MEMBER(SearchCounts, nodePairs),
         MEMBER(SearchCounts, nodePairsHigh), MEMBER(SearchCounts, trianglePairs),
         MEMBER(SearchCounts, trianglePairsHigh), MEMBER(SearchCounts, solves), MEMBER(SearchCounts, solvesHigh),
@@ -185,6 +192,14 @@ const std::vector<Expected>& sharedStructs() {
        {MEMBER(CollectPush, round), MEMBER(CollectPush, taskCapacity), MEMBER(CollectPush, isLast)}},
       {"FilterPush", sizeof(FilterPush), {MEMBER(FilterPush, candidateCapacity)}},
       {"ResolvePush", sizeof(ResolvePush), {MEMBER(ResolvePush, sensors), MEMBER(ResolvePush, unresolvedCapacity)}},
+      {"IdentifyPush", sizeof(IdentifyPush), {MEMBER(IdentifyPush, items)}},
+      {"DeformPush",
+       sizeof(DeformPush),
+       {MEMBER(DeformPush, count), MEMBER(DeformPush, mesh), MEMBER(DeformPush, firstByte), MEMBER(DeformPush, stride),
+        MEMBER(DeformPush, format)}},
+      {"RefitPush", sizeof(RefitPush), {MEMBER(RefitPush, first), MEMBER(RefitPush, count), MEMBER(RefitPush, mesh)}},
+      {"MovePush", sizeof(MovePush), {MEMBER(MovePush, count)}},
+      {"InvalidatePush", sizeof(InvalidatePush), {MEMBER(InvalidatePush, count)}},
   };
   return all;
 }
@@ -242,8 +257,10 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
 }
 
 TEST_CASE("no shared struct is left out of the comparison") {
-  std::set<std::string> declared = structsIn("interop.h"), compared;
-  declared.merge(structsIn("contact/interop.h"));
+  std::set<std::string> declared, compared;
+  for (const char* folder : {"arithmetic", "contact", "embed", "sampled", "shared"}) {
+    declared.merge(structsIn((std::string(folder) + "/interop.h").c_str()));
+  }
   for (const Expected& one : sharedStructs()) compared.insert(one.structure);
   CHECK(declared.size() > 20);
   CHECK(declared == compared);
@@ -262,7 +279,8 @@ TEST_CASE("the engine's own shaders lay shared structs and results out as C++ do
     for (const Expected& one : sharedStructs()) check(one);
     check(publicResult());
   }
-  for (const char* name : {"RadarResult", "SearchCounts", "SearchPush", "Contender", "Placement", "MeshNode", "View"}) {
+  for (const char* name :
+       {"RadarResult", "SearchCounts", "SearchPush", "RefinedPair", "Placement", "MeshNode", "View"}) {
     CAPTURE(name);
     CHECK(seen.count(name) == 1);
   }

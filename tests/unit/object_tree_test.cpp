@@ -14,7 +14,7 @@ using namespace radar;
 using exact::Dyadic;
 using tools::Random;
 
-Pose at(double x, double y, double z) {
+Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 
@@ -72,7 +72,7 @@ void checkTree(const Scene& scene) {
     const MeshView mesh = scene.mesh(object.mesh);
     const Box &box = tree.boxOf(id), &world = tree.worldBox();
     for (const uint32_t vertex : mesh.indices) {
-      const std::array<double, 3> p = place(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+      const std::array<double, 3> p = transformPoint(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
       for (int k = 0; k < 3; ++k) {
         if (p[k] < box.lo[k] || p[k] > box.hi[k]) FAIL("the box of object " << id << " leaves out a vertex");
         if (p[k] < world.lo[k] || p[k] > world.hi[k]) FAIL("the world's box leaves out a vertex of object " << id);
@@ -96,7 +96,7 @@ struct Boxes {
     const tools::MeshData box = tools::makeBox({1, 2, 3});
     mesh = scene.addMesh(box.positions, box.indices);
   }
-  Pose anywhere(double reach, double away = 0) {
+  Transform anywhere(double reach, double away = 0) {
     const std::array<double, 3> lo{away - reach, away - reach, -reach}, hi{away + reach, away + reach, reach};
     return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, random.inBox(lo, hi));
   }
@@ -117,7 +117,7 @@ TEST_CASE("the tree holds all objects as they come, move and go") {
       objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u}));
     }
     for (int i = 0; i < 5; ++i) {
-      boxes.scene.setPose(objects[boxes.random.below(uint32_t(objects.size()))], boxes.anywhere(20, away));
+      boxes.scene.setTransform(objects[boxes.random.below(uint32_t(objects.size()))], boxes.anywhere(20, away));
     }
     if (round % 8 == 7) {
       for (int i = 0; i < 4; ++i) {
@@ -143,9 +143,9 @@ TEST_CASE("a small move changes boxes and not the tree, and its version says so"
   const std::vector<gpu::ObjectNode> before = tree.nodes();
   uint64_t version = tree.version();
   CHECK(boxes.scene.impl().objectTree().version() == version);
-  Pose pose = boxes.scene.object(7).worldFromMesh;
+  Transform pose = boxes.scene.object(7).worldFromMesh;
   pose.m[3] += 0.25;
-  boxes.scene.setPose(7, pose);
+  boxes.scene.setTransform(7, pose);
   checkTree(boxes.scene);
   CHECK(tree.version() > version);
   REQUIRE(tree.nodes().size() == before.size());
@@ -186,14 +186,14 @@ TEST_CASE("far from the origin, boxes are hardly larger than objects") {
   };
   checkSizes();
   // All of them travel on together.
-  for (ObjectId id = 0; id < 50; ++id) boxes.scene.setPose(id, boxes.anywhere(20, -3 * away));
+  for (ObjectId id = 0; id < 50; ++id) boxes.scene.setTransform(id, boxes.anywhere(20, -3 * away));
   checkTree(boxes.scene);
   checkSizes();
 }
 
 TEST_CASE("a tree that moves have made bad is built anew") {
   Boxes boxes(7), fresh(8);
-  std::vector<Pose> poses;
+  std::vector<Transform> poses;
   for (int i = 0; i < 300; ++i) {
     // In a row, so that a tree of neighbours is much better than any other.
     boxes.scene.addObject({boxes.mesh, at(10 * i, 0, 0), ~0u});
@@ -201,7 +201,7 @@ TEST_CASE("a tree that moves have made bad is built anew") {
   }
   const double before = costOf(boxes.scene.impl().objectTree());
   for (ObjectId id = 0; id < 300; ++id) {
-    boxes.scene.setPose(id, poses[id]);
+    boxes.scene.setTransform(id, poses[id]);
     fresh.scene.addObject({fresh.mesh, poses[id], ~0u});
   }
   checkTree(boxes.scene);
@@ -214,22 +214,22 @@ TEST_CASE("what floats cannot hold is out of range, until it is back") {
   for (int i = 0; i < 5; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
   const ObjectTree& tree = boxes.scene.impl().objectTree();
   const auto inRange = [&] { return boxes.scene.impl().objectTree().inRange(); };
-  const auto scaled = [](double s) { return Pose{{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}}; };
+  const auto scaled = [](double s) { return Transform{{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}}; };
   CHECK(inRange());
-  for (const Pose& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e300, 0, 0), scaled(1e300)}) {
-    boxes.scene.setPose(2, pose);
+  for (const Transform& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e300, 0, 0), scaled(1e300)}) {
+    boxes.scene.setTransform(2, pose);
     CHECK_FALSE(inRange());
     CHECK(tree.nodes().empty());
-    boxes.scene.setPose(2, at(0, 0x1p79, 0));
+    boxes.scene.setTransform(2, at(0, 0x1p79, 0));
     checkTree(boxes.scene);
   }
   // A step that hardly changes the tree's boxes.
-  boxes.scene.setPose(2, at(0, 0.99 * 0x1p80, 0));
+  boxes.scene.setTransform(2, at(0, 0.99 * 0x1p80, 0));
   CHECK(inRange());
-  boxes.scene.setPose(2, at(0, 1.01 * 0x1p80, 0));
+  boxes.scene.setTransform(2, at(0, 1.01 * 0x1p80, 0));
   CHECK_FALSE(inRange());
   CHECK(tree.nodes().empty());
-  boxes.scene.setPose(2, at(0, 0, 0));
+  boxes.scene.setTransform(2, at(0, 0, 0));
   boxes.scene.setBounds(2, {{-1, -1, -1}, {1, 0x1p81, 1}});
   CHECK_FALSE(inRange());
   boxes.scene.removeObject(2);
@@ -239,7 +239,7 @@ TEST_CASE("what floats cannot hold is out of range, until it is back") {
   const ObjectId far = other.scene.addObject({other.mesh, at(1e200, 0, 0), ~0u});
   other.scene.addObject({other.mesh, at(1, 0, 0), ~0u});
   CHECK_FALSE(other.scene.impl().objectTree().inRange());
-  other.scene.setPose(far, at(5, 0, 0));
+  other.scene.setTransform(far, at(5, 0, 0));
   checkTree(other.scene);
 }
 
@@ -255,7 +255,7 @@ TEST_CASE("an object whose coordinates overflow puts the scene out of range, and
   scene.addObject({mesh, at(1, 2, 3), ~0u});
   const ObjectId object = scene.addObject({huge, {{1e300, -1e300, 0, 0, 1e300, 1e300, 0, 0, 0, 0, 1e300, 0}}, ~0u});
   CHECK_FALSE(scene.impl().objectTree().inRange());
-  scene.setPose(object, {{1e300, -1e300, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}});
+  scene.setTransform(object, {{1e300, -1e300, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}});
   CHECK_FALSE(scene.impl().objectTree().inRange());
   scene.removeObject(object);
   checkTree(scene);

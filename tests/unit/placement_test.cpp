@@ -29,8 +29,8 @@ double powerOfTwo(Random& random, int lowest, int highest) {
 }
 
 // Turned, scaled unevenly and sheared; now and then nearly flat.
-Pose randomPose(Random& random, double scale, double away) {
-  Pose pose = tools::randomAffine(random, random.inBox({-away, -away, -away}, {away, away, away}));
+Transform randomPose(Random& random, double scale, double away) {
+  Transform pose = tools::randomAffine(random, random.inBox({-away, -away, -away}, {away, away, away}));
   const bool flat = random.oneIn(4);
   const double flattened = flat ? powerOfTwo(random, -20, -1) : 1;
   for (int row = 0; row < 3; ++row) {
@@ -52,7 +52,7 @@ TEST_CASE("a placement's floats put every vertex where it is, but for what it sa
     const std::array<double, 3> middle = random.inBox({-baked, -baked, -baked}, {baked, baked, baked});
     const Mesh& mesh = scene.impl().meshes[addSoup(scene, random, size, middle)];
     const double scale = powerOfTwo(random, -40, 40), away = random.oneIn(3) ? 0 : powerOfTwo(random, -60, 60);
-    const Pose pose = randomPose(random, scale, away);
+    const Transform pose = randomPose(random, scale, away);
     const gpu::Placement placement = placementOf(mesh, pose);
     if (!isInRange(placement)) continue;
     ++inRange;
@@ -74,7 +74,7 @@ TEST_CASE("a vertex far from the origin that a pose brings back is placed within
     const double baked = powerOfTwo(random, 0, 20);
     const std::array<double, 3> middle = random.inBox({-baked, -baked, -baked}, {baked, baked, baked});
     const Mesh& mesh = scene.impl().meshes[addSoup(scene, random, 1, middle)];
-    Pose pose = randomPose(random, 1, 0);
+    Transform pose = randomPose(random, 1, 0);
     for (int row = 0; row < 3; ++row) {
       for (int k = 0; k < 3; ++k) pose.m[4 * row + 3] -= pose.m[4 * row + k] * middle[k];
     }
@@ -91,7 +91,7 @@ TEST_CASE("the coarse part's products with anchors of 8 bits are exact, and the 
   for (int i = 0; i < 2000; ++i) {
     Scene scene;
     const Mesh& mesh = scene.impl().meshes[addSoup(scene, random, powerOfTwo(random, -20, 20), {})];
-    const Pose pose = randomPose(random, powerOfTwo(random, -20, 20), 10);
+    const Transform pose = randomPose(random, powerOfTwo(random, -20, 20), 10);
     const gpu::Placement placement = placementOf(mesh, pose);
     REQUIRE(isInRange(placement));
     for (int row = 0; row < 3; ++row) {

@@ -75,7 +75,7 @@ TEST_CASE("a query file is read as it says") {
   CHECK(plain.mask == ~0u);
   CHECK_FALSE(plain.mode);
   CHECK_FALSE(plain.speed);
-  CHECK_FALSE(plain.decide);
+  CHECK_FALSE(plain.anyHit);
   CHECK_FALSE(plain.tolerance);
   CHECK(full.batch == 3);
   CHECK(full.exclude == std::vector<uint32_t>{2});
@@ -84,7 +84,7 @@ TEST_CASE("a query file is read as it says") {
   CHECK(full.mask == 5);
   CHECK(full.mode == AnswerMode::sampled);
   CHECK(full.speed == 2.5);
-  CHECK(full.decide);
+  CHECK(full.anyHit);
   CHECK(full.tolerance == 0.25);
   CHECK(full.sensor.worldFromMesh.m[11] == -2);
 }
@@ -230,7 +230,7 @@ TEST_CASE("a workload survives writing and reading to the bit") {
   workload.scenes[1].masks = {{0, 3}, {101, 0}};
   workload.queries[0].mask = 17;
   workload.queries[1].mode = AnswerMode::reference;
-  workload.queries[1].decide = true;
+  workload.queries[1].anyHit = true;
   workload.queries[1].tolerance = 0.1;
   workload.queries[2].id = "odd \"id\"\n\\ \xc3\xa4";
   std::vector<std::string> warnings;
@@ -252,7 +252,7 @@ TEST_CASE("a workload survives writing and reading to the bit") {
     const QuerySpec &a = again.queries[i], &b = workload.queries[i];
     CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor));
     CHECK((a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance));
-    CHECK((a.mask == b.mask && a.decide == b.decide && a.mode == b.mode && a.speed == b.speed));
+    CHECK((a.mask == b.mask && a.anyHit == b.anyHit && a.mode == b.mode && a.speed == b.speed));
     CHECK(a.tolerance == b.tolerance);
   }
 }

@@ -68,14 +68,15 @@ uint64_t neededOf(const std::string& name, Mode mode) {
 }  // namespace
 
 TEST_CASE("a device with everything is not refused") {
-  CHECK(gpu::reasonsAgainst(goodDevice(), Mode::sampled).empty());
-  CHECK(gpu::reasonsAgainst(goodDevice(), Mode::contact).empty());
+  CHECK(gpu::unsupportedReasons(goodDevice(), Mode::sampled).empty());
+  CHECK(gpu::unsupportedReasons(goodDevice(), Mode::contact).empty());
 }
 
 TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
   gpu::DeviceFacts facts = goodDevice();
   facts.apiVersion = VK_API_VERSION_1_1;
-  CHECK(gpu::reasonsAgainst(facts, Mode::contact) == std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1.0"});
+  CHECK(gpu::unsupportedReasons(facts, Mode::contact) ==
+        std::vector<std::string>{"Vulkan 1.3 is needed, it has 1.1.0"});
   facts = goodDevice();
   facts.missingFeatures = {{"maintenance4 (shaders are compiled for Vulkan 1.3)", Mode::contact}};
   facts.computeQueue = facts.graphicsAndComputeQueue = false;
@@ -84,7 +85,7 @@ TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
   limits.maxComputeSharedMemorySize = 4096;
   limits.maxPerStageDescriptorStorageBuffers = 4;
   facts.limits = gpu::limitsOf(limits, kSubgroups);
-  const std::vector<std::string> reasons = gpu::reasonsAgainst(facts, Mode::contact);
+  const std::vector<std::string> reasons = gpu::unsupportedReasons(facts, Mode::contact);
   REQUIRE(reasons.size() == 6);
   CHECK(reasons[0] == "lacks the feature maintenance4 (shaders are compiled for Vulkan 1.3)");
   CHECK(reasons[1].find("queue family") != std::string::npos);
@@ -102,8 +103,8 @@ TEST_CASE("what only mode sampled needs does not keep a device from mode contact
   limits.maxImageArrayLayers = limits.maxFramebufferLayers = 1;
   limits.subPixelPrecisionBits = 0;
   facts.limits = gpu::limitsOf(limits, kSubgroups);
-  CHECK(gpu::reasonsAgainst(facts, Mode::contact).empty());
-  const std::vector<std::string> reasons = gpu::reasonsAgainst(facts, Mode::sampled);
+  CHECK(gpu::unsupportedReasons(facts, Mode::contact).empty());
+  const std::vector<std::string> reasons = gpu::unsupportedReasons(facts, Mode::sampled);
   REQUIRE(reasons.size() == 7);
   CHECK(reasons[0] == "lacks the feature shaderOutputLayer (each sensor is a layer)");
   CHECK(reasons[1] == "has no queue family that does graphics and compute");
@@ -115,7 +116,7 @@ TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, but f
     gpu::DeviceFacts facts = goodDevice();
     facts.subgroups.size = lanes;
     facts.limits = gpu::limitsOf(leastLimits(), facts.subgroups);
-    CHECK(gpu::reasonsAgainst(facts, Mode::contact).empty());
+    CHECK(gpu::unsupportedReasons(facts, Mode::contact).empty());
   }
 }
 
@@ -126,9 +127,9 @@ TEST_CASE("a limit that is just enough will do, and one less is a reason") {
       if (facts.limits[i].mode != mode) continue;
       gpu::DeviceFacts changed = facts;
       changed.limits[i].has = changed.limits[i].needed;
-      CHECK(gpu::reasonsAgainst(changed, mode).empty());
+      CHECK(gpu::unsupportedReasons(changed, mode).empty());
       --changed.limits[i].has;
-      CHECK(gpu::reasonsAgainst(changed, mode).size() == 1);
+      CHECK(gpu::unsupportedReasons(changed, mode).size() == 1);
     }
   }
 }

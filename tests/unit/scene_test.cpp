@@ -17,9 +17,9 @@ MeshId addBox(Scene& scene) {
   return scene.addMesh(box.positions, box.indices);
 }
 
-Box placedBox(const Mesh& mesh, const Pose& pose) {
+Box placedBox(const Mesh& mesh, const Transform& pose) {
   Box box;
-  for (uint32_t v : mesh.indices) box.add(place(pose, &mesh.positions[3 * size_t{v}]));
+  for (uint32_t v : mesh.indices) box.add(transformPoint(pose, &mesh.positions[3 * size_t{v}]));
   return box;
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("a mesh in use cannot be removed, and a version tells every change") {
   CHECK(changed());
   CHECK_FALSE(changed());
   CHECK_THROWS_WITH(scene.removeMesh(mesh), Catch::Contains("used by 1"));
-  scene.setPose(object, {{2, 0, 0, 1, 0, 2, 0, 1, 0, 0, 2, 1}});
+  scene.setTransform(object, {{2, 0, 0, 1, 0, 2, 0, 1, 0, 0, 2, 1}});
   CHECK(changed());
   scene.removeObject(object);
   CHECK(changed());
@@ -73,10 +73,10 @@ TEST_CASE("what breaks a contract is refused in words") {
                     Catch::Contains("vertex 0 is not finite"));
   CHECK_THROWS_WITH(scene.addObject({mesh + 1, {}, ~0u}), Catch::Contains("does not exist"));
   CHECK_THROWS_WITH(scene.addObject({mesh, {{1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0}}, ~0u}), Catch::Contains("singular"));
-  CHECK_THROWS_WITH(scene.setPose(0, {}), Catch::Contains("does not exist"));
+  CHECK_THROWS_WITH(scene.setTransform(0, {}), Catch::Contains("does not exist"));
   CHECK_THROWS_WITH(scene.removeObject(7), Catch::Contains("does not exist"));
-  CHECK(whatIsWrong(Pose{{1e-6, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 1e-6, 0}}).empty());
-  CHECK(whatIsWrong(Pose{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
+  CHECK(validate(Transform{{1e-6, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 1e-6, 0}}).empty());
+  CHECK(validate(Transform{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
 }
 
 TEST_CASE("a mesh's box holds every placed vertex, near and far from the origin") {
@@ -88,7 +88,7 @@ TEST_CASE("a mesh's box holds every placed vertex, near and far from the origin"
     for (int i = 0; i < 50; ++i) {
       const double away = std::pow(10.0, random.uniform(-3, 8));
       const double s = std::pow(10.0, random.uniform(-4, 4));
-      const Pose pose =
+      const Transform pose =
           tools::makePose(random.rotation(), {s, s, s}, random.inBox({-away, -away, -away}, {away, away, away}));
       const Box outer = boxOf(mesh, pose.m), inner = placedBox(mesh, pose);
       for (int k = 0; k < 3; ++k) {

@@ -15,7 +15,7 @@ bool reachesInto(const Prism& prism, const Scene& scene, ObjectId id) {
   const Object& object = scene.object(id);
   const MeshView mesh = scene.mesh(object.mesh);
   for (const uint32_t vertex : mesh.indices) {
-    std::array<double, 3> p = place(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+    std::array<double, 3> p = transformPoint(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
     for (int k = 0; k < 3; ++k) p[k] -= prism.origin[k];
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ TEST_CASE("every object whose placed vertices reach into a prism is selected onc
   for (int round = 0; round < 60; ++round) {
     // Grow, move some, remove some.
     for (int i = 0; i < 10; ++i) objects.push_back(scene.addObject({mesh, randomPose(), ~0u}));
-    for (int i = 0; i < 5; ++i) scene.setPose(objects[random.below(uint32_t(objects.size()))], randomPose());
+    for (int i = 0; i < 5; ++i) scene.setTransform(objects[random.below(uint32_t(objects.size()))], randomPose());
     if (round % 3 == 2) {
       scene.removeObject(objects.back());
       objects.pop_back();
@@ -73,7 +73,7 @@ TEST_CASE("objects are selected, too, where one of them is too far away for the 
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  const auto at = [](double x) { return Pose{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
+  const auto at = [](double x) { return Transform{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
   const ObjectId near = scene.addObject({mesh, at(0), ~0u});
   scene.addObject({mesh, at(50), ~0u});
   const ObjectId remote = scene.addObject({mesh, at(1e30), ~0u});

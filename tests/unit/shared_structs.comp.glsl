@@ -3,7 +3,10 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/arithmetic/interop.h"
 #include "shaders/contact/interop.h"
+#include "shaders/embed/interop.h"
+#include "shaders/sampled/interop.h"
 
 layout(scalar, binding = 0) readonly buffer B0 { MeshNode b0[]; };
 layout(scalar, binding = 1) readonly buffer B1 { ObjectNode b1[]; };
@@ -17,15 +20,15 @@ layout(scalar, binding = 8) readonly buffer B8 { Draw b8[]; };
 layout(scalar, binding = 9) readonly buffer B9 { Item b9[]; };
 layout(scalar, binding = 10) readonly buffer B10 { Candidate b10[]; };
 layout(scalar, binding = 11) readonly buffer B11 { Answer b11[]; };
-layout(scalar, binding = 12) readonly buffer B12 { OpenPair b12[]; };
-layout(scalar, binding = 13) readonly buffer B13 { Stray b13[]; };
+layout(scalar, binding = 12) readonly buffer B12 { SampledUnresolved b12[]; };
+layout(scalar, binding = 13) readonly buffer B13 { BoundsViolation b13[]; };
 layout(scalar, binding = 14) readonly buffer B14 { Moved b14[]; };
 layout(scalar, binding = 15) readonly buffer B15 { Sensor b15[]; };
 layout(scalar, binding = 16) readonly buffer B16 { Sweep b16[]; };
 layout(scalar, binding = 17) readonly buffer B17 { SearchState b17[]; };
 layout(scalar, binding = 18) readonly buffer B18 { SearchTask b18[]; };
-layout(scalar, binding = 19) readonly buffer B19 { PairCandidate b19[]; };
-layout(scalar, binding = 20) readonly buffer B20 { Contender b20[]; };
+layout(scalar, binding = 19) readonly buffer B19 { CandidatePair b19[]; };
+layout(scalar, binding = 20) readonly buffer B20 { RefinedPair b20[]; };
 layout(scalar, binding = 21) readonly buffer B21 { UnresolvedPair b21[]; };
 layout(scalar, binding = 22) readonly buffer B22 { SearchRound b22[]; };
 layout(scalar, binding = 23) readonly buffer B23 { SearchCounts b23[]; };
@@ -39,6 +42,11 @@ layout(scalar, binding = 29) readonly buffer B29 { FloatOutcome b29[]; };
 layout(scalar, binding = 30) readonly buffer B30 { DoubleTrial b30[]; };
 layout(scalar, binding = 31) readonly buffer B31 { DoubleOutcome b31[]; };
 #endif
+layout(scalar, binding = 32) readonly buffer B32 { IdentifyPush b32[]; };
+layout(scalar, binding = 33) readonly buffer B33 { DeformPush b33[]; };
+layout(scalar, binding = 34) readonly buffer B34 { RefitPush b34[]; };
+layout(scalar, binding = 35) readonly buffer B35 { MovePush b35[]; };
+layout(scalar, binding = 36) readonly buffer B36 { InvalidatePush b36[]; };
 
 layout(local_size_x = 1) in;
 

@@ -21,7 +21,7 @@ class Random {
   int integer(int lo, int hi) { return lo + static_cast<int>(engine_() % static_cast<uint64_t>(hi - lo + 1)); }
   bool chance(double p) { return uniform(0, 1) < p; }
   std::array<double, 3> inBall();
-  radar::Pose pose(double scale, const std::array<double, 3>& at);
+  radar::Transform pose(double scale, const std::array<double, 3>& at);
 
  private:
   std::mt19937_64 engine_;
@@ -35,7 +35,7 @@ inline std::array<double, 3> Random::inBall() {
   }
 }
 
-inline radar::Pose Random::pose(double scale, const std::array<double, 3>& at) {
+inline radar::Transform Random::pose(double scale, const std::array<double, 3>& at) {
   double q[4], square = 0;
   do {
     square = 0;
@@ -46,7 +46,7 @@ inline radar::Pose Random::pose(double scale, const std::array<double, 3>& at) {
   } while (square > 1 || square < 1e-3);
   const double length = std::sqrt(square);
   const double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
-  radar::Pose pose;
+  radar::Transform pose;
   pose.m = {
       scale * (1 - 2 * (y * y + z * z)), scale * 2 * (x * y - z * w),       scale * 2 * (x * z + y * w),       at[0],
       scale * 2 * (x * y + z * w),       scale * (1 - 2 * (x * x + z * z)), scale * 2 * (y * z - x * w),       at[1],
@@ -104,8 +104,8 @@ inline Mesh box(double x, double y, double z) {
   return mesh;
 }
 
-inline radar::Pose at(double x, double y, double z) {
-  radar::Pose pose;
+inline radar::Transform at(double x, double y, double z) {
+  radar::Transform pose;
   pose.m[3] = x;
   pose.m[7] = y;
   pose.m[11] = z;

@@ -5,19 +5,21 @@
 
 #include "gpu/spirv.h"
 #include "radar/radar.h"
+#include "shaders/arithmetic/interop.h"
 #include "shaders/contact/interop.h"
+#include "shaders/sampled/interop.h"
 #include "spirv/all_kinds_comp.h"
 #include "spirv/all_kinds_comp_DESCRIPTOR_ARRAY.h"
 #include "spirv/all_kinds_comp_OTHER_SET.h"
 #include "spirv/all_kinds_comp_SAME_BINDING.h"
 #include "spirv/all_kinds_comp_STORAGE_IMAGE.h"
 #include "spirv/all_kinds_comp_UNIFORM_BUFFER.h"
+#include "spirv/arithmetic_doubles_comp.h"
 #include "spirv/contact_collect_comp.h"
 #include "spirv/contact_resolve_comp.h"
 #include "spirv/contact_search_comp.h"
-#include "spirv/depth_vert.h"
-#include "spirv/arithmetic_doubles_comp.h"
-#include "spirv/reduce_comp.h"
+#include "spirv/sampled_depth_vert.h"
+#include "spirv/sampled_reduce_comp.h"
 
 namespace {
 
@@ -98,11 +100,11 @@ TEST_CASE("the engine's own shaders take what the shared structs say") {
                                             {kSlotSpilled.number, "Spilled", kStorage, sizeof(SearchTask)}});
   const ComputeInterface search = reflectCompute(k_contact_search_comp, "search");
   CHECK(descriptorAt(search, kSlotMeshNodes.number).type == kTexels);
-  CHECK(descriptorAt(search, kSlotPairCandidates.number).stride == sizeof(PairCandidate));
+  CHECK(descriptorAt(search, kSlotCandidatePairs.number).stride == sizeof(CandidatePair));
   const ComputeInterface resolve = reflectCompute(k_contact_resolve_comp, "resolve");
   CHECK(descriptorAt(resolve, kSlotUnresolved.number).stride == sizeof(UnresolvedPair));
   CHECK(descriptorAt(resolve, kSlotResults.number).stride == sizeof(Result));
-  const ComputeInterface reduce = reflectCompute(k_reduce_comp, "reduce");
+  const ComputeInterface reduce = reflectCompute(k_sampled_reduce_comp, "reduce");
   CHECK(descriptorAt(reduce, kSlotRange.number).type == kImage);
   CHECK(descriptorAt(reduce, kSlotMask.number).type == kImage);
 }
@@ -127,7 +129,8 @@ TEST_CASE("what is not understood is named") {
                     "shader \"x\": binding 6 (Refused) is in descriptor set 1, not 0");
   CHECK_THROWS_WITH(reflect(k_all_kinds_comp_SAME_BINDING),
                     "shader \"x\": binding 4 is declared twice: Words and Refused");
-  CHECK_THROWS_WITH(reflect(k_depth_vert), "shader \"x\": expected one entry point, a compute shader's \"main\"");
+  CHECK_THROWS_WITH(reflect(k_sampled_depth_vert),
+                    "shader \"x\": expected one entry point, a compute shader's \"main\"");
 }
 
 TEST_CASE("what is not a module is refused, wherever it ends") {

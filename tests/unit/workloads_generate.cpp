@@ -133,7 +133,7 @@ TEST_CASE("every family keeps the contracts of Scene and Query, and is the same 
       ScenePlayer player(workload);
       player.show(0);
       for (const QuerySpec& query : workload.queries) {
-        CHECK(whatIsWrong(toQuery(query, radar::Mode::contact), player.scene()).empty());
+        CHECK(validate(toQuery(query, radar::Mode::contact), player.scene()).empty());
       }
     }
   }
@@ -193,7 +193,7 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
     ScenePlayer player(workload);
     for (const QuerySpec& query : workload.queries) {
       player.show(query.scene);
-      CHECK(whatIsWrong(toQuery(query, radar::Mode::sampled), player.scene()).empty());
+      CHECK(validate(toQuery(query, radar::Mode::sampled), player.scene()).empty());
     }
   }
 }
@@ -209,7 +209,7 @@ TEST_CASE("every stability family keeps the contracts of Scene and Query, and is
     Scene scene;
     replaceBy(workload, 0, scene);
     CHECK(workload.queries.size() == kCasesPerScene);
-    for (const QuerySpec& query : workload.queries) CHECK(whatIsWrong(toQuery(query, Mode::contact), scene) == "");
+    for (const QuerySpec& query : workload.queries) CHECK(validate(toQuery(query, Mode::contact), scene) == "");
   }
   // Recorded once, as above.
   CHECK(all.value() == 0xb13c466fda645794ull);

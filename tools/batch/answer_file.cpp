@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 
 namespace radar::tools {
 

@@ -160,7 +160,7 @@ Instance Reader::readInstance(const JsonValue& list) const {
   Instance instance;
   instance.mesh = list.element(0).index(workload_.meshes.size(), "meshes");
   for (size_t i = 1; i < count; ++i) instance.worldFromMesh.m[i - 1] = list.element(i).number();
-  if (std::string wrong = whatIsWrong(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
+  if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
   return instance;
 }
 
@@ -205,7 +205,7 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
     }
     Instance instance{static_cast<uint32_t>(numbers[0]), {}};
     if (count == 13) std::copy(numbers.begin() + 1, numbers.end(), instance.worldFromMesh.m.begin());
-    if (std::string wrong = whatIsWrong(instance.worldFromMesh); !wrong.empty()) refuse(wrong);
+    if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) refuse(wrong);
     instances.push_back(instance);
   }
   return instances;
@@ -234,7 +234,7 @@ QuerySpec Reader::readQuery(const JsonValue& query) const {
   spec.distance = distance.number();
   if (spec.distance < 0) distance.expected("a number of 0 or more");
   if (query.has("mask")) spec.mask = static_cast<uint32_t>(query.member("mask").wholeNumber(kMostBits));
-  if (query.has("decide")) spec.decide = query.member("decide").boolean();
+  if (query.has("decide")) spec.anyHit = query.member("decide").boolean();
   if (query.has("mode")) {
     const JsonValue mode = query.member("mode");
     try {

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "batch/whole_file.h"
 
 namespace radar::tools {
 
@@ -38,7 +38,7 @@ std::string plyOf(const MeshData& mesh) {
 
 void appendInstance(std::string& text, const Instance& instance, const char* separator) {
   text += std::to_string(instance.mesh);
-  if (instance.worldFromMesh == Pose{}) return;
+  if (instance.worldFromMesh == Transform{}) return;
   for (double value : instance.worldFromMesh.m) {
     text += separator;
     appendNumber(text, value);
@@ -91,7 +91,7 @@ void appendQuery(std::string& text, const QuerySpec& query) {
   text += ", \"D\": ";
   appendNumber(text, query.distance);
   if (query.mask != ~0u) text.append(", \"mask\": ").append(std::to_string(query.mask));
-  if (query.decide) text += ", \"decide\": true";
+  if (query.anyHit) text += ", \"decide\": true";
   if (query.mode) text += std::string(", \"mode\": \"") + nameOf(*query.mode) + "\"";
   if (query.speed) {
     text += ", \"speed\": ";
@@ -114,7 +114,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
   std::string text = "{\"format\": \"cyber-radar-queries-1\",\n \"meshes\": [";
   for (size_t i = 0; i < workload.meshes.size(); ++i) {
     const std::string name = "mesh-" + std::to_string(i) + ".ply";
-    writeWhole(folder / name, plyOf(workload.meshes[i]));
+    writeAtomically(folder / name, plyOf(workload.meshes[i]));
     text += (i > 0 ? ", " : "") + quoted(name);
   }
   text += "],\n \"scenes\": [";
@@ -128,7 +128,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
         appendInstance(lines, instance, " ");
         lines += "\n";
       }
-      writeWhole(folder / instanceFile, lines);
+      writeAtomically(folder / instanceFile, lines);
     }
     text += i > 0 ? ",\n  " : "\n  ";
     appendScene(text, scene, instanceFile);
@@ -140,7 +140,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
   }
   text += "]}\n";
   std::filesystem::path file = folder / "queries.json";
-  writeWhole(file, text);
+  writeAtomically(file, text);
   return file;
 }
 

@@ -21,7 +21,7 @@ using namespace radar;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kRepeats = 15;
-constexpr Capacity kRoom{.queries = 64, .candidates = 1u << 16, .openPairs = 1u << 14};
+constexpr Capacity kRoom{.queries = 64, .candidates = 1u << 16, .unresolvedPairs = 1u << 14};
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -47,7 +47,7 @@ struct Flight {
       Object object = standing.object(id);
       if (object.mesh != teapot) continue;
       for (double& value : object.worldFromMesh.m) value = static_cast<float>(value);
-      standing.setPose(id, object.worldFromMesh);
+      standing.setTransform(id, object.worldFromMesh);
       teapots.push_back(id);
     }
     show();
@@ -58,7 +58,7 @@ struct Flight {
     if (moving.objectLimit() == 0) tools::replaceBy(workload, tools::batchesOf(workload).front().scene, moving);
     for (const ObjectId id : teapots) moving.removeObject(id);
     moving.removeMesh(teapot);
-    const Box box = boxOf(standing.impl().meshes[teapot], Pose{}.m);
+    const Box box = boxOf(standing.impl().meshes[teapot], Transform{}.m);
     moving.addMesh(workload.meshes[teapot].positions, workload.meshes[teapot].indices, widened(box));
     for (const ObjectId id : teapots) {
       moving.addObject(standing.object(id));
@@ -95,7 +95,7 @@ int main() {
   for (const ObjectId id : flight.teapots) {
     for (const double value : flight.standing.object(id).worldFromMesh.m) words.push_back(static_cast<float>(value));
   }
-  gpu::Buffer there(device.impl(), "host's", gpu::Residence::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  gpu::Buffer there(device.impl(), "host's", gpu::BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   there.reserve(gpu::bytesOf(words));
   std::memcpy(there.mapped(), words.data(), gpu::bytesOf(words));
   const DeformedMesh deformed{flight.teapot, {.buffer = there.get()}};

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "chart/drawings.h"
 #include "chart/findings.h"
 #include "chart/report.h"
@@ -256,8 +256,8 @@ std::string performanceDocument(const Record& record, const std::string& charts)
 
 void writeDocuments(const std::filesystem::path& folder, const std::filesystem::path& charts, const Record& record) {
   const std::string place = std::filesystem::relative(charts, folder).generic_string();
-  writeWhole(folder / "accuracy.md", accuracyDocument(record, place));
-  writeWhole(folder / "performance.md", performanceDocument(record, place));
+  writeAtomically(folder / "accuracy.md", accuracyDocument(record, place));
+  writeAtomically(folder / "performance.md", performanceDocument(record, place));
 }
 
 }  // namespace radar::tools

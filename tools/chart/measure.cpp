@@ -96,7 +96,7 @@ void inThreads(uint32_t threads, size_t count, const Body& body) {
 // The whole question, whatever the file says of modes.
 Query asked(const QuerySpec& spec, Mode mode, uint32_t resolution) {
   Query query = toQuery(spec, mode, resolution);
-  query.decide = false;
+  query.anyHit = false;
   return query;
 }
 
@@ -132,12 +132,12 @@ void eachTime(Cell& cell, const std::function<void(double&)>& visit) {
   }
 }
 
-std::vector<double> castAll(const Case& which, const Method& method, const PeerRow& row, const Timing& timing) {
+std::vector<double> castAll(const Case& which, const Method& method, const BaselineRow& row, const Timing& timing) {
   const Workload& workload = which.workload;
   const std::vector<QuerySpec> queries = unmasked(workload);
   Cell cell;
   const Clock::time_point start = Clock::now();
-  std::vector<std::unique_ptr<Peer>> peers;
+  std::vector<std::unique_ptr<Baseline>> peers;
   peers.push_back(row.make(workload, method.size));
   peers[0]->show(objectsOf(workload, 0));
   cell.prepareMs = msSince(start);
@@ -148,7 +148,7 @@ std::vector<double> castAll(const Case& which, const Method& method, const PeerR
              {[&](uint32_t scene) {
                 if (shown == scene) return;
                 const std::vector<Instance> objects = objectsOf(workload, scene);
-                for (const std::unique_ptr<Peer>& peer : peers) peer->show(objects);
+                for (const std::unique_ptr<Baseline>& peer : peers) peer->show(objects);
                 shown = scene;
               },
               [&](const Batch& batch) {
@@ -207,8 +207,8 @@ Bench::Bench(const Case& which, const Device& device, const Timing& timing)
 
 Bench::~Bench() = default;
 
-Cell Bench::measure(const Method& method, const PeerRow* row) {
-  if (row != nullptr) return measurePeer(method, *row);
+Cell Bench::measure(const Method& method, const BaselineRow* row) {
+  if (row != nullptr) return measureBaseline(method, *row);
   return method.family == "reference" ? measureReference(method) : measureEngine(method);
 }
 
@@ -282,7 +282,7 @@ Cell Bench::measureReference(const Method& method) {
   return cell;
 }
 
-Cell Bench::measurePeer(const Method& method, const PeerRow& row) {
+Cell Bench::measureBaseline(const Method& method, const BaselineRow& row) {
   Cell cell = cellOf(method);
   const ChildOutcome outcome = inChild([&] { return castAll(which_, method, row, timing_); }, kMostSeconds);
   cell.failed = outcome.failed;

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "baselines/baseline.h"
 #include "chart/accuracy.h"
 #include "chart/cases.h"
-#include "peers/peer.h"
 
 namespace radar::tools {
 
@@ -32,7 +32,7 @@ class Bench {
 
   const Case& which() const { return which_; }
   /// `row` is the peer's whose method it is, null for ours.
-  Cell measure(const Method& method, const PeerRow* row);
+  Cell measure(const Method& method, const BaselineRow* row);
 
  private:
   struct Engine;
@@ -42,9 +42,9 @@ class Bench {
   Cell measureEngine(const Method& method);
   /// The CPU's exact search, on method.threads threads.
   Cell measureReference(const Method& method);
-  /// In method.threads threads of a process of its own, each with a Peer of its own. Where the library ends the
+  /// In method.threads threads of a process of its own, each with a Baseline of its own. Where the library ends the
   /// process, Cell::failed says how.
-  Cell measurePeer(const Method& method, const PeerRow& row);
+  Cell measureBaseline(const Method& method, const BaselineRow& row);
   Cell cellOf(const Method& method) const;
 
   const Case& which_;

@@ -1,5 +1,5 @@
 #include "report/page.h"
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "chart/drawings.h"
 #include "chart/findings.h"
 #include "chart/report.h"
@@ -60,10 +60,10 @@ std::string pageOf(const Record& record) {
 }
 
 void writeReport(const std::filesystem::path& folder, const Record& record) {
-  writeWhole(folder / "chart.html", pageOf(record));
+  writeAtomically(folder / "chart.html", pageOf(record));
   for (const Drawing& drawing : drawingsOf(record)) {
-    writeWhole(folder / (drawing.name + ".svg"), svgFile(drawing.chart));
-    writeWhole(folder / (drawing.name + ".png"), pngFile(drawing.chart));
+    writeAtomically(folder / (drawing.name + ".svg"), svgFile(drawing.chart));
+    writeAtomically(folder / (drawing.name + ".png"), pngFile(drawing.chart));
   }
 }
 

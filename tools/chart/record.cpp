@@ -5,7 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "import/input_error.h"
 
 namespace radar::tools {
@@ -136,8 +136,8 @@ std::optional<Record> readRecord(const std::filesystem::path& folder) {
 }
 
 void writeRecord(const std::filesystem::path& folder, const Record& record) {
-  writeWhole(folder / "chart.json", jsonOf(record));
-  writeWhole(folder / "chart.csv", csvOf(record));
+  writeAtomically(folder / "chart.json", jsonOf(record));
+  writeAtomically(folder / "chart.csv", csvOf(record));
 }
 
 }  // namespace radar::tools

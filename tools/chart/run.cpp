@@ -62,7 +62,7 @@ std::string fingerprintOf(const Workload& workload) {
 }
 
 // A full run measures all sizes, on one thread and on all; others three sizes, on all where the library can.
-std::vector<Method> peerMethods(const PeerRow& row, const std::string& section, const RunSettings& settings) {
+std::vector<Method> peerMethods(const BaselineRow& row, const std::string& section, const RunSettings& settings) {
   const auto has = [](const auto& values, const auto& value) {
     return std::find(values.begin(), values.end(), value) != values.end();
   };
@@ -108,14 +108,15 @@ std::string programFingerprint() {
   return fingerprint.text();
 }
 
-std::vector<Planned> planOf(const RunSettings& settings, const std::vector<PeerRow>& rows, const std::string& origin) {
+std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows,
+                            const std::string& origin) {
   std::vector<Planned> plan;
   for (const Case& which : settings.cases) {
     const size_t first = plan.size();
     for (Method& method : ownMethods(which.section, settings.extent, settings.threads)) {
       plan.push_back({&which, std::move(method), nullptr, ""});
     }
-    for (const PeerRow& row : rows) {
+    for (const BaselineRow& row : rows) {
       for (Method& method : peerMethods(row, which.section, settings)) {
         plan.push_back({&which, std::move(method), &row, ""});
       }

@@ -19,13 +19,14 @@ struct RunSettings {
 struct Planned {
   const Case* which = nullptr;
   Method method;
-  const PeerRow* row = nullptr;  ///< of a peer
+  const BaselineRow* row = nullptr;  ///< of a peer
   std::string key;
 };
 
 /// Every cell of the run, in the order of the file. `rows` and `settings` must outlive the plan. `origin` stands for
 /// all that a cell depends on besides: the program and the device.
-std::vector<Planned> planOf(const RunSettings& settings, const std::vector<PeerRow>& rows, const std::string& origin);
+std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows,
+                            const std::string& origin);
 
 /// Measures what `folder` does not hold already and writes `record`, which comes without cells, after each cell.
 /// `step` is called before each cell.

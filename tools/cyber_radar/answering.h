@@ -41,7 +41,7 @@ class Answering {
   struct Pass {
     std::vector<Answer> answers;  ///< in the workload's order
     double ms = 0;                ///< from handing over the queries to having the answers, scene changes included
-    uint64_t pairs = 0;           ///< pairs of triangles or leaves that were looked at, or were nominated by pixels
+    uint64_t pairs = 0;           ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
     uint64_t cpuPairs = 0;        ///< those of them decided on the CPU
     std::vector<StageTime> stages;
   };

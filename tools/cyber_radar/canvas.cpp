@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 
 namespace radar::tools {
 
@@ -49,7 +49,7 @@ void Canvas::write(const std::filesystem::path& file) const {
   if (status != CAIRO_STATUS_SUCCESS) {
     throw std::runtime_error(file.string() + ": expected a picture, got " + cairo_status_to_string(status));
   }
-  writeWhole(file, png);
+  writeAtomically(file, png);
 }
 
 }  // namespace radar::tools

@@ -29,7 +29,7 @@ constexpr const char* kExamples = R"(Examples:
 
 In DIR: chart.csv and chart.json, chart.html with all charts, each chart as SVG and PNG. Each cell is on disk as soon as
 it is measured: a run that was interrupted goes on where it was, if program and device are the same. Libraries to compare
-with are measured by a program built with -DRADAR_PEERS=ON (./tools/bootstrap chart).)";
+with are measured by a program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart).)";
 
 struct Options {
   std::vector<std::string> files, meshes;
@@ -110,8 +110,8 @@ Record measure(const Options& options) {
   record.device = device.name() + ", " + device.driver();
   record.commit = commit();
   record.date = today();
-  const std::vector<PeerRow> rows = peerRows();
-  for (const PeerRow& row : rows) record.notes.push_back(row.family + " (" + row.product + "): " + row.limits);
+  const std::vector<BaselineRow> rows = peerRows();
+  for (const BaselineRow& row : rows) record.notes.push_back(row.family + " (" + row.product + "): " + row.limits);
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.workloads.push_back({which.name, which.about});
   }

@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "batch/answer_file.h"
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "batch/whole_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/scene_picture.h"
@@ -70,7 +70,7 @@ void writeAnswers(const std::filesystem::path& file, const Workload& workload, c
   for (size_t i = 0; i < answers.size(); ++i) {
     lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
   }
-  writeWhole(file, lines);
+  writeAtomically(file, lines);
 }
 
 /// The scopes of the first few teapots that hit something.
@@ -108,7 +108,7 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
   const std::string table = tableOf(rows);
   std::cout << table << "\nobjects below " << settings.boxes << " are boxes, the others teapots; sampled on "
             << deviceName << "\n";
-  writeWhole(folder / "table.txt", table);
+  writeAtomically(folder / "table.txt", table);
   writeAnswers(folder / "answers-sampled.jsonl", workload, sampled);
   writeAnswers(folder / "answers-reference.jsonl", workload, exact);
 

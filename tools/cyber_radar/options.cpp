@@ -18,8 +18,8 @@ void requireFinite(const char* option, const std::vector<double>& values) {
   }
 }
 
-Pose poseFrom(const std::vector<double>& at, const std::vector<double>& rotate) {
-  Pose pose;
+Transform poseFrom(const std::vector<double>& at, const std::vector<double>& rotate) {
+  Transform pose;
   if (!rotate.empty()) {
     const double length = std::hypot(rotate[0], rotate[1], rotate[2]);
     if (length == 0) throw InputError("--rotate", "", "expected an axis that is not zero");

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/answer_file.h"
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "batch/whole_file.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
@@ -92,14 +92,14 @@ int query(const Options& options) {
     Answering profile(workload, engine);
     profile.setUp();
     pass.stages = profile.run("measuring stages").stages;
-    writeWhole(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, median(times)));
+    writeAtomically(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, median(times)));
   }
   const std::string lines = linesOf(workload, pass.answers);
   if (options.out.empty()) {
     std::cout << lines << std::flush;
     if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
   } else {
-    writeWhole(options.out, lines);
+    writeAtomically(options.out, lines);
   }
   if (options.engine.resolution == "auto") {
     const std::string chosen = resolutionsInWords(pass.answers);

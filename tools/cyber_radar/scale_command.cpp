@@ -2,8 +2,8 @@
 #include <iostream>
 #include <numeric>
 
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "batch/whole_file.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
@@ -93,9 +93,9 @@ void writeFiles(const Options& options, const ScaleReport& report, const std::st
   }
   command += " --repeat " + std::to_string(options.repeats) + " --resolution " + options.engine.resolution;
   const ScaleOrigin origin{command, commit(), today(), scene, "mode " + options.mode};
-  writeWhole(folder / "scale.csv", csvOf(report));
-  writeWhole(folder / "trace.json", traceOf(report));
-  writeWhole(folder / "report.html", htmlOf(report, origin));
+  writeAtomically(folder / "scale.csv", csvOf(report));
+  writeAtomically(folder / "trace.json", traceOf(report));
+  writeAtomically(folder / "report.html", htmlOf(report, origin));
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": report.html, scale.csv, trace.json\n";
 }
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/answer_file.h"
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "batch/whole_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/scope_picture.h"
@@ -75,9 +75,9 @@ std::string rawOf(const std::vector<float>& values) {
 }
 
 void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const Scopes& scopes) {
-  writeWhole(folder / "R.f32", rawOf(scopes.R));
-  writeWhole(folder / "M.f32", rawOf(scopes.M));
-  writeWhole(folder / "L.f32", rawOf(scopes.L));
+  writeAtomically(folder / "R.f32", rawOf(scopes.R));
+  writeAtomically(folder / "M.f32", rawOf(scopes.M));
+  writeAtomically(folder / "L.f32", rawOf(scopes.L));
   nlohmann::ordered_json sidecar;
   sidecar["width"] = scopes.width;
   sidecar["height"] = scopes.height;
@@ -89,7 +89,7 @@ void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const
   sidecar["up"] = scopes.up;
   sidecar["forward"] = scopes.forward;
   sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(query, scopes.result, AnswerMode::sampled, ""));
-  writeWhole(folder / "scopes.json", sidecar.dump(2) + "\n");
+  writeAtomically(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
 void drawScopes(Options& options) {
@@ -101,7 +101,7 @@ void drawScopes(Options& options) {
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
   Query asked = toQuery(query, radar::Mode::sampled, engine.resolution);
-  asked.decide = false;  // the words below tell the whole answer
+  asked.anyHit = false;  // the words below tell the whole answer
   const Scopes scopes = sweeper.scopes(asked);
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
@@ -27,13 +27,13 @@ struct Options {
 };
 
 void write(const SelftestReport& report, const std::filesystem::path& folder) {
-  writeWhole(folder / "report.txt", textOf(report));
-  writeWhole(folder / "report.json", jsonOf(report));
-  writeWhole(folder / "arithmetic.csv", arithmeticCsv(report));
-  writeWhole(folder / "exactness.csv", exactnessCsv(report));
-  writeWhole(folder / "throughput.csv", throughputCsv(report));
-  writeWhole(folder / "stages.csv", stagesCsv(report));
-  writeWhole(folder / "index.html", htmlOf(report));
+  writeAtomically(folder / "report.txt", textOf(report));
+  writeAtomically(folder / "report.json", jsonOf(report));
+  writeAtomically(folder / "arithmetic.csv", arithmeticCsv(report));
+  writeAtomically(folder / "exactness.csv", exactnessCsv(report));
+  writeAtomically(folder / "throughput.csv", throughputCsv(report));
+  writeAtomically(folder / "stages.csv", stagesCsv(report));
+  writeAtomically(folder / "index.html", htmlOf(report));
 }
 
 // The part that is under way, on standard error.

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "batch/whole_file.h"
+#include "batch/atomic_file.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/failure_pictures.h"
@@ -72,12 +72,12 @@ void writeFiles(const Options& options, const Device& device, StabilityFindings&
   }
   findings.pictures = drawFailures(device, findings.report, options.settings.seed, folder);
   const std::filesystem::path tables = folder / "stability";
-  writeWhole(tables / "table.csv", csvOf(findings.report.rows));
-  writeWhole(tables / "steps.csv", csvOf(findings.steps));
-  writeWhole(tables / "changes.csv", csvOf(findings.changes));
-  writeWhole(tables / "families.csv", csvOf(stabilityFamilies()));
-  writeWhole(folder / "stability.md",
-             pageOf(findings, {command + " --out DIR", commit(), today(), device.name(), device.driver()}));
+  writeAtomically(tables / "table.csv", csvOf(findings.report.rows));
+  writeAtomically(tables / "steps.csv", csvOf(findings.steps));
+  writeAtomically(tables / "changes.csv", csvOf(findings.changes));
+  writeAtomically(tables / "families.csv", csvOf(stabilityFamilies()));
+  writeAtomically(folder / "stability.md",
+                  pageOf(findings, {command + " --out DIR", commit(), today(), device.name(), device.driver()}));
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": stability.md, stability/\n";
 }
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <sstream>
 
-#include "import/intact.h"
+#include "import/mesh_file_validation.h"
 
 namespace radar::tools {
 

@@ -32,10 +32,10 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-Corners cornersOf(const MeshView& mesh, const Pose& pose, uint32_t triangle) {
+Corners cornersOf(const MeshView& mesh, const Transform& pose, uint32_t triangle) {
   Corners corners;
   for (size_t i = 0; i < 3; ++i) {
-    corners[i] = place(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
+    corners[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
   }
   return corners;
 }
@@ -149,7 +149,7 @@ Verdict judgeSampled(const Query& query, const Result& result, const Result& exa
                         (found && result.detected != Detected::yes);
   // The reference's own bracket is a few roundings wide.
   const bool high = found ? result.hi >= exact.lo && result.hi <= query.distance : std::isnan(result.hi);
-  verdict.bracket = result.lo != 0 || !high || !(query.decide || !found || result.t == result.hi);
+  verdict.bracket = result.lo != 0 || !high || !(query.anyHit || !found || result.t == result.hi);
   return verdict;
 }
 

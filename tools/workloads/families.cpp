@@ -29,8 +29,8 @@ struct Making {
   uint32_t queries;
 
   uint32_t anyMesh() { return random.below(static_cast<uint32_t>(workload.meshes.size())); }
-  void addObject(uint32_t mesh, const Pose& pose) { workload.scenes[0].instances.push_back({mesh, pose}); }
-  void ask(uint32_t mesh, const Pose& pose, const Vec3& direction, double distance) {
+  void addObject(uint32_t mesh, const Transform& pose) { workload.scenes[0].instances.push_back({mesh, pose}); }
+  void ask(uint32_t mesh, const Transform& pose, const Vec3& direction, double distance) {
     QuerySpec query;
     query.id = std::to_string(workload.queries.size());
     query.sensor = {mesh, pose};
@@ -44,8 +44,8 @@ struct Making {
 struct Setting {
   double scale = 1;
   Vec3 origin{};
-  Pose placed(const Pose& pose) const {
-    Pose out = pose;
+  Transform placed(const Transform& pose) const {
+    Transform out = pose;
     for (int row = 0; row < 3; ++row) {
       for (int k = 0; k < 4; ++k) out.m[4 * row + k] *= scale;
       out.m[4 * row + 3] += origin[row];
@@ -76,7 +76,7 @@ void scatter(Making& making, Shape shape, const Setting& setting = {}) {
   }
   for (uint32_t i = 0; i < making.queries; ++i) {
     const uint32_t mesh = making.anyMesh();
-    const Pose pose = place(9);
+    const Transform pose = place(9);
     const Vec3 direction = random.direction();
     making.ask(mesh, pose, direction, random.oneIn(10) ? 0 : setting.scale * random.uniform(0, 12));
   }
@@ -96,8 +96,8 @@ void interlock(Making& making) {
     Vec3 second = turned(frame, shapes[which].offset);
     for (size_t k = 0; k < 3; ++k) second[k] += home[k];
     const auto slightly = [&] { return product(frame, slightRotation(random, magnitude(random, -6, -1))); };
-    const Pose poses[] = {makePose(slightly(), kFull, home),
-                          makePose(product(slightly(), shapes[which].rotation), kFull, second)};
+    const Transform poses[] = {makePose(slightly(), kFull, home),
+                               makePose(product(slightly(), shapes[which].rotation), kFull, second)};
     making.addObject(2 * which + 1 - sensor, poses[1 - sensor]);
     const Vec3 direction = random.oneIn(2) ? turned(frame, axis(random)) : random.direction();
     making.ask(2 * which + sensor, poses[sensor], direction, random.uniform(0.1, 8));
@@ -118,7 +118,7 @@ void onLattice(Making& making, const std::array<double, 9>& frame, const Setting
     making.workload.meshes.push_back(std::move(mesh));
   }
   const auto place = [&](uint32_t limit) {
-    Pose pose = setting.placed(makePose(frame, kFull, turned(frame, scaled(wholeVector(random, limit), 0.5))));
+    Transform pose = setting.placed(makePose(frame, kFull, turned(frame, scaled(wholeVector(random, limit), 0.5))));
     if (!roundings) return pose;
     for (double& value : pose.m) {
       if (random.oneIn(4)) value = std::nextafter(value, random.oneIn(2) ? 1e300 : -1e300);
@@ -131,7 +131,7 @@ void onLattice(Making& making, const std::array<double, 9>& frame, const Setting
   }
   for (uint32_t i = 0; i < making.queries; ++i) {
     const uint32_t mesh = making.anyMesh();
-    const Pose pose = place(18);
+    const Transform pose = place(18);
     const Vec3 direction = turned(frame, wholeDirection(random));
     making.ask(mesh, pose, direction, setting.scale * random.below(12));
   }
@@ -154,7 +154,7 @@ void farBaked(Making& making) {
     mesh = std::move(moved);
   }
   const bool back = making.random.oneIn(2);
-  const auto move = [&](Pose& pose) {
+  const auto move = [&](Transform& pose) {
     for (int row = 0; row < 3; ++row) {
       double* r = &pose.m[4 * row];
       r[3] -= r[0] * origin[0] + r[1] * origin[1] + r[2] * origin[2] - (back ? 0 : origin[row]);
@@ -173,7 +173,7 @@ void onFloor(Making& making) {
   for (uint32_t i = 0; i < making.queries; ++i) {
     const Vec3 above = random.inBox({-9e3, -9e3, 0}, {9e3, 9e3, 0.5});
     const uint32_t mesh = 1 + random.below(5);
-    const Pose pose = makePose(random.rotation(), {1e-2, 1e-2, 1e-2}, turned(frame, above));
+    const Transform pose = makePose(random.rotation(), {1e-2, 1e-2, 1e-2}, turned(frame, above));
     Vec3 down{0, 0, -1};
     if (random.oneIn(3)) down = {1, 0, -powerOfTen(-static_cast<int>(random.below(7)))};
     if (random.oneIn(3)) down = random.direction();
@@ -197,7 +197,7 @@ void tiltedDirections(Making& making) {
   }
   for (uint32_t i = 0; i < making.queries; ++i) {
     const uint32_t mesh = making.anyMesh();
-    const Pose pose = place(8);
+    const Transform pose = place(8);
     Vec3 direction = axis(random);
     if (!random.oneIn(4)) {
       const double size = magnitude(random, -12, -2);

@@ -27,8 +27,8 @@ Vec3 negated(const Vec3& v) {
 }
 
 /// The pose that turns a mesh, scales it alike in all directions and puts the middle of its box at `at`.
-Pose poseAround(const MeshExtent& extent, const std::array<double, 9>& rotation, double scale, const Vec3& at) {
-  Pose pose = makePose(rotation, {scale, scale, scale}, at);
+Transform poseAround(const MeshExtent& extent, const std::array<double, 9>& rotation, double scale, const Vec3& at) {
+  Transform pose = makePose(rotation, {scale, scale, scale}, at);
   for (int row = 0; row < 3; ++row) {
     double* r = &pose.m[4 * row];
     r[3] -= r[0] * extent.middle[0] + r[1] * extent.middle[1] + r[2] * extent.middle[2];
@@ -102,8 +102,8 @@ Workload boxesAndSensors(uint32_t boxes, uint32_t sensors, SensorShape shape, do
 }
 
 /// A soup's own size and place do not matter to the scene: back to a cube of edge 2 around the origin.
-Pose normalised(Soup soup, const Pose& pose) {
-  Pose result = pose;
+Transform normalised(Soup soup, const Transform& pose) {
+  Transform result = pose;
   for (int row = 0; row < 3; ++row) {
     double* r = &result.m[4 * row];
     if (soup == Soup::tiny) {

@@ -56,8 +56,8 @@ std::array<double, 9> Random::rotation() {
   }
 }
 
-Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at) {
-  Pose pose;
+Transform makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at) {
+  Transform pose;
   for (int row = 0; row < 3; ++row) {
     for (int k = 0; k < 3; ++k) pose.m[4 * row + k] = rotation[3 * row + k] * scale[k];
     pose.m[4 * row + 3] = at[row];
@@ -65,10 +65,10 @@ Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Ve
   return pose;
 }
 
-Pose randomAffine(Random& random, const Vec3& at) {
+Transform randomAffine(Random& random, const Vec3& at) {
   const auto rotation = random.rotation();
   const Vec3 scale = random.inBox({0.3, 0.3, 0.3}, {2, 2, 2});
-  Pose pose = makePose(rotation, {random.below(2) == 0 ? scale[0] : -scale[0], scale[1], scale[2]}, at);
+  Transform pose = makePose(rotation, {random.below(2) == 0 ? scale[0] : -scale[0], scale[1], scale[2]}, at);
   if (random.below(2) == 0) {
     const double shear = random.uniform(-0.5, 0.5);
     for (int row = 0; row < 3; ++row) pose.m[4 * row + 1] += shear * pose.m[4 * row];

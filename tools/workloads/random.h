@@ -28,10 +28,10 @@ class Random {
 };
 
 /// World = rotation * diag(scale) * p + at.
-Pose makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at);
+Transform makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at);
 
 /// Turned, scaled by 0.3 to 2 per axis, sometimes sheared and sometimes mirrored.
-Pose randomAffine(Random& random, const Vec3& at);
+Transform randomAffine(Random& random, const Vec3& at);
 
 /// 10^exponent, the same bits everywhere.
 double powerOfTen(int exponent);

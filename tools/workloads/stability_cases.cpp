@@ -11,7 +11,7 @@ namespace radar::tools {
 
 namespace {
 
-Pose at(double x, double y, double z) {
+Transform at(double x, double y, double z) {
   return makePose(kUpright, kFull, {x, y, z});
 }
 
@@ -83,8 +83,8 @@ double stepped(double value, int ulps) {
   return value;
 }
 
-Pose scaledBy(const Pose& pose, double factor) {
-  Pose out = pose;
+Transform scaledBy(const Transform& pose, double factor) {
+  Transform out = pose;
   for (double& value : out.m) value *= factor;
   return out;
 }
@@ -92,8 +92,8 @@ Pose scaledBy(const Pose& pose, double factor) {
 }  // namespace
 
 void place(StabilityCase& made, const Rotation& frame, const Vec3& origin) {
-  const auto move = [&](Pose& pose) {
-    const Pose old = pose;
+  const auto move = [&](Transform& pose) {
+    const Transform old = pose;
     for (size_t row = 0; row < 3; ++row) {
       for (size_t column = 0; column < 4; ++column) {
         double sum = column == 3 ? origin[row] : 0;

@@ -11,7 +11,7 @@ namespace radar::tools {
 
 struct PlacedMesh {
   MeshData mesh;
-  Pose worldFromMesh;
+  Transform worldFromMesh;
 };
 
 /// One sweep among a few objects.

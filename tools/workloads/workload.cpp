@@ -22,7 +22,7 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.mode = mode;
   query.exclude = spec.exclude;
   query.mask = spec.mask;
-  query.decide = spec.decide;
+  query.anyHit = spec.anyHit;
   query.resolution = resolution;
   return query;
 }
@@ -31,7 +31,7 @@ double sensorSize(const Scene& scene, const Query& query) {
   const MeshView mesh = scene.mesh(query.mesh);
   std::array<double, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
   for (const uint32_t vertex : mesh.indices) {
-    const std::array<double, 3> p = place(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+    const std::array<double, 3> p = transformPoint(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
     for (size_t k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], p[k]);
       high[k] = std::max(high[k], p[k]);
@@ -105,7 +105,7 @@ void ScenePlayer::showObject(uint32_t object, const Instance& instance, uint32_t
   if (scene_.hasObject(object)) {
     const Object& present = scene_.object(object);
     if (present.mesh == instance.mesh && present.mask == mask) {
-      if (present.worldFromMesh != instance.worldFromMesh) scene_.setPose(object, instance.worldFromMesh);
+      if (present.worldFromMesh != instance.worldFromMesh) scene_.setTransform(object, instance.worldFromMesh);
       return;
     }
     scene_.removeObject(object);

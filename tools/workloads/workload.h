@@ -25,7 +25,7 @@ struct MeshData {
 /// A mesh of the workload, placed.
 struct Instance {
   uint32_t mesh = 0;
-  Pose worldFromMesh;
+  Transform worldFromMesh;
   friend bool operator==(const Instance&, const Instance&) = default;
 };
 
@@ -51,7 +51,7 @@ struct QuerySpec {
   std::array<double, 3> direction{};
   double distance = 0;
   uint32_t mask = ~0u;
-  bool decide = false;
+  bool anyHit = false;
   std::optional<AnswerMode> mode;   ///< overrides the command's
   std::optional<double> speed;      ///< units per second
   std::optional<double> tolerance;  ///< world units; every exact answer meets it

@@ -28,7 +28,7 @@ class RADAR_API CpuSweeper {
   void sync();
 
   /// Answers any number of queries, in the order given. `mode` and `resolution` are ignored: every answer is exact.
-  /// Status is hit, clear or overlap (for a query with `decide`: hit or clear); `tier` is Tier::reference. t is t* to a
+  /// Status is hit, clear or overlap (for a query with `anyHit`: hit or clear); `tier` is Tier::reference. t is t* to a
   /// few roundings, which also separate `lo` and `hi`, its bounds. The pair is the least (object, triB, triA) of those
   /// that attain t*; `point` and `normal` belong to it. There is no normal if the two triangles already meet at the
   /// start, other than by just touching, or lie in one plane that contains the motion. There is no point if they meet

@@ -62,13 +62,13 @@ class RADAR_API Error : public std::runtime_error {
 /// A placement: world = M p + t, with row-major rows (m0 m1 m2 t). M is any invertible matrix, mirrors included.
 /// Vertices are placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add; this result *is*
 /// the geometry.
-struct Pose {
+struct Transform {
   std::array<double, 12> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  friend bool operator==(const Pose&, const Pose&) = default;
+  friend bool operator==(const Transform&, const Transform&) = default;
 };
 
 /// Places the mesh vertex `p` by the formula above.
-RADAR_API std::array<double, 3> place(const Pose& pose, const float* p);
+RADAR_API std::array<double, 3> transformPoint(const Transform& pose, const float* p);
 
 /// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed. New
 /// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ...
@@ -90,7 +90,7 @@ struct MeshView {
 /// An object of the scene: a placed mesh.
 struct Object {
   MeshId mesh = kNone;
-  Pose worldFromMesh;
+  Transform worldFromMesh;
   uint32_t mask = ~0u;  ///< takes part in a query if it shares a bit with the query's mask
 };
 
@@ -117,7 +117,7 @@ class RADAR_API Scene {
 
   /// Throws if the mesh does not exist, or the pose is singular or not finite.
   ObjectId addObject(const Object& object);
-  void setPose(ObjectId object, const Pose& worldFromMesh);
+  void setTransform(ObjectId object, const Transform& worldFromMesh);
   /// Declares that the host will move the object on its device within `world` (radar/host_geometry.h). Larger bounds
   /// cost more time. All other calls use the object's pose. Replaces earlier bounds; removing the object removes them.
   /// Throws if the object does not exist, a lower bound exceeds its upper bound, or a bound exceeds 2^120.
@@ -153,11 +153,11 @@ enum class Mode : uint32_t {
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
 struct Query {
   MeshId mesh = kNone;                ///< of the scene
-  Pose worldFromMesh;                 ///< invertible
+  Transform worldFromMesh;            ///< invertible
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, finite, world units
   Mode mode = Mode::contact;
-  bool decide = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
+  bool anyHit = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
   std::vector<ObjectId> exclude;  ///< objects to ignore, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part if its mask shares a bit
   /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
@@ -185,7 +185,8 @@ enum class Detected : uint32_t {
 };
 
 /// Bits of Result::flags: why a Recorder (radar/recorder.h) gave no answer.
-inline constexpr uint32_t kFlagOpen = 1;  ///< pairs of triangles too close for the device: Recorder::read() decides
+inline constexpr uint32_t kFlagUnresolved =
+    1;  ///< pairs of triangles too close for the device: Recorder::read() decides
 inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates, or a list of the search, was too small
 inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was too small
 inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene, or the sensor or D relative to it
@@ -193,7 +194,7 @@ inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of Ho
 
 /// An answer. Absent numbers are NaN, absent ids kNone. Layout version 2: 120 bytes, natural alignment.
 ///
-/// If the query has `decide`, the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
+/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
 /// normal are absent; for a hit, lo is 0 and hi at most D (in mode contact: D).
 struct RADAR_API Result {
   Status status = Status::invalid;
@@ -216,8 +217,8 @@ inline constexpr uint32_t kResultVersion = 2;
 static_assert(sizeof(Result) == 120);
 
 /// Check the contracts of Scene and Query. Return an empty string, or what is wrong and what was expected.
-RADAR_API std::string whatIsWrong(const Pose& worldFromMesh);
-RADAR_API std::string whatIsWrong(const Query& query, const Scene& scene);
+RADAR_API std::string validate(const Transform& worldFromMesh);
+RADAR_API std::string validate(const Query& query, const Scene& scene);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
@@ -286,7 +287,7 @@ RADAR_API Requirements requirements(Mode mode, bool doubles);
 
 /// Why a host's physical device cannot be used for `mode`: one line per missing item, empty if it can. Reads only
 /// `instance`, `physicalDevice` and `getInstanceProcAddr`.
-RADAR_API std::vector<std::string> reasonsAgainst(const HostDevice& host, Mode mode);
+RADAR_API std::vector<std::string> unsupportedReasons(const HostDevice& host, Mode mode);
 
 struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
@@ -352,7 +353,7 @@ struct SweepStats {
   uint32_t submissions = 0;
   uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
-  uint64_t pairs = 0;             ///< nominated pairs of triangles (sampled), pairs of leaves (contact)
+  uint64_t pairs = 0;             ///< proposed pairs of triangles (sampled), pairs of leaves (contact)
   uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
   uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
   uint64_t nodePairs = 0;         ///< node pairs tested on the device (contact)

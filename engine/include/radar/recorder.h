@@ -19,8 +19,8 @@ struct Capacity {
   /// up to 64. kFlagRounds.
   uint32_t rounds = 16;
   /// Pairs of triangles left open, over all queries. If a query's pairs do not fit, read() cannot decide them:
-  /// kFlagOpen stays.
-  uint32_t openPairs = 1u << 12;
+  /// kFlagUnresolved stays.
+  uint32_t unresolvedPairs = 1u << 12;
 };
 
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own copy of the scene on
@@ -38,8 +38,8 @@ class RADAR_API Recorder {
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
   /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
   /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has kFlagOpen instead: its status is undecided, `hi` is absent, and there is no contact before `lo`. Queries with
-  /// numbers that floats cannot hold become Status::invalid with kFlagRange:
+  /// has kFlagUnresolved instead: its status is undecided, `hi` is absent, and there is no contact before `lo`. Queries
+  /// with numbers that floats cannot hold become Status::invalid with kFlagRange:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
   ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away;
@@ -73,7 +73,7 @@ class RADAR_API Recorder {
   std::vector<Result> read();
   /// If kFlagBounds is set, describes something that has left its bounds; else empty. Call it when read() may be
   /// called.
-  std::string stray() const;
+  std::string boundsViolation() const;
 
   struct Impl;
 

@@ -29,7 +29,7 @@ struct RadarResult {
   uint object;
   uint triB;
   uint triA;
-  uint flags;       // RADAR_OPEN ...: why there is no answer; else 0
+  uint flags;       // RADAR_UNRESOLVED ...: why there is no answer; else 0
   RADAR_DOUBLE point[3];
   RADAR_DOUBLE normal[3];
   RADAR_DOUBLE paperMinL;
@@ -50,7 +50,7 @@ const uint RADAR_NOT_LOOKED = 2;
 
 const uint RADAR_NONE = 0xffffffffu;
 
-const uint RADAR_OPEN = 1;
+const uint RADAR_UNRESOLVED = 1;
 const uint RADAR_TOO_MANY_CANDIDATES = 2;
 const uint RADAR_TOO_LONG = 4;
 const uint RADAR_OUT_OF_RANGE = 8;

@@ -1,0 +1,45 @@
+// Points as 64-bit integers times a common power of two: the fast path of exact arithmetic. It takes nearly all
+// coordinates that span at most sixty binary places; dyadic.h takes the others.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "exact/determinant.h"
+#include "exact/dyadic.h"
+
+namespace radar::exact {
+
+using IntVector = std::array<int64_t, 3>;
+
+/// points[n] = out[n] * 2^exponent, components below 2^61. False if they do not fit.
+bool toScaledInts(std::span<const Vector* const> points, std::span<IntVector> out, int& exponent);
+
+/// A difference, components below 2^62.
+struct ScaledVector {
+  IntVector c;
+  int exponent;
+};
+std::optional<ScaledVector> scaledVector(const Difference& v);
+
+inline IntVector operator-(const IntVector& p, const IntVector& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+/// 192 bits, two's complement.
+class IntDeterminant {
+ public:
+  int sign() const;
+  Dyadic value(int exponent) const;  ///< this, times 2^exponent
+
+ private:
+  friend IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y);
+  std::array<uint64_t, 3> limbs_{};
+};
+
+/// w . (x cross y), components below 2^62: the minors are below 2^125, the sum is below 2^189.
+IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y);
+
+}  // namespace radar::exact

@@ -1,0 +1,228 @@
+#include "pool/work_queue.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "gpu/submission.h"
+
+namespace radar {
+
+namespace {
+
+void addStats(SweepStats& sum, const SweepStats& stats) {
+  sum.submissions += stats.submissions;
+  sum.drawnObjects += stats.drawnObjects;
+  sum.drawnTriangles += stats.drawnTriangles;
+  sum.pairs += stats.pairs;
+  sum.cpuPairs += stats.cpuPairs;
+  sum.cpuQueries += stats.cpuQueries;
+  sum.nodePairs += stats.nodePairs;
+  sum.solves += stats.solves;
+  for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
+}
+
+std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, size_t workers) {
+  auto job = std::make_shared<Job>();
+  job->took.resize(workers);
+  job->passed.resize(workers);
+  job->stop = std::move(stop);
+  job->answers.results.resize(queries.size());
+  job->place.resize(queries.size());
+  std::iota(job->place.begin(), job->place.end(), 0u);
+  std::stable_sort(job->place.begin(), job->place.end(),
+                   [&](uint32_t a, uint32_t b) { return queries[a].mode < queries[b].mode; });
+  for (const uint32_t i : job->place) job->queries.push_back(std::move(queries[i]));
+  return job;
+}
+
+}  // namespace
+
+WorkQueue::WorkQueue(std::vector<PoolDevice> devices) : devices_(std::move(devices)), share_(devices_.size()) {}
+
+std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, std::stop_token stop, const Scene& scene) {
+  const double submitted = now();
+  Lock lock(mutex_);
+  edited_.wait(lock, [&] { return !editing_; });
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const std::string wrong = validate(queries[i], scene);
+    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+  }
+  const std::shared_ptr<Job> job = jobOf(std::move(queries), std::move(stop), devices_.size());
+  job->answers.submitted = submitted;
+  std::future<PoolAnswers> future = job->promise.get_future();
+  open_.push_back(job);
+  if (job->queries.empty()) {
+    settle(*job, 0);
+    return future;
+  }
+  jobs_.push_back(job);
+  if (share_.alive() == 0) {
+    answerUntaken({});
+  } else {
+    work_.notify_all();
+  }
+  return future;
+}
+
+void WorkQueue::edit(const std::function<void()>& change) {
+  struct Editing {
+    WorkQueue& exchange;
+    ~Editing() {
+      {
+        const Lock lock(exchange.mutex_);
+        exchange.editing_ = false;
+      }
+      exchange.edited_.notify_all();
+    }
+  };
+  {
+    Lock lock(mutex_);
+    edited_.wait(lock, [&] { return !editing_; });
+    editing_ = true;
+    settled_.wait(lock, [&] { return open_.empty(); });
+  }
+  const Editing editing{*this};
+  change();
+}
+
+void WorkQueue::drain() {
+  Lock lock(mutex_);
+  const std::vector<std::shared_ptr<Job>> before = open_;
+  settled_.wait(lock, [&] {
+    return std::none_of(before.begin(), before.end(),
+                        [&](const auto& job) { return std::find(open_.begin(), open_.end(), job) != open_.end(); });
+  });
+}
+
+void WorkQueue::close() {
+  {
+    const Lock lock(mutex_);
+    closed_ = true;
+    answerUntaken("the pool was closed");
+  }
+  work_.notify_all();
+}
+
+std::vector<PoolDevice> WorkQueue::devices() const {
+  const Lock lock(mutex_);
+  return devices_;
+}
+
+bool WorkQueue::leave(uint32_t worker) {
+  const Lock lock(mutex_);
+  if (share_.alive() == 1) return false;
+  share_.retire(worker);
+  return true;
+}
+
+// Queries that nobody has taken.
+size_t WorkQueue::waiting() const {
+  size_t count = 0;
+  for (const Chunk& chunk : returned_) count += chunk.count;
+  for (const auto& job : jobs_) count += job->queries.size() - job->taken;
+  return count;
+}
+
+std::optional<Chunk> WorkQueue::next(uint32_t worker, size_t inFlight) {
+  if (!returned_.empty()) {
+    if (share_.take(worker, returned_.front().count, waiting(), inFlight) == 0) return {};
+    Chunk chunk = std::move(returned_.front());
+    returned_.pop_front();
+    return chunk;
+  }
+  while (!jobs_.empty() && jobs_.front()->stop.stop_requested()) {
+    const std::shared_ptr<Job> job = std::move(jobs_.front());
+    jobs_.pop_front();
+    fail(*job, job->taken, job->queries.size() - job->taken, "cancelled");
+  }
+  if (jobs_.empty()) return {};
+  const std::shared_ptr<Job> job = jobs_.front();
+  const auto first = job->queries.begin() + static_cast<ptrdiff_t>(job->taken);
+  const auto sameMode = std::find_if(first, job->queries.end(), [&](const Query& q) { return q.mode != first->mode; });
+  const auto left = static_cast<size_t>(sameMode - first);
+  const Chunk chunk{job, job->taken, share_.take(worker, left, waiting(), inFlight)};
+  if (chunk.count == 0) {
+    if (inFlight == 0) job->passed[worker] = true;
+    return {};
+  }
+  job->took[worker] = true;
+  job->taken += chunk.count;
+  if (job->taken == job->queries.size()) {
+    jobs_.pop_front();
+    for (size_t i = 0; i < devices_.size(); ++i) {
+      if (job->passed[i] && !job->took[i]) share_.passed(i);
+    }
+  }
+  return chunk;
+}
+
+std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
+  Lock lock(mutex_);
+  for (;;) {
+    std::optional<Chunk> chunk = next(worker, inFlight);
+    if (chunk || inFlight > 0 || closed_) return chunk;
+    work_.wait(lock);
+  }
+}
+
+void WorkQueue::deliver(const Chunk& chunk, std::span<const Result> results,
+                        const std::map<size_t, std::string>& reasons, const SweepStats& stats, ChunkTrace trace,
+                        double deviceMs) {
+  const Lock lock(mutex_);
+  Job& job = *chunk.job;
+  for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = results[i];
+  for (const auto& [i, reason] : reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
+  addStats(job.answers.stats, stats);
+  PoolDevice& device = devices_[trace.device];
+  device.queries += chunk.count;
+  ++device.chunks;
+  share_.finished(trace.device, chunk.count, deviceMs);
+  job.answers.chunks.push_back(std::move(trace));
+  settle(job, chunk.count);
+  if (waiting() > 0) work_.notify_all();  // speeds have changed, so who let the others go first may be needed now
+}
+
+void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks) {
+  {
+    const Lock lock(mutex_);
+    devices_[worker].retired = reason;
+    share_.retire(worker);
+    const std::string line = "device " + std::to_string(worker) + ", " + devices_[worker].name + ": " + reason;
+    for (const auto& job : open_) job->answers.retired.push_back(line);
+    for (Chunk& chunk : chunks) returned_.push_back(std::move(chunk));
+    if (share_.alive() == 0) answerUntaken({});
+    if (closed_) answerUntaken("the pool was closed");
+  }
+  work_.notify_all();  // who let the others go first may be needed now
+}
+
+// Without a reason: since no device is left.
+void WorkQueue::answerUntaken(const std::string& reason) {
+  std::string why = reason;
+  if (why.empty()) {
+    why = "no device is left";
+    for (size_t i = 0; i < devices_.size(); ++i) {
+      why += (i == 0 ? ": device " : "; device ") + std::to_string(i) + ", " + devices_[i].name + ": " +
+             devices_[i].retired;
+    }
+  }
+  for (const Chunk& chunk : std::exchange(returned_, {})) fail(*chunk.job, chunk.first, chunk.count, why);
+  for (const auto& job : std::exchange(jobs_, {})) fail(*job, job->taken, job->queries.size() - job->taken, why);
+}
+
+void WorkQueue::fail(Job& job, size_t first, size_t count, const std::string& reason) {
+  for (size_t i = first; i < first + count; ++i) job.answers.reasons[job.place[i]] = reason;
+  settle(job, count);
+}
+
+// So many queries more are answered; the last one ends the job.
+void WorkQueue::settle(Job& job, size_t count) {
+  job.answered += count;
+  if (job.answered < job.queries.size()) return;
+  job.answers.answered = now();
+  job.promise.set_value(std::move(job.answers));
+  std::erase_if(open_, [&](const auto& other) { return other.get() == &job; });
+  settled_.notify_all();
+}
+
+}  // namespace radar

@@ -1,0 +1,87 @@
+// The queue of batches, from which workers take chunks. Any thread may call any function.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "pool/chunk_scheduler.h"
+#include "radar/pool.h"
+
+namespace radar {
+
+/// A batch in progress. Its queries are grouped by mode, so that a chunk is one submission; `place` holds their
+/// original indices.
+struct Job {
+  std::vector<Query> queries;
+  std::vector<uint32_t> place;
+  std::stop_token stop;
+  std::promise<PoolAnswers> promise;
+  PoolAnswers answers;
+  size_t taken = 0, answered = 0;
+  std::vector<bool> took, passed;  ///< by worker: has taken a chunk, has deferred to others
+};
+
+/// Queries [first, first + count) of a job.
+struct Chunk {
+  std::shared_ptr<Job> job;
+  size_t first = 0, count = 0;
+  bool outOfMemory = false;  ///< an allocation for it has failed on one device
+
+  std::span<const Query> queries() const { return std::span<const Query>(job->queries).subspan(first, count); }
+};
+
+class WorkQueue {
+ public:
+  explicit WorkQueue(std::vector<PoolDevice> devices);
+
+  std::future<PoolAnswers> post(std::vector<Query> queries, std::stop_token stop, const Scene& scene);
+  void edit(const std::function<void()>& change);
+  void drain();
+  /// Answers queries not yet taken as invalid, and lets workers end.
+  void close();
+  std::vector<PoolDevice> devices() const;
+
+  // Called by workers.
+
+  /// The next chunk for a worker with `inFlight` queries in flight. If there is none: sleeps, unless the worker has
+  /// queries in flight or is to end; then returns nothing.
+  std::optional<Chunk> take(uint32_t worker, size_t inFlight);
+  /// `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
+  void deliver(const Chunk& chunk, std::span<const Result> results, const std::map<size_t, std::string>& reasons,
+               const SweepStats& stats, ChunkTrace trace, double deviceMs);
+  /// Ends the worker; its chunks go to the others.
+  void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
+  /// Gives the worker no more chunks: it is about to retire. Returns false, and changes nothing, if it is the only one
+  /// left; if the last two call at once, one stays.
+  bool leave(uint32_t worker);
+
+  /// Milliseconds since this was made.
+  double now() const { return at(std::chrono::steady_clock::now()); }
+  double at(std::chrono::steady_clock::time_point when) const {
+    return std::chrono::duration<double, std::milli>(when - start_).count();
+  }
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+
+  size_t waiting() const;
+  std::optional<Chunk> next(uint32_t worker, size_t inFlight);
+  void answerUntaken(const std::string& reason);
+  void fail(Job& job, size_t first, size_t count, const std::string& reason);
+  void settle(Job& job, size_t count);
+
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  mutable std::mutex mutex_;
+  std::condition_variable work_, settled_, edited_;
+  std::vector<PoolDevice> devices_;
+  ChunkScheduler share_;
+  std::deque<std::shared_ptr<Job>> jobs_;   // with queries not yet taken
+  std::deque<Chunk> returned_;              // from retired workers
+  std::vector<std::shared_ptr<Job>> open_;  // not yet answered, in the order of submission
+  bool editing_ = false, closed_ = false;
+};
+
+}  // namespace radar

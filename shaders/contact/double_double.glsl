@@ -1,0 +1,292 @@
+// Unevaluated sums of two doubles and what is told of a contact with them: engine/exact/double_double.h, determinant.cpp and
+// event.cpp again, operation by operation, so that both give the same bits.
+
+// 3, but compilers do not know: unrolled, these loops take lavapipe ten seconds to compile. Nor do the loops index arrays,
+// which it keeps in memory: what they take in turn goes round.
+uint three() { return gl_NumWorkGroups.z + 2; }
+
+#include "shared/divide.glsl"
+
+// Whether every quotient so far was right.
+bool sound = true;
+double soundQuotient(double x, double y) {
+  sound = sound && divides(x, y);
+  return quotient(x, y);
+}
+
+struct DoubleDouble {
+  double high;
+  double low;
+};
+
+// |p| >= |q| or p = 0.
+DoubleDouble quickSum(double p, double q) {
+  precise double s = p + q;
+  precise double low = q - (s - p);
+  return DoubleDouble(s, low);
+}
+
+DoubleDouble sum(double p, double q) {
+  precise double s = p + q;
+  precise double qPart = s - p;
+  precise double low = (p - (s - qPart)) + (q - qPart);
+  return DoubleDouble(s, low);
+}
+
+DoubleDouble product(double p, double q) {
+  const double kSplit = 134217729.0LF;  // 2^27 + 1
+  precise double pc = kSplit * p, qc = kSplit * q;
+  precise double p1 = pc - (pc - p), q1 = qc - (qc - q);
+  precise double p2 = p - p1, q2 = q - q1;
+  precise double r = p * q;
+  precise double low = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  return DoubleDouble(r, low);
+}
+
+DoubleDouble negated(DoubleDouble p) { return DoubleDouble(-p.high, -p.low); }
+
+DoubleDouble plus(DoubleDouble p, DoubleDouble q) {
+  const DoubleDouble s = sum(p.high, q.high), t = sum(p.low, q.low);
+  precise double below = s.low + t.high;
+  const DoubleDouble v = quickSum(s.high, below);
+  precise double rest = t.low + v.low;
+  return quickSum(v.high, rest);
+}
+
+DoubleDouble minus(DoubleDouble p, DoubleDouble q) { return plus(p, negated(q)); }
+
+DoubleDouble times(DoubleDouble p, DoubleDouble q) {
+  const DoubleDouble r = product(p.high, q.high);
+  precise double low = r.low + (p.high * q.low + p.low * q.high);
+  return quickSum(r.high, low);
+}
+
+// The same for each component.
+struct DoubleDoubleVector {
+  dvec3 high;
+  dvec3 low;
+};
+
+DoubleDoubleVector quickSum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 low = q - (s - p);
+  return DoubleDoubleVector(s, low);
+}
+
+DoubleDoubleVector sum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 qPart = s - p;
+  precise dvec3 low = (p - (s - qPart)) + (q - qPart);
+  return DoubleDoubleVector(s, low);
+}
+
+DoubleDoubleVector minus(DoubleDoubleVector p, DoubleDoubleVector q) {
+  const DoubleDoubleVector s = sum(p.high, -q.high), t = sum(p.low, -q.low);
+  precise dvec3 below = s.low + t.high;
+  const DoubleDoubleVector v = quickSum(s.high, below);
+  precise dvec3 rest = t.low + v.low;
+  return quickSum(v.high, rest);
+}
+
+DoubleDoubleVector times(DoubleDoubleVector p, DoubleDoubleVector q) {
+  const double kSplit = 134217729.0LF;  // 2^27 + 1
+  precise dvec3 pc = kSplit * p.high, qc = kSplit * q.high;
+  precise dvec3 p1 = pc - (pc - p.high), q1 = qc - (qc - q.high);
+  precise dvec3 p2 = p.high - p1, q2 = q.high - q1;
+  precise dvec3 r = p.high * q.high;
+  precise dvec3 rest = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  precise dvec3 low = rest + (p.high * q.low + p.low * q.high);
+  return quickSum(r, low);
+}
+
+DoubleDoubleVector yzx(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.yzx, v.low.yzx); }
+DoubleDoubleVector zxy(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.zxy, v.low.zxy); }
+double sum3(dvec3 v) { return v.x + v.y + v.z; }
+
+struct Fine {
+  DoubleDouble value;
+  double error;
+};
+
+// Triple products (w1 - w0) . ((x1 - x0) x (y1 - y0)).
+struct Differences {
+  dvec3 w0, w1, x0, x1, y0, y1;
+};
+
+Fine fineDeterminant(Differences d) {
+  const DoubleDoubleVector w = sum(d.w1, -d.w0), x = sum(d.x1, -d.x0), y = sum(d.y1, -d.y0);
+  const DoubleDoubleVector over = times(yzx(x), zxy(y)), under = times(zxy(x), yzx(y)), all = times(w, minus(over, under));
+  DoubleDouble value = plus(DoubleDouble(0.0LF, 0.0LF), DoubleDouble(all.high.x, all.low.x));
+  value = plus(value, DoubleDouble(all.high.y, all.low.y));
+  value = plus(value, DoubleDouble(all.high.z, all.low.z));
+  const double magnitude = sum3(abs(w.high) * (abs(over.high) + abs(under.high))), size = 1.0LF + sum3(abs(w.high));
+  // 2^-99, 2^-1060 and a little, since this sum is rounded as the device likes.
+  return Fine(value, 1.6e-30LF * magnitude + 1.7e-300LF * size);
+}
+
+// A contact's first event, as engine/exact has it: the moving feature's vertex, the resting one's, and an edge of each.
+struct Event {
+  dvec3 from, to;
+  dvec3 x0, x1, y0, y1;
+};
+
+dvec3 picked(dvec3 p[3], uint i) { return i == 0 ? p[0] : (i == 1 ? p[1] : p[2]); }
+
+Event eventOf(uint feature, dvec3 a[3], dvec3 b[3]) {
+  if (feature < 3) return Event(picked(a, feature), b[0], b[0], b[1], b[0], b[2]);
+  if (feature < kFeatureEdges) return Event(a[0], picked(b, feature - 3), a[0], a[1], a[0], a[2]);
+  const uint i = (feature - kFeatureEdges) / 3, j = (feature - kFeatureEdges) % 3;
+  const dvec3 fromA = i == 1 ? a[1] : a[0], toA = i == 0 ? a[1] : a[2], fromB = j == 1 ? b[1] : b[0],
+              toB = j == 0 ? b[1] : b[2];
+  return Event(fromA, fromB, fromA, toA, fromB, toB);
+}
+
+// What is told of an event.
+struct Told {
+  double s;     // its parameter
+  double turn;  // less than 0: its denominator is positive
+  dvec3 point;
+  bool known;   // false where double-doubles are not precise enough for s
+};
+
+Told tellEvent(uint feature, Event e, dvec3 direction) {
+  // The parameter's numerator and denominator; on which side of the moving edge the ends of the resting one lie.
+  const dvec3 zero = dvec3(0.0LF);
+  Differences what = Differences(e.from, e.to, e.x0, e.x1, e.y0, e.y1);
+  Fine num = Fine(DoubleDouble(0.0LF, 0.0LF), 0.0LF), den = num, side0 = num, side1 = num;
+  for (uint i = 0; i < (feature < kFeatureEdges ? three() - 1 : three() + 1); ++i) {
+    num = den;
+    den = side0;
+    side0 = side1;
+    side1 = fineDeterminant(what);
+    what.w0 = zero;
+    what.w1 = direction;
+    if (i == 1) {
+      what = Differences(zero, direction, e.y0, e.x0, e.y0, e.x1);
+    } else if (i == 2) {
+      what = Differences(zero, direction, e.y1, e.x0, e.y1, e.x1);
+    }
+  }
+  if (feature < kFeatureEdges) {
+    num = side0;
+    den = side1;
+  }
+
+  Told told;
+  const double first = soundQuotient(num.value.high, den.value.high);
+  const DoubleDouble rest = minus(num.value, times(DoubleDouble(first, 0.0LF), den.value));
+  const double second = soundQuotient(rest.high, den.value.high);
+  const DoubleDouble parameter = quickSum(first, second);
+  const double sure = abs(den.value.high) * (1.0LF - 4.5e-16LF) - den.error, size = abs(parameter.high);
+  const double error = soundQuotient(num.error + size * den.error, sure) * (1.0LF + 1e-15LF) + 8.0e-31LF * size + 1e-300LF;
+  told.s = parameter.high;
+  told.turn = den.value.high > 0.0LF ? -1.0LF : 1.0LF;
+  // The host asks for 2^-60, of an error that it rounds in its own way.
+  told.known = sure > 0.0LF && error < 2.0e-19LF * size;
+
+  // Along the motion from a vertex, at the vertex at rest, or along the edge at rest.
+  precise dvec3 edge = e.y1 - e.y0;
+  dvec3 origin = e.from, way = direction;
+  double share = told.s;
+  if (feature >= kFeatureEdges) {
+    const double both = minus(side0.value, side1.value).high;
+    share = both == 0.0LF ? 0.0LF : clamp(soundQuotient(side0.value.high, both), 0.0LF, 1.0LF);
+    origin = e.y0;
+    way = edge;
+  }
+  precise dvec3 point = origin + share * way;
+  told.point = feature < 3 || feature >= kFeatureEdges ? point : e.to;
+  return told;
+}
+
+// Exponent of x; below -1000 or above 1000 where scaling by it could under- or overflow.
+int exponentOf(double x) { return int(unpackDouble2x32(x).y >> 20 & 0x7ffu) - 1023; }
+double powerOfTwo(int exponent) { return packDouble2x32(uvec2(0, uint(exponent + 1023) << 20)); }
+double mostOf(double x, double y, double z) { return max(max(abs(x), abs(y)), abs(z)); }
+
+// The square root of 1 <= x < 16 by adding, multiplying and dividing only, which the host rounds alike.
+double rootOf(double x) {
+  precise double root = 0.5LF * (1.0LF + x);
+  for (uint i = 0; i < three() + 4; ++i) {
+    precise double next = 0.5LF * (root + quotient(x, root));
+    root = next;
+  }
+  return root;
+}
+
+bool normalOf(Event e, double turn, out dvec3 normal) {
+  DoubleDoubleVector x = sum(e.x1, -e.x0), y = sum(e.y1, -e.y0);
+  const int sizeX = exponentOf(mostOf(x.high.x, x.high.y, x.high.z)), sizeY = exponentOf(mostOf(y.high.x, y.high.y, y.high.z));
+  const double scaleX = powerOfTwo(clamp(-sizeX, -1000, 1000)), scaleY = powerOfTwo(clamp(-sizeY, -1000, 1000));
+  x = DoubleDoubleVector(x.high * scaleX, x.low * scaleX);
+  y = DoubleDoubleVector(y.high * scaleY, y.low * scaleY);
+  dvec3 n = minus(times(yzx(x), zxy(y)), times(zxy(x), yzx(y))).high;
+  const int size = exponentOf(mostOf(n.x, n.y, n.z));
+  n *= powerOfTwo(clamp(-size, -1000, 1000));
+  precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
+  const double root = rootOf(square);
+  normal = dvec3(soundQuotient(turn * n.x, root), soundQuotient(turn * n.y, root), soundQuotient(turn * n.z, root));
+  return max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
+}
+
+// Where two triangles that pierce each other do so: engine/exact/common_point.cpp. `inside`: least barycentric coordinate
+// of the best point so far.
+void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, inout double inside, inout dvec3 best) {
+  precise dvec3 x = face1 - face0, y = face2 - face0;
+  precise dvec3 normal = x.yzx * y.zxy - x.zxy * y.yzx;
+  precise double square = (normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z;
+  if (square == 0.0LF) return;
+  for (uint i = 0; i < three(); ++i) {
+    precise dvec3 pGap = p - face0, qGap = q - face0;
+    precise double above = (normal.x * pGap.x + normal.y * pGap.y) + normal.z * pGap.z;
+    precise double below = (normal.x * qGap.x + normal.y * qGap.y) + normal.z * qGap.z;
+    const bool misses = (above > 0.0LF) == (below > 0.0LF) && above != 0.0LF && below != 0.0LF;
+    const double share = soundQuotient(above, above == below ? 1.0LF : above - below);
+    precise dvec3 at = p + share * (q - p);
+    double least = 1e300LF;
+    dvec3 from = face0, to = face1, next = face2;
+    for (uint k = 0; k < three(); ++k) {
+      precise dvec3 side = to - from, gap = at - from;
+      precise dvec3 c = side.yzx * gap.zxy - side.zxy * gap.yzx;
+      precise double height = (normal.x * c.x + normal.y * c.y) + normal.z * c.z;
+      least = min(least, soundQuotient(height, square));
+      const dvec3 last = from;
+      from = to;
+      to = next;
+      next = last;
+    }
+    if (!misses && above != below && least > inside) {
+      inside = least;
+      best = at;
+    }
+    const dvec3 last = p;
+    p = q;
+    q = r;
+    r = last;
+  }
+}
+
+bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
+  const dvec3 origin = b[0];
+  double size = 0.0LF;
+  for (int i = 0; i < 3; ++i) {
+    precise dvec3 pa = a[i] - origin, pb = b[i] - origin;
+    a[i] = pa;
+    b[i] = pb;
+    size = max(size, max(mostOf(pa.x, pa.y, pa.z), mostOf(pb.x, pb.y, pb.z)));
+  }
+  for (int i = 0; i < 3; ++i) {
+    a[i] = dvec3(soundQuotient(a[i].x, size), soundQuotient(a[i].y, size), soundQuotient(a[i].z, size));
+    b[i] = dvec3(soundQuotient(b[i].x, size), soundQuotient(b[i].y, size), soundQuotient(b[i].z, size));
+  }
+  double inside = -1e-9LF;
+  dvec3 best = dvec3(0.0LF);
+  for (uint side = 0; side < three() - 1; ++side) {
+    const bool first = side == 0;
+    pierce(first ? b[0] : a[0], first ? b[1] : a[1], first ? b[2] : a[2], first ? a[0] : b[0], first ? a[1] : b[1],
+           first ? a[2] : b[2], inside, best);
+  }
+  precise dvec3 placed = best * size + origin;
+  point = placed;
+  return inside > -1e-9LF;
+}

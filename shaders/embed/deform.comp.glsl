@@ -1,0 +1,66 @@
+// The vertices of a mesh that a host deforms, as its buffer has them: an invocation per vertex.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "interop.h"
+
+layout(local_size_x = kHostGroup) in;
+
+// Bits, of which none may be lost.
+struct VertexBits {
+  uvec3 position;
+  uint pad;
+};
+layout(scalar, binding = kSlotVertices) writeonly restrict buffer Vertices { VertexBits vertices[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
+#include "byte_load.glsl"
+#include "shared/workgroup.glsl"
+
+layout(push_constant) uniform PushConstants { DeformPush push; };
+
+// The bits of the float next to c / (2^bits - 1), as of 0 < c < 2^bits: in binary, c again and again.
+uint quotientBits(uint c, int bits) {
+  const int leading = findMSB(c);
+  const uint twice = c << bits | c;  // its leading digit is at `bits` + leading; 25 digits from there are wanted
+  const int more = 24 - bits - leading;
+  const uint digits = more <= 0 ? twice >> -more : twice << more | c >> (bits - more);
+  return floatBitsToUint(float((digits + 1) >> 1)) + (uint(leading - bits - 23) << 23);
+}
+
+uint bitsOfNorm(uint c, int bits) {
+  return c == 0 ? 0 : c == (1u << bits) - 1 ? floatBitsToUint(1.0) : quotientBits(c, bits);
+}
+
+uint bitsOfHalf(uint h) {
+  const uint sign = (h & 0x8000u) << 16, exponent = h >> 10 & 31, fraction = h & 1023;
+  if (exponent == 31) return sign | 0x7f800000u | fraction << 13;
+  if (exponent != 0) return sign | (exponent + 112) << 23 | fraction << 13;
+  return fraction == 0 ? sign : sign | (floatBitsToUint(float(fraction)) - (24u << 23));
+}
+
+uint component(uint at, uint k) {
+  if (push.format == kFloat32) return loadWord(at + 4 * k);
+  const uint c = loadWord(at + 2 * k) & 0xffffu;
+  if (push.format == kFloat16) return bitsOfHalf(c);
+  if (push.format == kUnorm16) return bitsOfNorm(c, 16);
+  const bool negative = c > 0x7fffu;
+  const uint magnitude = min(negative ? 0x10000u - c : c, 0x7fffu);
+  return bitsOfNorm(magnitude, 15) | (negative ? 0x80000000u : 0u);
+}
+
+void main() {
+  const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;
+  if (i >= push.count) return;
+  const uint at = push.firstByte + i * push.stride;
+  const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
+  const MeshRecord mesh = meshes[push.mesh];
+  const vec3 local = uintBitsToFloat(bits) - mesh.origin;
+  // Bounds end at 2^120: from 2^121 on differences might overflow.
+  const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) || any(greaterThan(local, mesh.hi)) ||
+                      any(greaterThan(mesh.lo, local));
+  if (outside && atomicCompSwap(violation.mesh, kNobody, push.mesh) == kNobody) atomicExchange(violation.vertex, i);
+  // The recording is invalid now, but the search must still terminate: any position inside the bounds will do.
+  vertices[mesh.firstVertex + i].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
+}

@@ -1,0 +1,66 @@
+// Structs of the passes that read a host's geometry, shared with C++ (engine/embed).
+#ifndef RADAR_EMBED_INTEROP_H
+#define RADAR_EMBED_INTEROP_H
+
+#include "../shared/interop.h"
+
+#ifdef __cplusplus
+namespace radar::gpu {
+#define INTEROP_CONST inline constexpr uint
+#else
+#define INTEROP_CONST const uint
+#endif
+
+// Component type of a vertex position.
+INTEROP_CONST kFloat32 = 0;
+INTEROP_CONST kFloat16 = 1;
+INTEROP_CONST kSnorm16 = 2;
+INTEROP_CONST kUnorm16 = 3;
+
+// One vertex and one object that are outside their bounds, or not finite. kNobody: none.
+struct BoundsViolation {
+  uint mesh;
+  uint vertex;
+  uint object;
+};
+
+// An object that a host moves.
+struct Moved {
+  uint object;
+  uint mesh;
+  uint firstByte;    // of its transform, which is 12 floats
+  Point anchor;      // middle of its bounds, world
+  Point halfExtent;  // of its bounds about the anchor
+};
+
+struct DeformPush {
+  uint count;      // vertices
+  uint mesh;
+  uint firstByte;  // of the first position, in the copied words
+  uint stride;     // bytes from one position to the next
+  uint format;     // kFloat32 ...
+};
+struct RefitPush {
+  uint first;  // in the list of nodes to refit
+  uint count;
+  uint mesh;
+};
+struct MovePush {
+  uint count;  // objects
+};
+struct InvalidatePush {
+  uint count;  // results
+};
+// Invocations in a workgroup of deform, refit, move and invalidate.
+INTEROP_CONST kHostGroup = 64;
+
+INTEROP_SLOT(kSlotWords, 5, uint);  // words copied from the host's buffers
+INTEROP_SLOT(kSlotMoved, 6, Moved);
+INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
+INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
+
+#ifdef __cplusplus
+}  // namespace radar::gpu
+#endif
+#undef INTEROP_CONST
+#endif

@@ -1,0 +1,114 @@
+// L = R + M - d and its minimum, for all sensors in one dispatch: a workgroup per sensor, an invocation per cell. Each
+// cell proposes its least L that a contact can have; the candidates are written in the order of (L, pixel).
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "interop.h"
+
+layout(local_size_x = kCells) in;
+
+layout(scalar, binding = kSlotViews) readonly restrict buffer Views { View views[]; };
+layout(scalar, binding = kSlotCandidates) writeonly restrict buffer Candidates { Candidate candidates[]; };
+layout(scalar, binding = kSlotRanks) writeonly restrict buffer Ranks { uint ranks[]; };
+layout(scalar, binding = kSlotAnswers) writeonly restrict buffer Answers { Answer answers[]; };
+layout(binding = kSlotRange) uniform sampler2DArray rangeScope;
+layout(binding = kSlotMask) uniform sampler2DArray maskScope;
+
+const float kFar = 3.0e38;
+
+// The candidates, in no order yet. Keys are y << 16 | x: they order pixels row by row.
+shared float listL[kCells];
+shared uint listPixel[kCells];
+shared uint listCount;
+shared uint minLOrdered;
+shared uint detectedAny;
+
+// Unsigned integers in the order of the floats, and back.
+uint ordered(float x) {
+  const uint bits = floatBitsToUint(x);
+  return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+float unordered(uint key) {
+  return uintBitsToFloat((key & 0x80000000u) != 0 ? key ^ 0x80000000u : ~key);
+}
+
+void main() {
+  const uint v = gl_WorkGroupID.x;
+  const uint cell = gl_LocalInvocationID.x;
+  const View view = views[v];
+  const uvec2 first = view.cell * uvec2(cell % kCellsPerSide, cell / kCellsPerSide);
+  const uvec2 end = min(first + view.cell, uvec2(view.width, view.height));
+  if (cell == 0) {
+    listCount = 0;
+    minLOrdered = ordered(kFar);
+    detectedAny = 0;
+  }
+  barrier();
+  const vec2 texel = 1.0 / vec2(textureSize(rangeScope, 0).xy);
+
+  // Whole quads of texels, without branches: what lies outside the window, where R is empty or the sensor is not counts
+  // as infinitely far. (u, v) below are the texel's place in its quad, in the order of textureGather.
+  const uvec4 u = uvec4(0, 1, 1, 0), v4 = uvec4(1, 1, 0, 0);
+  uvec4 detected4 = uvec4(0);
+  vec4 minL4 = vec4(kFar), bestL4 = vec4(kFar), bestRange4 = vec4(1.0), bestMask4 = vec4(1.0);
+  uvec4 bestPixel4 = uvec4(kNobody);
+  for (uint y = first.y; y < end.y; y += 2) {
+    const uvec4 row = y + v4;
+    for (uint x = first.x; x < end.x; x += 2) {
+      const vec3 corner = vec3(vec2(x + 1, y + 1) * texel, view.layer);
+      const vec4 range = textureGather(rangeScope, corner);
+      const vec4 mask = textureGather(maskScope, corner);
+      const uvec4 column = x + u;
+      const uvec4 seen = uvec4(lessThan(column, end.xxxx)) & uvec4(lessThan(row, end.yyyy)) & uvec4(lessThan(range, vec4(1.0)));
+      const uvec4 both = seen & uvec4(lessThan(mask, vec4(1.0)));
+      detected4 |= seen & uvec4(lessThanEqual(range, vec4(view.rangeLimit)));
+      const vec4 L = mix(vec4(kFar), view.rangeScale * range - (view.maskBase - view.maskScale * mask), bvec4(both));
+      minL4 = min(minL4, L);
+      // Rows and columns ascend, so at equal L the earlier pixel stays.
+      const bvec4 better = bvec4(uvec4(greaterThanEqual(L, vec4(-view.slack))) & uvec4(lessThan(L, bestL4)));
+      bestL4 = mix(bestL4, L, better);
+      bestPixel4 = mix(bestPixel4, row << 16 | column, better);
+      bestRange4 = mix(bestRange4, range, better);
+      bestMask4 = mix(bestMask4, mask, better);
+    }
+  }
+  uint detected = detected4.x | detected4.y | detected4.z | detected4.w;
+  float minL = min(min(minL4.x, minL4.y), min(minL4.z, minL4.w));
+  float bestL = kFar, bestRange = 1.0, bestMask = 1.0;
+  uint bestPixel = kNobody;
+  for (uint k = 0; k < 4; ++k) {
+    if (bestL4[k] < bestL || (bestL4[k] == bestL && bestPixel4[k] < bestPixel)) {
+      bestL = bestL4[k];
+      bestPixel = bestPixel4[k];
+      bestRange = bestRange4[k];
+      bestMask = bestMask4[k];
+    }
+  }
+  const bool proposes = bestPixel != kNobody;
+  if (detected != 0) {
+    atomicOr(detectedAny, 1);
+    atomicMin(minLOrdered, ordered(minL));
+  }
+  if (proposes) {
+    const uint place = atomicAdd(listCount, 1);
+    listL[place] = bestL;
+    listPixel[place] = bestPixel;
+  }
+  barrier();
+
+  const uint count = listCount;
+  uint rank = 0;
+  for (uint i = 0; i < count; ++i) rank += uint(listL[i] < bestL || (listL[i] == bestL && listPixel[i] < bestPixel));
+  ranks[kCells * v + cell] = proposes ? rank : kNobody;
+  if (proposes) {
+    candidates[kCells * v + rank] =
+        Candidate(bestPixel, bestRange, bestMask, kNobody, kNobody);
+  }
+  if (cell == 0) {
+    const float least = unordered(minLOrdered);
+    const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
+    answers[v] = Answer(double(0), kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
+  }
+}

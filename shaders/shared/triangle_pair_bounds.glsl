@@ -1,0 +1,137 @@
+// The contact of two triangles moving against each other, with error bounds: in double precision along `direction`, from
+// placed corners that are exact (t = s * |direction|); in float along z, from corners in the sensor's frame, each known to
+// within an error.
+
+struct BoundedFloat {
+  float value;
+  float error;
+};
+
+// An ulp of 1: Vulkan promises that adding and multiplying is rounded, not which way. What may flush to 0 is below kFlushed.
+const float kUlp = 1.1920929e-7;
+const float kFlushed = 2.4e-38;
+
+// -1, 1: certain; 0: too close to tell.
+int signOf(BoundedFloat x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
+
+// What a feature is: 1 the two certainly pass over each other, 0 perhaps, -1 certainly not.
+int vertexOverFace(int side0, int side1, int side2, int face) {
+  if (face == 0) return (side0 > 0 || side1 > 0 || side2 > 0) && (side0 < 0 || side1 < 0 || side2 < 0) ? -1 : 0;
+  if (side0 == -face || side1 == -face || side2 == -face) return -1;
+  return side0 == face && side1 == face && side2 == face ? 1 : 0;
+}
+
+int edgeOverEdge(int a0, int a1, int b0, int b1) {
+  if ((a0 != 0 && a0 == a1) || (b0 != 0 && b0 == b1)) return -1;
+  return a0 != 0 && a1 != 0 && b0 != 0 && b1 != 0 ? 1 : 0;
+}
+
+float norm1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
+
+// z of x cross y. Components of x and y are off by `error` at most.
+BoundedFloat faceOf(vec3 x, vec3 y, float error) {
+  const float p = x.x * y.y, q = x.y * y.x;
+  const float given = error * (abs(x.x) + abs(x.y) + abs(y.x) + abs(y.y) + 2.0 * error);
+  return BoundedFloat(p - q, 1.0001 * given + 6.0 * kUlp * (abs(p) + abs(q)) + 4.0 * kFlushed);
+}
+
+// Which side of edge q0 q1 the vertex p passes, seen along z.
+int sideOf(vec3 q0, vec3 q1, vec3 p, float error) { return signOf(faceOf(q0 - p, q1 - p, error)); }
+
+// gap . (x cross y)
+BoundedFloat planeOf(vec3 gap, vec3 x, vec3 y, float error) {
+  const vec3 p = x.yzx * y.zxy, q = x.zxy * y.yzx;
+  const float g = norm1(gap), nx = norm1(x), ny = norm1(y);
+  const float given = error * (nx * ny + g * (nx + ny) + 2.0 * error * (g + nx + ny) + 6.0 * error * error);
+  return BoundedFloat(dot(gap, p - q),
+                      1.0001 * given + 12.0 * kUlp * dot(abs(gap), abs(p) + abs(q)) + kFlushed * (6.0 + 6.0 * g));
+}
+
+// above / below, if `known`: below is certainly not 0, and neither the quotient nor its error is out of all reach.
+BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) {
+  const float divisor = abs(below.value) - below.error;
+  const bool nonzero = divisor > 0.5 * abs(below.value);
+  const float value = above.value / (nonzero ? below.value : 1.0);
+  const float error = (above.error + abs(value) * below.error) / (nonzero ? divisor : 1.0) * 1.0001 +
+                      8.0 * kUlp * abs(value) + kFlushed;
+  known = nonzero && abs(value) < 1e30 && error < 1e30;
+  return BoundedFloat(value, error);
+}
+
+float quotient(float x, float y) { return x / y; }
+float depthOf(vec3 x, float error) { return x.z; }
+float depthSlack(vec3 span, float error) { return 4.0 * error + 8.0 * kUlp * span.z; }
+float squaredOf(float error) { return 1.0; }
+float neverOf(float error) { return 3.0e38; }
+
+#define REAL float
+#define REAL3 vec3
+#define BOUNDED BoundedFloat
+#define IMPACT ImpactFloat
+#define ALONG float
+#include "triangle_pair_toi.glsl"
+#undef REAL
+#undef REAL3
+#undef BOUNDED
+#undef IMPACT
+#undef ALONG
+
+#ifndef RADAR_NO_DOUBLES
+#include "divide.glsl"
+// u = 2^-53. A triple product of differences of doubles errs by less than 10 u times the sum of its absolute products.
+const double kTripleError = 10.0LF * 1.1102230246251565e-16LF;
+// Below this, products may have lost bits to underflow.
+const double kTiny = 1.0e-280LF;
+
+struct Bounded {
+  double value;
+  double error;
+};
+
+int signOf(Bounded x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
+
+// x . (y cross z)
+Bounded planeOf(dvec3 x, dvec3 y, dvec3 z, dvec3 direction) {
+  precise double a0 = y.y * z.z, a1 = y.z * z.y;
+  precise double b0 = y.z * z.x, b1 = y.x * z.z;
+  precise double c0 = y.x * z.y, c1 = y.y * z.x;
+  precise double value = (x.x * (a0 - a1) + x.y * (b0 - b1)) + x.z * (c0 - c1);
+  const double magnitude = abs(x.x) * (abs(a0) + abs(a1)) + abs(x.y) * (abs(b0) + abs(b1)) +
+                           abs(x.z) * (abs(c0) + abs(c1));
+  return Bounded(value, kTripleError * magnitude + kTiny);
+}
+
+Bounded faceOf(dvec3 x, dvec3 y, dvec3 direction) { return planeOf(direction, x, y, direction); }
+
+int sideOf(dvec3 q0, dvec3 q1, dvec3 p, dvec3 direction) { return signOf(faceOf(q0 - p, q1 - p, direction)); }
+
+Bounded quotientOf(Bounded above, Bounded below, out bool known) {
+  const double divisor = abs(below.value) - below.error;
+  known = divisor > 0.5LF * abs(below.value) && divides(above.value, below.value);
+  const double value = known ? quotient(above.value, below.value) : 0.0LF;
+  const double off = above.error + abs(value) * below.error;
+  known = known && divides(off, divisor);
+  const double error =
+      quotient(off, known ? divisor : 1.0LF) * (1.0LF + 9.094947017729282e-13LF) + 8.881784197001252e-16LF * abs(value);
+  return Bounded(value, error);
+}
+
+double depthOf(dvec3 x, dvec3 direction) { return dot(direction, x); }
+double depthSlack(dvec3 span, dvec3 direction) { return 3.552713678800501e-15LF * dot(abs(direction), span); }
+double squaredOf(dvec3 direction) { return dot(direction, direction); }
+// Whatever is met is far below, and its products with lengths and scales do not overflow.
+const double kNever = 1.0e200LF;
+double neverOf(dvec3 direction) { return kNever; }
+
+#define REAL double
+#define REAL3 dvec3
+#define BOUNDED Bounded
+#define IMPACT Impact
+#define ALONG dvec3
+#include "triangle_pair_toi.glsl"
+#undef REAL
+#undef REAL3
+#undef BOUNDED
+#undef IMPACT
+#undef ALONG
+#endif

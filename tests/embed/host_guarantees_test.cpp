@@ -1,0 +1,401 @@
+// What a host promises of the meshes that it deforms and the objects that it moves, and what becomes of an answer where
+// it does not hold; what it costs a frame.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include <vulkan/vulkan.h>
+
+#include "embed/host.h"
+#include "embed/on_device.h"
+#include "gpu/pipeline.h"
+#include "radar/recorder.h"
+#include "spirv/skin_comp.h"
+#include "workloads/shapes.h"
+
+struct Moving {
+  radar::MeshId body;
+  VkBuffer skinned, transforms;
+  std::vector<radar::ObjectId> crates;
+};
+void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh restPose, radar::MeshId crate,
+               Moving& moving);
+void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
+                  const Moving& moving);
+
+namespace {
+
+using namespace radar;
+using test::execute;
+using test::kRoom;
+using test::OnDevice;
+
+/// A wall at z = 5 that a host has, and a sensor that moves towards it.
+struct Wall {
+  Wall() {
+    const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const uint32_t triangle[] = {0, 1, 2};
+    sensor = scene.addMesh(corners, triangle);
+    mesh = scene.addMesh(corners, triangle, Bounds{{-2, -2, -2}, {2, 2, 2}});
+    wall = scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}}});
+    scene.setBounds(wall, {{-4, -4, 0}, {4, 4, 10}});
+    far = scene.addObject({.mesh = sensor, .worldFromMesh = {{1, 0, 0, 50, 0, 1, 0, 0, 0, 0, 1, 5}}});
+    queries = {{.mesh = sensor, .direction = {0, 0, 1}, .distance = 20},
+               {.mesh = sensor,
+                .worldFromMesh = {{1, 0, 0, 100, 0, 1, 0, 0, 0, 0, 1, 0}},
+                .direction = {0, 0, 1},
+                .distance = 20}};
+  }
+  Scene scene;
+  MeshId sensor, mesh;
+  ObjectId wall, far;
+  std::vector<Query> queries;
+};
+
+std::vector<std::byte> floats(std::initializer_list<float> values) {
+  std::vector<std::byte> bytes;
+  test::append<float>(bytes, values);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("where something has left its bounds no answer counts, until it is back") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice inside(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})), beyond(floats({-1, -1, 1, 1, -1, 2.001f, 0, 1, 1})),
+      infinite(floats({-1, -1, 1, 1, -1, 1, 0, -INFINITY, 1})), vast(floats({-1, -1, 1, 1, -1, 1, 0, 3e38f, 1})),
+      none(floats({-1, -1, 1, 1, NAN, 1, 0, 1, 1}));
+  const OnDevice at(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7})), away(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9})),
+      huge(floats({1, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 1, 7})), lost(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, NAN, 7}));
+  const auto look = [&](const OnDevice& vertices, const OnDevice& transform) {
+    const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
+    return execute(recorder, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+  };
+  const auto expectRefused = [&](const std::vector<Result>& results) {
+    for (const Result& result : results) {
+      CHECK(result.status == Status::invalid);
+      CHECK(result.flags == kFlagBounds);
+      CHECK(std::isnan(result.lo));
+    }
+  };
+  const auto expectSeen = [&](const std::vector<Result>& results) {
+    CHECK(results[0].status == Status::hit);
+    CHECK(results[0].t == Approx(8));
+    CHECK(results[0].flags == 0);
+    CHECK(results[1].status == Status::clear);
+  };
+  expectSeen(look(inside, at));
+  CHECK(recorder.boundsViolation().empty());
+  expectRefused(look(beyond, at));
+  CHECK(recorder.boundsViolation() == "mesh 1: vertex 1 is out of its bounds, or not finite");
+  expectRefused(look(infinite, at));
+  expectRefused(look(none, at));
+  expectRefused(look(vast, at));
+  expectSeen(look(inside, at));
+  CHECK(recorder.boundsViolation().empty());
+  expectRefused(look(inside, away));
+  CHECK(recorder.boundsViolation() == "object 0: its mesh's box is out of its bounds, or its transform not finite");
+  expectRefused(look(inside, huge));
+  expectRefused(look(inside, lost));
+  expectSeen(look(inside, at));
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("what floats cannot hold is out of range, or has left its bounds, and nothing else is") {
+  Scene scene;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  const MeshId mesh = scene.addMesh(corners, triangle);
+  const ObjectId object = scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 30, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  scene.setBounds(object, {{-2, -2, 3}, {2, 2, 7}});
+  std::vector<Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 1e38},
+                             {.mesh = mesh, .direction = {0, 0, 1}, .distance = 20},
+                             {.mesh = mesh, .direction = {0, 0, 1}, .distance = 20}};
+  queries[1].worldFromMesh.m[3] = 30;
+  queries[2].worldFromMesh.m[11] = -1e25;
+  Recorder recorder(test::device(), scene, kRoom);
+  // A flat mesh has no use for the third column, but floats for squares of it.
+  const OnDevice usual(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4})),
+      huge(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 4})),
+      none(floats({3e38f, -3e38f, 0, 0, 3e38f, -3e38f, 0, 0, 0, 0, 1, 0}));
+  const auto look = [&](const OnDevice& transform) {
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
+    return execute(recorder, queries, {.objects = {&moved, 1}});
+  };
+  const auto expectHit = [](const Result& result, double t) {
+    CHECK(result.status == Status::hit);
+    CHECK(result.flags == 0);
+    CHECK(result.t == Approx(t));
+  };
+  const auto expectRefused = [](const Result& result, uint32_t flag) {
+    CHECK(result.status == Status::invalid);
+    CHECK(result.flags == flag);
+    CHECK(std::isnan(result.lo));
+  };
+  std::vector<Result> read = look(usual);
+  expectHit(read[0], 4);
+  expectHit(read[1], 5);
+  expectRefused(read[2], kFlagRange);
+  read = look(huge);
+  expectRefused(read[0], kFlagRange);
+  expectHit(read[1], 5);
+  read = look(none);
+  for (const Result& result : read) expectRefused(result, kFlagBounds);
+  // Where one object is too far away for the tree, every query is refused.
+  scene.setTransform(object, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1e25}});
+  for (const Result& result : execute(recorder, queries)) expectRefused(result, kFlagRange);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("a transform that flattens a mesh is met as what it leaves, and one that leaves a point is out of range") {
+  Scene scene;
+  const tools::MeshData box = tools::makeBox({2, 2, 2});
+  const MeshId cube = scene.addMesh(box.positions, box.indices);
+  const ObjectId object = scene.addObject({.mesh = cube, .worldFromMesh = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9}}});
+  scene.setBounds(object, {{-3, -3, 3}, {3, 3, 12}});
+  Query query{.mesh = cube, .direction = {0, 0, 1}, .distance = 20};
+  Recorder recorder(test::device(), scene);
+  const auto look = [&](std::initializer_list<float> rows) {
+    const OnDevice transform(floats(rows));
+    const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
+    return execute(recorder, {&query, 1}, {.objects = {&moved, 1}})[0];
+  };
+  const Result whole = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 1, 8}),
+               flat = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 0, 8}),
+               line = look({1, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8}),
+               point = look({0, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8});
+  CHECK(whole.status == Status::hit);
+  CHECK(whole.t == 6);
+  CHECK(flat.status == Status::hit);
+  CHECK(flat.t == 7);
+  CHECK(line.status == Status::hit);
+  CHECK(line.t == 7);
+  // Sizes of 0 have no floats beside them.
+  CHECK(point.status == Status::invalid);
+  CHECK(point.flags == kFlagRange);
+  const Result tiny = look({1e-30f, 0, 0, 0.25f, 0, 1e-30f, 0, 0.25f, 0, 0, 1e-30f, 8});
+  CHECK(tiny.status == Status::invalid);
+  CHECK(tiny.flags == kFlagRange);
+}
+
+TEST_CASE("what a host no longer names is as the scene has it") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice vertices(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})),
+      transform(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7}));
+  const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
+  const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
+  const auto look = [&](const HostGeometry& geometry) { return execute(recorder, wall.queries, geometry)[0].t; };
+  CHECK(look({}) == Approx(5));
+  CHECK(look({.meshes = {&deformed, 1}, .objects = {&moved, 1}}) == Approx(8));
+  CHECK(look({.meshes = {&deformed, 1}}) == Approx(6));
+  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
+  CHECK(look({}) == Approx(5));
+  // Recorded, but not executed.
+  gpu::Submission submission(test::device().impl(), false);
+  recorder.record(submission.begin(), wall.queries, {.objects = {&moved, 1}});
+  recorder.reset();
+  CHECK(look({}) == Approx(5));
+  recorder.record(submission.begin(), wall.queries);
+  recorder.reset();
+  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
+  // What changes in the scene meanwhile counts, too.
+  wall.scene.setTransform(wall.wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}});
+  CHECK(look({.meshes = {&deformed, 1}}) == Approx(5));
+  wall.scene.removeObject(wall.wall);
+  CHECK(std::isnan(look({})));
+}
+
+TEST_CASE("whichever meshes a recording deforms, what is met is where they are now") {
+  // Four walls side by side. Each pair of them in turn is deformed, to the side, where small sensors then meet them.
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  Scene scene;
+  for (uint32_t i = 0; i < 4; ++i) {
+    const MeshId mesh = scene.addMesh(corners, triangle, Bounds{{-2, -2, -2}, {2, 2, 2}});
+    scene.addObject({.mesh = mesh, .worldFromMesh = {{1, 0, 0, 10.0 * i, 0, 1, 0, 0, 0, 0, 1, 5}}});
+  }
+  const MeshId sensor = scene.addMesh(corners, triangle);
+  std::vector<Query> queries;
+  for (uint32_t i = 0; i < 4; ++i) {
+    queries.push_back({.mesh = sensor,
+                       .worldFromMesh = {{0.1, 0, 0, 10.0 * i + 1.6, 0, 0.1, 0, -0.8, 0, 0, 0.1, 0}},
+                       .direction = {0, 0, 1},
+                       .distance = 20});
+  }
+  const OnDevice aside(floats({0, -1, 1, 2, -1, 1, 1, 1, 1}));
+  Recorder recorder(test::device(), scene);
+  std::vector<std::array<MeshId, 2>> pairs;
+  for (MeshId p = 0; p < 4; ++p) {
+    for (MeshId q = p + 1; q < 4; ++q) pairs.push_back({p, q});
+  }
+  for (const auto& last : pairs) {
+    for (const auto& next : pairs) {
+      for (const auto& pair : {last, next}) {
+        const HostPositions there{.buffer = aside.get()};
+        const DeformedMesh deformed[] = {{pair[0], there}, {pair[1], there}};
+        const std::vector<Result> read = execute(recorder, queries, {.meshes = deformed});
+        for (uint32_t i = 0; i < 4; ++i) {
+          CAPTURE(last[0], last[1], pair[0], pair[1], i);
+          CHECK(read[i].status == (i == pair[0] || i == pair[1] ? Status::hit : Status::clear));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a scene without objects is recorded, too") {
+  Wall wall;
+  wall.scene.removeObject(wall.wall);
+  wall.scene.removeObject(wall.far);
+  Scene empty;
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  const MeshId mesh = empty.addMesh(corners, triangle, Bounds{{-1, -1, 0}, {1, 1, 0}});
+  Recorder recorder(test::device(), empty);
+  const OnDevice vertices(floats({-1, -1, 0, 1, -1, 0, 0, 1, 0}));
+  const DeformedMesh deformed{mesh, {.buffer = vertices.get()}};
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 20};
+  CHECK(execute(recorder, {&query, 1}, {.meshes = {&deformed, 1}})[0].status == Status::clear);
+  CHECK(execute(recorder, {}, {.meshes = {&deformed, 1}}).empty());
+  CHECK(execute(recorder, {&query, 1})[0].status == Status::clear);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with it") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const OnDevice buffer(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1, 0, 0, 0}));
+  gpu::Submission submission(test::device().impl(), false);
+  const gpu::Commands commands = submission.begin();
+  const auto refused = [&](const HostGeometry& geometry, const char* why) {
+    CHECK_THROWS_WITH(recorder.record(commands, wall.queries, geometry), Catch::Contains(why));
+  };
+  const auto mesh = [&](DeformedMesh deformed, const char* why) { refused({.meshes = {&deformed, 1}}, why); };
+  mesh({7, {.buffer = buffer.get()}}, "record: geometry: mesh 7 does not exist");
+  mesh({wall.sensor, {.buffer = buffer.get()}}, "mesh 0 was added without bounds");
+  mesh({wall.mesh, {}}, "mesh 1: expected a buffer of positions");
+  mesh({wall.mesh, {.buffer = buffer.get(), .stride = 11}}, "mesh 1: stride: expected at least 12 bytes, got 11");
+  mesh({wall.mesh, {.buffer = buffer.get(), .format = VK_FORMAT_R8_UNORM}}, "mesh 1: format: expected");
+  const DeformedMesh good{wall.mesh, {.buffer = buffer.get()}}, twice[] = {good, good};
+  refused({.meshes = twice}, "meshes: expected each at most once");
+  const auto objects = [&](MovedObjects moved, const char* why) { refused({.objects = {&moved, 1}}, why); };
+  const ObjectId missing = 9, same[] = {wall.wall, wall.wall};
+  objects({.transforms = buffer.get(), .objects = {&missing, 1}}, "object 9 does not exist");
+  objects({.transforms = buffer.get(), .objects = {&wall.far, 1}}, "object 1 has no bounds");
+  objects({.transforms = buffer.get(), .objects = same}, "objects: expected each at most once");
+  objects({.transforms = buffer.get(), .stride = 44, .objects = {&wall.wall, 1}}, "at least 48 bytes, got 44");
+  objects({.objects = {&wall.wall, 1}}, "expected a buffer of transforms");
+  for (const VkDeviceSize stride : {VkDeviceSize{1} << 40, VkDeviceSize{1} << 63, ~VkDeviceSize{0}}) {
+    mesh({wall.mesh, {.buffer = buffer.get(), .stride = stride}}, "bytes that this device allows");
+    wall.scene.setBounds(wall.far, {{-9, -9, -9}, {99, 9, 9}});
+    const ObjectId both[] = {wall.wall, wall.far};
+    objects({.transforms = buffer.get(), .stride = stride, .objects = both}, "bytes that this device allows");
+  }
+
+  const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  const uint32_t triangle[] = {0, 1, 2};
+  CHECK_THROWS_WITH(wall.scene.addMesh(corners, triangle, Bounds{{0, 1, 0}, {1, 0, 1}}),
+                    Catch::Contains("addMesh: bounds: expected lo <= hi"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(wall.wall, {{0, 0, 0}, {1, NAN, 1}}), Catch::Contains("setBounds: bounds"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(9, {}), Catch::Contains("object 9 does not exist"));
+  // The recorder is as before.
+  CHECK(execute(recorder, wall.queries)[0].t == Approx(5));
+}
+
+TEST_CASE("a host that deforms and moves in the same command buffer needs the documented barrier") {
+  Wall wall;
+  Recorder recorder(test::device(), wall.scene);
+  const float vertices[] = {-1, -1, 1, 1, -1, 1, 0, 1, 1}, transform[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7};
+  const OnDevice buffer(std::vector<std::byte>(sizeof(vertices) + sizeof(transform)));
+  const DeformedMesh deformed{wall.mesh, {.buffer = buffer.get()}};
+  const MovedObjects moved{.transforms = buffer.get(), .first = sizeof(vertices), .objects = {&wall.wall, 1}};
+  gpu::Submission submission(test::device().impl(), false);
+  for (const bool withBarrier : {true, false, true}) {
+    const gpu::Commands commands = submission.begin();
+    vkCmdUpdateBuffer(commands, buffer.get(), 0, sizeof(vertices), vertices);
+    vkCmdUpdateBuffer(commands, buffer.get(), sizeof(vertices), sizeof(transform), transform);
+    const VkMemoryBarrier2 writtenToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                         .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                         .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                         .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT};
+    const VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &writtenToCopy};
+    if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
+    recorder.record(commands, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
+    submission.submitAndWait();
+    CHECK(recorder.read()[0].t == Approx(8));
+    const std::vector<std::string> messages = test::takeValidationMessages();
+    CHECK(messages.empty() == withBarrier);
+    if (!messages.empty()) CHECK(messages[0].find("SYNC-HAZARD-READ-AFTER-WRITE") != std::string::npos);
+  }
+}
+
+TEST_CASE(
+    "frames in which a host skins and moves on its device allocate nothing, submit nothing and wait for nothing") {
+  test::Host host;
+  const Device hosts = Device::adopt(host.handles);
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  host.handles.allocator = test::countingAllocator();
+  test::forget();
+  {
+    const Device device = Device::adopt(host.handles);
+    const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const uint32_t triangle[] = {0, 1, 2};
+    // At rest: three vertices of 8 floats, then 20 transforms, 10 to the side.
+    std::vector<float> rest(24);
+    for (size_t i = 0; i < 9; ++i) rest[8 * (i / 3) + i % 3] = corners[i];
+    for (int i = 0; i < 20; ++i) rest.insert(rest.end(), {1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
+    gpu::Buffer atRest(hosts.impl(), "at rest", gpu::BufferDomain::upload,
+                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    constexpr VkBufferUsageFlags kWritten = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    gpu::Buffer skinned(hosts.impl(), "skinned", gpu::BufferDomain::device, kWritten),
+        transforms(hosts.impl(), "transforms", gpu::BufferDomain::device, kWritten);
+    atRest.reserve(gpu::bytesOf(rest));
+    skinned.reserve(24 * sizeof(float));
+    transforms.reserve(240 * sizeof(float));
+    std::memcpy(atRest.mapped(), rest.data(), gpu::bytesOf(rest));
+
+    Scene scene;
+    const MeshId crate = scene.addMesh(corners, triangle);
+    Moving moving{.body = kNone, .skinned = skinned.get(), .transforms = transforms.get(), .crates = {}};
+    addMoving(scene, device, {.positions = {.buffer = atRest.get(), .stride = 32}, .vertexCount = 3}, crate, moving);
+    std::vector<Query> queries(2, {.mesh = crate, .direction = {0, 0, 1}, .distance = 20});
+    for (Query& query : queries) query.worldFromMesh.m[11] = -3;
+    queries[1].worldFromMesh.m[3] = 10;
+
+    std::vector<gpu::Binding> list;
+    for (const uint32_t number : {0u, 1u, 2u}) list.push_back({number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
+    gpu::Bindings bindings(hosts.impl(), list, sizeof(float));
+    const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
+    bindings.setBuffer(0, atRest);
+    bindings.setBuffer(1, skinned);
+    bindings.setBuffer(2, transforms);
+    Recorder recorder(device, scene);
+    gpu::Submission submission(hosts.impl(), false);
+    const test::Counts before = test::counts();
+    int64_t allocations = 0;
+    for (uint32_t frame = 0; frame < 100; ++frame) {
+      if (frame == 4) allocations = test::counts().allocations;
+      const float lift = static_cast<float>(frame) / 64;
+      const gpu::Commands commands = submission.begin();
+      bindings.bind(commands);
+      commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, skin.get());
+      commands->CmdPushConstants(commands, bindings.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(lift), &lift);
+      commands->CmdDispatch(commands, 5, 1, 1);
+      recordMoving(commands, recorder, queries, moving);
+      submission.submitAndWait();
+      for (const Result& result : recorder.read()) CHECK(result.t == 3 + double{lift});
+    }
+    const test::Counts after = test::counts();
+    CHECK(after.allocations == allocations);
+    CHECK(after.submissions == before.submissions);
+    CHECK(after.waits == before.waits);
+  }
+  CHECK(test::counts().live == 0);
+  CHECK(test::takeValidationMessages().empty());
+}

@@ -1,0 +1,177 @@
+// Bullet: sweeps of a convex shape through trees of triangles. A sensor is swept as its hull, or triangle by triangle,
+// each no farther than the best so far. Margins are 0.
+#include <BulletCollision/CollisionShapes/btTriangleShape.h>
+#include <LinearMath/btConvexHullComputer.h>
+#include <btBulletCollisionCommon.h>
+
+#include "baselines/rigid.h"
+#include "baselines/rows.h"
+
+namespace radar::tools {
+
+namespace {
+
+btVector3 vectorOf(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+
+// What keeps a mesh alive.
+struct Shape {
+  std::unique_ptr<btTriangleMesh> triangles;
+  std::unique_ptr<btBvhTriangleMeshShape> tree;  ///< as scene
+  std::unique_ptr<btConvexHullShape> hull;       ///< as sensor
+};
+
+Shape shapeOf(const std::vector<double>& positions, const MeshData& mesh) {
+  Shape shape;
+  shape.triangles = std::make_unique<btTriangleMesh>();
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto corner = [&](size_t k) { return vectorOf(&positions[3 * size_t{mesh.indices[i + k]}]); };
+    shape.triangles->addTriangle(corner(0), corner(1), corner(2));
+  }
+  shape.tree = std::make_unique<btBvhTriangleMeshShape>(shape.triangles.get(), true);
+  shape.tree->setMargin(0);
+  return shape;
+}
+
+std::unique_ptr<btConvexHullShape> hullOf(const btTriangleMesh& triangles) {
+  btAlignedObjectArray<btVector3> vertices;
+  const auto& part = triangles.getIndexedMeshArray()[0];
+  for (int i = 0; i < part.m_numVertices; ++i) {
+    const auto* p = reinterpret_cast<const btScalar*>(part.m_vertexBase + i * part.m_vertexStride);
+    vertices.push_back({p[0], p[1], p[2]});
+  }
+  btConvexHullComputer hull;
+  hull.compute(&vertices[0].getX(), sizeof(btVector3), vertices.size(), 0, 0);
+  auto shape = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
+  shape->recalcLocalAabb();
+  shape->setMargin(0);
+  return shape;
+}
+
+btTransform transformOf(const RigidPose& pose) {
+  const auto& r = pose.rotation;
+  return btTransform(btMatrix3x3(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]), vectorOf(pose.at.data()));
+}
+
+struct Closest : btCollisionWorld::ClosestConvexResultCallback {
+  Closest(const QuerySpec& asked, const btVector3& from, const btVector3& to)
+      : ClosestConvexResultCallback(from, to), query(asked) {}
+  bool needsCollision(btBroadphaseProxy* proxy) const override {
+    const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+    return !isExcluded(query, static_cast<uint32_t>(object->getUserIndex()));
+  }
+  const QuerySpec& query;
+};
+
+class Bullet : public Baseline {
+ public:
+  Bullet(const Workload& workload, bool byTriangle) : shapes_(workload, shapeOf), byTriangle_(byTriangle) {}
+  ~Bullet() override { clear(); }
+
+  void show(std::span<const Instance> objects) override {
+    if (objects.size() != shown_.size()) {
+      clear();
+      for (const Instance& instance : objects) add(instance);
+    } else {
+      for (size_t i = 0; i < objects.size(); ++i) {
+        if (!(objects[i] == shown_[i])) move(i, objects[i]);
+      }
+    }
+    shown_.assign(objects.begin(), objects.end());
+  }
+
+  std::optional<double> cast(const QuerySpec& query) override {
+    RigidPose pose;
+    Shape& shape = shapes_.of(query.sensor, pose);
+    const btTransform from = transformOf(pose);
+    const std::array<double, 3> v = unitDirection(query);
+    btTransform to = from;
+    to.setOrigin(from.getOrigin() + query.distance * vectorOf(v.data()));
+    Closest closest(query, from.getOrigin(), to.getOrigin());
+    if (byTriangle_) {
+      sweepTriangles(*shape.triangles, from, to, closest);
+    } else {
+      if (!shape.hull) shape.hull = hullOf(*shape.triangles);
+      world_.convexSweepTest(shape.hull.get(), from, to, closest, 0);
+    }
+    if (!closest.hasHit()) return std::nullopt;
+    return closest.m_closestHitFraction * query.distance;
+  }
+
+ private:
+  void sweepTriangles(const btTriangleMesh& triangles, const btTransform& from, const btTransform& to,
+                      Closest& closest) {
+    const auto& part = triangles.getIndexedMeshArray()[0];
+    const auto corner = [&](int number) {
+      const int vertex = reinterpret_cast<const int*>(part.m_triangleIndexBase)[number];
+      const auto* p = reinterpret_cast<const btScalar*>(part.m_vertexBase + vertex * part.m_vertexStride);
+      return btVector3(p[0], p[1], p[2]);
+    };
+    for (int i = 0; i < part.m_numTriangles; ++i) {
+      btTriangleShape triangle(corner(3 * i), corner(3 * i + 1), corner(3 * i + 2));
+      triangle.setMargin(0);
+      world_.convexSweepTest(&triangle, from, to, closest, 0);
+    }
+  }
+
+  void add(const Instance& instance) {
+    RigidPose pose;
+    const Shape& shape = shapes_.of(instance, pose);
+    objects_.push_back(std::make_unique<btCollisionObject>());
+    objects_.back()->setCollisionShape(shape.tree.get());
+    objects_.back()->setWorldTransform(transformOf(pose));
+    objects_.back()->setUserIndex(static_cast<int>(objects_.size()) - 1);
+    world_.addCollisionObject(objects_.back().get());
+  }
+
+  void move(size_t number, const Instance& instance) {
+    RigidPose pose;
+    const Shape& shape = shapes_.of(instance, pose);
+    objects_[number]->setCollisionShape(shape.tree.get());
+    objects_[number]->setWorldTransform(transformOf(pose));
+    world_.updateSingleAabb(objects_[number].get());
+  }
+
+  void clear() {
+    for (const auto& object : objects_) world_.removeCollisionObject(object.get());
+    objects_.clear();
+  }
+
+  ShapeCache<Shape> shapes_;
+  bool byTriangle_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
+  std::vector<Instance> shown_;
+  std::vector<std::unique_ptr<btCollisionObject>> objects_;
+};
+
+template <bool byTriangle>
+std::unique_ptr<Baseline> make(const Workload& workload, uint32_t) {
+  return std::make_unique<Bullet>(workload, byTriangle);
+}
+
+}  // namespace
+
+std::vector<BaselineRow> bulletRows() {
+  const std::string product =
+      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100) + ", doubles";
+  return {{.family = "Bullet hull",
+           .product = product,
+           .limits = "casts only convex shapes, and any other sensor as its hull, which is a different shape. No "
+                     "certificate; deforming meshes need new trees.",
+           .sizes = {0},
+           .make = make<false>},
+          {.family = "Bullet triangles",
+           .product = product,
+           .limits = "casts the sensor triangle by triangle: any shape, at the cost of that many casts. No "
+                     "certificate; deforming meshes need new trees.",
+           .sizes = {0},
+           .sections = {"front"},
+           .make = make<true>}};
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,293 @@
+// Embree: rays from pixels of the sensor's front into the scene, as the paper's pictures look, or rays from vertices,
+// of the sensor into the scene and of the scene back onto the sensor.
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "baselines/rigid.h"
+#include "baselines/rows.h"
+
+namespace radar::tools {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+using SceneHandle = std::unique_ptr<RTCSceneTy, void (*)(RTCScene)>;
+constexpr uint32_t kPacket = 8;
+
+Vector along(const Vector& start, const Vector& direction, double t) {
+  return {start[0] + t * direction[0], start[1] + t * direction[1], start[2] + t * direction[2]};
+}
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Axes across a unit vector.
+std::pair<Vector, Vector> across(const Vector& w) {
+  const size_t least = std::abs(w[0]) < std::abs(w[1]) ? (std::abs(w[0]) < std::abs(w[2]) ? 0 : 2)
+                                                       : (std::abs(w[1]) < std::abs(w[2]) ? 1 : 2);
+  Vector u{};
+  u[least] = 1;
+  u = along(u, w, -w[least]);
+  const double length = std::sqrt(dot(u, u));
+  for (double& value : u) value /= length;
+  return {u, {w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]}};
+}
+
+// World to mesh.
+struct Inverse {
+  explicit Inverse(const Transform& pose) : at{pose.m[3], pose.m[7], pose.m[11]} {
+    const auto& m = pose.m;
+    const auto minor = [&](size_t a, size_t b, size_t c, size_t d) { return m[a] * m[d] - m[b] * m[c]; };
+    const double determinant = m[0] * minor(5, 6, 9, 10) - m[1] * minor(4, 6, 8, 10) + m[2] * minor(4, 5, 8, 9);
+    linear = {minor(5, 6, 9, 10), -minor(1, 2, 9, 10), minor(1, 2, 5, 6),  -minor(4, 6, 8, 10), minor(0, 2, 8, 10),
+              -minor(0, 2, 4, 6), minor(4, 5, 8, 9),   -minor(0, 1, 8, 9), minor(0, 1, 4, 5)};
+    for (double& value : linear) value /= determinant;
+  }
+  Vector turned(const Vector& v) const {
+    return {linear[0] * v[0] + linear[1] * v[1] + linear[2] * v[2],
+            linear[3] * v[0] + linear[4] * v[1] + linear[5] * v[2],
+            linear[6] * v[0] + linear[7] * v[1] + linear[8] * v[2]};
+  }
+  Vector placed(const Vector& p) const { return turned({p[0] - at[0], p[1] - at[1], p[2] - at[2]}); }
+
+  std::array<double, 9> linear{};
+  Vector at;
+};
+
+// What a filter needs to know: which instances take no part.
+struct Context : RTCIntersectContext {
+  explicit Context(const QuerySpec& asked) : query(asked) {
+    rtcInitIntersectContext(this);
+    flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (query.exclude.empty()) return;
+    filter = [](const RTCFilterFunctionNArguments* arguments) {
+      const auto& self = *static_cast<const Context*>(arguments->context);
+      for (uint32_t i = 0; i < arguments->N; ++i) {
+        if (isExcluded(self.query, RTCHitN_instID(arguments->hit, arguments->N, i, 0))) arguments->valid[i] = 0;
+      }
+    };
+  }
+  const QuerySpec& query;
+};
+
+// A ray a lane; lanes without one stay off.
+struct Packet {
+  alignas(32) int valid[kPacket] = {};
+  RTCRayHit8 rays{};
+  void set(uint32_t lane, const Vector& origin, const Vector& direction, double far) {
+    valid[lane] = -1;
+    rays.ray.org_x[lane] = static_cast<float>(origin[0]);
+    rays.ray.org_y[lane] = static_cast<float>(origin[1]);
+    rays.ray.org_z[lane] = static_cast<float>(origin[2]);
+    rays.ray.dir_x[lane] = static_cast<float>(direction[0]);
+    rays.ray.dir_y[lane] = static_cast<float>(direction[1]);
+    rays.ray.dir_z[lane] = static_cast<float>(direction[2]);
+    rays.ray.tnear[lane] = 0;
+    rays.ray.tfar[lane] = static_cast<float>(far);
+    rays.ray.mask[lane] = ~0u;
+    rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  bool hit(uint32_t lane) const { return valid[lane] != 0 && rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
+};
+
+class Embree : public Baseline {
+ public:
+  explicit Embree(const Workload& workload)
+      : workload_(workload), device_(rtcNewDevice("threads=1"), rtcReleaseDevice), top_(nullptr, rtcReleaseScene) {
+    if (!device_) throw std::runtime_error("does not open");
+    if (rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0) {
+      throw std::runtime_error("has no packets of 8 rays on this processor");
+    }
+    for (const MeshData& mesh : workload.meshes) meshes_.push_back(sceneOf(mesh));
+  }
+
+  void show(std::span<const Instance> objects) override {
+    const bool anew = !top_ || objects.size() != shown_.size();
+    if (anew) {
+      top_ = newScene();
+      boxes_.resize(objects.size());
+    }
+    for (uint32_t i = 0; i < objects.size(); ++i) {
+      if (!anew && objects[i] == shown_[i]) continue;
+      boxes_[i] = boxOf(workload_.meshes[objects[i].mesh], objects[i].worldFromMesh);
+      const RTCGeometry instance =
+          anew ? rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE) : rtcGetGeometry(top_.get(), i);
+      rtcSetGeometryInstancedScene(instance, meshes_[objects[i].mesh].get());
+      float transform[12];
+      std::copy(objects[i].worldFromMesh.m.begin(), objects[i].worldFromMesh.m.end(), transform);
+      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
+      rtcCommitGeometry(instance);
+      if (!anew) continue;
+      rtcAttachGeometryByID(top_.get(), instance, i);
+      rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(top_.get());
+    shown_.assign(objects.begin(), objects.end());
+  }
+
+ protected:
+  SceneHandle newScene() {
+    SceneHandle scene(rtcNewScene(device_.get()), rtcReleaseScene);
+    rtcSetSceneFlags(scene.get(),
+                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    return scene;
+  }
+
+  SceneHandle sceneOf(const MeshData& mesh) {
+    SceneHandle scene = newScene();
+    const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                             mesh.vertexCount());
+    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<float*>(vertices));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
+                                            mesh.triangleCount());
+    std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<uint32_t*>(indices));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene.get());
+    return scene;
+  }
+
+  const Workload& workload_;
+  std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
+  std::vector<SceneHandle> meshes_;
+  SceneHandle top_;
+  std::vector<Instance> shown_;
+  std::vector<WorldBox> boxes_;
+};
+
+// Each pixel: the sensor's front by a ray from ahead, then a ray from there into the scene.
+class PixelRays : public Embree {
+ public:
+  PixelRays(const Workload& workload, uint32_t resolution) : Embree(workload), resolution_(resolution) {}
+
+  std::optional<double> cast(const QuerySpec& query) override {
+    const Vector w = unitDirection(query);
+    const auto [u, v] = across(w);
+    const MeshData& mesh = workload_.meshes[query.sensor.mesh];
+    Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (const uint32_t vertex : mesh.indices) {
+      const Vector p = transformPoint(query.sensor.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+      const Vector turned{dot(p, u), dot(p, v), dot(p, w)};
+      for (size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], turned[k]);
+        high[k] = std::max(high[k], turned[k]);
+      }
+    }
+    const double pixel = std::max(high[0] - low[0], high[1] - low[1]) / resolution_;
+    if (!(pixel > 0)) return std::nullopt;
+    const Inverse meshFromWorld(query.sensor.worldFromMesh);
+    const double ahead = high[2] + pixel, depth = high[2] - low[2] + 2 * pixel;
+    const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
+    Context own(query), scene(query);
+    own.filter = nullptr;
+    double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
+    bool found = false;
+    for (double y = low[1] + 0.5 * pixel; y < high[1]; y += pixel) {
+      for (double x = low[0] + 0.5 * pixel; x < high[0]; x += kPacket * pixel) {
+        Vector starts[kPacket];
+        Packet onto, into;
+        for (uint32_t lane = 0; lane < kPacket && x + lane * pixel < high[0]; ++lane) {
+          starts[lane] = along(along(along({}, u, x + lane * pixel), v, y), w, ahead);
+          onto.set(lane, meshFromWorld.placed(starts[lane]), back, depth);
+        }
+        rtcIntersect8(onto.valid, meshes_[query.sensor.mesh].get(), &own, &onto.rays);
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+          if (onto.hit(lane)) into.set(lane, along(starts[lane], w, -double{onto.rays.ray.tfar[lane]}), w, best);
+        }
+        rtcIntersect8(into.valid, top_.get(), &scene, &into.rays);
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+          if (!into.hit(lane)) continue;
+          best = std::min(best, double{into.rays.ray.tfar[lane]});
+          found = true;
+        }
+      }
+    }
+    return found ? std::optional(best) : std::nullopt;
+  }
+
+ private:
+  uint32_t resolution_;
+};
+
+class VertexRays : public Embree {
+ public:
+  using Embree::Embree;
+
+  std::optional<double> cast(const QuerySpec& query) override {
+    const Vector w = unitDirection(query);
+    const MeshData& mesh = workload_.meshes[query.sensor.mesh];
+    Context own(query), scene(query);
+    own.filter = nullptr;
+    own.flags = scene.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
+    bool found = false;
+    const auto shoot = [&](RTCScene target, Context& context, const Vector& origin, const Vector& direction) {
+      RTCRayHit ray{};
+      ray.ray = {float(origin[0]),
+                 float(origin[1]),
+                 float(origin[2]),
+                 0,
+                 float(direction[0]),
+                 float(direction[1]),
+                 float(direction[2]),
+                 0,
+                 float(best),
+                 ~0u,
+                 0,
+                 0};
+      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(target, &context, &ray);
+      if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+      best = std::min(best, double{ray.ray.tfar});
+      found = true;
+    };
+    for (size_t i = 0; i < mesh.positions.size(); i += 3) {
+      shoot(top_.get(), scene, transformPoint(query.sensor.worldFromMesh, &mesh.positions[i]), w);
+    }
+    const WorldBox swept = boxOf(mesh, query.sensor.worldFromMesh).swept(along({}, w, query.distance));
+    const Inverse meshFromWorld(query.sensor.worldFromMesh);
+    const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
+    for (uint32_t object = 0; object < shown_.size(); ++object) {
+      if (!swept.meets(boxes_[object]) || isExcluded(query, object)) continue;
+      const MeshData& other = workload_.meshes[shown_[object].mesh];
+      for (size_t i = 0; i < other.positions.size(); i += 3) {
+        const Vector p = transformPoint(shown_[object].worldFromMesh, &other.positions[i]);
+        if (!swept.meets({p, p})) continue;
+        shoot(meshes_[query.sensor.mesh].get(), own, meshFromWorld.placed(p), back);
+      }
+    }
+    return found ? std::optional(best) : std::nullopt;
+  }
+};
+
+}  // namespace
+
+std::vector<BaselineRow> embreeRows() {
+  const std::string product = "Embree " RTC_VERSION_STRING;
+  return {
+      {.family = "Embree rays",
+       .product = product,
+       .limits = "one ray per pixel from the sensor's front. It misses what lies between pixels, what lies behind the "
+                 "front in a concavity, and what surrounds the start. No certificate; deforming meshes need new trees.",
+       .sizes = {16, 32, 64, 128, 256, 512, 1024},
+       .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
+         return std::make_unique<PixelRays>(workload, size);
+       }},
+      {.family = "Embree vertex rays",
+       .product = product,
+       .limits = "rays from the vertices of both sides. It misses contacts of two edges. No certificate; deforming "
+                 "meshes need new trees.",
+       .sizes = {0},
+       .make = [](const Workload& workload, uint32_t) -> std::unique_ptr<Baseline> {
+         return std::make_unique<VertexRays>(workload);
+       }}};
+}
+
+}  // namespace radar::tools

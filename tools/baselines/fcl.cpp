@@ -1,0 +1,128 @@
+// FCL: trees of OBBRSS over triangles under a dynamic tree of boxes, asked at steps and then bisected. Its continuous
+// mode answers for one pair a call, and approximately, so it is not what a user with a scene would take.
+#include <fcl/fcl.h>
+
+#include "baselines/rigid.h"
+#include "baselines/rows.h"
+
+namespace radar::tools {
+
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSSd>;
+
+std::shared_ptr<Model> modelOf(const std::vector<double>& positions, const MeshData& mesh) {
+  std::vector<fcl::Vector3d> vertices;
+  for (size_t i = 0; i < positions.size(); i += 3) {
+    vertices.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
+  }
+  std::vector<fcl::Triangle> triangles;
+  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+    triangles.emplace_back(mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);
+  }
+  auto model = std::make_shared<Model>();
+  model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+  model->addSubModel(vertices, triangles);
+  model->endModel();
+  return model;
+}
+
+fcl::Transform3d transformOf(const RigidPose& pose) {
+  fcl::Transform3d transform = fcl::Transform3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) transform.linear()(row, k) = pose.rotation[static_cast<size_t>(3 * row + k)];
+    transform.translation()[row] = pose.at[static_cast<size_t>(row)];
+  }
+  return transform;
+}
+
+// What a check carries through the tree.
+struct Check {
+  const QuerySpec* query = nullptr;
+  bool meets = false;
+};
+
+bool checkPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
+  auto& check = *static_cast<Check*>(data);
+  // The sensor has no user data.
+  const fcl::CollisionObjectd* object = a->getUserData() == nullptr ? b : a;
+  const auto number = reinterpret_cast<uintptr_t>(object->getUserData()) - 1;
+  if (isExcluded(*check.query, static_cast<uint32_t>(number))) return false;
+  fcl::CollisionRequestd request;
+  fcl::CollisionResultd result;
+  check.meets = fcl::collide(a, b, request, result) > 0;
+  return check.meets;
+}
+
+class Fcl : public Baseline {
+ public:
+  Fcl(const Workload& workload, uint32_t steps) : shapes_(workload, modelOf), steps_(steps) {}
+
+  void show(std::span<const Instance> objects) override {
+    if (!manager_ || objects.size() != shown_.size()) {
+      objects_.clear();
+      manager_ = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
+      std::vector<fcl::CollisionObjectd*> all;
+      for (const Instance& instance : objects) {
+        objects_.push_back(placed(instance));
+        objects_.back()->setUserData(reinterpret_cast<void*>(objects_.size()));
+        all.push_back(objects_.back().get());
+      }
+      manager_->registerObjects(all);
+      manager_->setup();
+    } else {
+      for (size_t i = 0; i < objects.size(); ++i) {
+        if (!(objects[i] == shown_[i])) move(i, objects[i]);
+      }
+    }
+    shown_.assign(objects.begin(), objects.end());
+  }
+
+  std::optional<double> cast(const QuerySpec& query) override {
+    const std::unique_ptr<fcl::CollisionObjectd> sensor = placed(query.sensor);
+    const fcl::Vector3d start = sensor->getTranslation();
+    const std::array<double, 3> v = unitDirection(query);
+    return steppedContact(query.distance, steps_, [&](double t) {
+      sensor->setTranslation(start + t * fcl::Vector3d(v[0], v[1], v[2]));
+      sensor->computeAABB();
+      Check check{&query};
+      manager_->collide(sensor.get(), &check, checkPair);
+      return check.meets;
+    });
+  }
+
+ private:
+  std::unique_ptr<fcl::CollisionObjectd> placed(const Instance& instance) {
+    RigidPose pose;
+    const std::shared_ptr<Model> model = shapes_.of(instance, pose);
+    return std::make_unique<fcl::CollisionObjectd>(model, transformOf(pose));
+  }
+
+  void move(size_t number, const Instance& instance) {
+    manager_->unregisterObject(objects_[number].get());
+    objects_[number] = placed(instance);
+    objects_[number]->setUserData(reinterpret_cast<void*>(number + 1));
+    manager_->registerObject(objects_[number].get());
+  }
+
+  ShapeCache<std::shared_ptr<Model>> shapes_;
+  uint32_t steps_;
+  std::vector<Instance> shown_;
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+  std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> manager_;
+};
+
+}  // namespace
+
+std::vector<BaselineRow> fclRows() {
+  return {{.family = "FCL steps",
+           .product = "FCL " FCL_VERSION,
+           .limits = "asks at a number of steps whether the shapes meet, then bisects. It passes through what is "
+                     "thinner than a step. No certificate; shears, scales and deforming meshes need new trees.",
+           .sizes = {16, 64, 256},
+           .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
+             return std::make_unique<Fcl>(workload, size);
+           }}};
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,114 @@
+// ODE with OPCODE, the library of the paper's comparison: objects by a linear walk over their boxes, triangles by
+// OPCODE's trees, at steps and then bisected.
+#include <ode/ode.h>
+
+#include "baselines/rigid.h"
+#include "baselines/rows.h"
+
+namespace radar::tools {
+
+namespace {
+
+// Vertices and indices must outlive the data made from them.
+struct Mesh {
+  std::vector<double> positions;
+  std::vector<dTriIndex> indices;
+  dTriMeshDataID data = nullptr;
+};
+
+std::shared_ptr<Mesh> meshOf(const std::vector<double>& positions, const MeshData& mesh) {
+  auto made =
+      std::shared_ptr<Mesh>(new Mesh{positions, {mesh.indices.begin(), mesh.indices.end()}, nullptr}, [](Mesh* old) {
+        dGeomTriMeshDataDestroy(old->data);
+        delete old;
+      });
+  made->data = dGeomTriMeshDataCreate();
+  dGeomTriMeshDataBuildDouble(made->data, made->positions.data(), 3 * sizeof(double),
+                              static_cast<int>(made->positions.size() / 3), made->indices.data(),
+                              static_cast<int>(made->indices.size()), 3 * sizeof(dTriIndex));
+  return made;
+}
+
+using Geometry = std::unique_ptr<dxGeom, void (*)(dGeomID)>;
+
+WorldBox boxOf(dGeomID geometry) {
+  dReal bounds[6];
+  dGeomGetAABB(geometry, bounds);
+  return {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+}
+
+class Ode : public Baseline {
+ public:
+  Ode(const Workload& workload, uint32_t steps) : shapes_(workload, meshOf), steps_(steps) {
+    dInitODE2(0);
+    dAllocateODEDataForThread(dAllocateMaskAll);
+  }
+
+  void show(std::span<const Instance> objects) override {
+    objects_.clear();
+    boxes_.clear();
+    for (const Instance& instance : objects) {
+      objects_.push_back(placed(instance));
+      boxes_.push_back(boxOf(objects_.back().get()));
+    }
+  }
+
+  std::optional<double> cast(const QuerySpec& query) override {
+    const Geometry sensor = placed(query.sensor);
+    const WorldBox box = boxOf(sensor.get());
+    const std::array<double, 3> v = unitDirection(query);
+    const WorldBox swept = box.swept({query.distance * v[0], query.distance * v[1], query.distance * v[2]});
+    std::vector<uint32_t> near;
+    for (uint32_t i = 0; i < boxes_.size(); ++i) {
+      if (swept.meets(boxes_[i]) && !isExcluded(query, i)) near.push_back(i);
+    }
+    const dReal* position = dGeomGetPosition(sensor.get());
+    const std::array<double, 3> start{position[0], position[1], position[2]};
+    return steppedContact(query.distance, steps_, [&](double t) {
+      dGeomSetPosition(sensor.get(), start[0] + t * v[0], start[1] + t * v[1], start[2] + t * v[2]);
+      const WorldBox here = boxOf(sensor.get());
+      for (const uint32_t i : near) {
+        dContactGeom contact;
+        if (here.meets(boxes_[i]) &&
+            dCollide(sensor.get(), objects_[i].get(), 1 | CONTACTS_UNIMPORTANT, &contact, sizeof contact) > 0) {
+          return true;
+        }
+      }
+      return false;
+    });
+  }
+
+ private:
+  Geometry placed(const Instance& instance) {
+    RigidPose pose;
+    const std::shared_ptr<Mesh>& mesh = shapes_.of(instance, pose);
+    Geometry geometry(dCreateTriMesh(nullptr, mesh->data, nullptr, nullptr, nullptr), dGeomDestroy);
+    const auto& r = pose.rotation;
+    const dMatrix3 rotation{r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0};
+    dGeomSetRotation(geometry.get(), rotation);
+    dGeomSetPosition(geometry.get(), pose.at[0], pose.at[1], pose.at[2]);
+    return geometry;
+  }
+
+  ShapeCache<std::shared_ptr<Mesh>> shapes_;
+  uint32_t steps_;
+  std::vector<Geometry> objects_;
+  std::vector<WorldBox> boxes_;
+};
+
+}  // namespace
+
+std::vector<BaselineRow> odeRows() {
+  return {{.family = "ODE/OPCODE steps",
+           .product = "ODE " dODE_VERSION,
+           .limits = "asks at a number of steps whether the shapes meet, then bisects. It passes through what is "
+                     "thinner than a step, and misses what lies inside another shape without a contact point. No "
+                     "certificate; one thread; shears, scales and deforming meshes need new trees.",
+           .sizes = {16, 64, 256},
+           .threads = false,
+           .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
+             return std::make_unique<Ode>(workload, size);
+           }}};
+}
+
+}  // namespace radar::tools

@@ -46,13 +46,15 @@ TEST_CASE("devices that are not there, or not to be read, end with status 2 and 
   refused("scale --mode fast", "--mode");
 }
 
-TEST_CASE("scale measures, tells what limits, and leaves a page, a table and a trace") {
+TEST_CASE("scale measures, says what limits it, and leaves a report, a table, a chart and a trace") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
   INFO(run.err);
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("speed-up") && Contains("With 3 sensors, 2 devices take"));
-  CHECK_THAT(folder.read("s/report.html"), Contains("<svg") && Contains("What limits it"));
+  CHECK_THAT(run.out, Catch::StartsWith(folder.read("s/report.txt")));
+  CHECK_THAT(folder.read("s/scale.svg"),
+             Contains("mode sampled") && Contains("<text>0+1</text>") && Contains("</svg>"));
   const std::string csv = folder.read("s/scale.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * 4);  // one device, the other, and both: four lines a point
   const auto trace = nlohmann::json::parse(folder.read("s/trace.json"));

@@ -71,7 +71,8 @@ TEST_CASE("a selftest's report tells every number as text, JSON, tables and a pa
   CHECK(linesOf(throughputCsv(report))[2] == "3,light,1000,0.5,5,0");
   CHECK(linesOf(stagesCsv(report))[2] == "3,sampled,\"teapots\",\"mask\",7");
   const std::string page = htmlOf(report);
-  CHECK_THAT(page, Contains("A &lt;device") && Contains("<svg") && Contains("rounded up") && Contains("</html>"));
+  CHECK_THAT(page, Contains("A &lt;device") && Contains("--share:2.5%") && Contains("maxThings") &&
+                       Contains("rounded up") && Contains("</html>"));
 }
 
 TEST_CASE("a wrong answer, a wrong bit and a part that failed make the report say so") {

@@ -1,11 +1,11 @@
+#include "chart/documents.h"
+
 #include <algorithm>
 #include <map>
 
 #include "batch/atomic_file.h"
 #include "chart/drawings.h"
 #include "chart/findings.h"
-#include "chart/report.h"
-#include "report/axis.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -41,9 +41,24 @@ std::string originOf(const Record& record) {
          ". The same command with `--render` writes this page again from what it measured.\n\n";
 }
 
-std::string pictureOf(const Drawing& drawing, const std::string& charts, const std::string& text = "") {
-  return "![" + drawing.chart.title + "](" + charts + "/" + drawing.name + ".svg)\n\n" +
-         (text.empty() ? "" : "*" + text + "*\n\n");
+std::string pictureOf(const Drawing& drawing, const std::string& charts) {
+  return "![" + drawing.title.substr(0, drawing.title.find(": ")) + "](" + charts + "/" + drawing.name + ".svg)\n\n";
+}
+
+// Methods without numbers, those with one reason together.
+std::string failuresOf(const Record& record, const WorkloadNote& workload) {
+  std::map<std::string, std::vector<const Cell*>> byReason;
+  for (const Cell* cell : failedCells(record, "front", workload.name)) {
+    std::vector<const Cell*>& cells = byReason[cell->failed];
+    if (cells.empty() || cells.back()->method != cell->method) cells.push_back(cell);
+  }
+  std::string text;
+  for (const auto& [reason, cells] : byReason) {
+    std::string names;
+    for (const std::string& name : namesOf(cells)) names += (names.empty() ? "" : ", ") + name;
+    text += " Not drawn: " + names + " (" + reason + ").";
+  }
+  return text;
 }
 
 // Least and greatest of the numbers taken.
@@ -139,6 +154,13 @@ std::string frontsOf(const Record& record) {
          (off.empty() ? "." : ", not on " + off + ".");
 }
 
+std::string captionOf(const Record& record, const WorkloadNote& workload) {
+  const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
+  const uint32_t queries = cells.empty() ? 0 : cells[0]->queries, contacts = cells.empty() ? 0 : cells[0]->contacts;
+  return "*" + workload.name + print(": %u queries, %u with a contact.", queries, contacts) +
+         failuresOf(record, workload) + " " + fastestRight(record, workload.name) + "*\n\n";
+}
+
 // Mode by mode, with the run's numbers: of what it measured.
 std::vector<std::string> adviceOf(const Record& record) {
   std::vector<std::string> advice;
@@ -190,7 +212,8 @@ Table workloadTable(const Record& record) {
 Table table1Table(const Record& record) {
   const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
   if (contact.size() < 2) return {};
-  Table table{{"µs per query among", inTic(contact.front().x) + " boxes", inTic(contact.back().x) + " boxes", "ratio"}};
+  Table table{
+      {"µs per query among", grouped(contact.front().x) + " boxes", grouped(contact.back().x) + " boxes", "ratio"}};
   const auto add = [&](const std::string& name, double few, double many) {
     table.push_back({name, inWords(few), inWords(many), print("%.2f", many / few)});
   };
@@ -214,21 +237,23 @@ std::string accuracyDocument(const Record& record, const std::string& charts) {
       originOf(record) + "[chart.csv](" + charts +
       "/chart.csv) has all numbers, and [performance](performance.md) explains the times.\n\nLengths are in units of "
       "the sensor's size, the longest side of its box. An answer is *wrong* if it misses a contact, by denying it or "
-      "by "
-      "not seeing it, or reports one that does not exist. *Error* is the error of the distances found. Accuracy does "
+      "by not seeing it, or reports one that does not exist. *Error* is the error of the distances found. Accuracy "
+      "does "
       "not vary from run to run on the same driver.\n\n";
   text += "## Which mode for what\n\n" + listOf(adviceOf(record));
   text += "## All workloads\n\n" + tableOf(summaryTable(record)) +
           "*Methods with sizes are shown with their largest. Times run from the fastest workload to the slowest.*\n\n";
   text += "## Accuracy against speed\n\n" + std::string(kFrontInWords) + " " + frontsOf(record) + "\n\n";
+  const std::vector<Drawing> drawings = drawingsOf(record);
   for (const WorkloadNote& workload : record.workloads) {
-    const Drawing drawing = frontDrawing(record, workload);
-    std::string caption = workload.name + ":";
-    for (const std::string& note : drawing.notes) caption += " " + note;
-    text += pictureOf(drawing, charts, caption + " " + fastestRight(record, workload.name));
+    for (const Drawing& drawing : drawings) {
+      if (drawing.name == "front-" + workload.name) text += pictureOf(drawing, charts);
+    }
+    text += captionOf(record, workload);
   }
-  return text + "All charts on one page, with what the other libraries cannot do: [chart.html](" + charts +
-         "/chart.html).\n";
+  if (!record.notes.empty()) text += "## What the other libraries cannot do\n\n" + listOf(record.notes);
+  text.pop_back();  // the empty line at the end
+  return text;
 }
 
 std::string performanceDocument(const Record& record, const std::string& charts) {
@@ -241,15 +266,15 @@ std::string performanceDocument(const Record& record, const std::string& charts)
                      "[benchmarks](benchmarks.md) how the exact searches compare by batch size, and "
                      "[scaling](scaling.md) what several devices gain.\n\n";
   text += "## Workload by workload\n\n" + tableOf(workloadTable(record));
+  std::string table1, growth;
+  for (const Drawing& drawing : drawingsOf(record)) {
+    if (drawing.name == "table1") table1 += pictureOf(drawing, charts);
+    if (drawing.name.starts_with("growth-")) growth += pictureOf(drawing, charts);
+  }
   if (const Table table = table1Table(record); !table.empty()) {
-    text += "## The paper's Table 1\n\n" + pictureOf(table1Drawing(record), charts) + tableOf(table) +
-            listOf(table1Findings(record));
+    text += "## The paper's Table 1\n\n" + table1 + tableOf(table) + listOf(table1Findings(record));
   }
-  if (const std::vector<Drawing> drawings = growthDrawings(record); !drawings.empty()) {
-    text += "## As the work grows\n\n";
-    for (const Drawing& drawing : drawings) text += pictureOf(drawing, charts);
-    text += listOf(growthFindings(record));
-  }
+  if (!growth.empty()) text += "## As the work grows\n\n" + growth + listOf(growthFindings(record));
   text.pop_back();  // the empty line at the end
   return text;
 }

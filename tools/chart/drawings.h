@@ -1,25 +1,26 @@
-// The charts of a run.
+// The charts of a run: what each shows, and its rows of points.csv, from which the scripts of tools/plot draw it.
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "chart/record.h"
-#include "report/chart.h"
 
 namespace radar::tools {
 
 struct Drawing {
-  std::string name;     ///< of its file
-  std::string caption;  ///< what it shows, in one line
-  std::vector<std::string> notes;
-  Chart chart;
+  std::string name;    ///< of its file, without .svg, and of its rows
+  std::string title;   ///< a colon begins a second line
+  std::string xLabel;  ///< empty: accuracy against speed on one workload, the front marked
+  std::string rows;    ///< of points.csv
 };
 
-/// Time against worst error on one workload, misses in a band of their own, the front drawn.
-Drawing frontDrawing(const Record& record, const WorkloadNote& workload);
-/// Time against the number of boxes, with the paper's own times. Needs section table1.
-Drawing table1Drawing(const Record& record);
-/// Time against boxes, sensors, triangles and resolution: those that were measured.
-std::vector<Drawing> growthDrawings(const Record& record);
-
+/// Section front: a chart for each workload on which something was measured. Then the paper's Table 1, and the growth
+/// with boxes, sensors, triangles and resolution.
 std::vector<Drawing> drawingsOf(const Record& record);
+
+/// Writes points.csv and each chart as an SVG file. Throws as plot() does.
+void writeCharts(const std::filesystem::path& folder, const Record& record);
 
 }  // namespace radar::tools

@@ -1,11 +1,9 @@
 #include "chart/findings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
-#include "report/axis.h"
 #include "report/print.h"
 
 namespace radar::tools {
@@ -14,9 +12,8 @@ namespace {
 
 constexpr std::array kPaper{PaperRow{10'000, 14.73, 11.27}, PaperRow{30'000, 31.52, 85.48}};
 
-// Errors below the floor are alike.
 std::pair<double, double> rankOf(const Cell& cell) {
-  return {wrongShare(cell), std::isnan(cell.errorWorst) ? kErrorFloor : std::max(cell.errorWorst, kErrorFloor)};
+  return {wrongShare(cell), flooredError(cell)};
 }
 
 std::string listOf(const std::vector<std::string>& names) {
@@ -30,51 +27,18 @@ const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& m
   return found == cells.end() ? nullptr : *found;
 }
 
-std::string standingOf(const std::vector<const Cell*>& cells) {
-  const auto [contact, better] = besideSampling(cells);
-  const std::string beside = "Compared with methods that sample pixels, rays or steps, mode contact ";
-  if (contact == nullptr) return beside + "was not measured.";
-  if (better == nullptr) return beside + "is on the front.";
-  return beside + "is not on the front: " + better->method + " takes " + timeInWords(better->us) + " instead of " +
-         timeInWords(contact->us) +
-         print(" per query, with %.2g%% wrong answers, none of them certified.", 100 * wrongShare(*better));
-}
-
-// The fastest member of each family that is faster, by how much, and how many of its answers are wrong.
-std::vector<std::string> fasterThan(const std::vector<const Cell*>& cells, const Cell& contact) {
-  std::vector<const Cell*> best;
-  for (const Cell* cell : cells) {
-    if (cell->us >= contact.us) continue;
-    const auto same =
-        std::find_if(best.begin(), best.end(), [&](const Cell* one) { return one->family == cell->family; });
-    if (same == best.end()) {
-      best.push_back(cell);
-    } else if (cell->us < (*same)->us) {
-      *same = cell;
-    }
-  }
-  std::vector<std::string> names;
-  names.reserve(best.size());
-  for (const Cell* cell : best) {
-    names.push_back(cell->method + print(" (%.3g times", contact.us / cell->us) +
-                    (wrongShare(*cell) > 0 ? print(" as fast, %.1f%% wrong)", 100 * wrongShare(*cell)) : " as fast)"));
-  }
-  return names;
-}
-
 }  // namespace
 
 bool isOurs(const std::string& family) {
-  constexpr std::array kOurs{"sampled", "drawing all", "contact", "contact on device", "reference"};
-  return std::find(kOurs.begin(), kOurs.end(), family) != kOurs.end();
+  return std::find(kOurFamilies.begin(), kOurFamilies.end(), family) != kOurFamilies.end();
+}
+
+double flooredError(const Cell& cell) {
+  return std::isnan(cell.errorWorst) ? kErrorFloor : std::max(cell.errorWorst, kErrorFloor);
 }
 
 double wrongShare(const Cell& cell) {
   return static_cast<double>(cell.misses + cell.falseHits) / cell.queries;
-}
-
-bool isCertain(const Cell& cell) {
-  return cell.certified && cell.violations == 0 && wrongShare(cell) == 0;
 }
 
 std::vector<const Cell*> shownCells(const Record& record, const std::string& section, const std::string& workload) {
@@ -203,31 +167,14 @@ std::string fastestRight(const Record& record, const std::string& workload) {
   return fastest == contact ? text + "." : text + " (contact: " + timeInWords(contact->us) + ").";
 }
 
-std::vector<std::string> frontFindings(const Record& record, const std::string& workload) {
-  const std::vector<const Cell*> cells = shownCells(record, "front", workload);
-  std::vector<const Cell*> right, certain;
-  for (const Cell* cell : cells) {
-    if (wrongShare(*cell) == 0) right.push_back(cell);
-    if (isCertain(*cell)) certain.push_back(cell);
-  }
-  std::vector<std::string> findings;
-  findings.push_back("No wrong answers: " + listOf(namesOf(right)) + ". Certified: " + listOf(namesOf(certain)) + ".");
-  findings.push_back("On the front: " + listOf(namesOf(frontOf(cells))) + ".");
-  findings.push_back(standingOf(cells));
-  if (const Cell* contact = methodIn(cells, "contact")) {
-    findings.push_back(fastestRight(record, workload));
-    findings.push_back("Faster than mode contact: " + listOf(fasterThan(cells, *contact)) + ".");
-  }
-  return findings;
-}
-
 std::vector<std::string> table1Findings(const Record& record) {
   std::vector<std::string> findings;
   const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
   if (contact.size() < 2) return findings;
   const Point &few = contact.front(), &many = contact.back();
-  findings.push_back("Mode contact takes " + timeInWords(few.y) + " per query among " + inTic(few.x) + " boxes and " +
-                     timeInWords(many.y) + " among " + inTic(many.x) + print(": %.2f times as long.", many.y / few.y));
+  findings.push_back("Mode contact takes " + timeInWords(few.y) + " per query among " + grouped(few.x) + " boxes and " +
+                     timeInWords(many.y) + " among " + grouped(many.x) +
+                     print(": %.2f times as long.", many.y / few.y));
   std::vector<std::string> crossed;
   for (const std::string& method : methodsOf(record, "table1", "boxes")) {
     const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
@@ -249,7 +196,7 @@ std::vector<std::string> growthFindings(const Record& record) {
   for (const char* axis : {"boxes", "sensors", "triangles"}) {
     const std::vector<Point> points = timesOver(record, "growth", axis, "contact");
     if (points.size() < 2) continue;
-    findings.push_back("From " + inTic(points.front().x) + " to " + inTic(points.back().x) + " " + axis +
+    findings.push_back("From " + grouped(points.front().x) + " to " + grouped(points.back().x) + " " + axis +
                        ", mode contact goes from " + timeInWords(points.front().y) + " to " +
                        timeInWords(points.back().y) + " per query (" + axis + print("^%.2f).", slopeOf(points)));
   }

@@ -1,6 +1,7 @@
 // What a run shows: the front of speed against accuracy, crossings, slopes, in numbers and in words.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,14 +14,15 @@ namespace radar::tools {
 /// Errors below this, in sizes of the sensor, are drawn at it and count as equal.
 inline constexpr double kErrorFloor = 1e-13;
 
+inline constexpr std::array kOurFamilies{"sampled", "drawing all", "contact", "contact on device", "reference"};
 /// Whether the method is Cyber Radar's, not another library's.
 bool isOurs(const std::string& family);
 
+/// The worst error, at least kErrorFloor.
+double flooredError(const Cell& cell);
+
 /// Share of answers that are wrong: a contact missed, or told where there is none.
 double wrongShare(const Cell& cell);
-
-/// Whether every bracket and every "clear" can be relied upon, and did hold.
-bool isCertain(const Cell& cell);
 
 /// The cells of a workload that have numbers, each method once: in the number of threads in which it was fastest.
 std::vector<const Cell*> shownCells(const Record& record, const std::string& section, const std::string& workload);
@@ -74,7 +76,6 @@ std::vector<std::string> namesOf(const std::vector<const Cell*>& cells);
 /// mode contact.
 std::string fastestRight(const Record& record, const std::string& workload);
 /// One sentence each.
-std::vector<std::string> frontFindings(const Record& record, const std::string& workload);
 std::vector<std::string> table1Findings(const Record& record);
 std::vector<std::string> growthFindings(const Record& record);
 

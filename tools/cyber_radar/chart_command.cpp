@@ -6,15 +6,16 @@
 #include <thread>
 
 #include "batch/query_file.h"
+#include "chart/documents.h"
+#include "chart/drawings.h"
 #include "chart/findings.h"
-#include "chart/report.h"
 #include "chart/run.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
 #include "import/mesh_import.h"
-#include "report/gnuplot.h"
+#include "plot/plot.h"
 
 namespace radar::tools {
 
@@ -25,11 +26,11 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
   cyber-radar chart --out chart batch.json          with queries of your own
   cyber-radar chart --out docs/chart --docs docs --render
-                                                    measures nothing: draws what is there anew
+                                                    measures nothing: draws the charts again
 
-In DIR: chart.csv and chart.json, chart.html with all charts, each chart as SVG and PNG. Each cell is on disk as soon as
-it is measured: a run that was interrupted goes on where it was, if program and device are the same. Libraries to compare
-with are measured by a program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart).)";
+DIR receives chart.csv and chart.json with all measurements, points.csv with what the charts show, and the charts as SVG
+files. Every measurement is saved at once: an interrupted run continues if program and device are the same. A program
+built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
   std::vector<std::string> files, meshes;
@@ -132,18 +133,17 @@ void chart(Options options) {
   } else {
     record = measure(options);
   }
-  writeReport(options.out, *record);
+  writeCharts(options.out, *record);
   if (!options.docs.empty()) writeDocuments(options.docs, options.out, *record);
   for (const WorkloadNote& workload : record->workloads) {
-    std::cout << workload.name << ": " << workload.about << "\n";
-    for (const std::string& finding : frontFindings(*record, workload.name)) std::cout << "  " << finding << "\n";
+    std::cout << workload.name << ": " << workload.about << "\n  " << fastestRight(*record, workload.name) << "\n";
   }
   std::cout << "table1\n";
   for (const std::string& finding : table1Findings(*record)) std::cout << "  " << finding << "\n";
   std::cout << "growth\n";
   for (const std::string& finding : growthFindings(*record)) std::cout << "  " << finding << "\n";
   std::cout << "\nIn " << std::filesystem::absolute(options.out).string()
-            << ": chart.html, chart.csv, chart.json, charts as SVG and PNG\n";
+            << ": chart.csv, chart.json, points.csv, charts as SVG\n";
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
-#include "report/gnuplot.h"
+#include "plot/plot.h"
+#include "report/print.h"
 #include "scale/findings.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
@@ -18,12 +19,13 @@ namespace radar::tools {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  cyber-radar scale --quick --out scaling           about a minute: report.html, scale.csv, trace.json
+  cyber-radar scale --quick --out scaling           about a minute
   cyber-radar scale --mode naive --device 0,1 --out scaling
   cyber-radar scale batch.json --mode contact --sensors 64,256,1024
 
 Without a query file, the paper's Figure 7: teapots, all of them sensors, fly among boxes; each step is a batch. With
-one, its batches; --sensors N,... then takes the first N queries of each. trace.json opens in ui.perfetto.dev.)";
+one, its batches; --sensors N,... then takes the first N queries of each. DIR receives report.txt, scale.csv, scale.svg
+and trace.json, a timeline for ui.perfetto.dev.)";
 
 struct Options {
   std::string file, device = "all", mode = "sampled", out;
@@ -80,23 +82,14 @@ std::vector<uint32_t> numbersOf(const std::string& text, size_t devices) {
   return numbers;
 }
 
-void writeFiles(const Options& options, const ScaleReport& report, const std::string& scene) {
-  const std::filesystem::path folder = options.out;
-  std::string command = "cyber-radar scale";
-  if (!options.file.empty()) command += " " + options.file;
-  command += " --mode " + options.mode + " --device " + options.device + " --sensors ";
-  for (size_t i = 0; i < options.sensors.size(); ++i) {
-    command += (i == 0 ? "" : ",") + std::to_string(options.sensors[i]);
-  }
-  if (options.file.empty()) {
-    command += " --boxes " + std::to_string(options.boxes) + " --steps " + std::to_string(options.steps);
-  }
-  command += " --repeat " + std::to_string(options.repeats) + " --resolution " + options.engine.resolution;
-  const ScaleOrigin origin{command, commit(), today(), scene, "mode " + options.mode};
+void writeFiles(const std::filesystem::path& folder, const ScaleReport& report, const std::string& title,
+                const std::string& text) {
+  writeAtomically(folder / "report.txt", text);
   writeAtomically(folder / "scale.csv", csvOf(report));
   writeAtomically(folder / "trace.json", traceOf(report));
-  writeAtomically(folder / "report.html", htmlOf(report, origin));
-  std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": report.html, scale.csv, trace.json\n";
+  writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title}));
+  std::cout << "\nIn " << std::filesystem::absolute(folder).string()
+            << ": report.txt, scale.csv, scale.svg, trace.json\n";
 }
 
 int scale(Options options) {
@@ -130,16 +123,19 @@ int scale(Options options) {
     report = measureScale(devices, points, settings, [&](const std::string&) { progress.add(1); });
   }
   report.numbers = numbersOf(options.device, devices.size());
-  const std::string scene = options.file.empty() ? "Teapots among " + std::to_string(options.boxes) + " boxes, " +
-                                                       std::to_string(options.steps) + " steps"
-                                                 : options.file;
-  std::cout << scene << "; mode " << options.mode << "\n";
+  const std::string title =
+      (options.file.empty() ? print("Teapots among %u boxes, %u steps, resolution ", options.boxes, options.steps) +
+                                  options.engine.resolution
+                            : options.file) +
+      "; mode " + options.mode;
+  std::string text = title + "; commit " + commit() + ", " + today() + "\n";
   for (size_t i = 0; i < devices.size(); ++i) {
-    std::cout << "device " << report.numbers[i] << ": " << devices[i].name() << ", " << devices[i].driver() << "\n";
+    text += print("device %u: ", report.numbers[i]) + devices[i].name() + ", " + devices[i].driver() + "\n";
   }
-  std::cout << "\n" << tableOf(report) << "\n";
-  for (const std::string& finding : findingsOf(report)) std::cout << finding << "\n";
-  if (!options.out.empty()) writeFiles(options, report, scene);
+  text += "\n" + tableOf(report) + "\n";
+  for (const std::string& finding : findingsOf(report)) text += finding + "\n";
+  std::cout << text;
+  if (!options.out.empty()) writeFiles(options.out, report, title, text);
   return 0;
 }
 
@@ -147,7 +143,7 @@ int scale(Options options) {
 
 void addScaleCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "scale", "Measures how the work scales over devices, and says what limits it: tables, charts, a timeline");
+      "scale", "Measures how the work scales over devices, and says what limits it: a table, a chart, a timeline");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
   command->add_option("FILE.json", options->file, "Query file; else the paper's Figure 7");
@@ -178,7 +174,7 @@ void addScaleCommand(CLI::App& app, int& status) {
   command->add_option("--resolution", options->engine.resolution, "Pixels of a window's longer side")
       ->type_name("N|auto")
       ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for report.html, scale.csv and trace.json")->type_name("DIR");
+  command->add_option("--out", options->out, "Folder for the report, its table, chart and timeline")->type_name("DIR");
   command->add_flag("--quick", options->quick, "At most 4 steps and 3 passes; 5, 15 and 30 sensors: about a minute");
   command->callback([options, &status] { status = scale(*options); });
 }

@@ -28,6 +28,13 @@ std::string tableOf(const ScaleReport& report) {
                   setOf(report, run).c_str(), run.ms / static_cast<double>(report.batches[run.point]),
                   report.speedUp(run), 100 * report.efficiency(run), busy.c_str(), chunks.c_str());
   }
+  text += "\nStages, milliseconds of a pass with timestamps, summed over devices:\n";
+  for (const ScaleRun& run : report.runs) {
+    if (run.stages.empty()) continue;
+    text += "devices " + setOf(report, run) + ":";
+    for (const StageTime& stage : run.stages) text += print(" %s %.2f", stage.name.c_str(), stage.ms);
+    text += "\n";
+  }
   return text;
 }
 

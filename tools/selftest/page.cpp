@@ -1,11 +1,6 @@
-#include "report/page.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "report/axis.h"
-#include "report/markup.h"
-#include "report/plain_chart.h"
 #include "report/print.h"
 #include "selftest/selftest.h"
 
@@ -13,161 +8,121 @@ namespace radar::tools {
 
 namespace {
 
-std::string paragraph(const std::string& text, const char* style = "") {
-  return std::string("<p") + (*style != '\0' ? std::string(" class=\"") + style + "\"" : "") + ">" + escaped(text) +
-         "</p>\n";
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>Cyber Radar selftest</title><style>
+body{max-width:1200px;margin:24px auto;padding:0 16px;font:16px/1.5 system-ui,sans-serif}
+table{display:block;overflow-x:auto;border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-nums}
+th,td{padding:3px 14px 3px 4px;text-align:left;border-bottom:1px solid #ddd}
+.bar{min-width:14em;background:linear-gradient(90deg,#9ecae9 var(--share),transparent var(--share))}
+</style></head><body>
+<h1>Cyber Radar: selftest</h1>
+)";
+
+std::string element(const char* tag, const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
+  return print("<%s>%s</%s>\n", tag, escaped.c_str(), tag);
 }
 
-std::string heading(const DeviceTest& device, Part part, const std::string& title) {
-  const PartReport& report = device[part];
-  std::string text = "<h3>" + escaped(title) + "</h3>\n";
-  std::string state = nameOf(report.state);
-  if (!report.note.empty()) state += ": " + report.note;
-  if (report.seconds > 0) state += print(", %.1f s", report.seconds);
-  return text + paragraph(state, "soft");
+std::string cell(const std::string& text) {
+  return element("td", text);
+}
+std::string cell(uint64_t value) {
+  return cell(grouped(static_cast<double>(value)));
+}
+// A number over a bar that fills the cell for `most`.
+std::string barCell(const std::string& number, double value, double most) {
+  return print("<td class=\"bar\" style=\"--share:%.1f%%\">%s</td>\n", 100 * value / most, number.c_str());
 }
 
-std::string whole(uint64_t value) {
-  return value == 0 ? "0" : inTic(static_cast<double>(value));
+// `columns`: their names, with | between them. `cellsOf`: the cells of a row.
+template <class Row, class CellsOf>
+std::string table(const std::string& columns, const std::vector<Row>& rows, const CellsOf& cellsOf) {
+  std::string text = "<table><tr><th>";
+  for (const char c : columns) text += c == '|' ? "<th>" : std::string(1, c);
+  for (const Row& row : rows) text += "<tr>\n" + cellsOf(row);
+  return text + "</table>\n";
 }
 
-std::string limitsTable(const DeviceTest& device) {
-  std::string text = openTable() + row({"limit", "has", "needed", "for mode"}, "th");
-  for (const DeviceLimit& limit : device.facts.limits) {
-    text += row({escaped(limit.name), whole(limit.has), whole(limit.needed),
-                 limit.mode == Mode::contact ? "contact" : "sampled"});
-  }
-  return "<details><summary>Limits that shaders rely on</summary>\n" + text + closeTable() + "</details>\n";
-}
-
-// A cell of words, which may be broken.
-std::string words(const std::string& text) {
-  return "<div style=\"min-width:11em;text-align:left;white-space:normal\">" + escaped(text) + "</div>";
-}
-
-std::string arithmeticTable(const DeviceTest& device) {
-  std::string text =
-      openTable() + row({"operation", "", "worst, ulp", words("found"), words("needed"), words("so")}, "th");
-  for (const ArithmeticCheck& check : device.arithmetic) {
-    text += row({words(check.operation), check.passed() ? "right" : "<b>WRONG</b>",
-                 std::isnan(check.worst) ? "" : print("%.3g", check.worst), words(check.found), words(check.needed),
-                 words(check.consequence)});
-  }
-  return text + closeTable();
-}
-
-std::string exactnessTable(const DeviceTest& device) {
-  std::string text = openTable() + row({"family", "doubles", "queries", "hit", "clear", "overlap", "wrong",
-                                        "pairs solved", "of these by the CPU"},
-                                       "th");
-  for (const ExactnessRow& one : device.exactness) {
-    const RandomTally& t = one.tally;
-    text += row({escaped(one.family), one.doubles ? "with" : "without", whole(t.queries), whole(t.hits), whole(t.clear),
-                 whole(t.overlaps), t.wrong == 0 ? "0" : "<b>" + whole(t.wrong) + "</b>", whole(t.pairs),
-                 whole(t.cpuPairs)});
-  }
-  return text + closeTable();
-}
-
-Chart chartOf(const DeviceTest& device, const std::string& workload, const std::string& title) {
-  Chart chart;
-  chart.title = title;
-  chart.xName = "queries in a batch";
-  chart.yName = "queries a second";
-  chart.width = 560;
-  chart.height = 380;
-  ChartLine onDevice{.name = "device", .colour = 0}, onCpu{.name = "CPU", .colour = 1};
-  for (const ThroughputRow& row : device.throughput) {
-    if (row.workload != workload) continue;
-    const auto batch = static_cast<double>(row.batch);
-    const auto add = [&](ChartLine& line, double us) {
-      line.points.push_back({batch, 1e6 / us, 0, "", print("%s: %.3g us a query", line.name.c_str(), us)});
-    };
-    add(onDevice, row.deviceUs);
-    add(onCpu, row.cpuUs);
-  }
-  chart.lines = {onDevice, onCpu};
-  return chart;
-}
-
-std::string throughputCharts(const DeviceTest& device) {
-  return "<div class=\"charts\">\n" +
-         figure(plainSvg(chartOf(device, "light", "Light: small boxes among 30,000 boxes"))) +
-         figure(plainSvg(chartOf(device, "heavy", "Heavy: teapots of 6,320 triangles among 10,000 boxes"))) +
-         figure(plainSvg(chartOf(device, "moving", "Moving: all sensors fly on between batches"))) + "</div>\n";
-}
-
-std::string throughputTable(const DeviceTest& device) {
-  std::string text = openTable() + row({"workload", "batch", "device, us a query", "CPU, us a query",
-                                        "device as fast as the CPU, times", "answers that differ"},
-                                       "th");
-  for (const ThroughputRow& one : device.throughput) {
-    text += row({escaped(one.workload), whole(one.batch), print("%.3f", one.deviceUs), print("%.3f", one.cpuUs),
-                 print("%.2f", one.cpuUs / one.deviceUs), one.differ == 0 ? "0" : "<b>" + whole(one.differ) + "</b>"});
-  }
-  return text + closeTable();
-}
-
-// A bar for each stage, of the time that the caller sees.
-std::string stagesTable(const std::vector<StageRow>& rows) {
+template <class Row>
+double greatest(const std::vector<Row>& rows, double Row::*member) {
   double most = 0;
-  for (const StageRow& one : rows) most = std::max(most, one.us);
-  std::string text = openTable() + row({"workload", "stage", "us a query", ""}, "th");
-  for (const StageRow& one : rows) {
-    const std::string bar =
-        print("<div style=\"width:%.1fpx;height:12px;background:var(--c0)\"></div>", 260 * one.us / most);
-    text += row({escaped(one.workload), escaped(one.stage), print("%.3f", one.us), bar});
-  }
-  return text + closeTable();
+  for (const Row& row : rows) most = std::max(most, row.*member);
+  return most;
+}
+
+std::string stagesTable(const std::vector<StageRow>& rows) {
+  return table("workload|stage|microseconds per query", rows, [&](const StageRow& row) {
+    return cell(row.workload) + cell(row.stage) + barCell(print("%.3f", row.us), row.us, greatest(rows, &StageRow::us));
+  });
 }
 
 std::string lanesTable(const std::vector<LaneRow>& rows) {
-  std::string text = openTable() + row({"way", "us a query", "times as fast as the first"}, "th");
-  for (const LaneRow& one : rows) text += row({escaped(one.way), print("%.3f", one.us), print("%.2f", one.times)});
-  return text + closeTable();
+  return table("way|microseconds per query|times as fast as the first", rows, [&](const LaneRow& row) {
+    return cell(row.way) + cell(print("%.3f", row.us)) +
+           barCell(print("%.2f", row.times), row.times, greatest(rows, &LaneRow::times));
+  });
+}
+
+std::string throughputTable(const std::vector<ThroughputRow>& rows) {
+  return table("workload|batch|device, queries a second|CPU, queries a second|device over CPU|answers that differ",
+               rows, [&](const ThroughputRow& row) {
+                 double fastest = 0;  // of the workload
+                 for (const ThroughputRow& other : rows) {
+                   if (other.workload == row.workload)
+                     fastest = std::max({fastest, 1 / other.deviceUs, 1 / other.cpuUs});
+                 }
+                 const auto bar = [&](double us) { return barCell(grouped(1e6 / us), 1 / us, fastest); };
+                 return cell(row.workload) + cell(row.batch) + bar(row.deviceUs) + bar(row.cpuUs) +
+                        cell(print("%.2f", row.cpuUs / row.deviceUs)) + cell(row.differ);
+               });
 }
 
 std::string deviceSection(const DeviceTest& device) {
-  const DeviceReport& facts = device.facts;
-  std::string text = "<h2>" + escaped(print("Device %u: ", device.number) + facts.name) + "</h2>\n";
-  text += paragraph(
-      facts.type + ", driver " + facts.driver + ", Vulkan " + facts.version +
-      print(", %.1f GiB of its own, subgroups of %u, ", static_cast<double>(facts.memory) / (1 << 30), facts.subgroup) +
-      (!facts.doubles       ? "no doubles"
-       : device.usesDoubles ? "doubles, which are used"
-                            : "doubles, which are not used"));
-  for (const std::string& reason : facts.reasons) text += paragraph("Not usable: " + reason);
-  for (const std::string& reason : facts.sampledReasons) text += paragraph("No mode sampled: " + reason);
-  if (!facts.usable()) return text;
-  text += "<p><b>" + whole(device.checkedAnswers()) + " answers held against the CPU's, " +
-          whole(device.wrongAnswers()) + " wrong" + (device.right() ? "" : ". Something is wrong here") + ".</b></p>\n";
-  text += limitsTable(device);
-  text += heading(device, Part::arithmetic, "Arithmetic: what the bounds rest on") + arithmeticTable(device);
-  text +=
-      heading(device, Part::exactness, "Exactness: random queries of every family, held against the CPU's answers") +
-      exactnessTable(device);
-  text += heading(device, Part::throughput,
-                  "Throughput: the device's search, and the exact search on all cores of the CPU") +
-          throughputCharts(device) + throughputTable(device);
-  text += heading(device, Part::stages, "Where the time goes: the exact search, batches of 16,384") +
-          stagesTable(device.stages);
-  text += heading(device, Part::lanes, "Batches in flight") + lanesTable(device.lanes);
-  text += heading(device, Part::passes, "The paper's passes: mode sampled, where the time goes") +
-          stagesTable(device.passes);
+  std::string text = element("h2", print("Device %u: ", device.number) + device.facts.name);
+  text += element("pre", factsOf(device));
+  if (!device.facts.usable()) return text;
+  text += element("b", print("%llu answers compared with the CPU's, %llu wrong. ",
+                             static_cast<unsigned long long>(device.checkedAnswers()),
+                             static_cast<unsigned long long>(device.wrongAnswers())) +
+                           (device.right() ? "Nothing is wrong here." : "Something is wrong here."));
+  const auto section = [&](Part part, const std::string& title, const std::string& content) {
+    const PartReport& report = device[part];
+    text +=
+        element("h3", title) + element("p", nameOf(report.state) + print(", %.1f s. ", report.seconds) + report.note);
+    text += content;
+  };
+  section(Part::arithmetic, "Arithmetic, on which the bounds rest",
+          table("operation|result|worst, ulp|found|needed|consequence", device.arithmetic,
+                [](const ArithmeticCheck& check) {
+                  return cell(check.operation) + cell(check.passed() ? "right" : "WRONG") +
+                         cell(std::isnan(check.worst) ? "" : print("%.3g", check.worst)) + cell(check.found) +
+                         cell(check.needed) + cell(check.consequence);
+                }));
+  section(Part::exactness, "Random queries of every family, compared with the CPU's answers",
+          table("family|doubles|queries|hit|clear|overlap|wrong|pairs solved|of these by the CPU", device.exactness,
+                [](const ExactnessRow& row) {
+                  const RandomTally& t = row.tally;
+                  return cell(row.family) + cell(row.doubles ? "with" : "without") + cell(t.queries) + cell(t.hits) +
+                         cell(t.clear) + cell(t.overlaps) + cell(t.wrong) + cell(t.pairs) + cell(t.cpuPairs);
+                }));
+  section(Part::throughput, "Throughput of the device, and of all cores of the CPU",
+          throughputTable(device.throughput));
+  section(Part::stages, "Stages of mode contact, batches of 16,384", stagesTable(device.stages));
+  section(Part::lanes, "Batches in flight", lanesTable(device.lanes));
+  section(Part::passes, "Passes of mode sampled", stagesTable(device.passes));
   return text;
 }
 
 }  // namespace
 
 std::string htmlOf(const SelftestReport& report) {
-  std::string text = openPage("Cyber Radar selftest", "Cyber Radar: selftest");
-  text += paragraph(report.command + ", commit " + report.commit + ", " + report.date, "soft");
-  text += paragraph(report.processor + print("; %.1f of %.1f minutes", report.seconds / 60, report.minutes), "soft");
+  std::string text =
+      kHead + element("p", report.command + ", commit " + report.commit + ", " + report.date) +
+      element("p", report.processor + print("; %.1f of %.1f minutes", report.seconds / 60, report.minutes));
   for (const DeviceTest& device : report.devices) text += deviceSection(device);
-  if (!report.together.empty()) {
-    text += "<h2>All devices together</h2>\n" + lanesTable(report.together);
-  }
-  return text + closePage();
+  if (!report.together.empty()) text += element("h2", "All devices together") + lanesTable(report.together);
+  return text + "</body></html>\n";
 }
 
 }  // namespace radar::tools

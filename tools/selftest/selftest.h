@@ -107,6 +107,8 @@ void lookAtDevices(const SelftestSettings& settings, SelftestReport& report);
 /// Makes every part on every usable device of `report`; `onChange` is called whenever a part begins or ends.
 void runSelftest(SelftestReport& report, const std::function<void()>& onChange);
 
+/// What a device is and what it lacks, as in textOf().
+std::string factsOf(const DeviceTest& device);
 std::string textOf(const SelftestReport& report);
 std::string jsonOf(const SelftestReport& report);
 std::string arithmeticCsv(const SelftestReport& report);

@@ -22,22 +22,6 @@ std::string head(const DeviceTest& device, Part part) {
   return print("\n  %s: %s\n", nameOf(part), stateText(device[part]).c_str());
 }
 
-std::string factsText(const DeviceTest& device) {
-  const DeviceReport& facts = device.facts;
-  std::string text = print("\ndevice %u: %s (%s), driver %s\n", device.number, facts.name.c_str(), facts.type.c_str(),
-                           facts.driver.c_str());
-  text +=
-      print("  Vulkan %s, %.1f GiB of its own, subgroups of %u, %s\n", facts.version.c_str(),
-            static_cast<double>(facts.memory) / (1 << 30), facts.subgroup, facts.doubles ? "doubles" : "no doubles");
-  for (const std::string& reason : facts.reasons) text += "  not usable: " + reason + "\n";
-  for (const std::string& reason : facts.sampledReasons) text += "  no mode sampled: " + reason + "\n";
-  for (const DeviceLimit& limit : facts.limits) {
-    text += print("  %-36s %12llu, needed %10llu for mode %s\n", limit.name.c_str(), number(limit.has),
-                  number(limit.needed), limit.mode == Mode::contact ? "contact" : "sampled");
-  }
-  return text;
-}
-
 std::string arithmeticText(const DeviceTest& device) {
   std::string text = head(device, Part::arithmetic);
   for (const ArithmeticCheck& check : device.arithmetic) {
@@ -94,11 +78,29 @@ std::string lanesText(const std::vector<LaneRow>& rows) {
 
 }  // namespace
 
+std::string factsOf(const DeviceTest& device) {
+  const DeviceReport& facts = device.facts;
+  std::string text = print("device %u: %s (%s), driver %s\n", device.number, facts.name.c_str(), facts.type.c_str(),
+                           facts.driver.c_str());
+  text += print("  Vulkan %s, %.1f GiB of its own, subgroups of %u, %s\n", facts.version.c_str(),
+                static_cast<double>(facts.memory) / (1 << 30), facts.subgroup,
+                !facts.doubles       ? "no doubles"
+                : device.usesDoubles ? "doubles, which are used"
+                                     : "doubles, which are not used");
+  for (const std::string& reason : facts.reasons) text += "  not usable: " + reason + "\n";
+  for (const std::string& reason : facts.sampledReasons) text += "  no mode sampled: " + reason + "\n";
+  for (const DeviceLimit& limit : facts.limits) {
+    text += print("  %-36s %12llu, needed %10llu for mode %s\n", limit.name.c_str(), number(limit.has),
+                  number(limit.needed), limit.mode == Mode::contact ? "contact" : "sampled");
+  }
+  return text;
+}
+
 std::string textOf(const SelftestReport& report) {
   std::string text = "Cyber Radar selftest, commit " + report.commit + ", " + report.date + "\n" + report.command +
                      "\n" + report.processor + print("; %.1f of %.1f minutes\n", report.seconds / 60, report.minutes);
   for (const DeviceTest& device : report.devices) {
-    text += factsText(device);
+    text += "\n" + factsOf(device);
     if (!device.facts.usable()) continue;
     text += arithmeticText(device) + exactnessText(device) + throughputText(device);
     text += head(device, Part::stages) + stagesText(device.stages);

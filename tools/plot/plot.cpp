@@ -1,4 +1,4 @@
-#include "report/gnuplot.h"
+#include "plot/plot.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -20,28 +20,30 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
   throw std::runtime_error("gnuplot, which draws the charts, " + problem);
 }
 
-// Files without a name: pipes could fill up on both sides.
+// Unnamed files: with pipes on both sides, both programs could wait for each other.
 File openFile() {
   File file(std::tmpfile(), std::fclose);
   if (!file) fail(std::string("cannot be given a script: ") + std::strerror(errno));
   return file;
 }
 
-}  // namespace
-
-std::string gnuplot(const std::string& script) {
+// What gnuplot writes to its standard output for a script and its arguments, which are never parsed as commands.
+std::string gnuplot(const std::string& script, const std::vector<std::string>& texts) {
   const File in = openFile(), out = openFile();
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() || std::fflush(in.get()) != 0) {
     fail(std::string("cannot be given a script: ") + std::strerror(errno));
   }
   std::rewind(in.get());
+  std::vector<const char*> arguments{"gnuplot", "-d", "-c", "/dev/stdin"};  // -d: ignores the user's settings
+  for (const std::string& text : texts) arguments.push_back(text.c_str());
+  arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, fileno(in.get()), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDOUT_FILENO);
-  const char* arguments[] = {"gnuplot", "-d", nullptr};  // -d: no settings of the user's
   pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, const_cast<char* const*>(arguments), environ);
+  const int error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, const_cast<char* const*>(arguments.data()), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     fail(std::string("cannot be run: ") + std::strerror(error) + "; install it: apt install gnuplot-nox");
@@ -49,7 +51,7 @@ std::string gnuplot(const std::string& script) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (status != 0) fail("did not take a script");
+  if (status != 0) fail("failed");
   std::fseek(out.get(), 0, SEEK_END);
   std::string text(static_cast<size_t>(std::ftell(out.get())), '\0');
   std::rewind(out.get());
@@ -57,19 +59,17 @@ std::string gnuplot(const std::string& script) {
   return text;
 }
 
-void requireGnuplot() {
-  gnuplot("");
+}  // namespace
+
+std::string plot(const char* script, const std::filesystem::path& csv, const std::vector<std::string>& texts) {
+  // gnuplot runs a file name that begins with < as a command: an absolute path does not.
+  std::vector<std::string> arguments{std::filesystem::absolute(csv).string()};
+  arguments.insert(arguments.end(), texts.begin(), texts.end());
+  return gnuplot(std::string(kStyleScript) + script, arguments);
 }
 
-std::string quoted(const std::string& text) {
-  std::string constant = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      constant += "''";
-    else
-      constant += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return constant + "'";
+void requireGnuplot() {
+  gnuplot(kStyleScript, {});
 }
 
 }  // namespace radar::tools

@@ -92,25 +92,22 @@ TEST_CASE("the front holds what nothing beats in both speed and accuracy, and a 
   CHECK(namesOn({}).empty());
 }
 
-TEST_CASE("mode contact is held against what samples, not against what is certain, and what beats it is told") {
+TEST_CASE("mode contact is compared with methods that sample, not with other certain ones") {
   std::vector<Cell> cells{madeUp("contact", 5, 0), madeUp("reference", 1, 0), madeUp("sampled", 2, 0, 1),
                           madeUp("Embree rays", 3, 0.2), madeUp("ODE/OPCODE steps", 12, 0)};
-  const auto pointers = [&] {
+  const auto isOnFront = [&] {
     std::vector<const Cell*> all;
     for (const Cell& cell : cells) all.push_back(&cell);
-    return all;
+    return isContactOnFrontBesideSampling(all);
   };
-  const BesideSampling on = besideSampling(pointers());
-  CHECK(on.contact == &cells[0]);
-  CHECK(on.better == nullptr);
-  cells[3] = madeUp("Embree rays", 4, 1e-15);
+  CHECK(isOnFront());
   cells[4].us = 3;
-  CHECK(besideSampling(pointers()).better == &cells[4]);
+  CHECK_FALSE(isOnFront());
   cells.erase(cells.begin());
-  CHECK(besideSampling(pointers()).contact == nullptr);
+  CHECK_FALSE(isOnFront());
 }
 
-TEST_CASE("of one method's rows the fastest number of threads is shown, and what failed apart") {
+TEST_CASE("of one method's rows the fastest number of threads is shown, and none that failed") {
   Record record;
   record.cells = {madeUp("m", 4, 0), madeUp("m", 3, 0), madeUp("broken", NAN, NAN)};
   record.cells[1].threads = 2;
@@ -118,17 +115,10 @@ TEST_CASE("of one method's rows the fastest number of threads is shown, and what
   const std::vector<const Cell*> shown = shownCells(record, "front", "w");
   REQUIRE(shown.size() == 1);
   CHECK(shown[0]->threads == 2);
-  REQUIRE(failedCells(record, "front", "w").size() == 1);
 }
 
-TEST_CASE("slopes are those of power laws, and lines cross where the first stays below") {
-  const std::vector<Point> law{{1, 3}, {10, 3 * std::sqrt(10.0)}, {100, 30}};
-  CHECK(slopeOf(law) == Approx(0.5));
-  const std::vector<Point> flat{{0, 2}, {10, 2}, {20, 2}}, rising{{0, 1}, {10, 3}, {20, 5}};
-  REQUIRE(crossing(flat, rising).has_value());
-  CHECK(*crossing(flat, rising) == Approx(5));
-  CHECK_FALSE(crossing(rising, flat).has_value());
-  CHECK_FALSE(crossing(flat, std::vector<Point>{{0, 3}, {10, 3}, {20, 3}}).has_value());
+TEST_CASE("slopes are those of power laws") {
+  CHECK(slopeOf(std::vector<Point>{{1, 3}, {10, 3 * std::sqrt(10.0)}, {100, 30}}) == Approx(0.5));
 }
 
 TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
@@ -246,7 +236,7 @@ TEST_CASE("the documents sum up every method over all workloads, and tell where 
   CHECK_THAT(accuracy, Contains("| contact | 0.0% | 0.0% | 0 | 2 to 5 |"));
   CHECK_THAT(accuracy, Contains("| FCL steps 64 (fails on v) | 10.0% | 10.0% | 0.1 | 9 to 9 |"));
   CHECK_THAT(accuracy, Contains("| ODE steps (fails on w) | 30.0% | 30.0% | 0 | 1 to 1 |"));
-  CHECK_THAT(accuracy, Contains("Not drawn: ODE steps 16/64 (crashes).") && !Contains("| FCL steps 16"));
+  CHECK_THAT(accuracy, Contains("Not drawn: ODE steps 16, ODE steps 64 (crashes).") && !Contains("| FCL steps 16"));
   CHECK_THAT(accuracy, Contains("It took 2 to 5 µs per query; its worst error was 0."));
   CHECK_THAT(accuracy, Contains("on the front on 2 of 2 workloads."));
   CHECK_THAT(performance, Contains("| w | 2 | - | - | - | 4 (FCL steps 16) |"));
@@ -255,7 +245,7 @@ TEST_CASE("the documents sum up every method over all workloads, and tell where 
   CHECK_THAT(accuracyDocument(record, "chart"), Contains("on the front on 1 of 2 workloads, not on v."));
 }
 
-TEST_CASE("Table 1 is told from its first row to its last, with what mode contact overtakes") {
+TEST_CASE("Table 1 is described from its first row to its last") {
   Record record;
   for (const double boxes : {10'000.0, 20'000.0, 30'000.0}) {
     for (const char* method : {"contact", "sampled 64", "FCL steps 64"}) {
@@ -270,7 +260,6 @@ TEST_CASE("Table 1 is told from its first row to its last, with what mode contac
   CHECK_THAT(performance, Contains("| µs per query among | 10,000 boxes | 30,000 boxes | ratio |"));
   CHECK_THAT(performance, Contains("| FCL steps 64 | 2 | 6 | 3.00 |"));
   CHECK_THAT(performance, Contains("| the paper's OPCODE | 11270 | 85480 | 7.58 |"));
-  CHECK_THAT(performance, Contains("Mode contact overtakes FCL steps 64 from 20000 boxes on."));
   CHECK_THAT(performance, Contains("Mode contact takes 4 µs per query among 10,000 boxes and 4 µs among 30,000: 1.00"));
 }
 

@@ -45,18 +45,19 @@ std::string pictureOf(const Drawing& drawing, const std::string& charts) {
   return "![" + drawing.title.substr(0, drawing.title.find(": ")) + "](" + charts + "/" + drawing.name + ".svg)\n\n";
 }
 
-// Methods without numbers, those with one reason together.
+// Methods without numbers, by reason.
 std::string failuresOf(const Record& record, const WorkloadNote& workload) {
-  std::map<std::string, std::vector<const Cell*>> byReason;
-  for (const Cell* cell : failedCells(record, "front", workload.name)) {
-    std::vector<const Cell*>& cells = byReason[cell->failed];
-    if (cells.empty() || cells.back()->method != cell->method) cells.push_back(cell);
+  std::map<std::string, std::vector<std::string>> methods;
+  for (const Cell& cell : record.cells) {
+    if (cell.section != "front" || cell.workload != workload.name || cell.failed.empty()) continue;
+    std::vector<std::string>& names = methods[cell.failed];
+    if (names.empty() || names.back() != cell.method) names.push_back(cell.method);
   }
   std::string text;
-  for (const auto& [reason, cells] : byReason) {
-    std::string names;
-    for (const std::string& name : namesOf(cells)) names += (names.empty() ? "" : ", ") + name;
-    text += " Not drawn: " + names + " (" + reason + ").";
+  for (const auto& [reason, names] : methods) {
+    text += " Not drawn: ";
+    for (const std::string& name : names) text += (&name == &names.front() ? "" : ", ") + name;
+    text += " (" + reason + ").";
   }
   return text;
 }
@@ -140,8 +141,7 @@ std::string frontsOf(const Record& record) {
   std::string off;
   size_t number = 0;
   for (const WorkloadNote& workload : record.workloads) {
-    const BesideSampling beside = besideSampling(shownCells(record, "front", workload.name));
-    if (beside.contact != nullptr && beside.better == nullptr) {
+    if (isContactOnFrontBesideSampling(shownCells(record, "front", workload.name))) {
       ++number;
     } else {
       off += (off.empty() ? "" : ", ") + workload.name;
@@ -210,16 +210,15 @@ Table workloadTable(const Record& record) {
 
 // The times of the paper's Table 1 at both ends, the paper's own last.
 Table table1Table(const Record& record) {
-  const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
+  const std::vector<Point> contact = contactTimes(record, "table1", "boxes");
   if (contact.size() < 2) return {};
   Table table{
       {"µs per query among", grouped(contact.front().x) + " boxes", grouped(contact.back().x) + " boxes", "ratio"}};
   const auto add = [&](const std::string& name, double few, double many) {
     table.push_back({name, inWords(few), inWords(many), print("%.2f", many / few)});
   };
-  for (const std::string& method : methodsOf(record, "table1", "boxes")) {
-    const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
-    if (times.size() == contact.size()) add(method, times.front().y, times.back().y);
+  for (const auto& [first, times] : seriesOf(record, "table1", "boxes")) {
+    if (times.size() == contact.size()) add(first->method, times.front().y, times.back().y);
   }
   const PaperRow &few = paperTable1().front(), &many = paperTable1().back();
   if (few.boxes == contact.front().x && many.boxes == contact.back().x) {

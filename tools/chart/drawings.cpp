@@ -54,13 +54,12 @@ Drawing frontDrawing(const Record& record, const WorkloadNote& workload) {
   return drawing;
 }
 
-// The times of each method of a section, one method after the other.
 void addTimes(Drawing& drawing, const Record& record, const std::string& section, const std::string& workload) {
-  std::vector<const Cell*> cells = shownCells(record, section, workload);
-  std::stable_sort(cells.begin(), cells.end(), [&](const Cell* a, const Cell* b) {
-    return linetypeOf(record, a->family) < linetypeOf(record, b->family);
-  });
-  for (const Cell* cell : cells) addRow(drawing, cell->method, linetypeOf(record, cell->family), cell->x, cell->us);
+  for (const auto& [first, times] : seriesOf(record, section, workload)) {
+    for (const Point& point : times) {
+      addRow(drawing, first->method, linetypeOf(record, first->family), point.x, point.y);
+    }
+  }
 }
 
 Drawing table1Drawing(const Record& record) {

@@ -16,12 +16,6 @@ std::pair<double, double> rankOf(const Cell& cell) {
   return {wrongShare(cell), flooredError(cell)};
 }
 
-std::string listOf(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
 const Cell* methodIn(const std::vector<const Cell*>& cells, const std::string& method) {
   const auto found = std::find_if(cells.begin(), cells.end(), [&](const Cell* cell) { return cell->method == method; });
   return found == cells.end() ? nullptr : *found;
@@ -57,14 +51,6 @@ std::vector<const Cell*> shownCells(const Record& record, const std::string& sec
   return cells;
 }
 
-std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload) {
-  std::vector<const Cell*> cells;
-  for (const Cell& cell : record.cells) {
-    if (cell.section == section && cell.workload == workload && !cell.failed.empty()) cells.push_back(&cell);
-  }
-  return cells;
-}
-
 std::vector<const Cell*> frontOf(std::span<const Cell* const> cells) {
   std::vector<const Cell*> sorted(cells.begin(), cells.end()), front;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Cell* a, const Cell* b) {
@@ -76,21 +62,14 @@ std::vector<const Cell*> frontOf(std::span<const Cell* const> cells) {
   return front;
 }
 
-bool isSampling(const Cell& cell) {
-  return cell.family == "sampled" || cell.family.starts_with("Embree") || cell.family.ends_with("steps");
-}
-
-BesideSampling besideSampling(std::span<const Cell* const> cells) {
-  BesideSampling beside;
+bool isContactOnFrontBesideSampling(std::span<const Cell* const> cells) {
+  std::vector<const Cell*> compared;
   for (const Cell* cell : cells) {
-    if (cell->family == "contact") beside.contact = cell;
+    const std::string& family = cell->family;
+    const bool samples = family == "sampled" || family.starts_with("Embree") || family.ends_with("steps");
+    if (samples || family == "contact") compared.push_back(cell);
   }
-  if (beside.contact == nullptr) return beside;
-  for (const Cell* cell : cells) {
-    const bool asGood = isSampling(*cell) && cell->us <= beside.contact->us && rankOf(*cell) <= rankOf(*beside.contact);
-    if (asGood && (beside.better == nullptr || cell->us < beside.better->us)) beside.better = cell;
-  }
-  return beside;
+  return methodIn(frontOf(compared), "contact") != nullptr;
 }
 
 double slopeOf(std::span<const Point> points) {
@@ -106,32 +85,22 @@ double slopeOf(std::span<const Point> points) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-std::optional<double> crossing(std::span<const Point> first, std::span<const Point> second) {
-  std::optional<double> at;
-  for (size_t i = 0; i + 1 < first.size(); ++i) {
-    const double before = first[i].y - second[i].y, after = first[i + 1].y - second[i + 1].y;
-    if (before > 0 && after <= 0) at = first[i].x + (first[i + 1].x - first[i].x) * before / (before - after);
-    if (after > 0) at.reset();
-  }
-  return at;
-}
-
-std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload) {
-  std::vector<std::string> methods;
-  for (const Cell& cell : record.cells) {
-    if (cell.section != section || cell.workload != workload || !cell.failed.empty()) continue;
-    if (std::find(methods.begin(), methods.end(), cell.method) == methods.end()) methods.push_back(cell.method);
-  }
-  return methods;
-}
-
-std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
-                             const std::string& method) {
-  std::vector<Point> points;
+std::vector<Series> seriesOf(const Record& record, const std::string& section, const std::string& workload) {
+  std::vector<Series> all;
   for (const Cell* cell : shownCells(record, section, workload)) {
-    if (cell->method == method) points.push_back({cell->x, cell->us});
+    auto series =
+        std::find_if(all.begin(), all.end(), [&](const Series& one) { return one.first->method == cell->method; });
+    if (series == all.end()) series = all.insert(series, {cell, {}});
+    series->times.push_back({cell->x, cell->us});
   }
-  return points;
+  return all;
+}
+
+std::vector<Point> contactTimes(const Record& record, const std::string& section, const std::string& workload) {
+  for (const Series& series : seriesOf(record, section, workload)) {
+    if (series.first->method == "contact") return series.times;
+  }
+  return {};
 }
 
 std::string inWords(double value) {
@@ -140,18 +109,6 @@ std::string inWords(double value) {
 
 std::string timeInWords(double us) {
   return us < 1000 ? inWords(us) + " µs" : inWords(us / 1000) + " ms";
-}
-
-std::vector<std::string> namesOf(const std::vector<const Cell*>& cells) {
-  std::vector<std::string> names;
-  for (size_t i = 0; i < cells.size();) {
-    std::string name = cells[i]->method;
-    size_t end = i + 1;
-    for (; end < cells.size() && cells[end]->family == cells[i]->family; ++end) name += print("/%u", cells[end]->size);
-    names.push_back(name);
-    i = end;
-  }
-  return names;
 }
 
 std::string fastestRight(const Record& record, const std::string& workload) {
@@ -169,19 +126,12 @@ std::string fastestRight(const Record& record, const std::string& workload) {
 
 std::vector<std::string> table1Findings(const Record& record) {
   std::vector<std::string> findings;
-  const std::vector<Point> contact = timesOver(record, "table1", "boxes", "contact");
+  const std::vector<Point> contact = contactTimes(record, "table1", "boxes");
   if (contact.size() < 2) return findings;
   const Point &few = contact.front(), &many = contact.back();
   findings.push_back("Mode contact takes " + timeInWords(few.y) + " per query among " + grouped(few.x) + " boxes and " +
                      timeInWords(many.y) + " among " + grouped(many.x) +
                      print(": %.2f times as long.", many.y / few.y));
-  std::vector<std::string> crossed;
-  for (const std::string& method : methodsOf(record, "table1", "boxes")) {
-    const std::vector<Point> times = timesOver(record, "table1", "boxes", method);
-    if (method == "contact" || times.size() != contact.size()) continue;
-    if (const auto at = crossing(contact, times)) crossed.push_back(method + print(" from %.0f boxes on", *at));
-  }
-  if (!crossed.empty()) findings.push_back("Mode contact overtakes " + listOf(crossed) + ".");
   const PaperRow &first = kPaper.front(), &last = kPaper.back();
   findings.push_back(print(
       "On the paper's machine, its Cyber Radar took %.2f ms and then %.2f ms (%.2f times as long), OPCODE %.2f ms "
@@ -194,7 +144,7 @@ std::vector<std::string> table1Findings(const Record& record) {
 std::vector<std::string> growthFindings(const Record& record) {
   std::vector<std::string> findings;
   for (const char* axis : {"boxes", "sensors", "triangles"}) {
-    const std::vector<Point> points = timesOver(record, "growth", axis, "contact");
+    const std::vector<Point> points = contactTimes(record, "growth", axis);
     if (points.size() < 2) continue;
     findings.push_back("From " + grouped(points.front().x) + " to " + grouped(points.back().x) + " " + axis +
                        ", mode contact goes from " + timeInWords(points.front().y) + " to " +

@@ -1,4 +1,4 @@
-// What a run shows: the front of speed against accuracy, crossings, slopes, in numbers and in words.
+// What a run shows: the front of accuracy against speed, and how times grow, in numbers and in words.
 #pragma once
 
 #include <array>
@@ -26,8 +26,6 @@ double wrongShare(const Cell& cell);
 
 /// The cells of a workload that have numbers, each method once: in the number of threads in which it was fastest.
 std::vector<const Cell*> shownCells(const Record& record, const std::string& section, const std::string& workload);
-/// Those that have none.
-std::vector<const Cell*> failedCells(const Record& record, const std::string& section, const std::string& workload);
 
 /// What frontOf does, for readers.
 inline constexpr const char* kFrontInWords =
@@ -38,15 +36,8 @@ inline constexpr const char* kFrontInWords =
 /// shares, a lesser worst error, down to kErrorFloor.
 std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
 
-/// Whether the method looks at pixels, rays or steps only, and so sees samples of the shapes or of the motion.
-bool isSampling(const Cell& cell);
-
-/// Mode contact beside the methods that sample, not beside other certain ones.
-struct BesideSampling {
-  const Cell* contact = nullptr;  ///< null: not measured
-  const Cell* better = nullptr;   ///< of those as fast and as right, the fastest; null: mode contact is on the front
-};
-BesideSampling besideSampling(std::span<const Cell* const> cells);
+/// Whether mode contact is on the front beside the methods that sample pixels, rays or steps of the motion.
+bool isContactOnFrontBesideSampling(std::span<const Cell* const> cells);
 
 struct Point {
   double x = 0, y = 0;
@@ -54,23 +45,20 @@ struct Point {
 /// The exponent p of the power law y = c x^p that fits best, by least squares of logarithms. At least two different x.
 double slopeOf(std::span<const Point> points);
 
-/// Where the first line crosses below the second for good, linear between the points; both over the same x. Nothing
-/// where it does not, or is below from the start.
-std::optional<double> crossing(std::span<const Point> first, std::span<const Point> second);
-
-/// The methods of a workload that have numbers, in the order of the record.
-std::vector<std::string> methodsOf(const Record& record, const std::string& section, const std::string& workload);
-
-/// The times of one method over x, as of shownCells. `method`: Cell::method.
-std::vector<Point> timesOver(const Record& record, const std::string& section, const std::string& workload,
-                             const std::string& method);
+/// The times of one method over x.
+struct Series {
+  const Cell* first = nullptr;
+  std::vector<Point> times;
+};
+/// A series for each method of shownCells(), in that order.
+std::vector<Series> seriesOf(const Record& record, const std::string& section, const std::string& workload);
+/// Those of mode contact; empty: it was not measured.
+std::vector<Point> contactTimes(const Record& record, const std::string& section, const std::string& workload);
 
 /// Three digits, or whole; a dash where there is no number.
 std::string inWords(double value);
 /// "5.27 µs".
 std::string timeInWords(double us);
-/// The names of methods in a row, a family's members as one: "sampled 16/64/1024".
-std::vector<std::string> namesOf(const std::vector<const Cell*>& cells);
 
 /// The fastest method of a workload without a wrong answer, and mode contact beside it: one sentence, empty without
 /// mode contact.

@@ -92,5 +92,5 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
           Approx(1).margin(0.01));
     CHECK(run.stages.empty() == (run.point == 0));
   }
-  CHECK_THAT(tableOf(report), Contains("devices 0+1: ") && Contains("readback"));
+  CHECK_THAT(tableOf(report), Contains("devices 0+1, ") && Contains("readback"));
 }

@@ -31,8 +31,8 @@ std::string tableOf(const ScaleReport& report) {
   text += "\nStages, milliseconds of a pass with timestamps, summed over devices:\n";
   for (const ScaleRun& run : report.runs) {
     if (run.stages.empty()) continue;
-    text += "devices " + setOf(report, run) + ":";
-    for (const StageTime& stage : run.stages) text += print(" %s %.2f", stage.name.c_str(), stage.ms);
+    text += "devices " + setOf(report, run);
+    for (const StageTime& stage : run.stages) text += print(", %s %.2f", stage.name.c_str(), stage.ms);
     text += "\n";
   }
   return text;

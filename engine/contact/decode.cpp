@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "contact/exact_pairs.h"
+#include "exact/earliest_contact.h"
 
 namespace radar {
 
@@ -24,25 +24,38 @@ std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor)
   return {first, end};
 }
 
+namespace {
+
+// Corners are sorted, so that the device's numbering of them does not matter.
+exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query) {
+  Transform worldFromObject;
+  std::copy(std::begin(pair.pose), std::end(pair.pose), worldFromObject.m.begin());
+  exact::PlacedPair placed;
+  for (int i = 0; i < 3; ++i) {
+    placed.a[i] = transformPoint(query.worldFromMesh, pair.a[i]);
+    placed.b[i] = transformPoint(worldFromObject, pair.b[i]);
+  }
+  std::sort(placed.a.begin(), placed.a.end());
+  std::sort(placed.b.begin(), placed.b.end());
+  return placed;
+}
+
+}  // namespace
+
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query) {
-  ExactPairs exact(query);
+  const Motion motion(query);
+  exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {
-    exact.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query));
-    if (query.anyHit && exact.found()) break;
+    earliest.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query));
+    if (query.anyHit && earliest.found()) break;
   }
-  Result result;
+  if (!earliest.found() && found.detected == Detected::yes) {
+    throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+  }
+  if (!earliest.found()) return clearAnswer();
+  Result result = query.anyHit ? exact::anyHitAnswer(query) : Result();
   result.tier = Tier::contact;
-  result.status = Status::clear;
-  if (!exact.found()) {
-    if (found.detected == Detected::yes) throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
-  } else if (query.anyHit) {
-    result.status = Status::hit;
-    result.detected = Detected::yes;
-    result.lo = 0;
-    result.hi = query.distance;
-  } else {
-    exact.tell(result);
-  }
+  if (!query.anyHit) earliest.write(result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cpu/leaf_test.h"
+#include "exact/contact.h"
 
 namespace radar::cpu {
 

@@ -25,15 +25,6 @@ float sizeOf(const gpu::MeshNode& node) {
   return node.halfExtent[0] + node.halfExtent[1] + node.halfExtent[2];
 }
 
-exact::Triangle placed(const PlacedMesh& from, uint32_t triangle) {
-  exact::Triangle out;
-  for (int i = 0; i < 3; ++i) {
-    const uint32_t vertex = from.mesh.indices[3 * size_t{triangle} + i];
-    out[i] = radar::transformPoint(from.pose, &from.mesh.positions[3 * size_t{vertex}]);
-  }
-  return out;
-}
-
 bool floatsSuffice(const MeshPair& pair) {
   double scale = 0, magnitude = 0;
   for (int k = 0; k < 3; ++k) {
@@ -157,7 +148,9 @@ void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode&
     const uint32_t triA = pair.sensor.mesh.tree.order[(a.link & gpu::kLinkItem) + (lane & 1)];
     const uint32_t triB = pair.other.mesh.tree.order[(b.link & gpu::kLinkItem) + (lane >> 1)];
     const uint64_t before = exact::exactDecisions();
-    first.consider({pair.object, triB, triA}, placed(pair.sensor, triA), placed(pair.other, triB),
+    first.consider({pair.object, triB, triA},
+                   {placedTriangle(pair.sensor.mesh, pair.sensor.pose, triA),
+                    placedTriangle(pair.other.mesh, pair.other.pose, triB)},
                    static_cast<Axis>(found.axis[lane]));
     stats.exactPairs += exact::exactDecisions() != before;
   }

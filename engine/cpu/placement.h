@@ -1,7 +1,7 @@
 // A mesh placed in the world, for the box tests of its tree.
 #pragma once
 
-#include "cpu/motion.h"
+#include "exact/motion.h"
 #include "scene/scene.h"
 
 namespace radar::cpu {

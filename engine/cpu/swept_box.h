@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cpu/lanes.h"
-#include "cpu/motion.h"
+#include "exact/motion.h"
 #include "scene/object_tree.h"
 
 namespace radar::cpu {

@@ -2,7 +2,8 @@
 // and the motion itself; its unit is about the sensor's size.
 #pragma once
 
-#include "cpu/motion.h"
+#include "exact/contact.h"
+#include "exact/motion.h"
 
 namespace radar::cpu {
 

@@ -1,17 +1,18 @@
 #include "sampled/decode.h"
 
-#include "contact/exact_pairs.h"
+#include <algorithm>
+
+#include "exact/earliest_contact.h"
 #include "sampled/contact_point.h"
 
 namespace radar {
 
 namespace {
 
-Corners corners(const Mesh& mesh, const Transform& pose, uint32_t triangle) {
-  Corners p;
-  for (int i = 0; i < 3; ++i)
-    p[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
-  return p;
+exact::Triangle sortedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle) {
+  exact::Triangle corners = placedTriangle(mesh, worldFromMesh, triangle);
+  std::sort(corners.begin(), corners.end());
+  return corners;
 }
 
 // Within D or not, and nothing else.
@@ -37,8 +38,8 @@ void setFound(Result& result, const gpu::Answer& answer, const Query& query, con
   result.triA = answer.triA;
   if (result.status == Status::overlap) return;  // the surfaces already cross: no first point of contact
   const Object& object = scene.objects[answer.object].object;
-  describe(result, answer.feature, corners(scene.meshes[query.mesh], query.worldFromMesh, answer.triA),
-           corners(scene.meshes[object.mesh], object.worldFromMesh, answer.triB), query.direction);
+  describe(result, answer.feature, placedTriangle(scene.meshes[query.mesh], query.worldFromMesh, answer.triA),
+           placedTriangle(scene.meshes[object.mesh], object.worldFromMesh, answer.triB), query.direction);
 }
 
 }  // namespace
@@ -60,17 +61,20 @@ Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnre
   result.status = Status::undecided;
   if (answer.object != kNone) setFound(result, answer, query, scene);
   // An unresolved pair can improve on that only if it may meet before.
-  ExactPairs exact(query);
+  const Motion motion(query);
+  exact::EarliestContact earliest(motion);
   for (const gpu::SampledUnresolved& pair : open.first(answer.unresolvedPairs)) {
     if (answer.object != kNone && pair.low >= answer.hi) continue;
-    if (query.anyHit && (answer.object != kNone || exact.found())) break;
-    const PairName name{pair.object, pair.triB, pair.triA};
-    exact.consider(name, placedPair(name, query, scene));
+    if (query.anyHit && (answer.object != kNone || earliest.found())) break;
+    const Object& object = scene.objects[pair.object].object;
+    earliest.consider({pair.object, pair.triB, pair.triA},
+                      {sortedTriangle(scene.meshes[query.mesh], query.worldFromMesh, pair.triA),
+                       sortedTriangle(scene.meshes[object.mesh], object.worldFromMesh, pair.triB)});
     ++cpuPairs;
   }
   Result decided;
-  if (exact.found()) exact.tell(decided);
-  if (exact.found() && (answer.object == kNone || decided.hi < answer.hi)) {
+  if (earliest.found()) earliest.write(decided);
+  if (earliest.found() && (answer.object == kNone || decided.hi < answer.hi)) {
     decided.tier = Tier::sampled;
     decided.resolution = resolution;
     decided.lo = 0;

@@ -152,6 +152,15 @@ Vector transformPoint(const Transform& pose, const float* p) {
   return out;
 }
 
+std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle) {
+  std::array<Vector, 3> corners;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t vertex = mesh.indices[3 * size_t{triangle} + i];
+    corners[i] = transformPoint(worldFromMesh, &mesh.positions[3 * vertex]);
+  }
+  return corners;
+}
+
 Scene::Impl::Impl() : identity(nextVersion()) {}
 
 const ObjectTree& Scene::Impl::objectTree() const {

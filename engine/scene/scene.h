@@ -80,8 +80,11 @@ struct Scene::Impl {
   mutable ObjectTree tree_;
 };
 
-/// A box around the transformed mesh. It contains every vertex that `place` computes, and every one that a shader
-/// computes from the local floats.
+/// The corners of a triangle of the placed mesh.
+std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle);
+
+/// A box around the transformed mesh. It contains every vertex that `transformPoint` computes, and every one that a
+/// shader computes from the local floats.
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 
 /// The same for a matrix that takes local vertices. The caller adds the rounding error of that matrix.

@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 # is listed. No floor names one that comes later.
 set(floors math exact gpu scene contact cpu sampled sweep embed pool)
 set(math_may radar)
-set(exact_may math)
+set(exact_may radar math)
 set(gpu_may radar shaders spirv)
 set(scene_may radar math gpu shaders)
 set(contact_may radar math exact gpu scene shaders spirv)

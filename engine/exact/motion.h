@@ -1,10 +1,10 @@
-// The motion of one query.
+// The motion of one query, in double precision.
 #pragma once
 
-#include "exact/contact.h"
+#include "math/vector.h"
 #include "radar/radar.h"
 
-namespace radar::cpu {
+namespace radar {
 
 /// 2^-53: bound on the relative rounding error of an operation in double.
 inline constexpr double kUnit = 0x1p-53;
@@ -19,4 +19,4 @@ struct Motion {
   explicit Motion(const Query& query);
 };
 
-}  // namespace radar::cpu
+}  // namespace radar

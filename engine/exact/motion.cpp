@@ -1,11 +1,12 @@
-#include "cpu/motion.h"
+#include "exact/motion.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "exact/contact.h"
 #include "math/frame.h"
 
-namespace radar::cpu {
+namespace radar {
 
 namespace {
 
@@ -32,4 +33,4 @@ Motion::Motion(const Query& query)
   if (length > kLeastNormal && quotient > kLeastNormal) parameter = (1 - 8 * kUnit) * quotient;
 }
 
-}  // namespace radar::cpu
+}  // namespace radar

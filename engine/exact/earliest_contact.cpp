@@ -1,0 +1,80 @@
+#include "exact/earliest_contact.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "exact/common_point.h"
+
+namespace radar::exact {
+
+bool EarliestContact::consider(const PairName& name, const PlacedPair& pair) {
+  const auto interval = contact(pair.a, pair.b, motion_.direction);
+  if (!interval || sign(interval->last) < 0) return false;
+  return keep(name, pair, interval->first, sign(interval->first) <= 0);
+}
+
+bool EarliestContact::considerKnown(const PairName& name, const PlacedPair& pair, const Event& first) {
+  return keep(name, pair, first, false);
+}
+
+// -1, 0 or 1: the event comes before, at or after D.
+int EarliestContact::compareToEnd(const Event& event) const {
+  return event.s + event.error < motion_.parameter ? -1 : compareToDistance(event, motion_.distance);
+}
+
+bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap) {
+  if (!overlap && compareToEnd(first) > 0) return false;
+  if (found_) {
+    const int order = overlap || overlap_ ? int(overlap_) - int(overlap) : compare(first, event_);
+    if (order > 0 || (order == 0 && name_ < name)) return false;
+  }
+  found_ = true;
+  overlap_ = overlap;
+  name_ = name;
+  pair_ = pair;
+  event_ = first;
+  return true;
+}
+
+void EarliestContact::write(Result& result) const {
+  result.detected = Detected::yes;
+  result.status = overlap_ ? Status::overlap : Status::hit;
+  result.object = name_.object;
+  result.triB = name_.triB;
+  result.triA = name_.triA;
+  const double s = overlap_ ? 0 : parameter(event_);
+  if (!overlap_ || sign(event_) == 0) {
+    result.point = point(event_, s);
+    result.normal = normal(event_);
+  } else {
+    result.point = commonPoint(pair_.a, pair_.b);
+  }
+  if (overlap_) {
+    result.t = result.lo = result.hi = result.fraction = 0;
+  } else {
+    setBracket(result, s * motion_.length);
+  }
+}
+
+void EarliestContact::setBracket(Result& result, double t) const {
+  const double distance = motion_.distance;
+  const bool atEnd = compareToEnd(event_) == 0;
+  result.t = atEnd ? distance : std::min(t, distance);
+  // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is
+  // what the parameter may lose if it is subnormal.
+  const double slack = 8 * kUnit * t + (motion_.length + 2) * std::numeric_limits<double>::denorm_min();
+  result.lo = atEnd ? distance : std::min(std::max(t - slack, 0.0), result.t);
+  result.hi = atEnd ? distance : std::min(t + slack, distance);
+  result.fraction = result.t / distance;
+}
+
+Result anyHitAnswer(const Query& query) {
+  Result result;
+  result.status = Status::hit;
+  result.detected = Detected::yes;
+  result.lo = 0;
+  result.hi = query.distance;
+  return result;
+}
+
+}  // namespace radar::exact

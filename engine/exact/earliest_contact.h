@@ -1,0 +1,59 @@
+// The earliest contact among pairs of triangles, and the answer it makes.
+#pragma once
+
+#include <compare>
+
+#include "exact/contact.h"
+#include "exact/motion.h"
+
+namespace radar::exact {
+
+/// Names a pair of triangles. Of pairs that meet at the same time the least name wins.
+struct PairName {
+  ObjectId object = kNone;
+  uint32_t triB = kNone, triA = kNone;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero compared with for a pointer
+  friend auto operator<=>(const PairName&, const PairName&) = default;
+};
+
+/// The sensor's triangle and the scene's, placed. Sorted corners make the result independent of their order.
+struct PlacedPair {
+  Triangle a, b;
+};
+
+class EarliestContact {
+ public:
+  /// `motion` must outlive this.
+  explicit EarliestContact(const Motion& motion) : motion_(motion) {}
+
+  /// Computes the pair's contact exactly, and keeps it if it is the earliest so far. Returns whether it was kept.
+  bool consider(const PairName& name, const PlacedPair& pair);
+  /// The same for a contact that is known to begin at `first`, not before the start.
+  bool considerKnown(const PairName& name, const PlacedPair& pair, const Event& first);
+
+  bool found() const { return found_; }
+  /// Whether the earliest contact is at the start.
+  bool overlaps() const { return overlap_; }
+  const PairName& name() const { return name_; }
+  /// Where contact of the pair begins; before the start if overlaps().
+  const Event& event() const { return event_; }
+  /// Sets everything but the tier. Needs found().
+  void write(Result& result) const;
+
+ private:
+  bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap);
+  int compareToEnd(const Event& event) const;
+  void setBracket(Result& result, double t) const;
+
+  const Motion& motion_;
+  bool found_ = false;
+  bool overlap_ = false;
+  PairName name_;
+  PlacedPair pair_{};
+  Event event_{};
+};
+
+/// The answer to a query with `anyHit` that has a contact, without the tier.
+Result anyHitAnswer(const Query& query);
+
+}  // namespace radar::exact

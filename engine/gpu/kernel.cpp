@@ -14,14 +14,14 @@ namespace {
 constexpr uint32_t kMaxGroupsPerAxis = 65535;
 
 DescriptorSetLayout makeSetLayout(const Device::Impl& device, const std::vector<Descriptor>& descriptors,
-                                  const char* name) {
+                                  VkShaderStageFlagBits stage, const char* name) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   bindings.reserve(descriptors.size());
   for (const Descriptor& descriptor : descriptors) {
     bindings.push_back({.binding = descriptor.binding,
                         .descriptorType = descriptor.type,
                         .descriptorCount = 1,
-                        .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT});
+                        .stageFlags = VkShaderStageFlags(stage)});
   }
   const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                              .bindingCount = static_cast<uint32_t>(bindings.size()),
@@ -35,8 +35,8 @@ DescriptorSetLayout makeSetLayout(const Device::Impl& device, const std::vector<
 }
 
 PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLayout setLayout, uint32_t pushBytes,
-                                  const char* name) {
-  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
+                                  VkShaderStageFlagBits stage, const char* name) {
+  const VkPushConstantRange range{VkShaderStageFlags(stage), 0, pushBytes};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &setLayout,
@@ -70,16 +70,26 @@ DescriptorPool makePool(const Device::Impl& device, const std::vector<Descriptor
 }  // namespace
 
 Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
-               std::span<const uint32_t> constants, Subgroups subgroups)
-    : device_(&device), name_(name), interface_(reflectCompute(spirv, name)) {
+               VkShaderStageFlagBits stage)
+    : device_(&device), name_(name), stage_(stage), interface_(reflectShader(spirv, name, stage)) {
   if (interface_.descriptors.empty()) throw Error("kernel \"" + name_ + "\" has no descriptors");
   if (interface_.pushBytes > kMaxPushBytes) {
     throw Error("kernel \"" + name_ + "\" has push constants of " + std::to_string(interface_.pushBytes) +
                 " bytes, but only " + std::to_string(kMaxPushBytes) + " are portable");
   }
-  setLayout_ = makeSetLayout(device, interface_.descriptors, name);
-  layout_ = makePipelineLayout(device, setLayout_.get(), interface_.pushBytes, name);
+  setLayout_ = makeSetLayout(device, interface_.descriptors, stage, name);
+  layout_ = makePipelineLayout(device, setLayout_.get(), interface_.pushBytes, stage, name);
+}
+
+Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
+               std::span<const uint32_t> constants, Subgroups subgroups)
+    : Kernel(device, spirv, name, VK_SHADER_STAGE_COMPUTE_BIT) {
   pipeline_ = computePipeline(device, layout_.get(), spirv, name, constants, subgroups == Subgroups::full);
+}
+
+Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, const DepthTarget& target)
+    : Kernel(device, spirv, name, VK_SHADER_STAGE_VERTEX_BIT) {
+  pipeline_ = depthPipeline(device, layout_.get(), target.renderPass, spirv, name, target.vertexStride);
 }
 
 std::string Kernel::describe(const Descriptor& descriptor) const {
@@ -165,7 +175,7 @@ void KernelArguments::set(std::initializer_list<Argument> arguments) {
 }
 
 void KernelArguments::checkDispatch(PushBytes push) const {
-  if (!complete_) throw Error("kernel \"" + kernel_->name_ + "\" is dispatched before its arguments were set");
+  if (!complete_) throw Error("kernel \"" + kernel_->name_ + "\" is used before its arguments were set");
   if (push.size() != kernel_->interface_.pushBytes) {
     throw Error("kernel \"" + kernel_->name_ + "\" has push constants of " +
                 std::to_string(kernel_->interface_.pushBytes) + " bytes, but was given " + std::to_string(push.size()));
@@ -179,6 +189,14 @@ void KernelArguments::bind(const Commands& commands, PushBytes push) const {
   if (push.empty()) return;
   commands->CmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<uint32_t>(push.size()),
                              push.data());
+}
+
+void KernelArguments::bindForDraws(const Commands& commands) const {
+  assert(kernel_->stage_ == VK_SHADER_STAGE_VERTEX_BIT);
+  checkDispatch({});
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel_->pipeline_.get());
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel_->layout_.get(), 0, 1, &set_, 0,
+                                  nullptr);
 }
 
 void KernelArguments::record(const Commands& commands, uint32_t groups, PushBytes push) const {

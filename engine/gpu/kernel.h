@@ -1,5 +1,5 @@
-// Compute shaders with checked arguments: a wrong or missing buffer, or a push struct of the wrong size, is an error.
-// Layouts and sizes are read from the shader's SPIR-V.
+// Shaders with checked arguments: a wrong or missing buffer, or a push struct of the wrong size, is an error. Layouts
+// and sizes are read from the shader's SPIR-V.
 #pragma once
 
 #include <initializer_list>
@@ -25,13 +25,22 @@ enum class Subgroups {
   full  ///< all of Device::Impl::subgroupSize invocations: a workgroup of that size is one subgroup
 };
 
-/// A compute pipeline and its layouts. Immutable, so any number of users on any thread may share it.
+/// Where a depth-only pipeline draws, and how far apart its vertices are, bytes.
+struct DepthTarget {
+  VkRenderPass renderPass;
+  uint32_t vertexStride;
+};
+
+/// A pipeline, of a compute shader or for depth-only draws, and its layouts. Immutable, so any number of users on any
+/// thread may share it.
 class Kernel {
  public:
-  /// `constants`: values of specialization constants 0, 1, ... Throws Error if reflectCompute (gpu/spirv.h)
+  /// `constants`: values of specialization constants 0, 1, ... Throws Error if reflectShader (gpu/spirv.h)
   /// does, or if the shader has no descriptors or more than kMaxPushBytes of push constants.
   Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
          std::span<const uint32_t> constants = {}, Subgroups subgroups = Subgroups::any);
+  /// A depth-only pipeline of a vertex shader (gpu/pipeline.h), for bindForDraws. Throws Error as above.
+  Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, const DepthTarget& target);
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
@@ -40,11 +49,13 @@ class Kernel {
 
  private:
   friend class KernelArguments;
+  Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, VkShaderStageFlagBits stage);
   std::string describe(const Descriptor& descriptor) const;
 
   const Device::Impl* device_;
   std::string name_;
-  ComputeInterface interface_;
+  VkShaderStageFlagBits stage_;
+  ShaderInterface interface_;
   DescriptorSetLayout setLayout_;
   PipelineLayout layout_;
   Pipeline pipeline_;
@@ -75,7 +86,7 @@ class Argument {
   VkSampler sampler_ = VK_NULL_HANDLE;
 };
 
-/// One user's descriptor set for a kernel, and the dispatches with it. The kernel outlives it.
+/// One user's descriptor set for a kernel, and the dispatches or draws with it. The kernel outlives it.
 class KernelArguments {
  public:
   explicit KernelArguments(const Kernel& kernel);
@@ -104,6 +115,10 @@ class KernelArguments {
   void dispatchIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset, const Push& push) const {
     recordIndirect(commands, buffer, offset, bytesOfPush(push));
   }
+
+  /// Binds the pipeline and the set of a depth-only kernel for the draws that follow. Throws Error if `set` has not
+  /// been called.
+  void bindForDraws(const Commands& commands) const;
 
  private:
   using PushBytes = std::span<const std::byte>;

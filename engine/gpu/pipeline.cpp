@@ -1,8 +1,5 @@
 #include "gpu/pipeline.h"
 
-#include <algorithm>
-#include <map>
-
 #include "gpu/check.h"
 
 namespace radar::gpu {
@@ -28,86 +25,6 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const Shade
 }
 
 }  // namespace
-
-Bindings::Bindings(const Device::Impl& device, std::span<const Binding> bindings, uint32_t pushBytes)
-    : device_(&device) {
-  std::vector<VkDescriptorSetLayoutBinding> slots;
-  std::map<VkDescriptorType, uint32_t> counts;
-  for (const Binding& binding : bindings) {
-    const bool image = binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    slots.push_back({.binding = binding.number,
-                     .descriptorType = binding.type,
-                     .descriptorCount = 1,
-                     .stageFlags = image ? VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT}
-                                         : VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT});
-    ++counts[binding.type];
-  }
-  const VkDescriptorSetLayoutCreateInfo setInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                                .bindingCount = static_cast<uint32_t>(slots.size()),
-                                                .pBindings = slots.data()};
-  VkDescriptorSetLayout setLayout;
-  check(device.vk.CreateDescriptorSetLayout(device.device(), &setInfo, device.host.allocator, &setLayout),
-        "vkCreateDescriptorSetLayout");
-  setLayout_ = {device, setLayout};
-
-  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
-  const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                              .setLayoutCount = 1,
-                                              .pSetLayouts = &setLayout,
-                                              .pushConstantRangeCount = 1,
-                                              .pPushConstantRanges = &range};
-  VkPipelineLayout layout;
-  check(device.vk.CreatePipelineLayout(device.device(), &layoutInfo, device.host.allocator, &layout),
-        "vkCreatePipelineLayout");
-  pipelineLayout_ = {device, layout};
-
-  std::vector<VkDescriptorPoolSize> sizes;
-  sizes.reserve(counts.size());
-  for (const auto& [type, count] : counts) sizes.push_back({type, count});
-  const VkDescriptorPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                            .maxSets = 1,
-                                            .poolSizeCount = static_cast<uint32_t>(sizes.size()),
-                                            .pPoolSizes = sizes.data()};
-  VkDescriptorPool pool;
-  check(device.vk.CreateDescriptorPool(device.device(), &poolInfo, device.host.allocator, &pool),
-        "vkCreateDescriptorPool");
-  pool_ = {device, pool};
-  const VkDescriptorSetAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                             .descriptorPool = pool,
-                                             .descriptorSetCount = 1,
-                                             .pSetLayouts = &setLayout};
-  check(device.vk.AllocateDescriptorSets(device.device(), &allocate, &set_), "vkAllocateDescriptorSets");
-}
-
-void Bindings::setBuffer(uint32_t number, const Buffer& buffer) {
-  if (buffer.capacity() == 0) return;
-  const VkDeviceSize range =
-      std::min<VkDeviceSize>(buffer.capacity(), device_->properties.limits.maxStorageBufferRange);
-  const VkDescriptorBufferInfo info{buffer.get(), 0, range};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set_,
-                                   .dstBinding = number,
-                                   .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                   .pBufferInfo = &info};
-  device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
-}
-
-void Bindings::setImage(uint32_t number, VkImageView view, VkSampler sampler) {
-  const VkDescriptorImageInfo info{sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set_,
-                                   .dstBinding = number,
-                                   .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                   .pImageInfo = &info};
-  device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
-}
-
-void Bindings::bind(const Commands& commands) const {
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelineLayout_.get(), 0, 1, &set_, 0,
-                                  nullptr);
-}
 
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants, bool fullSubgroups) {

@@ -33,7 +33,7 @@ enum Op : uint32_t {
 };
 enum Decoration : uint32_t { kArrayStride = 6, kBinding = 33, kDescriptorSet = 34, kOffset = 35 };
 enum Storage : uint32_t { kUniformConstant = 0, kUniform = 2, kPushConstant = 9, kStorageBuffer = 12 };
-constexpr uint32_t kMagic = 0x07230203, kHeaderWords = 5, kGlCompute = 5, kDimBuffer = 5, kSampled = 1;
+constexpr uint32_t kMagic = 0x07230203, kHeaderWords = 5, kVertex = 0, kGlCompute = 5, kDimBuffer = 5, kSampled = 1;
 
 struct Extent {
   uint32_t bytes, alignment;
@@ -41,8 +41,8 @@ struct Extent {
 
 class Module {
  public:
-  Module(std::span<const uint32_t> spirv, const char* name);
-  ComputeInterface reflect() const;
+  Module(std::span<const uint32_t> spirv, const char* name, VkShaderStageFlagBits stage);
+  ShaderInterface reflect() const;
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw Error("shader \"" + name_ + "\": " + what); }
@@ -62,7 +62,8 @@ class Module {
   VkDescriptorType imageType(uint32_t typeId, const std::string& what) const;
 
   std::string name_;
-  uint32_t computeShaders_ = 0, otherShaders_ = 0;
+  bool isVertex_;
+  uint32_t ofStage_ = 0, others_ = 0;  // entry points
   std::map<uint32_t, std::string> names_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> decorations_;    // (id, decoration) -> its value
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> memberOffsets_;  // (struct, member)
@@ -71,7 +72,8 @@ class Module {
   std::vector<Instruction> variables_;
 };
 
-Module::Module(std::span<const uint32_t> spirv, const char* name) : name_(name) {
+Module::Module(std::span<const uint32_t> spirv, const char* name, VkShaderStageFlagBits stage)
+    : name_(name), isVertex_(stage == VK_SHADER_STAGE_VERTEX_BIT) {
   if (spirv.size() < kHeaderWords || spirv[0] != kMagic) fail("not SPIR-V");
   for (size_t at = kHeaderWords; at < spirv.size();) {
     const uint32_t words = spirv[at] >> 16;
@@ -99,7 +101,7 @@ void Module::add(Instruction i) {
       names_[word(i, 1)] = text(i, 2);
       break;
     case kOpEntryPoint:
-      ++(word(i, 1) == kGlCompute && text(i, 3) == "main" ? computeShaders_ : otherShaders_);
+      ++(word(i, 1) == (isVertex_ ? kVertex : kGlCompute) && text(i, 3) == "main" ? ofStage_ : others_);
       break;
     case kOpDecorate:
       decorations_[{word(i, 1), word(i, 2)}] = i.size() > 3 ? i[3] : 0;
@@ -221,9 +223,11 @@ Descriptor Module::descriptorOf(Instruction variable, uint32_t typeId) const {
   return descriptor;
 }
 
-ComputeInterface Module::reflect() const {
-  if (computeShaders_ != 1 || otherShaders_ != 0) fail("expected one entry point, a compute shader's \"main\"");
-  ComputeInterface found;
+ShaderInterface Module::reflect() const {
+  if (ofStage_ != 1 || others_ != 0) {
+    fail(std::string("expected one entry point, a ") + (isVertex_ ? "vertex" : "compute") + " shader's \"main\"");
+  }
+  ShaderInterface found;
   for (const Instruction& variable : variables_) {
     const uint32_t storage = word(variable, 3);
     const uint32_t typeId = word(type(word(variable, 1)), 3);
@@ -245,8 +249,8 @@ ComputeInterface Module::reflect() const {
 
 }  // namespace
 
-ComputeInterface reflectCompute(std::span<const uint32_t> spirv, const char* name) {
-  return Module(spirv, name).reflect();
+ShaderInterface reflectShader(std::span<const uint32_t> spirv, const char* name, VkShaderStageFlagBits stage) {
+  return Module(spirv, name, stage).reflect();
 }
 
 }  // namespace radar::gpu

@@ -1,4 +1,4 @@
-// The descriptors and push constants that a compute shader declares, read from its SPIR-V.
+// The descriptors and push constants that a shader declares, read from its SPIR-V.
 #pragma once
 
 #include <span>
@@ -22,13 +22,14 @@ struct Descriptor {
   uint32_t bytes = 0;
 };
 
-struct ComputeInterface {
+struct ShaderInterface {
   std::vector<Descriptor> descriptors;  ///< in the order of their bindings, each binding once
   uint32_t pushBytes = 0;               ///< size of the push constants, as C++ sizeof; 0: none
 };
 
-/// Expects one compute shader, "main", with descriptors of the types above in set 0, each with its own binding. Throws
-/// Error naming anything else. `name`: of the shader, for messages.
-ComputeInterface reflectCompute(std::span<const uint32_t> spirv, const char* name);
+/// Expects one shader of the stage (compute or vertex), "main", with descriptors of the types above in set 0, each with
+/// its own binding. Throws Error naming anything else. `name`: of the shader, for messages.
+ShaderInterface reflectShader(std::span<const uint32_t> spirv, const char* name,
+                              VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT);
 
 }  // namespace radar::gpu

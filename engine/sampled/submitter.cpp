@@ -30,17 +30,19 @@ namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-constexpr gpu::Binding kDraws[] = {{gpu::kSlotDraws.number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
 
-// The compute passes, made once for a device.
+// Made once for a device.
 struct SampledKernels {
   explicit SampledKernels(const Device::Impl& device)
-      : reduce(device, k_sampled_reduce_comp, "reduce"),
+      : renderPass(gpu::depthRenderPass(device)),
+        depth(device, k_sampled_depth_vert, "depth", {renderPass.get(), sizeof(gpu::Vertex)}),
+        reduce(device, k_sampled_reduce_comp, "reduce"),
         identify(device, k_sampled_identify_comp, "identify"),
         solve(device,
               device.doubles ? std::span<const uint32_t>(k_sampled_solve_comp) : k_sampled_solve_comp_RADAR_NO_DOUBLES,
               "solve", device.divisionConstants()) {}
-  gpu::Kernel reduce, identify, solve;
+  gpu::RenderPass renderPass;
+  gpu::Kernel depth, reduce, identify, solve;
 };
 
 }  // namespace
@@ -52,11 +54,8 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       resident_(resident),
       upload_(device),
       submission_(device, timestamps),
-      drawBindings_(device, kDraws, sizeof(uint32_t)),
-      renderPass_(gpu::depthRenderPass(device)),
+      renderPass_(device.shared<SampledKernels>().renderPass.get()),
       sampler_(gpu::texelSampler(device)),
-      depth_(gpu::depthPipeline(device, drawBindings_.layout(), renderPass_.get(), k_sampled_depth_vert, "depth",
-                                sizeof(gpu::Vertex))),
       views_(device, "views", BufferDomain::device, kUploaded),
       draws_(device, "draws", BufferDomain::device, kUploaded),
       items_(device, "items", BufferDomain::device, kUploaded),
@@ -65,6 +64,7 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       answers_(device, "answers", BufferDomain::device, kComputed),
       unresolvedPairs_(device, "unresolved pairs", BufferDomain::device, kComputed),
       readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      depth_(device.shared<SampledKernels>().depth),
       reduce_(device.shared<SampledKernels>().reduce),
       identify_(device.shared<SampledKernels>().identify),
       solve_(device.shared<SampledKernels>().solve) {}
@@ -77,8 +77,8 @@ SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& ba
   uint64_t kept = bytes(batch.resolution, batch.layers);
   for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
   if (kept > 2 * pictureBytes_) pictures_.clear();
-  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
-  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray range(*device_, "R", renderPass_, batch.resolution, batch.layers);
+  gpu::DepthArray mask(*device_, "M", renderPass_, batch.resolution, batch.layers);
   return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
 }
 
@@ -101,7 +101,7 @@ void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene
 void SampledSubmitter::bind(const Pictures& pictures) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = resident_.buffers();
-  drawBindings_.setBuffer(kSlotDraws.number, draws_);
+  depth_.set({{kSlotDraws, draws_}});
   reduce_.set({{kSlotViews, views_},
                {kSlotCandidates, candidates_},
                {kSlotRanks, ranks_},
@@ -166,12 +166,9 @@ void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scen
   pictures.mask.recordFirstUse(commands);
   gpu::uploadToRead(commands);
 
-  const VkDescriptorSet set = drawBindings_.set();
   const VkBuffer vertices = resident_.buffers().vertices.get();
   const VkDeviceSize zero = 0;
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawBindings_.layout(), 0, 1, &set, 0,
-                                  nullptr);
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, depth_.get());
+  depth_.bindForDraws(commands);
   commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
   commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");

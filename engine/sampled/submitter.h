@@ -5,7 +5,6 @@
 
 #include "gpu/depth_array.h"
 #include "gpu/kernel.h"
-#include "gpu/pipeline.h"
 #include "gpu/submission.h"
 #include "sampled/batch.h"
 #include "scene/gpu_scene.h"
@@ -57,10 +56,8 @@ class SampledSubmitter {
   GpuScene& resident_;
   gpu::Upload upload_;
   gpu::Submission submission_;
-  gpu::Bindings drawBindings_;  ///< of the depth passes
-  gpu::RenderPass renderPass_;
+  VkRenderPass renderPass_;
   gpu::Sampler sampler_;
-  gpu::Pipeline depth_;
   gpu::Array<gpu::View> views_;
   gpu::Array<gpu::Draw> draws_;
   gpu::Array<gpu::Item> items_;
@@ -69,7 +66,7 @@ class SampledSubmitter {
   gpu::Array<gpu::Answer> answers_;
   gpu::Array<gpu::SampledUnresolved> unresolvedPairs_;
   gpu::Buffer readback_;
-  gpu::KernelArguments reduce_, identify_, solve_;
+  gpu::KernelArguments depth_, reduce_, identify_, solve_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side
 };
 

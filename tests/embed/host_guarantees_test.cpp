@@ -11,6 +11,7 @@
 #include "gpu/pipeline.h"
 #include "radar/recorder.h"
 #include "spirv/skin_comp.h"
+#include "support/bindings.h"
 #include "workloads/shapes.h"
 
 struct Moving {
@@ -368,13 +369,11 @@ TEST_CASE(
     for (Query& query : queries) query.worldFromMesh.m[11] = -3;
     queries[1].worldFromMesh.m[3] = 10;
 
-    std::vector<gpu::Binding> list;
-    for (const uint32_t number : {0u, 1u, 2u}) list.push_back({number, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER});
-    gpu::Bindings bindings(hosts.impl(), list, sizeof(float));
+    test::Bindings bindings(hosts.impl(), 3, sizeof(float));
     const gpu::Pipeline skin = gpu::computePipeline(hosts.impl(), bindings.layout(), k_skin_comp, "skin");
-    bindings.setBuffer(0, atRest);
-    bindings.setBuffer(1, skinned);
-    bindings.setBuffer(2, transforms);
+    bindings.setBuffer(0, atRest.get());
+    bindings.setBuffer(1, skinned.get());
+    bindings.setBuffer(2, transforms.get());
     Recorder recorder(device, scene);
     gpu::Submission submission(hosts.impl(), false);
     const test::Counts before = test::counts();

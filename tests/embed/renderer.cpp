@@ -13,14 +13,11 @@ namespace radar::test {
 Renderer::Renderer(const Device& device)
     : device_(device.impl()),
       submission_(device_, false),
-      bindings_(
-          device_,
-          std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}},
-          sizeof(uint32_t)),
+      bindings_(device_, 2, sizeof(uint32_t)),
       pipeline_(gpu::computePipeline(device_, bindings_.layout(), k_read_results_comp, "host's pass")),
       seen_(device_, "what the host sees", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
   seen_.reserve(4096 * sizeof(Seen));
-  bindings_.setBuffer(1, seen_);
+  bindings_.setBuffer(1, seen_.get());
 }
 
 void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool withBarrier) {
@@ -30,14 +27,7 @@ void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool w
   } else {
     recorder.record(commands, queries);
   }
-  const VkDescriptorBufferInfo results{recorder.results(), 0, VK_WHOLE_SIZE};
-  const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = bindings_.set(),
-                                   .dstBinding = 0,
-                                   .descriptorCount = 1,
-                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                   .pBufferInfo = &results};
-  device_.vk.UpdateDescriptorSets(device_.device(), 1, &write, 0, nullptr);
+  bindings_.setBuffer(0, recorder.results());
   const auto count = static_cast<uint32_t>(queries.size());
   commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
   bindings_.bind(commands);

@@ -4,9 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "gpu/buffer.h"
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
+#include "support/bindings.h"
 #include "workloads/families.h"
 
 namespace radar::test {
@@ -32,7 +34,7 @@ class Renderer {
  private:
   const Device::Impl& device_;
   gpu::Submission submission_;
-  gpu::Bindings bindings_;
+  Bindings bindings_;
   gpu::Pipeline pipeline_;
   gpu::Buffer seen_;
 };

@@ -89,7 +89,7 @@ TEST_CASE("a dispatch is refused before the arguments are set, and with push con
   KernelArguments scale(kernels().scale), countGroups(kernels().countGroups);
   const Commands none;
   CHECK(messageOf([&] { scale.dispatch(none, 1, ScalePush{}); }) ==
-        "kernel \"scale\" is dispatched before its arguments were set");
+        "kernel \"scale\" is used before its arguments were set");
   scale.set({{kSlotValues, b.values}, {kSlotResults, b.results}});
   countGroups.set({{kSlotGroups, b.groups}});
   CHECK(messageOf([&] { scale.dispatch(none, 1); }) ==

@@ -1,25 +1,23 @@
 #include "support/buffer_words.h"
 
-#include <array>
-
 #include "gpu/barrier.h"
+#include "gpu/buffer.h"
 #include "gpu/pipeline.h"
 #include "gpu/submission.h"
 #include "spirv/copy_words_comp.h"
+#include "support/bindings.h"
 #include "support/test_device.h"
 
 namespace radar::test {
 
 std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count) {
   const Device::Impl& device = test::device().impl();
-  gpu::Bindings bindings(
-      device,
-      std::array<gpu::Binding, 2>{{{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}}}, 4);
+  Bindings bindings(device, 2, 4);
   const gpu::Pipeline pipeline = gpu::computePipeline(device, bindings.layout(), k_copy_words_comp, "copy words");
   gpu::Buffer out(device, "words", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   out.reserve(4 * count);
-  bindings.setBuffer(0, buffer);
-  bindings.setBuffer(1, out);
+  bindings.setBuffer(0, buffer.get());
+  bindings.setBuffer(1, out.get());
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();
   bindings.bind(commands);

@@ -50,7 +50,7 @@ uint64_t mostOf(std::initializer_list<VkDescriptorType> types, Mode mode) {
   for (const auto& [shader, spirv] : test::kEngineShaders) {
     if (std::string(shader).ends_with(".vert") || isOfSampled(shader) != (mode == Mode::sampled)) continue;
     size_t count = 0;
-    for (const gpu::Descriptor& descriptor : gpu::reflectCompute(spirv, shader).descriptors) {
+    for (const gpu::Descriptor& descriptor : gpu::reflectShader(spirv, shader).descriptors) {
       count += std::count(types.begin(), types.end(), descriptor.type);
     }
     most = std::max(most, count);

@@ -36,7 +36,7 @@ bool equal(const Descriptor& a, const Descriptor& b) {
 }
 
 void checkDescriptors(std::span<const uint32_t> spirv, const std::vector<Descriptor>& expected) {
-  const std::vector<Descriptor> found = reflectCompute(spirv, "found").descriptors;
+  const std::vector<Descriptor> found = reflectShader(spirv, "found").descriptors;
   REQUIRE(found.size() == expected.size());
   for (size_t i = 0; i < found.size(); ++i) {
     CAPTURE(i, found[i].binding, found[i].name, found[i].type, found[i].stride, found[i].arrayOffset, found[i].bytes);
@@ -44,7 +44,7 @@ void checkDescriptors(std::span<const uint32_t> spirv, const std::vector<Descrip
   }
 }
 
-const Descriptor& descriptorAt(const ComputeInterface& found, uint32_t binding) {
+const Descriptor& descriptorAt(const ShaderInterface& found, uint32_t binding) {
   for (const Descriptor& descriptor : found.descriptors) {
     if (descriptor.binding == binding) return descriptor;
   }
@@ -84,10 +84,10 @@ TEST_CASE("the size of push constants is that of the same struct in C++") {
     Pair pairs[2];
     float scale[3];
   };
-  CHECK(reflectCompute(k_all_kinds_comp, "all kinds").pushBytes == sizeof(Push));
+  CHECK(reflectShader(k_all_kinds_comp, "all kinds").pushBytes == sizeof(Push));
   CHECK(sizeof(Push) == 56);
-  CHECK(reflectCompute(k_contact_search_comp, "search").pushBytes == sizeof(SearchPush));
-  CHECK(reflectCompute(k_arithmetic_doubles_comp, "double arithmetic").pushBytes == 0);
+  CHECK(reflectShader(k_contact_search_comp, "search").pushBytes == sizeof(SearchPush));
+  CHECK(reflectShader(k_arithmetic_doubles_comp, "double arithmetic").pushBytes == 0);
 }
 
 TEST_CASE("the engine's own shaders take what the shared structs say") {
@@ -98,13 +98,13 @@ TEST_CASE("the engine's own shaders take what the shared structs say") {
                                             {kSlotCounts.number, "Counts", kStorage, 0, 0, sizeof(SearchCounts)},
                                             {kSlotTasks.number, "Tasks", kStorage, sizeof(SearchTask)},
                                             {kSlotSpilled.number, "Spilled", kStorage, sizeof(SearchTask)}});
-  const ComputeInterface search = reflectCompute(k_contact_search_comp, "search");
+  const ShaderInterface search = reflectShader(k_contact_search_comp, "search");
   CHECK(descriptorAt(search, kSlotMeshNodes.number).type == kTexels);
   CHECK(descriptorAt(search, kSlotCandidatePairs.number).stride == sizeof(CandidatePair));
-  const ComputeInterface resolve = reflectCompute(k_contact_resolve_comp, "resolve");
+  const ShaderInterface resolve = reflectShader(k_contact_resolve_comp, "resolve");
   CHECK(descriptorAt(resolve, kSlotUnresolved.number).stride == sizeof(UnresolvedPair));
   CHECK(descriptorAt(resolve, kSlotResults.number).stride == sizeof(Result));
-  const ComputeInterface reduce = reflectCompute(k_sampled_reduce_comp, "reduce");
+  const ShaderInterface reduce = reflectShader(k_sampled_reduce_comp, "reduce");
   CHECK(descriptorAt(reduce, kSlotRange.number).type == kImage);
   CHECK(descriptorAt(reduce, kSlotMask.number).type == kImage);
 }
@@ -112,11 +112,11 @@ TEST_CASE("the engine's own shaders take what the shared structs say") {
 TEST_CASE("a texel buffer is one in SPIR-V before 1.6, too, where it is a sampled image") {
   // The image with a sampler becomes one whose dimension is Buffer (5, from 2D: 1).
   const std::vector<uint32_t> older = changed(k_all_kinds_comp, 25, 3, 1, 3, 5);
-  CHECK(descriptorAt(reflectCompute(older, "older"), 5).type == kTexels);
+  CHECK(descriptorAt(reflectShader(older, "older"), 5).type == kTexels);
 }
 
 TEST_CASE("what is not understood is named") {
-  const auto reflect = [](std::span<const uint32_t> spirv) { reflectCompute(spirv, "x"); };
+  const auto reflect = [](std::span<const uint32_t> spirv) { reflectShader(spirv, "x"); };
   CHECK_THROWS_WITH(reflect(k_all_kinds_comp_UNIFORM_BUFFER),
                     "shader \"x\": binding 6 (Refused) is a uniform buffer, or a storage buffer of SPIR-V before 1.3");
   CHECK_THROWS_WITH(
@@ -134,7 +134,7 @@ TEST_CASE("what is not understood is named") {
 }
 
 TEST_CASE("what is not a module is refused, wherever it ends") {
-  const auto reflect = [](std::span<const uint32_t> spirv) { reflectCompute(spirv, "x"); };
+  const auto reflect = [](std::span<const uint32_t> spirv) { reflectShader(spirv, "x"); };
   const std::span<const uint32_t> whole = k_all_kinds_comp;
   CHECK_THROWS_WITH(reflect({}), "shader \"x\": not SPIR-V");
   CHECK_THROWS_WITH(reflect(whole.subspan(1)), "shader \"x\": not SPIR-V");

@@ -50,7 +50,8 @@ ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const S
       kernels_(std::move(kernels)),
       room_(room),
       mostSensors_(mostSensorsOf(device)),
-      batch_(batch) {
+      batch_(batch),
+      pending_(batch) {
   if (!kernels_ && !isOnCpu()) kernels_ = kernelsOf(device);
 }
 
@@ -108,15 +109,16 @@ void ContactTier::run(std::span<const size_t> which) {
 void ContactTier::submit() {
   if (planned_.empty()) return;
   collect();
-  inFlight_.swap(planned_);
-  try {
-    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
-    submitter_->submit(sensors_, scene_.impl());
-  } catch (const gpu::LimitError&) {
-    answerOnCpu(std::exchange(inFlight_, {}));
-  } catch (const Error& error) {
-    for (const size_t query : std::exchange(inFlight_, {})) batch_.fail(query, error);
-  }
+  pending_.submit(std::exchange(planned_, {}), [&](std::span<const size_t> queries) {
+    try {
+      if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
+      submitter_->submit(sensors_, scene_.impl());
+      return true;
+    } catch (const gpu::LimitError&) {
+      answerOnCpu(queries);
+      return false;
+    }
+  });
   sensors_.clear();
 }
 
@@ -130,43 +132,39 @@ void ContactTier::finish() {
 }
 
 void ContactTier::collect() {
-  const std::vector<size_t> collected = std::exchange(inFlight_, {});
-  if (collected.empty()) return;
-  try {
+  pending_.collect([&](std::span<const size_t> queries) {
     const SearchAnswers found = submitter_->collect(scene_.impl(), batch_.stats.stages);
     batch_.deviceDone = Clock::now();
     batch_.stats.submissions += submitter_->submissions();
     batch_.stats.nodePairs += found.nodePairs;
     batch_.stats.pairs += found.trianglePairs;
     batch_.stats.solves += found.solves;
-    decode(found, collected);
+    decode(found, queries);
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
-  } catch (const Error& error) {
-    for (const size_t query : collected) batch_.fail(query, error);
-  }
+  });
 }
 
-void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> collected) {
+void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> queries) {
   const UnresolvedPairs unresolved(found.unresolved);
   std::vector<uint32_t> open;
   std::vector<size_t> left;
-  for (uint32_t i = 0; i < collected.size(); ++i) {
+  for (uint32_t i = 0; i < queries.size(); ++i) {
     const Result& result = found.results[i];
     if (result.flags == 0 && result.status != Status::invalid) {
-      batch_.answers[collected[i]] = result;
+      batch_.answers[queries[i]] = result;
     } else if (result.flags == 0) {
       throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
     } else if (found.roomier && result.flags == kFlagCandidates) {
-      cramped_.push_back(collected[i]);
+      cramped_.push_back(queries[i]);
     } else {
-      left.push_back(collected[i]);
+      left.push_back(queries[i]);
     }
   }
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
-      const size_t query = collected[open[k]];
+      const size_t query = queries[open[k]];
       batch_.answers[query] = decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query]);
     }
   });

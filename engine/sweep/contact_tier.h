@@ -24,7 +24,7 @@ class ContactTier {
  private:
   void submit();
   void collect();
-  void decode(const SearchAnswers& found, std::span<const size_t> landing);
+  void decode(const SearchAnswers& found, std::span<const size_t> queries);
   void answerOnCpu(std::span<const size_t> which);
 
   const Device::Impl& device_;
@@ -38,8 +38,9 @@ class ContactTier {
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   SensorBatch sensors_;
-  std::vector<size_t> planned_, inFlight_;  ///< the queries in `sensors_`, and those on the device
-  std::vector<size_t> cramped_;             ///< queries to repeat, now that the device has room for them
+  std::vector<size_t> planned_;  ///< the queries in `sensors_`
+  PendingQueries pending_;
+  std::vector<size_t> cramped_;  ///< queries to repeat, now that the device has room for them
 };
 
 }  // namespace radar

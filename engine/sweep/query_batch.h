@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "radar/radar.h"
 
@@ -28,6 +30,41 @@ struct QueryBatch {
   /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
   void fail(size_t query, const Error& error);
   void addCpuTime(const char* name, double ms);
+};
+
+/// The queries of one submission, between its start and its collection. If a Vulkan call fails, these queries fail and
+/// the batch goes on.
+class PendingQueries {
+ public:
+  explicit PendingQueries(QueryBatch& batch) : batch_(batch) {}
+
+  /// Calls `start` with the queries; they are pending if it returns true. None may be pending before.
+  template <class Start>
+  void submit(std::vector<size_t> queries, const Start& start) {
+    guarded(queries, [&] {
+      if (start(queries)) queries_.swap(queries);
+    });
+  }
+
+  /// Calls `decode` with the pending queries, if there are any; none are pending afterwards.
+  template <class Decode>
+  void collect(const Decode& decode) {
+    const std::vector<size_t> queries = std::exchange(queries_, {});
+    if (!queries.empty()) guarded(queries, [&] { decode(queries); });
+  }
+
+ private:
+  template <class Work>
+  void guarded(const std::vector<size_t>& queries, const Work& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      for (const size_t query : queries) batch_.fail(query, error);
+    }
+  }
+
+  QueryBatch& batch_;
+  std::vector<size_t> queries_;
 };
 
 }  // namespace radar

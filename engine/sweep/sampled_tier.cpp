@@ -14,7 +14,8 @@ SampledTier::SampledTier(const Device::Impl& device, const Scene& scene, const S
       scene_(scene),
       options_(options),
       batch_(batch),
-      recorder_(device, resident, options.pictureBytes, options.timestamps) {
+      submitter_(device, resident, options.pictureBytes, options.timestamps),
+      pending_(batch) {
   // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
   bufferBytes_ = std::min<uint64_t>(device.properties.limits.maxStorageBufferRange, 256ull << 20);
   maxItems_ = std::min<uint64_t>(bufferBytes_ / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
@@ -48,50 +49,45 @@ ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
   return planSampled(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
 }
 
-void SampledTier::submit(std::span<Pending> part) {
+void SampledTier::submit(std::span<Planned> part) {
   if (part.empty()) return;
   collect();
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
-  for (const Pending& pending : part) {
-    plans.push_back(&pending.plan);
-    inFlight_.push_back(pending.query);
+  std::vector<size_t> queries;
+  for (const Planned& planned : part) {
+    plans.push_back(&planned.plan);
+    queries.push_back(planned.query);
   }
   packBatch(drawn_, plans);
   batch_.addCpuTime("encode", msSince(start));
   ++batch_.stats.submissions;
   batch_.stats.drawnObjects += drawn_.objects;
   batch_.stats.drawnTriangles += drawn_.triangles;
-  try {
-    recorder_.submit(drawn_, scene_.impl());
-  } catch (const Error& error) {
-    for (const size_t query : std::exchange(inFlight_, {})) batch_.fail(query, error);
-  }
+  pending_.submit(std::move(queries), [&](std::span<const size_t>) {
+    submitter_.submit(drawn_, scene_.impl());
+    return true;
+  });
 }
 
 void SampledTier::collect() {
-  const std::vector<size_t> collected = std::exchange(inFlight_, {});
-  if (collected.empty()) return;
-  try {
-    const SampledAnswers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages);
+  pending_.collect([&](std::span<const size_t> queries) {
+    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages);
     batch_.deviceDone = Clock::now();
-    for (size_t i = 0; i < collected.size(); ++i) {
-      const size_t query = collected[i];
-      batch_.answers[query] = decodeSampled(
+    for (size_t i = 0; i < queries.size(); ++i) {
+      batch_.answers[queries[i]] = decodeSampled(
           found.answers[i], found.unresolvedPairs.subspan(i * gpu::kUnresolvedPerView, gpu::kUnresolvedPerView),
-          batch_.asked[query], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
+          batch_.asked[queries[i]], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
       batch_.stats.pairs += found.answers[i].pairs;
     }
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
-  } catch (const Error& error) {
-    for (const size_t query : collected) batch_.fail(query, error);
-  }
+  });
 }
 
 // Cuts a slice into submissions that fit.
-void SampledTier::flush(std::vector<Pending>& slice) {
+void SampledTier::flush(std::vector<Planned>& slice) {
   std::stable_sort(slice.begin(), slice.end(),
-                   [](const Pending& a, const Pending& b) { return a.plan.view.resolution < b.plan.view.resolution; });
+                   [](const Planned& a, const Planned& b) { return a.plan.view.resolution < b.plan.view.resolution; });
   size_t first = 0;
   Load load;
   for (size_t i = 0; i < slice.size(); ++i) {
@@ -112,7 +108,7 @@ void SampledTier::flush(std::vector<Pending>& slice) {
 void SampledTier::run(std::span<const size_t> which) {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
-  std::vector<Pending> slice;
+  std::vector<Planned> slice;
   Load load;
   for (const size_t i : which) {
     const Clock::time_point start = Clock::now();
@@ -142,8 +138,8 @@ Scopes SampledTier::scopes(const Query& query) {
   const ViewPlan* plans[] = {&plan};
   packBatch(drawn_, plans);
   StoredScopes stored;
-  recorder_.submit(drawn_, scene_.impl(), true);
-  const SampledAnswers found = recorder_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
+  submitter_.submit(drawn_, scene_.impl(), true);
+  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()

@@ -21,7 +21,7 @@ class SampledTier {
 
  private:
   /// A planned query of a slice.
-  struct Pending {
+  struct Planned {
     size_t query;
     ViewPlan plan;
   };
@@ -35,17 +35,17 @@ class SampledTier {
   bool fits(const Load& load) const;
   std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;
-  void flush(std::vector<Pending>& slice);
-  void submit(std::span<Pending> part);
+  void flush(std::vector<Planned>& slice);
+  void submit(std::span<Planned> part);
 
   const Device::Impl& device_;
   const Scene& scene_;
   const SweeperOptions options_;
   QueryBatch& batch_;
-  SampledSubmitter recorder_;
+  SampledSubmitter submitter_;
   uint64_t bufferBytes_;
-  uint64_t maxItems_;             ///< so that item and lane fit 32 bits (gpu::Candidate)
-  std::vector<size_t> inFlight_;  ///< the queries on the device, in the order of `drawn_.views`
+  uint64_t maxItems_;       ///< so that item and lane fit 32 bits (gpu::Candidate)
+  PendingQueries pending_;  ///< in the order of `drawn_.views`
   SampledBatch drawn_;
 };
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "agreement/compare.h"
-#include "report/median.h"
+#include "bench/statistics.h"
 #include "workloads/generate.h"
 
 namespace {

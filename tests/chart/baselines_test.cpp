@@ -17,9 +17,10 @@ Transform poseAt(double x, double y, double z) {
   return pose;
 }
 
-QuerySpec sweepOf(uint32_t mesh, const Transform& pose, double distance) {
-  QuerySpec query;
-  query.sensor = {mesh, pose};
+Query sweepOf(uint32_t mesh, const Transform& pose, double distance) {
+  Query query;
+  query.mesh = mesh;
+  query.worldFromMesh = pose;
   query.direction = {0, 0, 2};
   query.distance = distance;
   return query;
@@ -47,7 +48,7 @@ TEST_CASE(
     REQUIRE(t.has_value());
     CHECK(*t == Approx(3).margin(1e-5));
     CHECK_FALSE(peer->cast(sweepOf(0, turned, 2.9)).has_value());
-    QuerySpec without = sweepOf(0, turned, 10);
+    Query without = sweepOf(0, turned, 10);
     without.exclude = {0};
     CHECK_FALSE(peer->cast(without).has_value());
     std::vector<Instance> moved = objects;
@@ -65,7 +66,7 @@ TEST_CASE("a hull closes a cup, triangles do not") {
   Transform upsideDown{{1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0}};  // opens towards -z, its floor around z = 0
   upsideDown.m[11] = 3;                                          // the rim at z = 0, the floor's inside near 2.9
   const std::vector<Instance> objects{{1, poseAt(0, 0, -2)}};
-  QuerySpec down = sweepOf(0, upsideDown, 10);
+  Query down = sweepOf(0, upsideDown, 10);
   down.direction = {0, 0, -1};
   for (const BaselineRow& row : peerRows()) {
     CAPTURE(row.family);

@@ -43,7 +43,7 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   const ScratchFolder folder;
   folder.write("file", "");
   std::filesystem::create_directory(folder.path() / "broken");
-  folder.write("broken/chart.json", "{\"format\": 1}");
+  folder.write("broken/chart.csv", "section,workload\n");
   folder.write("none.json", R"({"format": "cyber-radar-queries-1", "meshes": [], "scenes": [], "queries": []})");
   const auto refused = [&](const std::string& arguments, const std::string& what) {
     CAPTURE(arguments);
@@ -54,8 +54,8 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   refused("chart", "--out");
   refused("chart --out file", "--out");
   refused("chart --out c --docs file", "--docs");
-  refused("chart --out c --render", "chart.json");
-  refused("chart --out broken --render", "broken/chart.json");
+  refused("chart --out c --render", "chart.csv");
+  refused("chart --out broken --render", "broken/chart.csv");
   refused("chart --out c missing.json", "missing.json");
   refused("chart --out c none.json", "queries");
   refused("chart --out c --mesh missing.ply", "missing.ply");

@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "chart/accuracy.h"
 #include "chart/documents.h"
 #include "chart/findings.h"
 #include "chart/in_child.h"
 #include "chart/run.h"
-#include "import/input_error.h"
 #include "support/scratch_folder.h"
 #include "support/test_device.h"
 #include "workloads/families.h"
@@ -14,6 +14,7 @@
 using namespace radar;
 using namespace radar::tools;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -63,11 +64,12 @@ struct Ran {
 
 Ran run(const RunSettings& settings, const std::string& origin, const test::ScratchFolder& folder) {
   const std::vector<BaselineRow> none;
-  const std::vector<Planned> plan = planOf(settings, none, origin);
+  const std::vector<Planned> plan = planOf(settings, none);
   Record start;
+  start.run = fingerprintOf(settings, origin);
   start.workloads = {{"locked", "Interlocking shapes"}, {"flight", "Teapots in flight"}};
   Ran ran;
-  ran.record = measureAll(settings, plan, start, test::device(), folder.path(), [&](const Planned&) { ++ran.steps; });
+  ran.record = measureAll(settings, plan, start, test::device(), folder.path(), [&] { ++ran.steps; });
   CHECK(ran.steps == plan.size());
   return ran;
 }
@@ -142,31 +144,41 @@ TEST_CASE("answers are judged against the truth: errors, misses, inventions and 
   CHECK(wrongShare(cell) == 0.5);
 }
 
-TEST_CASE("quantiles are values at or above their rank") {
-  const std::vector<double> values{3, 1, 2, 4};
-  CHECK(quantile(values, 0.25) == 1);
-  CHECK(quantile(values, 0.5) == 2);
-  CHECK(quantile(values, 0.99) == 4);
-  CHECK(quantile(values, 1) == 4);
-  CHECK(std::isnan(quantile({}, 0.5)));
-}
-
-TEST_CASE("a record read is the record written, and its CSV has a line for each cell") {
+TEST_CASE("a record read is the record written, and a damaged one is refused with its place") {
   Record record;
   record.command = "cyber-radar chart \"x\"";
-  record.workloads = {{"w", "About, \"w\""}};
+  record.run = "0123";
+  record.workloads = {{"w", "About: \"w\", #1"}};
   record.notes = {"one: text"};
   record.cells = {madeUp("a", 0.1, 1.0 / 3), madeUp("b, \"quoted\"", NAN, NAN)};
-  const Record again = recordFrom(jsonOf(record), "chart.json");
-  CHECK(jsonOf(again) == jsonOf(record));
+  record.cells[1].failed = "#1\n2";
+  record.cells[1].certified = true;
+  const std::string csv = csvOf(record);
+  const Record again = recordFrom(csv, "chart.csv");
+  CHECK(csvOf(again) == csv);
+  CHECK(again.command == record.command);
+  CHECK(again.run == record.run);
+  REQUIRE(again.workloads.size() == 1);
+  CHECK(again.workloads[0].about == record.workloads[0].about);
+  CHECK(again.notes == record.notes);
   REQUIRE(again.cells.size() == 2);
   CHECK(again.cells[0].errorWorst == 1.0 / 3);
   CHECK(std::isnan(again.cells[1].us));
-  const std::string csv = csvOf(record);
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 3);
+  CHECK(again.cells[1].method == record.cells[1].method);
+  CHECK(again.cells[1].failed == record.cells[1].failed);
+  CHECK(again.cells[1].certified);
   CHECK_THAT(csv, Contains("\"b, \"\"quoted\"\"\"") && Contains("0.3333333333333333,"));
-  CHECK_THROWS_AS(recordFrom("{\"format\": \"other\"}", "chart.json"), InputError);
-  CHECK_THROWS_AS(recordFrom("{", "chart.json"), InputError);
+  const auto refused = [](std::string text, const std::string& from, const std::string& to, const std::string& why) {
+    text.replace(text.find(from), from.size(), to);
+    CHECK_THROWS_WITH(recordFrom(text, "chart.csv"), StartsWith("chart.csv: ") && Contains(why));
+  };
+  refused(csv, "chart-2", "chart-9", "line 1: expected");
+  refused(csv, "# date", "# dates", "line 6: expected");
+  refused(csv, ",workload,", ",job,", "columns: expected");
+  refused(csv, "0.3333333333333333", "a third", "row 1: error_worst: expected a number, got \"a third\"");
+  refused(csv, ",yes,", ",maybe,", "row 2: certified: expected yes or no, got \"maybe\"");
+  refused(csv, ",yes,", ",yes,1,", "row 2: expected");
+  refused(csv, "2\",", "2,", "expected a closing quote");
 }
 
 TEST_CASE("a run that was interrupted measures only what is missing, and all of it for another program") {
@@ -176,13 +188,17 @@ TEST_CASE("a run that was interrupted measures only what is missing, and all of 
   REQUIRE(first.cells.size() > 3);
   constexpr double kMark = 12'345;
   for (Cell& cell : first.cells) cell.us = kMark;
-  const Cell lost = first.cells[1];
-  first.cells.erase(first.cells.begin() + 1);
+  const Cell lost = first.cells.back();
+  first.cells.pop_back();
   writeRecord(folder.path(), first);
   const Record second = run(settings, "origin", folder).record;
   REQUIRE(second.cells.size() == first.cells.size() + 1);
-  for (const Cell& cell : second.cells) CHECK((cell.us == kMark) == (cell.key != lost.key));
-  CHECK(second.cells[1].method == lost.method);
+  for (const Cell& cell : second.cells) CHECK((cell.us == kMark) == (&cell != &second.cells.back()));
+  CHECK(second.cells.back().method == lost.method);
+  RunSettings longer = settings;
+  longer.cases[1].workload.queries[0].distance *= 2;
+  for (const Cell& cell : run(longer, "origin", folder).record.cells) CHECK(cell.us != kMark);
+  writeRecord(folder.path(), first);
   for (const Cell& cell : run(settings, "another", folder).record.cells) CHECK(cell.us != kMark);
 }
 

@@ -78,7 +78,7 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
   }
   const ScaleSettings settings{.mode = Mode::contact, .repeats = 1};
   size_t steps = 0;
-  ScaleReport report = measureScale(devices, points, settings, [&](const std::string&) { ++steps; });
+  ScaleReport report = measureScale(devices, points, settings, [&] { ++steps; });
   report.numbers = {0, 1};
   CHECK(steps == scaleSteps(2, 2, settings));
   CHECK(report.sameBits);

@@ -23,7 +23,7 @@ class Baseline {
 
   /// First contact within query.distance as this library finds it: a distance along the motion, or none. Looks at the
   /// query's sensor, direction, distance and excluded objects only.
-  virtual std::optional<double> cast(const QuerySpec& query) = 0;
+  virtual std::optional<double> cast(const Query& query) = 0;
 };
 
 /// A row of the chart: a library, used in one way.

@@ -56,13 +56,13 @@ btTransform transformOf(const RigidPose& pose) {
 }
 
 struct Closest : btCollisionWorld::ClosestConvexResultCallback {
-  Closest(const QuerySpec& asked, const btVector3& from, const btVector3& to)
+  Closest(const Query& asked, const btVector3& from, const btVector3& to)
       : ClosestConvexResultCallback(from, to), query(asked) {}
   bool needsCollision(btBroadphaseProxy* proxy) const override {
     const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
     return !isExcluded(query, static_cast<uint32_t>(object->getUserIndex()));
   }
-  const QuerySpec& query;
+  const Query& query;
 };
 
 class Bullet : public Baseline {
@@ -82,9 +82,9 @@ class Bullet : public Baseline {
     shown_.assign(objects.begin(), objects.end());
   }
 
-  std::optional<double> cast(const QuerySpec& query) override {
+  std::optional<double> cast(const Query& query) override {
     RigidPose pose;
-    Shape& shape = shapes_.of(query.sensor, pose);
+    Shape& shape = shapes_.of({query.mesh, query.worldFromMesh}, pose);
     const btTransform from = transformOf(pose);
     const std::array<double, 3> v = unitDirection(query);
     btTransform to = from;

@@ -60,7 +60,7 @@ struct Inverse {
 
 // What a filter needs to know: which instances take no part.
 struct Context : RTCIntersectContext {
-  explicit Context(const QuerySpec& asked) : query(asked) {
+  explicit Context(const Query& asked) : query(asked) {
     rtcInitIntersectContext(this);
     flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     if (query.exclude.empty()) return;
@@ -71,7 +71,7 @@ struct Context : RTCIntersectContext {
       }
     };
   }
-  const QuerySpec& query;
+  const Query& query;
 };
 
 // A ray a lane; lanes without one stay off.
@@ -167,13 +167,13 @@ class PixelRays : public Embree {
  public:
   PixelRays(const Workload& workload, uint32_t resolution) : Embree(workload), resolution_(resolution) {}
 
-  std::optional<double> cast(const QuerySpec& query) override {
+  std::optional<double> cast(const Query& query) override {
     const Vector w = unitDirection(query);
     const auto [u, v] = across(w);
-    const MeshData& mesh = workload_.meshes[query.sensor.mesh];
+    const MeshData& mesh = workload_.meshes[query.mesh];
     Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
     for (const uint32_t vertex : mesh.indices) {
-      const Vector p = transformPoint(query.sensor.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+      const Vector p = transformPoint(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
       const Vector turned{dot(p, u), dot(p, v), dot(p, w)};
       for (size_t k = 0; k < 3; ++k) {
         low[k] = std::min(low[k], turned[k]);
@@ -182,7 +182,7 @@ class PixelRays : public Embree {
     }
     const double pixel = std::max(high[0] - low[0], high[1] - low[1]) / resolution_;
     if (!(pixel > 0)) return std::nullopt;
-    const Inverse meshFromWorld(query.sensor.worldFromMesh);
+    const Inverse meshFromWorld(query.worldFromMesh);
     const double ahead = high[2] + pixel, depth = high[2] - low[2] + 2 * pixel;
     const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
     Context own(query), scene(query);
@@ -197,7 +197,7 @@ class PixelRays : public Embree {
           starts[lane] = along(along(along({}, u, x + lane * pixel), v, y), w, ahead);
           onto.set(lane, meshFromWorld.placed(starts[lane]), back, depth);
         }
-        rtcIntersect8(onto.valid, meshes_[query.sensor.mesh].get(), &own, &onto.rays);
+        rtcIntersect8(onto.valid, meshes_[query.mesh].get(), &own, &onto.rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
           if (onto.hit(lane)) into.set(lane, along(starts[lane], w, -double{onto.rays.ray.tfar[lane]}), w, best);
         }
@@ -220,9 +220,9 @@ class VertexRays : public Embree {
  public:
   using Embree::Embree;
 
-  std::optional<double> cast(const QuerySpec& query) override {
+  std::optional<double> cast(const Query& query) override {
     const Vector w = unitDirection(query);
-    const MeshData& mesh = workload_.meshes[query.sensor.mesh];
+    const MeshData& mesh = workload_.meshes[query.mesh];
     Context own(query), scene(query);
     own.filter = nullptr;
     own.flags = scene.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -249,10 +249,10 @@ class VertexRays : public Embree {
       found = true;
     };
     for (size_t i = 0; i < mesh.positions.size(); i += 3) {
-      shoot(top_.get(), scene, transformPoint(query.sensor.worldFromMesh, &mesh.positions[i]), w);
+      shoot(top_.get(), scene, transformPoint(query.worldFromMesh, &mesh.positions[i]), w);
     }
-    const WorldBox swept = boxOf(mesh, query.sensor.worldFromMesh).swept(along({}, w, query.distance));
-    const Inverse meshFromWorld(query.sensor.worldFromMesh);
+    const WorldBox swept = boxOf(mesh, query.worldFromMesh).swept(along({}, w, query.distance));
+    const Inverse meshFromWorld(query.worldFromMesh);
     const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
     for (uint32_t object = 0; object < shown_.size(); ++object) {
       if (!swept.meets(boxes_[object]) || isExcluded(query, object)) continue;
@@ -260,7 +260,7 @@ class VertexRays : public Embree {
       for (size_t i = 0; i < other.positions.size(); i += 3) {
         const Vector p = transformPoint(shown_[object].worldFromMesh, &other.positions[i]);
         if (!swept.meets({p, p})) continue;
-        shoot(meshes_[query.sensor.mesh].get(), own, meshFromWorld.placed(p), back);
+        shoot(meshes_[query.mesh].get(), own, meshFromWorld.placed(p), back);
       }
     }
     return found ? std::optional(best) : std::nullopt;

@@ -38,7 +38,7 @@ fcl::Transform3d transformOf(const RigidPose& pose) {
 
 // What a check carries through the tree.
 struct Check {
-  const QuerySpec* query = nullptr;
+  const Query* query = nullptr;
   bool meets = false;
 };
 
@@ -78,8 +78,8 @@ class Fcl : public Baseline {
     shown_.assign(objects.begin(), objects.end());
   }
 
-  std::optional<double> cast(const QuerySpec& query) override {
-    const std::unique_ptr<fcl::CollisionObjectd> sensor = placed(query.sensor);
+  std::optional<double> cast(const Query& query) override {
+    const std::unique_ptr<fcl::CollisionObjectd> sensor = placed({query.mesh, query.worldFromMesh});
     const fcl::Vector3d start = sensor->getTranslation();
     const std::array<double, 3> v = unitDirection(query);
     return steppedContact(query.distance, steps_, [&](double t) {

@@ -53,8 +53,8 @@ class Ode : public Baseline {
     }
   }
 
-  std::optional<double> cast(const QuerySpec& query) override {
-    const Geometry sensor = placed(query.sensor);
+  std::optional<double> cast(const Query& query) override {
+    const Geometry sensor = placed({query.mesh, query.worldFromMesh});
     const WorldBox box = boxOf(sensor.get());
     const std::array<double, 3> v = unitDirection(query);
     const WorldBox swept = box.swept({query.distance * v[0], query.distance * v[1], query.distance * v[2]});

@@ -82,13 +82,13 @@ WorldBox boxOf(const MeshData& mesh, const Transform& pose) {
   return box;
 }
 
-std::array<double, 3> unitDirection(const QuerySpec& query) {
+std::array<double, 3> unitDirection(const Query& query) {
   const auto& v = query.direction;
   const double length = std::hypot(v[0], v[1], v[2]);
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-bool isExcluded(const QuerySpec& query, uint32_t object) {
+bool isExcluded(const Query& query, uint32_t object) {
   return std::find(query.exclude.begin(), query.exclude.end(), object) != query.exclude.end();
 }
 

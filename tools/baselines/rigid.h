@@ -34,8 +34,8 @@ struct WorldBox {
 };
 WorldBox boxOf(const MeshData& mesh, const Transform& pose);
 
-std::array<double, 3> unitDirection(const QuerySpec& query);
-bool isExcluded(const QuerySpec& query, uint32_t object);
+std::array<double, 3> unitDirection(const Query& query);
+bool isExcluded(const Query& query, uint32_t object);
 
 /// First contact by discrete checks: the distance is walked in `steps` steps, then bisected to a millionth of a step.
 /// `meets(t)`: whether sensor and scene meet there.

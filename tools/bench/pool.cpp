@@ -1,108 +1,98 @@
 // What a pool costs beside a plain sweeper on one device, and what it makes of two devices of which one is slowed on
-// purpose. Ratios within one run, without validation layers, medians after a warm-up.
+// purpose.
+#include "radar/pool.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
-#include "commit/commit.h"
+#include "bench/benchmarks.h"
 #include "gpu/device.h"
-#include "radar/pool.h"
-#include "report/median.h"
 #include "workloads/generate.h"
+
+namespace radar::bench {
 
 namespace {
 
-using namespace radar;
-using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+Method methodOf(const char* name, Pool& pool) {
+  return {name, [&pool](std::span<const Query> queries) {
+            return pool.submit({queries.begin(), queries.end()}).get().results;
+          }};
 }
 
-template <class Work>
-double timed(Work&& work) {
-  const Clock::time_point start = Clock::now();
-  work();
-  return msSince(start);
-}
-
-struct Scenario {
-  const char* name;
-  Mode mode;
-  bool select;
-};
-
-void overhead(const Device& device, const Scene& scene, std::vector<Query> queries, const Scenario& scenario) {
-  for (Query& query : queries) query.mode = scenario.mode;
-  Sweeper sweeper(device, scene, {.select = scenario.select, .cpuBatch = 0});
-  std::vector<double> plain, pooled;
-  // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
-  Pool pool({&device, 1}, scene, {.select = scenario.select, .cpuBatch = 0});
-  for (int i = 0; i < 16; ++i) {
-    const double one = timed([&] { sweeper.run(queries); });
-    const double other = timed([&] { pool.submit(queries).get(); });
-    if (i < 3) continue;
-    plain.push_back(one);
-    pooled.push_back(other);
+// Returns the medians in milliseconds.
+std::vector<double> race(const std::vector<Method>& methods, const Batch& batch, uint32_t passes, int& status) {
+  std::vector<double> ms;
+  for (const Series& series : measure(methods, {&batch, 1}, {.warmUps = 3, .least = passes, .most = passes})) {
+    ms.push_back(medianMs(series.answer));
+    if (series.differ > 0) status = 1;
   }
-  std::printf("%-10s sweeper %9.3f ms, pool of one device %9.3f ms: %+.1f%%\n", scenario.name, tools::median(plain),
-              tools::median(pooled), 100 * (tools::median(pooled) / tools::median(plain) - 1));
+  return ms;
 }
 
-/// The device takes `factor` times as long: what its thread waits, it waits again.
+void overhead(const Device& device, const Scene& scene, Batch batch, const char* name, Mode mode, bool select,
+              int& status) {
+  for (Query& query : batch.queries) query.mode = mode;
+  const SweeperOptions options{.select = select, .cpuBatch = 0};
+  // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
+  Sweeper sweeper(device, scene, options);
+  Pool pool({&device, 1}, scene, options);
+  const std::vector<double> ms = race(
+      {{"sweeper", [&](auto queries) { return sweeper.run(queries); }}, methodOf("pool", pool)}, batch, 13, status);
+  std::printf("%-10s sweeper %9.3f ms, pool of one device %9.3f ms: %+.1f%%\n", name, ms[0], ms[1],
+              100 * (ms[1] / ms[0] - 1));
+}
+
+// The device takes `factor` times as long: what its thread waits, it waits again.
 void slow(const Device& device, double factor) {
-  auto start = std::make_shared<Clock::time_point>(Clock::now());
-  auto doneAt = std::make_shared<Clock::time_point>(Clock::now());
+  auto start = std::make_shared<double>(now()), doneAt = std::make_shared<double>(now());
   device.impl().fault = [=](std::string_view call) {
-    if (call == "vkQueueSubmit2") *start = Clock::now();
+    if (call == "vkQueueSubmit2") *start = now();
     if (call == "vkWaitForFences") {
-      const auto took = Clock::now() - std::max(*start, *doneAt);
-      std::this_thread::sleep_for(took * (factor - 1));
-      *doneAt = Clock::now();
+      const double took = now() - std::max(*start, *doneAt);
+      std::this_thread::sleep_for(std::chrono::duration<double>(took * (factor - 1)));
+      *doneAt = now();
     }
     return VK_SUCCESS;
   };
 }
 
-void unequal(std::span<const Device> devices, const Scene& scene, const std::vector<Query>& queries, double factor) {
+void unequal(std::span<const Device> devices, const Scene& scene, const Batch& batch, double factor, int& status) {
   slow(devices[1], factor);
   Pool first(devices.first(1), scene), second(devices.subspan(1, 1), scene), both(devices, scene);
-  std::vector<double> times[3];
-  for (int i = 0; i < 10; ++i) {
-    int k = 0;
-    for (Pool* pool : {&first, &second, &both}) {
-      const double ms = timed([&] { pool->submit(queries).get(); });
-      if (i >= 3) times[k].push_back(ms);
-      ++k;
-    }
-  }
+  const std::vector<double> ms =
+      race({methodOf("first", first), methodOf("second", second), methodOf("both", both)}, batch, 7, status);
   devices[1].impl().fault = nullptr;
-  const double a = tools::median(times[0]), b = tools::median(times[1]), ab = tools::median(times[2]);
   std::printf(
       "%zu queries, second device %.0f times slower: alone %.1f ms and %.1f ms, together %.1f ms: %.0f%% of the "
       "ideal\n",
-      queries.size(), factor, a, b, ab, 100 / (1 / a + 1 / b) / ab);
+      batch.queries.size(), factor, ms[0], ms[1], ms[2], 100 / (1 / ms[0] + 1 / ms[1]) / ms[2]);
 }
 
 }  // namespace
 
-int main() {
-  const std::vector<Device> devices = openDevices();
-  std::printf("%zu devices, %s, driver %s, commit %s\n", devices.size(), devices[0].name().c_str(),
-              devices[0].driver().c_str(), tools::commit());
-  const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 1});
-  tools::ScenePlayer player(workload);
-  player.show(workload.queries[0].scene);
-  std::vector<Query> queries;
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled));
-  for (const Scenario& scenario :
-       {Scenario{"naive", Mode::sampled, false}, {"sampled", Mode::sampled, true}, {"contact", Mode::contact, true}}) {
-    overhead(devices[0], player.scene(), queries, scenario);
-  }
-  if (devices.size() < 2) return 0;
-  // Large enough that the last chunk of a slow device is a small part.
-  std::vector<Query> many;
-  for (int i = 0; i < 8; ++i) many.insert(many.end(), queries.begin(), queries.end());
-  for (const double factor : {2.0, 4.0}) unequal(std::span(devices).first(2), player.scene(), many, factor);
+void addPool(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("pool", "A pool beside a plain sweeper, and on two devices of unequal speed");
+  command->callback([&status] {
+    const std::vector<Device> devices = openDevices();
+    for (const Device& device : devices) printOrigin(device);
+    const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 1});
+    Batch batch = batchesOf(workload, Mode::sampled).front();
+    tools::ScenePlayer player(workload);
+    player.show(batch.scene);
+    overhead(devices[0], player.scene(), batch, "naive", Mode::sampled, false, status);
+    overhead(devices[0], player.scene(), batch, "sampled", Mode::sampled, true, status);
+    overhead(devices[0], player.scene(), batch, "contact", Mode::contact, true, status);
+    if (devices.size() < 2) return;
+    // Large enough that the last chunk of a slow device is a small part.
+    const std::vector<Query> once = batch.queries;
+    for (int i = 1; i < 8; ++i) batch.queries.insert(batch.queries.end(), once.begin(), once.end());
+    for (const double factor : {2.0, 4.0}) {
+      unequal(std::span(devices).first(2), player.scene(), batch, factor, status);
+    }
+  });
 }
+
+}  // namespace radar::bench

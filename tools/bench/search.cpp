@@ -1,31 +1,23 @@
 // The exact searches beside each other: on the device, on the processor with one thread and with all, and what mode
-// contact makes of both. All ways take turns within one run; medians after a warm-up, without validation layers.
-#include <time.h>
-
-#include <CLI/CLI.hpp>
+// contact makes of both.
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <functional>
 #include <memory>
 #include <thread>
 
-#include "commit/commit.h"
+#include "batch/atomic_file.h"
+#include "bench/benchmarks.h"
+#include "bench/csv.h"
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
-#include "report/median.h"
 #include "workloads/drop_cutter.h"
 #include "workloads/generate.h"
 #include "workloads/interlocking.h"
-#include "workloads/same_answer.h"
+
+namespace radar::bench {
 
 namespace {
-
-using namespace radar;
-using Clock = std::chrono::steady_clock;
-
-constexpr uint32_t kOnDevice = 0;  // SweeperOptions::cpuBatch: every batch goes to the device
 
 /// A workload, made when it is its turn: some take seconds and gigabytes. Where it has several scenes they are the
 /// steps of a motion, each a batch.
@@ -95,184 +87,109 @@ struct Settings {
   unsigned threads = std::thread::hardware_concurrency();
 };
 
-double secondsOf(clockid_t clock) {
-  timespec now;
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+// Of small batches many, each its own, so that no one query stands for all.
+std::vector<Batch> cut(const Batch& all, uint32_t size) {
+  const size_t enough = size == 1 ? 48 : size < 64 ? 8 : 1;
+  std::vector<Batch> parts(std::min(all.queries.size() / size, enough));
+  auto next = all.queries.begin();
+  for (Batch& part : parts) {
+    part.scene = all.scene;
+    part.queries.assign(next, next + size);
+    next += size;
+  }
+  return parts;
 }
 
-struct Way {
-  const char* name;
-  std::function<std::vector<Result>(std::span<const Query>)> run;
-  std::vector<double> us = {};      ///< a query
-  std::vector<double> hostUs = {};  ///< of which the calling thread computed
-  std::vector<Result> answers = {};
-};
-
-struct Measured {
-  double us, hostUs;
-};
-
-class Bench {
+class Search {
  public:
-  Bench(const Device& device, const Settings& settings) : device_(device), settings_(settings) {
-    if (settings.csv.empty()) return;
-    csv_.open(settings.csv);
-    if (!csv_) throw Error(settings.csv + ": cannot be written");
-    csv_ << "workload,batch,contact us,device us,device host us,cpu us,cpu 1 thread us,device / cpu,contact / "
-            "cpu,differ\n";
+  Search(const Device& device, const Settings& settings) : device_(device), settings_(settings) {
+    std::printf("microseconds a query; host: what the calling thread computed of the device's\n");
+    std::printf("%-27s %7s %10s %10s %8s %10s %10s %9s %9s %7s\n", "workload", "batch", "contact", "device", "host",
+                "cpu", "cpu,1 thr", "dev/cpu", "cont/cpu", "differ");
+    addRow(
+        "workload,batch,contact us,device us,device host us,cpu us,cpu 1 thread us,device / cpu,contact / "
+        "cpu,differ\n");
   }
 
-  void run(const Case& one) {
-    std::vector<uint32_t> batches = settings_.batches.empty() ? one.batches : settings_.batches;
-    const tools::Workload workload = one.make(*std::max_element(batches.begin(), batches.end()));
-    if (workload.scenes.size() > 1) return steps(one.name, workload);
+  /// Returns whether all methods gave the same answers. Where there are several scenes they are the steps of a motion:
+  /// the trees and the device's copy follow the scene within the time measured.
+  bool run(const Case& one) {
+    const std::vector<uint32_t>& sizes = settings_.batches.empty() ? one.batches : settings_.batches;
+    const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
+    const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
     tools::ScenePlayer player(workload);
-    player.show(0);
-    std::vector<Query> queries;
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
-    Ways ways(device_, player.scene(), settings_.threads);
-    for (const uint32_t batch : batches) {
-      if (batch > queries.size()) continue;
-      // Of small batches many, each its own, so that no one query stands for all.
-      const size_t least = batch == 1 ? 48 : batch < 64 ? 8 : 1;
-      const size_t count = std::max<size_t>(1, std::min(queries.size() / batch, least));
-      std::vector<std::span<const Query>> all;
-      for (size_t i = 0; i < count; ++i) all.push_back(std::span(queries).subspan(i * batch, batch));
-      measure(
-          one.name, batch, ways,
-          [&](const auto& runBatch) {
-            for (const auto& part : all) runBatch(part);
-          },
-          count * batch);
+    const auto show = [&](uint32_t scene) { player.show(scene); };
+    show(batches[0].scene);
+    Sweeper contact(device_, player.scene()), onDevice(device_, player.scene(), {.cpuBatch = 0});
+    CpuSweeper cpu(player.scene(), settings_.threads), oneThread(player.scene(), 1);
+    for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
+    const std::vector<Method> methods{{"contact", [&](auto queries) { return contact.run(queries); }, show},
+                                      {"device", [&](auto queries) { return onDevice.run(queries); }, show},
+                                      {"cpu", [&](auto queries) { return cpu.run(queries); }, show},
+                                      {"cpu, 1 thread", [&](auto queries) { return oneThread.run(queries); }, show}};
+    if (batches.size() > 1) {
+      return measureRow(one.name, static_cast<uint32_t>(batches[0].queries.size()), methods, batches);
     }
+    bool same = true;
+    for (const uint32_t size : sizes) {
+      if (size <= batches[0].queries.size()) same &= measureRow(one.name, size, methods, cut(batches[0], size));
+    }
+    return same;
   }
 
  private:
-  struct Ways {
-    Ways(const Device& device, const Scene& scene, unsigned threads)
-        : contact(device, scene),
-          onDevice(device, scene, {.cpuBatch = kOnDevice}),
-          cpu(scene, threads),
-          oneThread(scene, 1) {
-      for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
-      list = {{"contact", [this](auto batch) { return contact.run(batch); }},
-              {"device", [this](auto batch) { return onDevice.run(batch); }},
-              {"cpu", [this](auto batch) { return cpu.run(batch); }},
-              {"cpu, 1 thread", [this](auto batch) { return oneThread.run(batch); }}};
-    }
-    Sweeper contact, onDevice;
-    CpuSweeper cpu, oneThread;
-    std::vector<Way> list;
-  };
-
-  /// The scenes of a motion, each its batch; the trees and the device's copy follow the scene within the time measured.
-  void steps(const std::string& name, const tools::Workload& workload) {
-    const std::vector<tools::Batch> batches = tools::batchesOf(workload);
-    tools::ScenePlayer player(workload);
-    player.show(batches[0].scene);
-    Ways ways(device_, player.scene(), settings_.threads);
-    measure(
-        name, static_cast<uint32_t>(batches[0].queries.size()), ways,
-        [&](const auto& runBatch) {
-          for (const tools::Batch& batch : batches) {
-            player.show(batch.scene);
-            std::vector<Query> queries;
-            for (const uint32_t i : batch.queries)
-              queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
-            runBatch(queries);
-          }
-        },
-        workload.queries.size());
-  }
-
-  /// `pass` hands its argument every batch once.
-  template <class Pass>
-  void measure(const std::string& name, uint32_t batch, Ways& ways, const Pass& pass, size_t queries) {
-    for (Way& way : ways.list) way.us.clear(), way.hostUs.clear();
-    const Clock::time_point begun = Clock::now();
-    for (int round = -1; round < 3 || (round < 15 && secondsSince(begun) < settings_.seconds); ++round) {
-      for (Way& way : ways.list) {
-        way.answers.clear();
-        double seconds = 0, host = 0;
-        pass([&](std::span<const Query> part) {
-          const double hostBefore = secondsOf(CLOCK_THREAD_CPUTIME_ID);
-          const Clock::time_point start = Clock::now();
-          const std::vector<Result> found = way.run(part);
-          seconds += secondsSince(start);
-          host += secondsOf(CLOCK_THREAD_CPUTIME_ID) - hostBefore;
-          way.answers.insert(way.answers.end(), found.begin(), found.end());
-        });
-        if (round < 0) continue;  // a warm-up
-        way.us.push_back(1e6 * seconds / static_cast<double>(queries));
-        way.hostUs.push_back(1e6 * host / static_cast<double>(queries));
-      }
-    }
-    print(name, batch, ways.list);
-  }
-
-  void print(const std::string& name, uint32_t batch, const std::vector<Way>& ways) {
-    const Way &contact = ways[0], &device = ways[1], &cpu = ways[2], &one = ways[3];
-    size_t differ = 0;
-    for (const Way& way : ways) {
-      for (size_t i = 0; i < one.answers.size(); ++i) differ += !tools::sameAnswer(way.answers[i], one.answers[i]);
-    }
-    const double ofContact = tools::median(contact.us), ofDevice = tools::median(device.us),
-                 host = tools::median(device.hostUs), ofCpu = tools::median(cpu.us), ofOne = tools::median(one.us);
-    std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7zu\n", name.c_str(), batch, ofContact,
-                ofDevice, host, ofCpu, ofOne, ofDevice / ofCpu, ofContact / ofCpu, differ);
+  bool measureRow(const std::string& name, uint32_t size, const std::vector<Method>& methods,
+                  const std::vector<Batch>& batches) {
+    const std::vector<Series> all = measure(methods, batches, {.seconds = settings_.seconds});
+    const auto us = [&](size_t method, double Lap::*clock = &Lap::wall) {
+      const double each = 1e3 * medianMs(all[method].answer, clock) / static_cast<double>(all[method].answers.size());
+      return std::round(100 * each) / 100;
+    };
+    const double contact = us(0), device = us(1), host = us(1, &Lap::thread), cpu = us(2), one = us(3);
+    uint64_t differ = 0;
+    for (const Series& series : all) differ += series.differ;
+    std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7llu\n", name.c_str(), size, contact, device,
+                host, cpu, one, device / cpu, contact / cpu, static_cast<unsigned long long>(differ));
     std::fflush(stdout);
-    if (csv_.is_open()) {
-      csv_ << name << ',' << batch << ',' << ofContact << ',' << ofDevice << ',' << host << ',' << ofCpu << ',' << ofOne
-           << ',' << ofDevice / ofCpu << ',' << ofContact / ofCpu << ',' << differ << std::endl;
-    }
-    differed_ = differed_ || differ != 0;
+    addRow(csvLineOf(name, size, contact, device, host, cpu, one, std::round(100 * device / cpu) / 100,
+                     std::round(100 * contact / cpu) / 100, differ));
+    return differ == 0;
   }
 
-  static double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+  void addRow(const std::string& line) {
+    rows_ += line;
+    if (!settings_.csv.empty()) tools::writeAtomically(settings_.csv, rows_);
   }
 
- public:
-  bool differed() const { return differed_; }
-
- private:
   const Device& device_;
   const Settings& settings_;
-  std::ofstream csv_;
-  bool differed_ = false;
+  std::string rows_;
 };
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  const std::vector<Case> cases = allCases();
+void addSearch(CLI::App& app, int& status) {
   std::vector<std::string> names;
-  for (const Case& one : cases) names.push_back(one.name);
-  Settings settings;
-  CLI::App app("The exact searches, on the device and beside it: microseconds a query, in one run.");
-  app.add_option("workload", settings.cases, "Which; all, where none is named")->check(CLI::IsMember(names));
-  app.add_option("--batch", settings.batches, "Queries in a batch; each workload's own sizes, where none is given")
+  for (const Case& one : allCases()) names.push_back(one.name);
+  CLI::App* command = app.add_subcommand("search", "The exact searches, on the device and on the processor");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("workload", settings->cases, "Which; all, where none is named")->check(CLI::IsMember(names));
+  command
+      ->add_option("--batch", settings->batches, "Queries in a batch; each workload's own sizes, where none is given")
       ->check(CLI::Range(1u, 1u << 20));
-  app.add_option("--csv", settings.csv, "Also write a table there");
-  app.add_option("--seconds", settings.seconds, "For each row, once there are 3 rounds")->capture_default_str();
-  app.add_option("--threads", settings.threads, "Of the processor's search")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-
-  const Device device = Device::open();
-  std::printf("device %s, driver %s, %u cores, commit %s\n", device.name().c_str(), device.driver().c_str(),
-              std::thread::hardware_concurrency(), tools::commit());
-  std::printf("microseconds a query; host: what the calling thread computed of the device's\n");
-  std::printf("%-27s %7s %10s %10s %8s %10s %10s %9s %9s %7s\n", "workload", "batch", "contact", "device", "host",
-              "cpu", "cpu,1 thr", "dev/cpu", "cont/cpu", "differ");
-  Bench bench(device, settings);
-  for (const Case& one : cases) {
-    const bool wanted =
-        settings.cases.empty() || std::count(settings.cases.begin(), settings.cases.end(), one.name) > 0;
-    if (wanted) bench.run(one);
-  }
-  return bench.differed() ? 1 : 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "radar_bench_search: %s\n", error.what());
-  return 2;
+  command->add_option("--csv", settings->csv, "Also write a table there");
+  command->add_option("--seconds", settings->seconds, "For each row, once there are 3 rounds")->capture_default_str();
+  command->add_option("--threads", settings->threads, "Of the processor's search")->capture_default_str();
+  command->callback([settings, &status] {
+    const Device device = Device::open();
+    printOrigin(device);
+    Search search(device, *settings);
+    for (const Case& one : allCases()) {
+      const auto& wanted = settings->cases;
+      if (!wanted.empty() && std::count(wanted.begin(), wanted.end(), one.name) == 0) continue;
+      if (!search.run(one)) status = 1;
+    }
+  });
 }
+
+}  // namespace radar::bench

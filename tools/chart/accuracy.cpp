@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/statistics.h"
+
 namespace radar::tools {
 
 Told toldBy(const Result& result) {
@@ -19,14 +21,6 @@ Told toldBy(const Result& result) {
       break;
   }
   throw Error("a query was not answered: a time without its answers says nothing");
-}
-
-double quantile(std::span<const double> values, double share) {
-  if (values.empty()) return NAN;
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-  return sorted[static_cast<size_t>(std::max(rank, 1.0)) - 1];
 }
 
 namespace {

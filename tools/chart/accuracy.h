@@ -29,7 +29,4 @@ void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth
 /// Fills the shares by tier.
 void countTiers(Cell& cell, std::span<const Result> results);
 
-/// The value below which `share` of the values lie: the least at or above that rank. NaN for none.
-double quantile(std::span<const double> values, double share);
-
 }  // namespace radar::tools

@@ -35,7 +35,6 @@ struct Method {
   std::string family;    ///< sampled, contact, reference, "drawing all", or a peer's row
   uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
   uint32_t threads = 0;  ///< 0: as many as the device takes
-  std::string peer;      ///< whose row this is; empty: ours
 
   std::string name() const { return size == 0 ? family : family + " " + std::to_string(size); }
 };

@@ -8,7 +8,6 @@
 namespace radar::tools {
 
 struct Cell {
-  std::string key;      ///< fingerprint of the program, the workload, the method and the device
   std::string section;  ///< front, table1 or growth
   std::string workload;
   double x = 0;        ///< where on its section's axis; 0 in section front
@@ -74,7 +73,6 @@ void eachColumn(SomeCell& cell, const Visit& visit) {
   visit("settled_sampled", cell.settledSampled);
   visit("settled_contact", cell.settledContact);
   visit("settled_reference", cell.settledReference);
-  visit("key", cell.key);
 }
 
 }  // namespace radar::tools

@@ -10,37 +10,17 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <stdexcept>
 
 namespace radar::tools {
 
 namespace {
 
-// The first byte of what a child sends.
+// What a child has written begins with one of these.
 constexpr char kValues = 'v', kWords = 'w';
 
-void sendAll(int file, const char* bytes, size_t size) {
-  while (size > 0) {
-    const ssize_t sent = write(file, bytes, size);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) _exit(1);
-    bytes += sent;
-    size -= static_cast<size_t>(sent);
-  }
-}
-
-std::string receiveAll(int file) {
-  std::string text;
-  char part[1 << 16];
-  for (;;) {
-    const ssize_t got = read(file, part, sizeof part);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return text;
-    text.append(part, static_cast<size_t>(got));
-  }
-}
-
-[[noreturn]] void beChild(int file, const std::function<std::vector<double>()>& work, unsigned mostSeconds) {
+[[noreturn]] void beChild(std::FILE* file, const std::function<std::vector<double>()>& work, unsigned mostSeconds) {
   const rlimit limit{mostSeconds, mostSeconds + 1};
   setrlimit(RLIMIT_CPU, &limit);
   // What libraries print (ODE and Bullet do) is not for our reader.
@@ -49,30 +29,24 @@ std::string receiveAll(int file) {
   dup2(nowhere, STDERR_FILENO);
   try {
     const std::vector<double> values = work();
-    sendAll(file, &kValues, 1);
-    sendAll(file, reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+    std::fputc(kValues, file);
+    std::fwrite(values.data(), sizeof(double), values.size(), file);
   } catch (const std::exception& error) {
-    sendAll(file, &kWords, 1);
-    sendAll(file, error.what(), std::strlen(error.what()));
+    std::fputc(kWords, file);
+    std::fputs(error.what(), file);
   }
-  _exit(0);
+  _exit(std::fflush(file) == 0 ? 0 : 1);
 }
 
 }  // namespace
 
 ChildOutcome inChild(const std::function<std::vector<double>()>& work, unsigned mostSeconds) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  if (!file) throw std::runtime_error(std::string("a temporary file: ") + std::strerror(errno));
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
-  if (child == 0) {
-    close(ends[0]);
-    beChild(ends[1], work, mostSeconds);
-  }
-  close(ends[1]);
-  const std::string text = receiveAll(ends[0]);
-  close(ends[0]);
+  if (child == 0) beChild(file.get(), work, mostSeconds);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -80,11 +54,17 @@ ChildOutcome inChild(const std::function<std::vector<double>()>& work, unsigned 
     return {{}, "stopped after " + std::to_string(mostSeconds) + " s of processor time"};
   }
   if (WIFSIGNALED(status)) return {{}, std::string("crashes: ") + strsignal(WTERMSIG(status))};
-  if (WEXITSTATUS(status) != 0 || text.empty()) return {{}, "ends its process"};
-  if (text[0] == kWords) return {{}, text.substr(1)};
+  std::fseek(file.get(), 0, SEEK_END);
+  const long size = std::ftell(file.get());
+  std::rewind(file.get());
+  const int kind = std::fgetc(file.get());
+  if (WEXITSTATUS(status) != 0 || size < 1) return {{}, "ends its process"};
+  std::string bytes(static_cast<size_t>(size) - 1, '\0');
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  if (kind == kWords) return {{}, bytes};
   ChildOutcome outcome;
-  outcome.values.resize((text.size() - 1) / sizeof(double));
-  std::memcpy(outcome.values.data(), text.data() + 1, outcome.values.size() * sizeof(double));
+  outcome.values.resize(bytes.size() / sizeof(double));
+  std::memcpy(outcome.values.data(), bytes.data(), outcome.values.size() * sizeof(double));
   return outcome;
 }
 

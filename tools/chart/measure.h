@@ -4,29 +4,23 @@
 #include <memory>
 
 #include "baselines/baseline.h"
-#include "chart/accuracy.h"
+#include "bench/harness.h"
 #include "chart/cases.h"
+#include "chart/cell.h"
 
 namespace radar::tools {
 
-/// The exact answers, and how large each sensor is, in the workload's order.
-struct Truth {
-  std::vector<Result> results;
-  std::vector<double> sizes;
-};
-Truth truthOf(const Workload& workload);
-
-/// Passes over a workload after one that gives the answers and is not timed: at least `least`, and on until `budgetMs`
-/// is spent; fewer, but one, where they take several budgets.
+/// Passes over a workload after one that is not timed: at least `least`, and on until `seconds` are over; fewer, but
+/// one, where they take several times as long.
 struct Timing {
   uint32_t least = 5;
-  double budgetMs = 400;
+  double seconds = 0.4;
 };
 
 /// A workload on which methods are measured, one after the other.
 class Bench {
  public:
-  /// Finds the truth. The case and the device must outlive this.
+  /// Finds the exact answers. The case and the device must outlive this.
   Bench(const Case& which, const Device& device, const Timing& timing);
   ~Bench();
 
@@ -37,20 +31,24 @@ class Bench {
  private:
   struct Engine;
 
+  std::vector<bench::Batch> batchesFor(Mode mode, uint32_t resolution) const;
+  /// Fills the columns of time; returns the answers in the order of the batches.
+  std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::span<const bench::Batch> batches) const;
   /// Modes sampled and contact; "drawing all", which is mode sampled without select; "contact on device", whatever the
   /// batch. What one prepares serves all that take the same.
-  Cell measureEngine(const Method& method);
-  /// The CPU's exact search, on method.threads threads.
-  Cell measureReference(const Method& method);
-  /// In method.threads threads of a process of its own, each with a Baseline of its own. Where the library ends the
-  /// process, Cell::failed says how.
-  Cell measureBaseline(const Method& method, const BaselineRow& row);
-  Cell cellOf(const Method& method) const;
+  std::vector<Result> sweep(Cell& cell);
+  /// The CPU's exact search, on cell.threads threads.
+  std::vector<Result> searchOnCpu(Cell& cell) const;
+  /// In cell.threads threads, each with a Baseline of its own.
+  std::vector<Result> cast(Cell& cell, const BaselineRow& row) const;
+  /// The same in a process of its own. Where the library ends it, Cell::failed says how.
+  std::vector<Result> castInChild(Cell& cell, const BaselineRow& row) const;
 
   const Case& which_;
   const Device& device_;
   Timing timing_;
-  Truth truth_;
+  std::vector<Result> truth_;
+  std::vector<double> sizes_;  ///< of the sensors
   std::unique_ptr<Engine> engine_;
 };
 

@@ -1,42 +1,31 @@
 #include "chart/record.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "batch/atomic_file.h"
+#include "bench/csv.h"
 #include "import/input_error.h"
 
 namespace radar::tools {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr const char* kFormat = "# cyber-radar-chart-2";
 
-constexpr const char* kFormat = "cyber-radar-chart-1";
-
-struct ToJson {
-  Json& row;
-  void operator()(const char*, double value) const { row.push_back(std::isfinite(value) ? Json(value) : Json()); }
-  template <class Value>
-  void operator()(const char*, const Value& value) const {
-    row.push_back(value);
-  }
-};
-
-struct FromJson {
-  const Json& row;
-  size_t& next;
-  void operator()(const char*, double& value) const {
-    const Json& found = row.at(next++);
-    value = found.is_null() ? NAN : found.get<double>();
-  }
-  template <class Value>
-  void operator()(const char*, Value& value) const {
-    row.at(next++).get_to(value);
-  }
-};
+// Calls visit(name, member) for each line of the head that is there once.
+template <class SomeRecord, class Visit>
+void eachOrigin(SomeRecord& record, const Visit& visit) {
+  visit("command", record.command);
+  visit("machine", record.machine);
+  visit("device", record.device);
+  visit("commit", record.commit);
+  visit("date", record.date);
+  visit("run", record.run);
+}
 
 std::vector<std::string> columnNames() {
   std::vector<std::string> names;
@@ -45,98 +34,112 @@ std::vector<std::string> columnNames() {
   return names;
 }
 
-// Names may hold commas and quotes.
-struct ToCsv {
-  std::string& line;
-  void add(const std::string& text) const { line += (line.empty() ? "" : ",") + text; }
-  void operator()(const char*, const std::string& value) const {
-    std::string quoted = "\"";
-    for (const char c : value) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    add(value.find_first_of(",\"\n") == std::string::npos ? value : quoted + "\"");
+// Reads the columns of a line, one after the other.
+struct FromCsv {
+  const std::string& file;
+  const std::vector<std::string>& cells;
+  size_t& next;
+
+  template <class Value>
+  void operator()(const char* name, Value& value) const {
+    const std::string& cell = cells[next++];
+    const auto expected = [&](const char* what) {
+      throw InputError(file, name, std::string("expected ") + what + ", got \"" + cell + "\"");
+    };
+    if constexpr (std::is_same_v<Value, std::string>) {
+      value = cell;
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      if (cell != "yes" && cell != "no") expected("yes or no");
+      value = cell == "yes";
+    } else {
+      if constexpr (std::is_floating_point_v<Value>) {
+        value = NAN;
+        if (cell.empty()) return;
+      }
+      const char* end = cell.data() + cell.size();
+      const auto [stop, error] = std::from_chars(cell.data(), end, value);
+      if (error != std::errc() || stop != end) expected("a number");
+    }
   }
-  void operator()(const char*, double value) const {
-    std::string text;
-    if (std::isfinite(value)) appendNumber(text, value);
-    add(text);
-  }
-  void operator()(const char*, uint32_t value) const { add(std::to_string(value)); }
-  void operator()(const char*, bool value) const { add(value ? "yes" : "no"); }
 };
+
+// Takes a line "# key: value"; false where there is no such key.
+bool readHead(Record& record, const std::string& line) {
+  const size_t colon = line.find(": ");
+  if (colon == std::string::npos) return false;
+  const std::string key = line.substr(2, colon - 2), value = line.substr(colon + 2);
+  bool isKnown = false;
+  eachOrigin(record, [&](const char* name, std::string& member) {
+    if (key != name) return;
+    member = value;
+    isKnown = true;
+  });
+  if (key == "workload") {
+    const size_t end = std::min(value.find(": "), value.size());
+    record.workloads.push_back({value.substr(0, end), value.substr(std::min(end + 2, value.size()))});
+  } else if (key == "library") {
+    record.notes.push_back(value);
+  } else {
+    return isKnown;
+  }
+  return true;
+}
 
 }  // namespace
 
-const Cell* Record::find(const std::string& key) const {
-  const auto found = std::find_if(cells.begin(), cells.end(), [&](const Cell& cell) { return cell.key == key; });
-  return found == cells.end() ? nullptr : &*found;
-}
-
-std::string jsonOf(const Record& record) {
-  Json json{{"format", kFormat},       {"command", record.command}, {"machine", record.machine},
-            {"device", record.device}, {"commit", record.commit},   {"date", record.date}};
-  json["workloads"] = Json::array();
-  for (const WorkloadNote& note : record.workloads) {
-    json["workloads"].push_back({{"name", note.name}, {"about", note.about}});
-  }
-  json["notes"] = record.notes;
-  json["columns"] = columnNames();
-  // A line for each cell.
-  std::string text = json.dump(1);
-  text.erase(text.size() - 2);  // the end of the object
-  text += ",\n \"cells\": [";
-  for (const Cell& cell : record.cells) {
-    Json row = Json::array();
-    eachColumn(cell, ToJson{row});
-    text += (&cell == &record.cells.front() ? "\n  " : ",\n  ") + row.dump();
-  }
-  return text + "\n ]\n}\n";
-}
-
-Record recordFrom(const std::string& text, const std::string& file) {
-  try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != kFormat) throw InputError(file, "format", std::string("expected ") + kFormat);
-    Record record;
-    json.at("command").get_to(record.command);
-    json.at("machine").get_to(record.machine);
-    json.at("device").get_to(record.device);
-    json.at("commit").get_to(record.commit);
-    json.at("date").get_to(record.date);
-    for (const Json& note : json.at("workloads")) record.workloads.push_back({note.at("name"), note.at("about")});
-    json.at("notes").get_to(record.notes);
-    if (json.at("columns").get<std::vector<std::string>>() != columnNames()) {
-      throw InputError(file, "columns", "expected those that this program writes");
-    }
-    for (const Json& row : json.at("cells")) {
-      size_t next = 0;
-      eachColumn(record.cells.emplace_back(), FromJson{row, next});
-    }
-    return record;
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(file, "", std::string("expected what cyber-radar chart writes: ") + error.what());
-  }
-}
-
 std::string csvOf(const Record& record) {
-  std::string header;
-  for (const std::string& name : columnNames()) header += (header.empty() ? "" : ",") + name;
-  std::string text = header + "\n";
+  std::string text = std::string(kFormat) + "\n";
+  const auto add = [&](const char* key, std::string value) {
+    std::replace(value.begin(), value.end(), '\n', ' ');
+    text += std::string("# ") + key + ": " + value + "\n";
+  };
+  eachOrigin(record, add);
+  for (const WorkloadNote& workload : record.workloads) add("workload", workload.name + ": " + workload.about);
+  for (const std::string& note : record.notes) add("library", note);
+  text += bench::csvLine(columnNames());
   for (const Cell& cell : record.cells) {
-    std::string line;
-    eachColumn(cell, ToCsv{line});
-    text += line + "\n";
+    std::vector<std::string> cells;
+    eachColumn(cell, [&](const char*, const auto& value) { cells.push_back(bench::csvCell(value)); });
+    text += bench::csvLine(cells);
   }
   return text;
 }
 
+Record recordFrom(const std::string& csv, const std::string& file) {
+  Record record;
+  std::istringstream head(csv);
+  std::string line;
+  std::getline(head, line);
+  if (line != kFormat) throw InputError(file, "line 1", std::string("expected ") + kFormat);
+  for (size_t number = 2; std::getline(head, line) && line.starts_with("# "); ++number) {
+    if (readHead(record, line)) continue;
+    throw InputError(file, "line " + std::to_string(number), "expected what cyber-radar chart writes, got " + line);
+  }
+  const std::vector<std::vector<std::string>> table = bench::readCsv(file, csv);
+  if (table.empty() || table.front() != columnNames()) {
+    throw InputError(file, "columns", "expected those that this program writes");
+  }
+  for (size_t row = 1; row < table.size(); ++row) {
+    const std::string place = "row " + std::to_string(row);
+    if (table[row].size() != table.front().size()) {
+      throw InputError(
+          file, place,
+          "expected " + std::to_string(table.front().size()) + " cells, got " + std::to_string(table[row].size()));
+    }
+    size_t next = 0;
+    eachColumn(record.cells.emplace_back(), FromCsv{file + ": " + place, table[row], next});
+  }
+  return record;
+}
+
 std::optional<Record> readRecord(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "chart.json";
+  const std::filesystem::path file = folder / "chart.csv";
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
   return recordFrom({std::istreambuf_iterator<char>(stream), {}}, file.string());
 }
 
 void writeRecord(const std::filesystem::path& folder, const Record& record) {
-  writeAtomically(folder / "chart.json", jsonOf(record));
   writeAtomically(folder / "chart.csv", csvOf(record));
 }
 

@@ -1,4 +1,4 @@
-// A run on disk: chart.json, from which an interrupted run goes on and everything else is drawn anew, and chart.csv.
+// A run on disk: chart.csv, from which an interrupted run goes on and everything else is drawn anew.
 #pragma once
 
 #include <filesystem>
@@ -17,21 +17,18 @@ struct WorkloadNote {
 
 struct Record {
   std::string command, machine, device, commit, date;
+  std::string run;                      ///< fingerprint of all that the cells depend on
   std::vector<WorkloadNote> workloads;  ///< of section front, in order
   std::vector<std::string> notes;       ///< what each peer cannot do: "name: text"
   std::vector<Cell> cells;
-
-  const Cell* find(const std::string& key) const;
 };
 
-std::string jsonOf(const Record& record);
-/// Throws InputError that names the file, the place and what was expected.
-Record recordFrom(const std::string& json, const std::string& file);
-
-/// A header, then a line for each cell.
+/// Lines that begin with # say where the cells come from, the next names the columns, each other is a cell.
 std::string csvOf(const Record& record);
+/// Throws InputError that names the file, the place and what was expected.
+Record recordFrom(const std::string& csv, const std::string& file);
 
-/// Nothing where the folder holds no chart.json.
+/// Nothing where the folder holds no chart.csv.
 std::optional<Record> readRecord(const std::filesystem::path& folder);
 void writeRecord(const std::filesystem::path& folder, const Record& record);
 

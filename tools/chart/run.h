@@ -20,20 +20,17 @@ struct Planned {
   const Case* which = nullptr;
   Method method;
   const BaselineRow* row = nullptr;  ///< of a peer
-  std::string key;
 };
 
-/// Every cell of the run, in the order of the file. `rows` and `settings` must outlive the plan. `origin` stands for
-/// all that a cell depends on besides: the program and the device.
-std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows,
-                            const std::string& origin);
+/// Every cell of the run, in the order of the file. `rows` and `settings` must outlive the plan.
+std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows);
 
-/// Measures what `folder` does not hold already and writes `record`, which comes without cells, after each cell.
-/// `step` is called before each cell.
+/// Measures the plan and writes `record`, which comes without cells, after each cell. Where `folder` holds a record of
+/// the same Record::run, goes on after its cells. `step` is called before each cell.
 Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan, Record record, const Device& device,
-                  const std::filesystem::path& folder, const std::function<void(const Planned&)>& step);
+                  const std::filesystem::path& folder, const std::function<void()>& step);
 
-/// A fingerprint of this very program, so that an interrupted run is told from one of another.
-std::string programFingerprint();
+/// For Record::run: of this very program, the settings, and `origin`, which stands for all else.
+std::string fingerprintOf(const RunSettings& settings, const std::string& origin);
 
 }  // namespace radar::tools

@@ -28,9 +28,9 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --out docs/chart --docs docs --render
                                                     measures nothing: draws the charts again
 
-DIR receives chart.csv and chart.json with all measurements, points.csv with what the charts show, and the charts as SVG
-files. Every measurement is saved at once: an interrupted run continues if program and device are the same. A program
-built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
+DIR receives chart.csv with all measurements, points.csv with what the charts show, and the charts as SVG files. Every
+measurement is saved at once: the same command continues where it was interrupted, if program and device are the same. A
+program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
   std::vector<std::string> files, meshes;
@@ -116,9 +116,12 @@ Record measure(const Options& options) {
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.workloads.push_back({which.name, which.about});
   }
-  const std::vector<Planned> plan = planOf(settings, rows, programFingerprint() + record.device);
+  std::string origin = record.commit + record.machine + record.device;
+  for (const std::string& note : record.notes) origin += note;
+  record.run = fingerprintOf(settings, origin);
+  const std::vector<Planned> plan = planOf(settings, rows);
   Progress progress("measuring", plan.size());
-  return measureAll(settings, plan, record, device, options.out, [&](const Planned&) { progress.add(1); });
+  return measureAll(settings, plan, record, device, options.out, [&] { progress.add(1); });
 }
 
 void chart(Options options) {
@@ -129,7 +132,7 @@ void chart(Options options) {
   std::optional<Record> record;
   if (options.render) {
     record = readRecord(options.out);
-    if (!record) throw InputError("--out", options.out, "expected a folder with the chart.json of an earlier run");
+    if (!record) throw InputError("--out", options.out, "expected a folder with the chart.csv of an earlier run");
   } else {
     record = measure(options);
   }
@@ -143,7 +146,7 @@ void chart(Options options) {
   std::cout << "growth\n";
   for (const std::string& finding : growthFindings(*record)) std::cout << "  " << finding << "\n";
   std::cout << "\nIn " << std::filesystem::absolute(options.out).string()
-            << ": chart.csv, chart.json, points.csv, charts as SVG\n";
+            << ": chart.csv, points.csv, charts as SVG\n";
 }
 
 }  // namespace

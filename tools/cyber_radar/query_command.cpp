@@ -10,7 +10,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
-#include "report/median.h"
+#include "bench/statistics.h"
 
 namespace radar::tools {
 

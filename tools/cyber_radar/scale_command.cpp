@@ -120,7 +120,7 @@ int scale(Options options) {
   ScaleReport report;
   {
     Progress progress("measuring", scaleSteps(devices.size(), points.size(), settings));
-    report = measureScale(devices, points, settings, [&](const std::string&) { progress.add(1); });
+    report = measureScale(devices, points, settings, [&] { progress.add(1); });
   }
   report.numbers = numbersOf(options.device, devices.size());
   const std::string title =

@@ -1,27 +1,17 @@
 #include "scale/measure.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <thread>
 
+#include "bench/harness.h"
+
 namespace radar::tools {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double processorMs() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto ms = [](const timeval& t) { return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * t.tv_usec; };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
 
 // Of all processor cores, in one unit: in use, and altogether. Zero where the system does not say.
 struct MachineTime {
@@ -53,77 +43,59 @@ std::vector<std::pair<std::vector<uint32_t>, bool>> setsOf(size_t devices) {
   return sets;
 }
 
-struct PlayedBatch {
-  uint32_t scene = 0;
-  std::vector<Query> queries;
+struct Pass {
+  bench::Lap lap;
+  MachineTime machine;
+  std::vector<Result> results;
+  std::vector<PoolAnswers> batches;  // without results
 };
 
-std::vector<PlayedBatch> played(const Workload& workload, const ScaleSettings& settings) {
-  std::vector<PlayedBatch> batches;
-  for (const Batch& batch : batchesOf(workload)) {
-    PlayedBatch& one = batches.emplace_back();
-    one.scene = batch.scene;
-    for (const uint32_t i : batch.queries) {
-      one.queries.push_back(toQuery(workload.queries[i], settings.mode, settings.resolution));
+// The pools of all sets over one scene, which shows one workload after the other.
+class Pools {
+ public:
+  Pools(std::span<const Device> devices, const Workload& first, const ScaleSettings& settings) : settings_(settings) {
+    player_.emplace(first);
+    for (const auto& [set, alone] : setsOf(devices.size())) {
+      for (const bool timestamps : {false, true}) {
+        const SweeperOptions options{.select = settings.select, .timestamps = timestamps, .cpuBatch = 0};
+        (timestamps ? profiled_ : pools_)
+            .push_back(std::make_unique<Pool>(devices.subspan(set.front(), set.size()), player_->scene(), options));
+      }
     }
   }
-  return batches;
-}
 
-struct Pass {
-  double ms = 0, processor = 0;
-  MachineTime machine;
-  std::vector<PoolAnswers> batches;
-};
-
-/// The pools of all sets over one scene, which shows one workload after the other.
-class Bench {
- public:
-  Bench(std::span<const Device> devices, const Workload& first, const ScaleSettings& settings) : settings_(settings) {
-    player_.emplace(first);
-    for (const auto& [set, alone] : setsOf(devices.size())) pools_.push_back(poolOf(devices, set, false));
-    for (const auto& [set, alone] : setsOf(devices.size())) profiled_.push_back(poolOf(devices, set, true));
-  }
-
-  /// No batch is with any pool.
+  // No batch is with any pool.
   void load(const Workload& workload) {
     player_.emplace(workload);  // the same place: the pools' scene
-    batches_ = played(workload, settings_);
+    batches_ = bench::batchesOf(workload, settings_.mode, settings_.resolution);
   }
 
   Pass run(size_t set, bool profile) {
     Pool& pool = *(profile ? profiled_ : pools_)[set];
     Pass pass;
-    const double processor = processorMs();
-    const MachineTime machine = machineTime();
-    const Clock::time_point start = Clock::now();
-    for (const PlayedBatch& batch : batches_) {
-      pool.edit([&] { player_->show(batch.scene); });
-      pass.batches.push_back(pool.submit(batch.queries).get());
-    }
-    pass.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    pass.processor = processorMs() - processor;
-    const MachineTime after = machineTime();
-    pass.machine = {after.used - machine.used, after.all - machine.all};
-    for (const PoolAnswers& answers : pass.batches) {
+    const auto answer = [&](std::span<const Query> queries) {
+      PoolAnswers& answers = pass.batches.emplace_back(pool.submit({queries.begin(), queries.end()}).get());
       if (!answers.reasons.empty()) throw Error("a query was not answered: " + answers.reasons.begin()->second);
       if (!answers.retired.empty()) throw Error("a device was given up: " + answers.retired.front());
-    }
+      return std::move(answers.results);
+    };
+    const auto show = [&](uint32_t scene) { pool.edit([&] { player_->show(scene); }); };
+    const MachineTime before = machineTime();
+    bench::Pass played = bench::play({"", answer, show}, batches_);
+    const MachineTime after = machineTime();
+    pass.machine = {after.used - before.used, after.all - before.all};
+    (pass.lap = played.prepare) += played.answer;
+    pass.results = std::move(played.answers);
     return pass;
   }
 
   size_t batches() const { return batches_.size(); }
 
  private:
-  std::unique_ptr<Pool> poolOf(std::span<const Device> devices, const std::vector<uint32_t>& set, bool timestamps) {
-    return std::make_unique<Pool>(devices.subspan(set.front(), set.size()), player_->scene(),
-                                  SweeperOptions{.select = settings_.select, .timestamps = timestamps, .cpuBatch = 0});
-  }
-
   const ScaleSettings& settings_;
   std::optional<ScenePlayer> player_;
   std::vector<std::unique_ptr<Pool>> pools_, profiled_;
-  std::vector<PlayedBatch> batches_;
+  std::vector<bench::Batch> batches_;
 };
 
 // The chunks of one device in one batch, by the time of their submission.
@@ -151,21 +123,20 @@ void addShare(DeviceShare& share, const PoolAnswers& batch, uint32_t device) {
 }
 
 void summarize(ScaleRun& run, std::vector<Pass> passes) {
-  double processor = 0, all = 0;
+  bench::Lap all;
   MachineTime machine;
   for (const Pass& pass : passes) {
-    processor += pass.processor;
-    all += pass.ms;
+    all += pass.lap;
     machine.used += pass.machine.used;
     machine.all += pass.machine.all;
   }
-  run.cores = processor / all;
+  run.cores = all.process / all.wall;
   run.machine = machine.all > 0 ? machine.used / machine.all : 0;
-  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.ms < b.ms; });
-  run.least = passes.front().ms;
-  run.most = passes.back().ms;
+  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.lap.wall < b.lap.wall; });
+  run.least = 1e3 * passes.front().lap.wall;
+  run.most = 1e3 * passes.back().lap.wall;
   Pass& median = passes[passes.size() / 2];
-  run.ms = run.scene = median.ms;
+  run.ms = run.scene = 1e3 * median.lap.wall;
   run.shares.resize(run.devices.size());
   for (const PoolAnswers& batch : median.batches) {
     run.scene -= batch.answered - batch.submitted;
@@ -174,20 +145,18 @@ void summarize(ScaleRun& run, std::vector<Pass> passes) {
   run.batches = std::move(median.batches);
 }
 
-bool sameBits(const std::vector<PoolAnswers>& a, const std::vector<std::vector<Result>>& b) {
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (a[i].results.size() != b[i].size() ||
-        std::memcmp(a[i].results.data(), b[i].data(), b[i].size() * sizeof(Result)) != 0) {
-      return false;
-    }
-  }
-  return a.size() == b.size();
+bool sameBits(const std::vector<Result>& a, const std::vector<Result>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Result)) == 0;
 }
 
-std::string nameOf(const std::vector<uint32_t>& set, double sensors) {
-  std::string text = std::to_string(static_cast<long>(sensors + 0.5)) + " sensors on device";
-  for (const uint32_t device : set) text += " " + std::to_string(device);
-  return text;
+void addStages(std::vector<StageTime>& stages, const Pass& pass) {
+  for (const PoolAnswers& batch : pass.batches) {
+    for (const StageTime& stage : batch.stats.stages) {
+      const auto found =
+          std::find_if(stages.begin(), stages.end(), [&](const StageTime& other) { return other.name == stage.name; });
+      (found == stages.end() ? stages.emplace_back(StageTime{stage.name, 0}) : *found).ms += stage.ms;
+    }
+  }
 }
 
 }  // namespace
@@ -215,32 +184,27 @@ size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings) 
 }
 
 ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
-                         const ScaleSettings& settings, const std::function<void(const std::string&)>& step) {
+                         const ScaleSettings& settings, const std::function<void()>& step) {
   ScaleReport report;
   report.processors = std::thread::hardware_concurrency();
   for (const Device& device : devices) report.devices.push_back({.name = device.name(), .driver = device.driver()});
   const auto sets = setsOf(devices.size());
-  Bench bench(devices, points.front().workload, settings);
+  Pools pools(devices, points.front().workload, settings);
   for (size_t p = 0; p < points.size(); ++p) {
-    bench.load(points[p].workload);
+    pools.load(points[p].workload);
     report.sensors.push_back(points[p].sensors);
-    report.batches.push_back(bench.batches());
+    report.batches.push_back(pools.batches());
     report.queries.push_back(points[p].workload.queries.size());
     std::vector<std::vector<Pass>> passes(sets.size());
-    std::vector<std::vector<Result>> expected;
-    // In turns, so that what else the machine does meets all sets alike. The first turn warms up.
-    for (uint32_t turn = 0; turn <= settings.repeats; ++turn) {
-      for (size_t s = 0; s < sets.size(); ++s) {
-        step(nameOf(sets[s].first, points[p].sensors));
-        Pass pass = bench.run(s, false);
-        if (expected.empty()) {
-          for (const PoolAnswers& batch : pass.batches) expected.push_back(batch.results);
-        }
-        report.sameBits = report.sameBits && sameBits(pass.batches, expected);
-        for (PoolAnswers& batch : pass.batches) batch.results = {};
-        if (turn > 0) passes[s].push_back(std::move(pass));
-      }
-    }
+    std::vector<Result> expected;
+    bench::inTurns({.least = settings.repeats, .most = settings.repeats}, sets.size(), [&](size_t s, bool counts) {
+      step();
+      Pass pass = pools.run(s, false);
+      if (expected.empty()) expected = pass.results;
+      report.sameBits = report.sameBits && sameBits(pass.results, expected);
+      pass.results = {};
+      if (counts) passes[s].push_back(std::move(pass));
+    });
     for (size_t s = 0; s < sets.size(); ++s) {
       ScaleRun& run = report.runs.emplace_back();
       run.devices = sets[s].first;
@@ -248,18 +212,11 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<Scal
       run.point = p;
       summarize(run, std::move(passes[s]));
       if (p + 1 < points.size()) continue;
-      for (const bool warm : {false, true}) {
-        step(nameOf(sets[s].first, points[p].sensors) + ", stages");
-        const Pass profiled = bench.run(s, true);
-        if (!warm) continue;
-        for (const PoolAnswers& batch : profiled.batches) {
-          for (const StageTime& stage : batch.stats.stages) {
-            const auto found = std::find_if(run.stages.begin(), run.stages.end(),
-                                            [&](const StageTime& other) { return other.name == stage.name; });
-            (found == run.stages.end() ? run.stages.emplace_back(StageTime{stage.name, 0}) : *found).ms += stage.ms;
-          }
-        }
-      }
+      bench::inTurns({.least = 1, .most = 1}, 1, [&](size_t, bool counts) {
+        step();
+        const Pass profiled = pools.run(s, true);
+        if (counts) addStages(run.stages, profiled);
+      });
     }
   }
   return report;

@@ -64,10 +64,10 @@ struct ScaleReport {
   double efficiency(const ScaleRun& run) const;  ///< its share of the speeds of its devices, each alone, added up
 };
 
-/// `step` is called before each of scaleSteps() passes with what it is. Throws Error where a query is not answered: a
-/// time without its answers says nothing.
+/// `step` is called before each of scaleSteps() passes. Throws Error where a query is not answered: a time without its
+/// answers says nothing.
 ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
-                         const ScaleSettings& settings, const std::function<void(const std::string&)>& step);
+                         const ScaleSettings& settings, const std::function<void()>& step);
 size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings);
 
 }  // namespace radar::tools

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "report/print.h"
+#include "bench/csv.h"
 #include "selftest/selftest.h"
 
 namespace radar::tools {
@@ -10,6 +10,7 @@ namespace radar::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using bench::csvLineOf;
 
 // JSON has no infinities.
 Json finite(double value) {
@@ -96,23 +97,12 @@ Json jsonOf(const DeviceTest& device) {
   return json;
 }
 
-// Texts have commas in them.
-std::string cell(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-// `add` writes the lines of one device after its number.
+// `add` writes the lines of one device.
 template <class Add>
-std::string csvOf(const SelftestReport& report, const char* head, const Add& add) {
-  std::string text = std::string("device,") + head + "\n";
-  for (const DeviceTest& device : report.devices) add(device, std::to_string(device.number) + ",", text);
+std::string csvOf(const SelftestReport& report, const char* columns, const Add& add) {
+  std::string text = std::string("device,") + columns + "\n";
+  for (const DeviceTest& device : report.devices) add(device, text);
   return text;
-}
-
-std::string text(uint64_t value) {
-  return std::to_string(value) + ",";
 }
 
 }  // namespace
@@ -128,47 +118,41 @@ std::string jsonOf(const SelftestReport& report) {
 
 std::string arithmeticCsv(const SelftestReport& report) {
   return csvOf(report, "operation,tried,wrong,worst ulps,found,needed,consequence",
-               [](const DeviceTest& device, const std::string& first, std::string& out) {
+               [](const DeviceTest& device, std::string& text) {
                  for (const ArithmeticCheck& check : device.arithmetic) {
-                   out += first + cell(check.operation) + "," + text(check.tried) + text(check.wrong) +
-                          print("%g,", check.worst) + cell(check.found) + "," + cell(check.needed) + "," +
-                          cell(check.consequence) + "\n";
+                   text += csvLineOf(device.number, check.operation, check.tried, check.wrong, check.worst, check.found,
+                                     check.needed, check.consequence);
                  }
                });
 }
 
 std::string exactnessCsv(const SelftestReport& report) {
   return csvOf(report, "family,doubles,queries,hits,clear,overlaps,wrong,pairs,cpu pairs",
-               [](const DeviceTest& device, const std::string& first, std::string& out) {
-                 for (const ExactnessRow& row : device.exactness) {
-                   const RandomTally& t = row.tally;
-                   out += first + row.family + "," + (row.doubles ? "with," : "without,") + text(t.queries) +
-                          text(t.hits) + text(t.clear) + text(t.overlaps) + text(t.wrong) + text(t.pairs) +
-                          std::to_string(t.cpuPairs) + "\n";
+               [](const DeviceTest& device, std::string& text) {
+                 for (const auto& [family, doubles, t] : device.exactness) {
+                   text += csvLineOf(device.number, family, doubles ? "with" : "without", t.queries, t.hits, t.clear,
+                                     t.overlaps, t.wrong, t.pairs, t.cpuPairs);
                  }
                });
 }
 
 std::string throughputCsv(const SelftestReport& report) {
-  return csvOf(report, "workload,batch,device us,cpu us,differ",
-               [](const DeviceTest& device, const std::string& first, std::string& out) {
-                 for (const ThroughputRow& row : device.throughput) {
-                   out += first + row.workload + "," + text(row.batch) + print("%g,%g,", row.deviceUs, row.cpuUs) +
-                          std::to_string(row.differ) + "\n";
-                 }
-               });
+  return csvOf(report, "workload,batch,device us,cpu us,differ", [](const DeviceTest& device, std::string& text) {
+    for (const ThroughputRow& row : device.throughput) {
+      text += csvLineOf(device.number, row.workload, row.batch, row.deviceUs, row.cpuUs, row.differ);
+    }
+  });
 }
 
 std::string stagesCsv(const SelftestReport& report) {
-  return csvOf(report, "mode,workload,stage,us",
-               [](const DeviceTest& device, const std::string& first, std::string& out) {
-                 for (const bool sampled : {false, true}) {
-                   for (const StageRow& row : sampled ? device.passes : device.stages) {
-                     out += first + (sampled ? "sampled," : "contact,") + cell(row.workload) + "," + cell(row.stage) +
-                            print(",%g\n", row.us);
-                   }
-                 }
-               });
+  return csvOf(report, "mode,workload,stage,us", [](const DeviceTest& device, std::string& text) {
+    for (const StageRow& row : device.stages) {
+      text += csvLineOf(device.number, "contact", row.workload, row.stage, row.us);
+    }
+    for (const StageRow& row : device.passes) {
+      text += csvLineOf(device.number, "sampled", row.workload, row.stage, row.us);
+    }
+  });
 }
 
 }  // namespace radar::tools

@@ -1,47 +1,22 @@
 #include "selftest/measure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 
+#include "bench/harness.h"
+#include "bench/statistics.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
-#include "report/median.h"
 #include "workloads/generate.h"
-#include "workloads/same_answer.h"
 
 namespace radar::tools {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 constexpr uint32_t kDistinct = 16'384;  // queries that are not repeated in a batch, where it is that large
-
-double secondsOf(const std::function<void()>& work) {
-  const Clock::time_point start = Clock::now();
-  work();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The first `count` queries of one scene's, over and over.
-std::vector<Query> repeated(const std::vector<Query>& queries, uint64_t count) {
-  std::vector<Query> all;
-  all.reserve(count);
-  for (uint64_t i = 0; i < count; ++i) all.push_back(queries[i % queries.size()]);
-  return all;
-}
-
-std::vector<Query> queriesOf(const Workload& workload, Mode mode, uint32_t scene) {
-  std::vector<Query> queries;
-  for (const QuerySpec& spec : workload.queries) {
-    if (spec.scene == scene) queries.push_back(toQuery(spec, mode));
-  }
-  return queries;
-}
 
 Workload lightWorkload() {
   return makeWorkload(Table1{.boxes = 30'000, .sensors = kDistinct, .shape = SensorShape::box});
@@ -50,37 +25,55 @@ Workload heavyWorkload() {
   return makeWorkload(Table1{.boxes = 10'000, .sensors = kDistinct, .shape = SensorShape::teapot});
 }
 
-// A batch, asked of the device's search and of the CPU's in turn.
+// A scene that stands, and a batch of queries in it.
+struct Standing {
+  explicit Standing(const Workload& workload, Mode mode = Mode::contact)
+      : player(workload), batch(bench::batchesOf(workload, mode).front()) {
+    player.show(batch.scene);
+  }
+  // So many queries: the first ones, over and over where there are fewer.
+  bench::Batch repeated(uint64_t count) const {
+    bench::Batch many{batch.scene, {}};
+    many.queries.reserve(count);
+    for (uint64_t i = 0; i < count; ++i) many.queries.push_back(batch.queries[i % batch.queries.size()]);
+    return many;
+  }
+  const Scene& scene() const { return player.scene(); }
+
+  ScenePlayer player;
+  bench::Batch batch;
+};
+
+double medianUs(const std::vector<bench::Lap>& laps, uint64_t queries) {
+  return 1e6 * median(bench::secondsOf(laps)) / static_cast<double>(queries);
+}
+
+// The device's search and the CPU's, side by side.
 class Race {
  public:
-  using Run = std::function<std::vector<Result>()>;
+  Race(const Device& device, const Scene& scene) : sweeper_(device, scene, kOnDevice), cpu_(scene) {}
 
-  Race(Run device, Run cpu) : ways_{std::move(device), std::move(cpu)} {}
-
-  /// At least one round, and as many as fit into half a second, up to nine.
-  ThroughputRow measure(const char* workload, uint64_t queries, const Deadline& deadline) {
-    ThroughputRow row{workload, queries, 0, 0, 0};
-    std::vector<double> seconds[2];
-    double spent = 0;
-    for (int round = 0; round < 9 && (round == 0 || (spent < 0.5 && !deadline.isOver())); ++round) {
-      std::vector<Result> answers[2];
-      for (int way = 0; way < 2; ++way) {
-        const double took = secondsOf([&] { answers[way] = ways_[way](); });
-        // What is done once is no part of a small batch's time.
-        if (round == 1 && seconds[way].size() == 1) seconds[way].clear();
-        seconds[way].push_back(took);
-        spent += took;
-      }
-      for (size_t i = 0; i < answers[0].size(); ++i) row.differ += sameAnswer(answers[0][i], answers[1][i]) ? 0 : 1;
-    }
-    const auto us = [&](int way) { return 1e6 * median(seconds[way]) / static_cast<double>(queries); };
-    row.deviceUs = us(0);
-    row.cpuUs = us(1);
-    return row;
+  /// At least one pass, and as many as fit into half a second, up to nine. `batches` are played by showing their scenes
+  /// with `show`, which is part of the time.
+  ThroughputRow measure(const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline,
+                        const std::function<void(uint32_t)>& show) {
+    const std::vector<bench::Method> methods{{"device", [&](auto queries) { return sweeper_.run(queries); }, show},
+                                             {"CPU", [&](auto queries) { return cpu_.run(queries); }, show}};
+    // What is done once is no part of a small batch's time.
+    for (const bench::Method& method : methods) method.answer(std::span(batches[0].queries).first(1));
+    const std::vector<bench::Series> all =
+        bench::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
+    const auto us = [](const bench::Series& series) {
+      std::vector<bench::Lap> laps = series.answer;
+      for (size_t i = 0; i < laps.size(); ++i) laps[i] += series.prepare[i];
+      return medianUs(laps, series.answers.size());
+    };
+    return {workload, all[0].answers.size() / batches.size(), us(all[0]), us(all[1]), all[1].differ};
   }
 
  private:
-  Run ways_[2];
+  Sweeper sweeper_;
+  CpuSweeper cpu_;
 };
 
 // Whether so many queries, at the pace of the last batch, fit in what is left.
@@ -94,16 +87,12 @@ bool fits(const std::vector<ThroughputRow>& rows, const char* workload, uint64_t
 
 bool measureStanding(const Device& device, const char* name, const Workload& workload, const Deadline& deadline,
                      std::vector<ThroughputRow>& rows) {
-  ScenePlayer player(workload);
-  player.show(0);
-  const std::vector<Query> distinct = queriesOf(workload, Mode::contact, 0);
-  Sweeper sweeper(device, player.scene(), kOnDevice);
-  CpuSweeper cpu(player.scene());
-  for (uint64_t batch = 1; batch <= 1'000'000; batch *= 10) {
-    if (!fits(rows, name, batch, deadline)) return false;
-    const std::vector<Query> queries = repeated(distinct, batch);
-    rows.push_back(
-        Race([&] { return sweeper.run(queries); }, [&] { return cpu.run(queries); }).measure(name, batch, deadline));
+  const Standing standing(workload);
+  Race race(device, standing.scene());
+  for (uint64_t size = 1; size <= 1'000'000; size *= 10) {
+    if (!fits(rows, name, size, deadline)) return false;
+    const bench::Batch batch = standing.repeated(size);
+    rows.push_back(race.measure(name, {&batch, 1}, deadline, [](uint32_t) {}));
   }
   return true;
 }
@@ -114,66 +103,61 @@ bool measureMoving(const Device& device, const char* name, const Deadline& deadl
     // The more there are, the more each meets: three times as many cost each up to three times as much.
     if (!fits(rows, name, uint64_t{3} * kSteps * teapots, deadline)) return false;
     const Workload workload = makeWorkload(Figure7{.teapots = teapots, .boxes = 10'000, .steps = kSteps});
-    const std::vector<Batch> batches = batchesOf(workload);
+    const std::vector<bench::Batch> batches = bench::batchesOf(workload, Mode::contact);
     ScenePlayer player(workload);
     player.show(batches[0].scene);
-    Sweeper sweeper(device, player.scene(), kOnDevice);
-    CpuSweeper cpu(player.scene());
-    // The two play the scene in turn, each all of its steps.
-    const auto play = [&](const auto& run) {
-      std::vector<Result> answers;
-      for (const Batch& batch : batches) {
-        player.show(batch.scene);
-        const std::vector<Result> found = run(queriesOf(workload, Mode::contact, batch.scene));
-        answers.insert(answers.end(), found.begin(), found.end());
-      }
-      return answers;
-    };
-    ThroughputRow row = Race([&] { return play([&](const auto& batch) { return sweeper.run(batch); }); },
-                             [&] { return play([&](const auto& batch) { return cpu.run(batch); }); })
-                            .measure(name, workload.queries.size(), deadline);
-    row.batch = teapots;
-    rows.push_back(row);
+    rows.push_back(
+        Race(device, player.scene()).measure(name, batches, deadline, [&](uint32_t scene) { player.show(scene); }));
   }
   return true;
 }
 
 // Medians of each stage over some runs, and of what the calling thread saw.
-bool addStages(const Device& device, const char* name, const Workload& workload, Mode mode, uint64_t batch,
-               const Deadline& deadline, std::vector<StageRow>& rows) {
-  ScenePlayer player(workload);
-  player.show(0);
-  const std::vector<Query> queries = repeated(queriesOf(workload, mode, 0), batch);
-  Sweeper sweeper(device, player.scene(), {.timestamps = true, .cpuBatch = 0});
-  sweeper.run(queries);
-  std::vector<double> wall;
+bool addStages(const Device& device, const char* name, const Workload& workload, Mode mode, const Deadline& deadline,
+               std::vector<StageRow>& rows) {
+  const Standing standing(workload, mode);
+  const uint64_t queries = standing.batch.queries.size();
+  Sweeper sweeper(device, standing.scene(), {.timestamps = true, .cpuBatch = 0});
+  std::vector<bench::Lap> laps;
   std::map<std::string, std::vector<double>> times;
   std::vector<std::string> order;
-  for (int i = 0; i < 5 && (i == 0 || !deadline.isOver()); ++i) {
-    wall.push_back(secondsOf([&] { sweeper.run(queries); }));
+  bench::inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
+    const bench::Lap lap = bench::lapOf([&] { sweeper.run(standing.batch.queries); });
+    if (!counts) return;
+    laps.push_back(lap);
     for (const StageTime& stage : sweeper.stats().stages) {
       if (!times.contains(stage.name)) order.push_back(stage.name);
       times[stage.name].push_back(stage.ms);
     }
+  });
+  for (const std::string& stage : order) {
+    rows.push_back({name, stage, 1e3 * median(times[stage]) / static_cast<double>(queries)});
   }
-  const auto perQuery = [&](double seconds) { return 1e6 * seconds / static_cast<double>(batch); };
-  for (const std::string& stage : order) rows.push_back({name, stage, perQuery(1e-3 * median(times[stage]))});
-  rows.push_back({name, "all, as the caller sees it", perQuery(median(wall))});
-  return wall.size() == 5;
+  rows.push_back({name, "all, as the caller sees it", medianUs(laps, queries)});
+  return laps.size() == 5;
 }
 
-double usOfPool(Pool& pool, const std::vector<Query>& queries, const Deadline& deadline) {
-  constexpr int kBatches = 4;
-  std::vector<double> seconds;
-  for (int round = -1; round < 3 && (round < 1 || !deadline.isOver()); ++round) {
-    const double took = secondsOf([&] {
-      std::vector<std::future<PoolAnswers>> answers;
-      for (int i = 0; i < kBatches; ++i) answers.push_back(pool.submit(queries));
-      for (std::future<PoolAnswers>& one : answers) one.get();
-    });
-    if (round >= 0) seconds.push_back(took);
+constexpr uint32_t kInFlight = 4;  // batches that a lane is given at once
+
+bench::Method laneOf(const std::string& name, Pool& pool) {
+  return {name, [&pool](std::span<const Query> queries) {
+            std::vector<std::future<PoolAnswers>> answers;
+            for (uint32_t i = 0; i < kInFlight; ++i) answers.push_back(pool.submit({queries.begin(), queries.end()}));
+            for (uint32_t i = 1; i < kInFlight; ++i) answers[i].get();
+            return answers[0].get().results;
+          }};
+}
+
+bool addLanes(const std::vector<bench::Method>& lanes, const bench::Batch& batch, const Deadline& deadline,
+              std::vector<LaneRow>& rows) {
+  const std::vector<bench::Series> all =
+      bench::measure(lanes, {&batch, 1}, {.least = 3, .most = 3, .deadline = deadline});
+  for (size_t i = 0; i < lanes.size(); ++i) {
+    if (all[i].differ > 0) throw Error(lanes[i].name + ": other answers than " + lanes[0].name);
+    const double us = medianUs(all[i].answer, kInFlight * batch.queries.size());
+    rows.push_back({lanes[i].name, us, rows.empty() ? 1 : rows[0].us / us});
   }
-  return 1e6 * median(seconds) / static_cast<double>(kBatches * queries.size());
+  return !deadline.isOver();
 }
 
 }  // namespace
@@ -218,52 +202,45 @@ bool measureThroughput(const Device& device, const Deadline& deadline, std::vect
 }
 
 bool measureStages(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows) {
-  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, kDistinct, deadline, rows);
-  return addStages(device, "heavy", heavyWorkload(), Mode::contact, kDistinct, deadline, rows) && light;
-}
-
-bool measureLanes(const Device& device, const Deadline& deadline, std::vector<LaneRow>& rows) {
-  const Workload workload = lightWorkload();
-  ScenePlayer player(workload);
-  player.show(0);
-  const std::vector<Query> queries = queriesOf(workload, Mode::contact, 0);
-  {
-    Sweeper sweeper(device, player.scene(), kOnDevice);
-    std::vector<double> seconds;
-    for (int i = -1; i < 5 && (i < 1 || !deadline.isOver()); ++i) {
-      const double took = secondsOf([&] { sweeper.run(queries); });
-      if (i >= 0) seconds.push_back(took);
-    }
-    rows.push_back({"a Sweeper: one batch after the other", 1e6 * median(seconds) / kDistinct, 1});
-  }
-  Pool pool({&device, 1}, player.scene(), kOnDevice);
-  const double us = usOfPool(pool, queries, deadline);
-  rows.push_back({"a Pool: two batches in flight", us, rows[0].us / us});
-  return !deadline.isOver();
+  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, rows);
+  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
 }
 
 bool measurePasses(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows) {
   return addStages(device, "256 teapots among 10,000 boxes",
                    makeWorkload(Table1{.boxes = 10'000, .sensors = 256, .shape = SensorShape::teapot}), Mode::sampled,
-                   256, deadline, rows);
+                   deadline, rows);
+}
+
+bool measureLanes(const Device& device, const Deadline& deadline, std::vector<LaneRow>& rows) {
+  const Workload workload = lightWorkload();
+  const Standing standing(workload);
+  // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
+  Sweeper sweeper(device, standing.scene(), kOnDevice);
+  Pool pool({&device, 1}, standing.scene(), kOnDevice);
+  const auto oneByOne = [&](std::span<const Query> queries) {
+    for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
+    return sweeper.run(queries);
+  };
+  return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
+                  standing.batch, deadline, rows);
 }
 
 bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,
                      std::vector<LaneRow>& rows) {
   const Workload workload = lightWorkload();
-  ScenePlayer player(workload);
-  player.show(0);
-  const std::vector<Query> queries = queriesOf(workload, Mode::contact, 0);
-  const auto add = [&](const std::string& way, std::span<const Device> some) {
-    Pool pool(some, player.scene(), kOnDevice);
-    const double us = usOfPool(pool, queries, deadline);
-    rows.push_back({way, us, rows.empty() ? 1 : rows[0].us / us});
+  const Standing standing(workload);
+  std::vector<std::unique_ptr<Pool>> pools;
+  std::vector<bench::Method> lanes;
+  const auto add = [&](const std::string& name, std::span<const Device> some) {
+    pools.push_back(std::make_unique<Pool>(some, standing.scene(), kOnDevice));
+    lanes.push_back(laneOf(name, *pools.back()));
   };
   for (size_t i = 0; i < devices.size(); ++i) {
     add("device " + std::to_string(numbers[i]) + " alone", std::span(devices).subspan(i, 1));
   }
   add("all " + std::to_string(devices.size()) + " devices", devices);
-  return !deadline.isOver();
+  return addLanes(lanes, standing.batch, deadline, rows);
 }
 
 }  // namespace radar::tools

@@ -2,23 +2,12 @@
 // false if the deadline kept it from something.
 #pragma once
 
-#include <chrono>
-
+#include "bench/clock.h"
 #include "selftest/selftest.h"
 
 namespace radar::tools {
 
-class Deadline {
- public:
-  explicit Deadline(double seconds)
-      : end_(std::chrono::steady_clock::now() +
-             std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds))) {}
-  double left() const { return std::chrono::duration<double>(end_ - std::chrono::steady_clock::now()).count(); }
-  bool isOver() const { return left() <= 0; }
-
- private:
-  std::chrono::steady_clock::time_point end_;
-};
+using bench::Deadline;
 
 /// Random queries of all families in turn, with doubles where the device has them and without, until the time is up.
 /// Returns true once every family has been asked.

@@ -1,9 +1,9 @@
 #include "selftest/random_queries.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "bench/clock.h"
 #include "radar/cpu_sweeper.h"
 #include "stability/promises.h"
 #include "workloads/families.h"
@@ -13,14 +13,8 @@ namespace radar::tools {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr uint32_t kQueriesPerScene = 64;
 constexpr const char* kAtDistance = "at-distance";
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 Workload familyScene(Family family, uint64_t seed) {
   return makeWorkload(FamilyScene{.family = family, .queries = kQueriesPerScene, .seed = seed});
@@ -125,14 +119,11 @@ RandomTally RandomQueries::run(const Range& range, const std::function<void(uint
     }
     stage_->show(workload);
     if (range.family == kAtDistance) stage_->moveDistances(queries, first);
-    const Clock::time_point start = Clock::now();
-    const std::vector<Result> results = stage_->sweeper.run(queries);
-    tally.deviceSeconds += secondsSince(start);
+    std::vector<Result> results, exact;
+    tally.deviceSeconds += bench::lapOf([&] { results = stage_->sweeper.run(queries); }).wall;
     tally.pairs += stage_->sweeper.stats().pairs;
     tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
-    const Clock::time_point cpuStart = Clock::now();
-    const std::vector<Result> exact = stage_->cpu.run(queries);
-    tally.cpuSeconds += secondsSince(cpuStart);
+    tally.cpuSeconds += bench::lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
     for (size_t i = 0; i < queries.size(); ++i) {
       const Verdict verdict = judgeContact(stage_->scene, queries[i], results[i], exact[i]);
       count(tally, verdict, results[i], exact[i]);

@@ -1,7 +1,6 @@
 #include "selftest/selftest.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "radar/pool.h"
@@ -74,12 +73,6 @@ void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 // What part of a device's time each part may take, of what is left when it begins.
 double weightOf(Part part) {
   switch (part) {
@@ -103,7 +96,7 @@ double weightOf(Part part) {
 void run(PartReport& part, const std::function<bool()>& work, const std::function<void()>& onChange) {
   part.state = PartState::running;
   onChange();
-  const Clock::time_point begun = Clock::now();
+  const bench::Stopwatch stopwatch;
   try {
     part.state = work() ? PartState::done : PartState::cut;
   } catch (const Error& error) {
@@ -114,12 +107,12 @@ void run(PartReport& part, const std::function<bool()>& work, const std::functio
     part.state = PartState::failed;
     part.note = error.what();
   }
-  part.seconds = secondsSince(begun);
+  part.seconds = stopwatch.lap().wall;
   onChange();
 }
 
 void testDevice(DeviceTest& test, double seconds, const std::function<void()>& onChange) {
-  const Clock::time_point begun = Clock::now();
+  const Deadline end(seconds);
   std::optional<Device> device;
   for (const Part part : kParts) {
     if (part == Part::passes && !test.facts.sampledReasons.empty()) {
@@ -128,7 +121,7 @@ void testDevice(DeviceTest& test, double seconds, const std::function<void()>& o
     }
     double weights = 0;
     for (const Part other : kParts) weights += other >= part ? weightOf(other) : 0;
-    const Deadline deadline((seconds - secondsSince(begun)) * weightOf(part) / weights);
+    const Deadline deadline(end.left() * weightOf(part) / weights);
     run(
         test[part],
         [&] {
@@ -159,9 +152,10 @@ void testDevice(DeviceTest& test, double seconds, const std::function<void()>& o
 }  // namespace
 
 void runSelftest(SelftestReport& report, const std::function<void()>& onChange) {
-  const Clock::time_point begun = Clock::now();
+  const bench::Stopwatch stopwatch;
+  const Deadline end(60 * report.minutes);
   const auto tell = [&] {
-    report.seconds = secondsSince(begun);
+    report.seconds = stopwatch.lap().wall;
     onChange();
   };
   tell();
@@ -169,22 +163,20 @@ void runSelftest(SelftestReport& report, const std::function<void()>& onChange) 
   for (DeviceTest& device : report.devices) {
     if (device.facts.usable()) usable.push_back(&device);
   }
-  const double all = 60 * report.minutes, forTogether = usable.size() > 1 ? 0.1 * all : 0;
+  const double forTogether = usable.size() > 1 ? 0.1 * 60 * report.minutes : 0;
   for (size_t i = 0; i < usable.size(); ++i) {
-    const double left = all - forTogether - secondsSince(begun);
-    testDevice(*usable[i], left / static_cast<double>(usable.size() - i), tell);
+    testDevice(*usable[i], (end.left() - forTogether) / static_cast<double>(usable.size() - i), tell);
   }
   if (usable.size() < 2) {
     report.togetherState = {PartState::impossible, "there is one usable device", 0};
     return tell();
   }
-  const Deadline deadline(all - secondsSince(begun));
   run(
       report.togetherState,
       [&] {
         std::vector<uint32_t> numbers;
         for (const DeviceTest* device : usable) numbers.push_back(device->number);
-        return measureTogether(openDevices(numbers), numbers, deadline, report.together);
+        return measureTogether(openDevices(numbers), numbers, end, report.together);
       },
       tell);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "radar/cpu_sweeper.h"
-#include "report/median.h"
+#include "bench/statistics.h"
 #include "stability/promises.h"
 #include "workloads/workload.h"
 

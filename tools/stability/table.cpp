@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/median.h"
+#include "bench/statistics.h"
 #include "report/print.h"
 
 namespace radar::tools {

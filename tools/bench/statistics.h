@@ -14,4 +14,12 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+/// The value below which `share` of the values lie: the least at or above that rank. NaN of none.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  return values[static_cast<size_t>(std::max(rank, 1.0)) - 1];
+}
+
 }  // namespace radar::tools

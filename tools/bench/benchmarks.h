@@ -1,4 +1,5 @@
-// The benchmarks of radar_bench: ratios within one run, medians after a warm-up, without validation layers.
+// The benchmarks of radar_bench: ratios within one run, medians after a warm-up, without validation layers. Each prints
+// a table of comma-separated values.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,15 +8,16 @@
 
 namespace radar::bench {
 
-/// Each adds its subcommand, which sets `status` to 1 where answers differ.
+/// Each adds its subcommand, which sets `status` to 1 where methods give different answers.
 void addSearch(CLI::App& app, int& status);
 void addRecorded(CLI::App& app, int& status);
 void addPool(CLI::App& app, int& status);
 
-/// Prints what the figures below it were measured on.
-void printOrigin(const Device& device);
+/// What the figures are measured on, as lines that begin with #, and the names of the columns.
+void printHead(std::span<const Device> devices);
 
-/// Median of what the passes took, milliseconds.
-double medianMs(const std::vector<Lap>& laps, double Lap::*clock = &Lap::wall);
+/// Measures and prints a line for each method. Returns the microseconds a query of each, `prepare` not included.
+std::vector<double> printRows(const std::string& workload, const std::vector<Method>& methods,
+                              std::span<const Batch> batches, const Repetition& repetition, int& status);
 
 }  // namespace radar::bench

@@ -1,25 +1,53 @@
+#include <cmath>
 #include <cstdio>
 #include <thread>
 
 #include "bench/benchmarks.h"
+#include "bench/csv.h"
 #include "bench/statistics.h"
 #include "commit/commit.h"
 
 namespace radar::bench {
 
-void printOrigin(const Device& device) {
-  std::printf("device %s, driver %s, %u cores, commit %s\n", device.name().c_str(), device.driver().c_str(),
-              std::thread::hardware_concurrency(), tools::commit());
+namespace {
+
+double hundredths(double value) {
+  return std::round(100 * value) / 100;
 }
 
-double medianMs(const std::vector<Lap>& laps, double Lap::*clock) {
-  return 1e3 * tools::median(secondsOf(laps, clock));
+}  // namespace
+
+void printHead(std::span<const Device> devices) {
+  for (const Device& device : devices) std::printf("# %s, %s\n", device.name().c_str(), device.driver().c_str());
+  std::printf("# %u cores, commit %s\n", std::thread::hardware_concurrency(), tools::commit());
+  std::printf("workload,batch,method,prepare us,answer us,host us,times the first,differ\n");
+}
+
+std::vector<double> printRows(const std::string& workload, const std::vector<Method>& methods,
+                              std::span<const Batch> batches, const Repetition& repetition, int& status) {
+  const std::vector<Series> all = measure(methods, batches, repetition);
+  std::vector<double> answers;
+  double first = 0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double perQuery = 1e6 / static_cast<double>(all[i].answers.size());
+    const double prepare = perQuery * tools::median(secondsOf(all[i].prepare));
+    const double host = perQuery * tools::median(secondsOf(all[i].answer, &Lap::thread));
+    answers.push_back(perQuery * tools::median(secondsOf(all[i].answer)));
+    if (i == 0) first = prepare + answers[0];
+    const std::string line =
+        csvLineOf(workload, batches[0].queries.size(), methods[i].name, hundredths(prepare), hundredths(answers[i]),
+                  hundredths(host), hundredths((prepare + answers[i]) / first), all[i].differ);
+    std::fputs(line.c_str(), stdout);
+    std::fflush(stdout);
+    if (all[i].differ > 0) status = 1;
+  }
+  return answers;
 }
 
 }  // namespace radar::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Benchmarks: compare figures within one run only.");
+  CLI::App app("Benchmarks: microseconds a query. Compare figures of one run only.");
   app.require_subcommand(1);
   int status = 0;
   radar::bench::addSearch(app, status);

@@ -1,7 +1,6 @@
 // What a frame costs whose searches are recorded into a host's command buffer: of a scene that stands, one whose
 // objects the host moves, one whose mesh it deforms, on its device; and of one whose mesh passes through the CPU. The
 // teapots of Figure 7 among their boxes.
-#include <cstdio>
 #include <cstring>
 
 #include "bench/benchmarks.h"
@@ -68,7 +67,7 @@ struct Flight {
 
 void run(int& status) {
   const Device device = Device::open();
-  printOrigin(device);
+  printHead({&device, 1});
   Flight flight;
   // What the host has on its device: the vertices and the transforms as they are, so that the answers are the same.
   std::vector<float> words = flight.mesh().positions;
@@ -100,23 +99,14 @@ void run(int& status) {
       method("deformed", moving, {.meshes = {&deformed, 1}}),
       method("moved and deformed", moving, {.meshes = {&deformed, 1}, .objects = {&moved, 1}}),
       method("deformed by the CPU", moving, {}, true)};
-  std::printf("%zu sensors of %u triangles among as many, and %zu boxes; ms a frame\n", flight.batch.queries.size(),
-              flight.mesh().triangleCount(), flight.standing.objectLimit() - flight.teapots.size());
-  const std::vector<Series> all = measure(methods, {&flight.batch, 1}, {.least = 15, .most = 15});
-  for (size_t i = 0; i < all.size(); ++i) {
-    const double recording = medianMs(all[i].prepare), executing = medianMs(all[i].answer);
-    std::printf("  %-20s recording %7.3f  executing %7.3f  of standing %5.2f  (%llu answers differ)\n",
-                methods[i].name.c_str(), recording, executing,
-                (recording + executing) / (medianMs(all[0].prepare) + medianMs(all[0].answer)),
-                static_cast<unsigned long long>(all[i].differ));
-    if (all[i].differ > 0) status = 1;
-  }
+  printRows("figure7", methods, {&flight.batch, 1}, {.least = 15, .most = 15}, status);
 }
 
 }  // namespace
 
 void addRecorded(CLI::App& app, int& status) {
-  app.add_subcommand("recorded", "A frame of searches in a host's command buffer, as its objects move and deform")
+  app.add_subcommand("recorded",
+                     "A frame of searches in a host's command buffer: prepare is recording, answer executing")
       ->callback([&status] { run(status); });
 }
 

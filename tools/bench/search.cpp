@@ -1,14 +1,10 @@
 // The exact searches beside each other: on the device, on the processor with one thread and with all, and what mode
 // contact makes of both.
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <memory>
 #include <thread>
 
-#include "batch/atomic_file.h"
 #include "bench/benchmarks.h"
-#include "bench/csv.h"
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/drop_cutter.h"
@@ -82,7 +78,6 @@ std::vector<Case> allCases() {
 struct Settings {
   std::vector<std::string> cases;
   std::vector<uint32_t> batches;
-  std::string csv;
   double seconds = 1;
   unsigned threads = std::thread::hardware_concurrency();
 };
@@ -100,71 +95,32 @@ std::vector<Batch> cut(const Batch& all, uint32_t size) {
   return parts;
 }
 
-class Search {
- public:
-  Search(const Device& device, const Settings& settings) : device_(device), settings_(settings) {
-    std::printf("microseconds a query; host: what the calling thread computed of the device's\n");
-    std::printf("%-27s %7s %10s %10s %8s %10s %10s %9s %9s %7s\n", "workload", "batch", "contact", "device", "host",
-                "cpu", "cpu,1 thr", "dev/cpu", "cont/cpu", "differ");
-    addRow(
-        "workload,batch,contact us,device us,device host us,cpu us,cpu 1 thread us,device / cpu,contact / "
-        "cpu,differ\n");
+// Where there are several scenes they are the steps of a motion: the trees and the device's copy follow the scene
+// within the time measured.
+void run(const Device& device, const Case& one, const Settings& settings, int& status) {
+  const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
+  const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
+  const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
+  tools::ScenePlayer player(workload);
+  const auto show = [&](uint32_t scene) { player.show(scene); };
+  show(batches[0].scene);
+  Sweeper contact(device, player.scene()), onDevice(device, player.scene(), {.cpuBatch = 0});
+  CpuSweeper cpu(player.scene(), settings.threads), oneThread(player.scene(), 1);
+  for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
+  const std::vector<Method> methods{{"cpu", [&](auto queries) { return cpu.run(queries); }, show},
+                                    {"cpu 1 thread", [&](auto queries) { return oneThread.run(queries); }, show},
+                                    {"contact", [&](auto queries) { return contact.run(queries); }, show},
+                                    {"device", [&](auto queries) { return onDevice.run(queries); }, show}};
+  const Repetition repetition{.seconds = settings.seconds};
+  if (batches.size() > 1) {
+    printRows(one.name, methods, batches, repetition, status);
+    return;
   }
-
-  /// Returns whether all methods gave the same answers. Where there are several scenes they are the steps of a motion:
-  /// the trees and the device's copy follow the scene within the time measured.
-  bool run(const Case& one) {
-    const std::vector<uint32_t>& sizes = settings_.batches.empty() ? one.batches : settings_.batches;
-    const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
-    const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
-    tools::ScenePlayer player(workload);
-    const auto show = [&](uint32_t scene) { player.show(scene); };
-    show(batches[0].scene);
-    Sweeper contact(device_, player.scene()), onDevice(device_, player.scene(), {.cpuBatch = 0});
-    CpuSweeper cpu(player.scene(), settings_.threads), oneThread(player.scene(), 1);
-    for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
-    const std::vector<Method> methods{{"contact", [&](auto queries) { return contact.run(queries); }, show},
-                                      {"device", [&](auto queries) { return onDevice.run(queries); }, show},
-                                      {"cpu", [&](auto queries) { return cpu.run(queries); }, show},
-                                      {"cpu, 1 thread", [&](auto queries) { return oneThread.run(queries); }, show}};
-    if (batches.size() > 1) {
-      return measureRow(one.name, static_cast<uint32_t>(batches[0].queries.size()), methods, batches);
-    }
-    bool same = true;
-    for (const uint32_t size : sizes) {
-      if (size <= batches[0].queries.size()) same &= measureRow(one.name, size, methods, cut(batches[0], size));
-    }
-    return same;
+  for (const uint32_t size : sizes) {
+    if (size > batches[0].queries.size()) continue;
+    printRows(one.name, methods, cut(batches[0], size), repetition, status);
   }
-
- private:
-  bool measureRow(const std::string& name, uint32_t size, const std::vector<Method>& methods,
-                  const std::vector<Batch>& batches) {
-    const std::vector<Series> all = measure(methods, batches, {.seconds = settings_.seconds});
-    const auto us = [&](size_t method, double Lap::*clock = &Lap::wall) {
-      const double each = 1e3 * medianMs(all[method].answer, clock) / static_cast<double>(all[method].answers.size());
-      return std::round(100 * each) / 100;
-    };
-    const double contact = us(0), device = us(1), host = us(1, &Lap::thread), cpu = us(2), one = us(3);
-    uint64_t differ = 0;
-    for (const Series& series : all) differ += series.differ;
-    std::printf("%-27s %7u %10.2f %10.2f %8.2f %10.2f %10.2f %9.2f %9.2f %7llu\n", name.c_str(), size, contact, device,
-                host, cpu, one, device / cpu, contact / cpu, static_cast<unsigned long long>(differ));
-    std::fflush(stdout);
-    addRow(csvLineOf(name, size, contact, device, host, cpu, one, std::round(100 * device / cpu) / 100,
-                     std::round(100 * contact / cpu) / 100, differ));
-    return differ == 0;
-  }
-
-  void addRow(const std::string& line) {
-    rows_ += line;
-    if (!settings_.csv.empty()) tools::writeAtomically(settings_.csv, rows_);
-  }
-
-  const Device& device_;
-  const Settings& settings_;
-  std::string rows_;
-};
+}
 
 }  // namespace
 
@@ -177,17 +133,15 @@ void addSearch(CLI::App& app, int& status) {
   command
       ->add_option("--batch", settings->batches, "Queries in a batch; each workload's own sizes, where none is given")
       ->check(CLI::Range(1u, 1u << 20));
-  command->add_option("--csv", settings->csv, "Also write a table there");
-  command->add_option("--seconds", settings->seconds, "For each row, once there are 3 rounds")->capture_default_str();
+  command->add_option("--seconds", settings->seconds, "For each batch size, once there are 3 rounds")
+      ->capture_default_str();
   command->add_option("--threads", settings->threads, "Of the processor's search")->capture_default_str();
   command->callback([settings, &status] {
     const Device device = Device::open();
-    printOrigin(device);
-    Search search(device, *settings);
+    printHead({&device, 1});
     for (const Case& one : allCases()) {
       const auto& wanted = settings->cases;
-      if (!wanted.empty() && std::count(wanted.begin(), wanted.end(), one.name) == 0) continue;
-      if (!search.run(one)) status = 1;
+      if (wanted.empty() || std::count(wanted.begin(), wanted.end(), one.name) > 0) run(device, one, *settings, status);
     }
   });
 }

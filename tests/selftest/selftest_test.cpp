@@ -66,7 +66,7 @@ TEST_CASE("a selftest's report tells every number as text, JSON, tables and a pa
   CHECK(device["parts"]["passes"]["state"] == "done");
   CHECK(device["limits"][0]["mode"] == "sampled");
   CHECK(linesOf(arithmeticCsv(report))[2] == "3,float copies,10,0,,same,\"the \"\"same\"\", all bits\",fine");
-  CHECK(linesOf(exactnessCsv(report))[1] == "3,convex,with,64,60,0,0,0,100,4");
+  CHECK(linesOf(exactnessCsv(report))[1] == "3,convex,yes,64,60,0,0,0,100,4");
   CHECK(linesOf(throughputCsv(report))[2] == "3,light,1000,0.5,5,0");
   CHECK(linesOf(stagesCsv(report))[2] == "3,sampled,teapots,mask,7");
   const std::string page = htmlOf(report);

@@ -63,26 +63,23 @@ struct FromCsv {
   }
 };
 
-// Takes a line "# key: value"; false where there is no such key.
-bool readHead(Record& record, const std::string& line) {
-  const size_t colon = line.find(": ");
-  if (colon == std::string::npos) return false;
-  const std::string key = line.substr(2, colon - 2), value = line.substr(colon + 2);
-  bool isKnown = false;
-  eachOrigin(record, [&](const char* name, std::string& member) {
-    if (key != name) return;
-    member = value;
-    isKnown = true;
-  });
+// Returns false where there is no such key.
+bool takeHead(Record& record, const std::string& key, const std::string& value) {
+  bool isKnown = true;
   if (key == "workload") {
     const size_t end = std::min(value.find(": "), value.size());
     record.workloads.push_back({value.substr(0, end), value.substr(std::min(end + 2, value.size()))});
   } else if (key == "library") {
     record.notes.push_back(value);
   } else {
-    return isKnown;
+    isKnown = false;
+    eachOrigin(record, [&](const char* name, std::string& member) {
+      if (key != name) return;
+      member = value;
+      isKnown = true;
+    });
   }
-  return true;
+  return isKnown;
 }
 
 }  // namespace
@@ -112,7 +109,8 @@ Record recordFrom(const std::string& csv, const std::string& file) {
   std::getline(head, line);
   if (line != kFormat) throw InputError(file, "line 1", std::string("expected ") + kFormat);
   for (size_t number = 2; std::getline(head, line) && line.starts_with("# "); ++number) {
-    if (readHead(record, line)) continue;
+    const size_t colon = std::min(line.find(": "), line.size() - 2);
+    if (takeHead(record, line.substr(2, colon - 2), line.substr(colon + 2))) continue;
     throw InputError(file, "line " + std::to_string(number), "expected what cyber-radar chart writes, got " + line);
   }
   const std::vector<std::vector<std::string>> table = bench::readCsv(file, csv);

@@ -11,41 +11,32 @@ namespace radar::tools {
 
 namespace {
 
-void append(std::string& bytes, const void* data, size_t size) {
-  bytes.append(static_cast<const char*>(data), size);
+// Values without padding.
+template <class... Values>
+void append(std::string& bytes, const Values&... values) {
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
 }
 
 template <class Value>
-void append(std::string& bytes, const std::vector<Value>& values) {
-  const size_t size = values.size();
-  append(bytes, &size, sizeof size);
-  append(bytes, values.data(), size * sizeof(Value));
+void appendAll(std::string& bytes, const std::vector<Value>& values) {
+  append(bytes, values.size());
+  for (const Value& value : values) append(bytes, value);
 }
 
-void append(std::string& bytes, const Instance& instance) {
-  append(bytes, &instance.mesh, sizeof instance.mesh);
-  append(bytes, instance.worldFromMesh.m.data(), sizeof instance.worldFromMesh.m);
-}
-
-void append(std::string& bytes, const Workload& workload) {
+void appendWorkload(std::string& bytes, const Workload& workload) {
   for (const MeshData& mesh : workload.meshes) {
-    append(bytes, mesh.positions);
-    append(bytes, mesh.indices);
+    appendAll(bytes, mesh.positions);
+    appendAll(bytes, mesh.indices);
   }
   for (const SceneSpec& scene : workload.scenes) {
-    const uint32_t base = scene.base.value_or(kNone);
-    append(bytes, &base, sizeof base);
-    for (const Instance& instance : scene.instances) append(bytes, instance);
-    append(bytes, scene.masks);
+    append(bytes, scene.base.value_or(kNone));
+    for (const Instance& instance : scene.instances) append(bytes, instance.mesh, instance.worldFromMesh.m);
+    appendAll(bytes, scene.masks);
   }
   for (const QuerySpec& query : workload.queries) {
-    append(bytes, &query.scene, sizeof query.scene);
-    append(bytes, &query.batch, sizeof query.batch);
-    append(bytes, query.sensor);
-    append(bytes, query.exclude);
-    append(bytes, query.direction.data(), sizeof query.direction);
-    append(bytes, &query.distance, sizeof query.distance);
-    append(bytes, &query.mask, sizeof query.mask);
+    append(bytes, query.scene, query.batch, query.sensor.mesh, query.sensor.worldFromMesh.m, query.direction,
+           query.distance, query.mask);
+    appendAll(bytes, query.exclude);
   }
 }
 
@@ -86,8 +77,8 @@ std::string fingerprintOf(const RunSettings& settings, const std::string& origin
   std::string bytes{std::istreambuf_iterator<char>(program), {}};
   bytes += origin + print("/%d/%u", int(settings.extent), settings.threads);
   for (const Case& which : settings.cases) {
-    bytes += which.section + "/" + which.name + print("/%.17g", which.x);
-    append(bytes, which.workload);
+    bytes += which.section + "/" + which.name;
+    appendWorkload(bytes, which.workload);
   }
   return print("%016zx", std::hash<std::string>()(bytes));
 }

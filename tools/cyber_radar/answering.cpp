@@ -1,17 +1,12 @@
 #include "cyber_radar/answering.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "bench/clock.h"
 
 namespace radar::tools {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double millisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
   const auto found = std::find_if(stages.begin(), stages.end(), [&](const auto& s) { return s.name == stage.name; });
@@ -67,24 +62,24 @@ void Answering::show(uint32_t scene) {
 }
 
 double Answering::setUp() {
-  const auto start = Clock::now();
+  const double start = bench::now();
   if (!groups_.empty()) show(groups_.front().scene);
   if (sweeper_) sweeper_->sync();
   if (cpu_) cpu_->sync();
-  return millisecondsSince(start);
+  return 1e3 * (bench::now() - start);
 }
 
 Answering::Pass Answering::run(const std::string& label) {
   Pass pass;
   pass.answers.resize(workload_.queries.size());
   Progress progress(label, workload_.queries.size());
-  const auto start = Clock::now();
+  const double start = bench::now();
   for (const Group& group : groups_) {
     show(group.scene);
     sweep(group.swept, pass, progress);
     answerOnCpu(group.onCpu, pass, progress);
   }
-  pass.ms = millisecondsSince(start);
+  pass.ms = 1e3 * (bench::now() - start);
   return pass;
 }
 
@@ -120,13 +115,13 @@ void Answering::share(const Part& part, Pass& pass, Progress& progress) {
 
 void Answering::answerOnCpu(const Part& part, Pass& pass, Progress& progress) {
   if (part.queries.empty()) return;
-  const auto start = Clock::now();
+  const double start = bench::now();
   const std::vector<Result> results = cpu_->run(part.queries);
   for (size_t i = 0; i < results.size(); ++i) pass.answers[part.numbers[i]] = {results[i], AnswerMode::reference, {}};
   pass.pairs += cpu_->stats().pairs;
   pass.cpuPairs += cpu_->stats().pairs;
   progress.add(results.size());
-  addStage(pass.stages, {"reference", millisecondsSince(start)});
+  addStage(pass.stages, {"reference", 1e3 * (bench::now() - start)});
 }
 
 }  // namespace radar::tools

@@ -1,16 +1,16 @@
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "batch/answer_file.h"
 #include "batch/atomic_file.h"
 #include "batch/query_file.h"
+#include "bench/clock.h"
+#include "bench/statistics.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
-#include "bench/statistics.h"
 
 namespace radar::tools {
 
@@ -68,10 +68,10 @@ int query(const Options& options) {
   if (!options.out.empty()) requireFolderOf("--out", options.out);
   if (!options.stats.empty()) requireFolderOf("--stats", options.stats);
 
-  const auto start = std::chrono::steady_clock::now();
+  const double start = bench::now();
   std::vector<std::string> warnings;
   const Workload workload = readQueryFile(options.file, warnings);
-  const std::chrono::duration<double, std::milli> load = std::chrono::steady_clock::now() - start;
+  const double loadMs = 1e3 * (bench::now() - start);
   printWarnings(warnings);
 
   Answering answering(workload, engine);
@@ -92,7 +92,7 @@ int query(const Options& options) {
     Answering profile(workload, engine);
     profile.setUp();
     pass.stages = profile.run("measuring stages").stages;
-    writeAtomically(options.stats, statsOf(workload, answering, pass, load.count(), setupMs, median(times)));
+    writeAtomically(options.stats, statsOf(workload, answering, pass, loadMs, setupMs, median(times)));
   }
   const std::string lines = linesOf(workload, pass.answers);
   if (options.out.empty()) {

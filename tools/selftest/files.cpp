@@ -10,7 +10,6 @@ namespace radar::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using bench::csvLineOf;
 
 // JSON has no infinities.
 Json finite(double value) {
@@ -97,11 +96,26 @@ Json jsonOf(const DeviceTest& device) {
   return json;
 }
 
-// `add` writes the lines of one device.
-template <class Add>
-std::string csvOf(const SelftestReport& report, const char* columns, const Add& add) {
-  std::string text = std::string("device,") + columns + "\n";
-  for (const DeviceTest& device : report.devices) add(device, text);
+std::string cellOf(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return bench::csvCell(value.get<bool>());
+  if (value.is_number_float()) return bench::csvCell(value.get<double>());
+  return value.dump();
+}
+
+// A line for each row of a part, as in the JSON: the device, `before`, the row's values.
+std::string linesOf(const SelftestReport& report, Part part, const std::vector<std::string>& before = {}) {
+  std::string text;
+  for (const DeviceTest& device : report.devices) {
+    const Json json = jsonOf(device);
+    for (const Json& row : json[nameOf(part)]) {
+      std::vector<std::string> cells{std::to_string(device.number)};
+      cells.insert(cells.end(), before.begin(), before.end());
+      for (const Json& value : row) cells.push_back(cellOf(value));
+      text += bench::csvLine(cells);
+    }
+  }
   return text;
 }
 
@@ -117,42 +131,20 @@ std::string jsonOf(const SelftestReport& report) {
 }
 
 std::string arithmeticCsv(const SelftestReport& report) {
-  return csvOf(report, "operation,tried,wrong,worst ulps,found,needed,consequence",
-               [](const DeviceTest& device, std::string& text) {
-                 for (const ArithmeticCheck& check : device.arithmetic) {
-                   text += csvLineOf(device.number, check.operation, check.tried, check.wrong, check.worst, check.found,
-                                     check.needed, check.consequence);
-                 }
-               });
+  return "device,operation,tried,wrong,worst ulps,found,needed,consequence\n" + linesOf(report, Part::arithmetic);
 }
 
 std::string exactnessCsv(const SelftestReport& report) {
-  return csvOf(report, "family,doubles,queries,hits,clear,overlaps,wrong,pairs,cpu pairs",
-               [](const DeviceTest& device, std::string& text) {
-                 for (const auto& [family, doubles, t] : device.exactness) {
-                   text += csvLineOf(device.number, family, doubles ? "with" : "without", t.queries, t.hits, t.clear,
-                                     t.overlaps, t.wrong, t.pairs, t.cpuPairs);
-                 }
-               });
+  return "device,family,doubles,queries,hits,clear,overlaps,wrong,pairs,cpu pairs\n" + linesOf(report, Part::exactness);
 }
 
 std::string throughputCsv(const SelftestReport& report) {
-  return csvOf(report, "workload,batch,device us,cpu us,differ", [](const DeviceTest& device, std::string& text) {
-    for (const ThroughputRow& row : device.throughput) {
-      text += csvLineOf(device.number, row.workload, row.batch, row.deviceUs, row.cpuUs, row.differ);
-    }
-  });
+  return "device,workload,batch,device us,cpu us,differ\n" + linesOf(report, Part::throughput);
 }
 
 std::string stagesCsv(const SelftestReport& report) {
-  return csvOf(report, "mode,workload,stage,us", [](const DeviceTest& device, std::string& text) {
-    for (const StageRow& row : device.stages) {
-      text += csvLineOf(device.number, "contact", row.workload, row.stage, row.us);
-    }
-    for (const StageRow& row : device.passes) {
-      text += csvLineOf(device.number, "sampled", row.workload, row.stage, row.us);
-    }
-  });
+  return "device,mode,workload,stage,us\n" + linesOf(report, Part::stages, {"contact"}) +
+         linesOf(report, Part::passes, {"sampled"});
 }
 
 }  // namespace radar::tools

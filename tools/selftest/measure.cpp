@@ -162,8 +162,13 @@ bool addLanes(const std::vector<bench::Method>& lanes, const bench::Batch& batch
 
 }  // namespace
 
-bool measureExactness(const Device& device, uint32_t number, const Deadline& deadline,
-                      std::vector<ExactnessRow>& rows) {
+bool measureArithmetic(const Device& device, const Deadline&, DeviceTest& test) {
+  test.arithmetic = checkArithmetic(device);
+  return true;
+}
+
+bool measureExactness(const Device& device, const Deadline& deadline, DeviceTest& test) {
+  std::vector<ExactnessRow>& rows = test.exactness;
   constexpr uint64_t kAtOnce = 64;
   struct Variant {
     bool doubles;
@@ -179,7 +184,7 @@ bool measureExactness(const Device& device, uint32_t number, const Deadline& dea
       Variant& variant = variants[v];
       if (!variant.asking) {
         variant.doubles = false;
-        variant.own.emplace(Device::open({.index = number, .doubles = false}));
+        variant.own.emplace(Device::open({.index = test.number, .doubles = false}));
         variant.asking = std::make_unique<RandomQueries>(*variant.own);
       }
       for (size_t f = 0; f < families.size(); ++f) {
@@ -192,27 +197,27 @@ bool measureExactness(const Device& device, uint32_t number, const Deadline& dea
   }
 }
 
-bool measureThroughput(const Device& device, const Deadline& deadline, std::vector<ThroughputRow>& rows) {
+bool measureThroughput(const Device& device, const Deadline& deadline, DeviceTest& test) {
   // What one workload does not use is left to the next.
   const Deadline first(deadline.left() / 3);
-  bool whole = measureStanding(device, "light", lightWorkload(), first, rows);
+  bool whole = measureStanding(device, "light", lightWorkload(), first, test.throughput);
   const Deadline second(deadline.left() / 2);
-  whole &= measureStanding(device, "heavy", heavyWorkload(), second, rows);
-  return measureMoving(device, "moving", deadline, rows) && whole;
+  whole &= measureStanding(device, "heavy", heavyWorkload(), second, test.throughput);
+  return measureMoving(device, "moving", deadline, test.throughput) && whole;
 }
 
-bool measureStages(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows) {
-  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, rows);
-  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
+bool measureStages(const Device& device, const Deadline& deadline, DeviceTest& test) {
+  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, test.stages);
+  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, test.stages) && light;
 }
 
-bool measurePasses(const Device& device, const Deadline& deadline, std::vector<StageRow>& rows) {
+bool measurePasses(const Device& device, const Deadline& deadline, DeviceTest& test) {
   return addStages(device, "256 teapots among 10,000 boxes",
                    makeWorkload(Table1{.boxes = 10'000, .sensors = 256, .shape = SensorShape::teapot}), Mode::sampled,
-                   deadline, rows);
+                   deadline, test.passes);
 }
 
-bool measureLanes(const Device& device, const Deadline& deadline, std::vector<LaneRow>& rows) {
+bool measureLanes(const Device& device, const Deadline& deadline, DeviceTest& test) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
@@ -223,7 +228,7 @@ bool measureLanes(const Device& device, const Deadline& deadline, std::vector<La
     return sweeper.run(queries);
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
-                  standing.batch, deadline, rows);
+                  standing.batch, deadline, test.lanes);
 }
 
 bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,

@@ -73,24 +73,17 @@ void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
 
 namespace {
 
-// What part of a device's time each part may take, of what is left when it begins.
-double weightOf(Part part) {
-  switch (part) {
-    case Part::arithmetic:
-      return 0.02;
-    case Part::exactness:
-      return 0.3;
-    case Part::throughput:
-      return 0.45;
-    case Part::stages:
-      return 0.05;
-    case Part::lanes:
-      return 0.08;
-    case Part::passes:
-      return 0.1;
-  }
-  return 0;
-}
+struct Step {
+  Part part;
+  double weight;  // share of the device's time that is left
+  bool (*measure)(const Device& device, const Deadline& deadline, DeviceTest& test);
+};
+
+constexpr Step kSteps[] = {
+    {Part::arithmetic, 0.02, measureArithmetic}, {Part::exactness, 0.3, measureExactness},
+    {Part::throughput, 0.45, measureThroughput}, {Part::stages, 0.05, measureStages},
+    {Part::lanes, 0.08, measureLanes},           {Part::passes, 0.1, measurePasses},
+};
 
 // Runs one part, and keeps its state.
 void run(PartReport& part, const std::function<bool()>& work, const std::function<void()>& onChange) {
@@ -114,37 +107,20 @@ void run(PartReport& part, const std::function<bool()>& work, const std::functio
 void testDevice(DeviceTest& test, double seconds, const std::function<void()>& onChange) {
   const Deadline end(seconds);
   std::optional<Device> device;
-  for (const Part part : kParts) {
+  double weights = 1;
+  for (const auto& [part, weight, measure] : kSteps) {
+    const Deadline deadline(end.left() * weight / weights);
+    weights -= weight;
     if (part == Part::passes && !test.facts.sampledReasons.empty()) {
       test[part] = {PartState::impossible, test.facts.sampledReasons.front(), 0};
       continue;
     }
-    double weights = 0;
-    for (const Part other : kParts) weights += other >= part ? weightOf(other) : 0;
-    const Deadline deadline(end.left() * weightOf(part) / weights);
-    run(
-        test[part],
-        [&] {
-          if (!device) device.emplace(Device::open({.index = test.number}));
-          test.usesDoubles = device->doubles();
-          switch (part) {
-            case Part::arithmetic:
-              test.arithmetic = checkArithmetic(*device);
-              return true;
-            case Part::exactness:
-              return measureExactness(*device, test.number, deadline, test.exactness);
-            case Part::throughput:
-              return measureThroughput(*device, deadline, test.throughput);
-            case Part::stages:
-              return measureStages(*device, deadline, test.stages);
-            case Part::lanes:
-              return measureLanes(*device, deadline, test.lanes);
-            case Part::passes:
-              return measurePasses(*device, deadline, test.passes);
-          }
-          return true;
-        },
-        onChange);
+    const auto work = [&, measure = measure] {
+      if (!device) device.emplace(Device::open({.index = test.number}));
+      test.usesDoubles = device->doubles();
+      return measure(*device, deadline, test);
+    };
+    run(test[part], work, onChange);
     if (!device) return;  // it could not be opened; the part says why
   }
 }

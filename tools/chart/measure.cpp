@@ -79,75 +79,19 @@ bench::Method methodOf(ScenePlayer& player, Searcher& searcher) {
           }};
 }
 
-}  // namespace
-
-struct Bench::Engine {
-  Engine(const Workload& workload, const Device& device, const SweeperOptions& given)
-      : options(given), player(workload), sweeper(device, player.scene(), given) {
-    player.show(0);
-    sweeper.sync();
-    prepareMs = 1e3 * stopwatch.lap().wall;
-  }
-
-  bench::Stopwatch stopwatch;
-  double prepareMs = 0;
-  SweeperOptions options;
-  ScenePlayer player;
-  Sweeper sweeper;
-};
-
-Bench::Bench(const Case& which, const Device& device, const Timing& timing)
-    : which_(which), device_(device), timing_(timing) {
-  ScenePlayer player(which.workload);
-  CpuSweeper exact(player.scene());
-  const std::vector<bench::Batch> batches = batchesFor(Mode::contact, 0);
-  truth_ = bench::play(methodOf(player, exact), batches).answers;
-  for (const bench::Batch& batch : batches) {
-    for (const Query& query : batch.queries) {
-      const double size = sensorSize(player.scene(), query);
-      sizes_.push_back(size > 0 ? size : 1);
-    }
-  }
-}
-
-Bench::~Bench() = default;
-
 // The whole question, whatever the file says of modes.
-std::vector<bench::Batch> Bench::batchesFor(Mode mode, uint32_t resolution) const {
-  std::vector<bench::Batch> batches = bench::batchesOf(which_.workload, mode, resolution);
+std::vector<bench::Batch> batchesOf(const Workload& workload, Mode mode, uint32_t resolution) {
+  std::vector<bench::Batch> batches = bench::batchesOf(workload, mode, resolution);
   for (bench::Batch& batch : batches) {
     for (Query& query : batch.queries) query.anyHit = false;
   }
   return batches;
 }
 
-Cell Bench::measure(const Method& method, const BaselineRow* row) {
-  Cell cell;
-  cell.section = which_.section;
-  cell.workload = which_.name;
-  cell.x = which_.x;
-  cell.method = method.name();
-  cell.family = method.family;
-  cell.size = method.size;
-  cell.threads = method.threads;
-  cell.queries = static_cast<uint32_t>(which_.workload.queries.size());
-  const std::vector<Result> results = row != nullptr                 ? castInChild(cell, *row)
-                                      : method.family == "reference" ? searchOnCpu(cell)
-                                                                     : sweep(cell);
-  if (!cell.failed.empty()) return cell;
-  std::vector<Told> told;
-  for (const Result& result : results) told.push_back(toldBy(result));
-  judge(cell, told, truth_, sizes_);
-  if (row == nullptr) countTiers(cell, results);
-  return cell;
-}
-
-std::vector<Result> Bench::timePasses(Cell& cell, const bench::Method& method,
-                                      std::span<const bench::Batch> batches) const {
-  const bench::Repetition repetition{.least = timing_.least,
-                                     .most = kNone,
-                                     .seconds = timing_.seconds,
-                                     .deadline = bench::Deadline(kPatience * timing_.seconds)};
+// Fills the columns of time; returns the answers in the order of the batches.
+std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::span<const bench::Batch> batches,
+                               bench::Repetition repetition) {
+  repetition.deadline = bench::Deadline(kPatience * repetition.seconds);
   const bench::Series series = bench::measure({&method, 1}, batches, repetition).front();
   const std::vector<double> times = bench::secondsOf(series.answer);
   const double perQuery = 1e6 / cell.queries;
@@ -160,32 +104,22 @@ std::vector<Result> Bench::timePasses(Cell& cell, const bench::Method& method,
   return series.answers;
 }
 
-std::vector<Result> Bench::sweep(Cell& cell) {
-  const Mode mode = cell.family.starts_with("contact") ? Mode::contact : Mode::sampled;
-  cell.certified = mode != Mode::sampled;
-  const SweeperOptions options{.select = cell.family != "drawing all",
-                               .cpuBatch = cell.family == "contact on device" ? 0 : kNone};
-  if (!engine_ || engine_->options.select != options.select || engine_->options.cpuBatch != options.cpuBatch) {
-    engine_ = std::make_unique<Engine>(which_.workload, device_, options);
-  }
-  cell.prepareMs = engine_->prepareMs;
-  return timePasses(cell, methodOf(engine_->player, engine_->sweeper), batchesFor(mode, cell.size));
-}
-
-std::vector<Result> Bench::searchOnCpu(Cell& cell) const {
+// The CPU's exact search, on cell.threads threads.
+std::vector<Result> searchOnCpu(Cell& cell, const Workload& workload, const bench::Repetition& repetition) {
   cell.certified = true;
   const bench::Stopwatch stopwatch;
-  ScenePlayer player(which_.workload);
+  ScenePlayer player(workload);
   player.show(0);
   CpuSweeper exact(player.scene(), cell.threads);
   exact.sync();
   cell.prepareMs = 1e3 * stopwatch.lap().wall;
-  return timePasses(cell, methodOf(player, exact), batchesFor(Mode::contact, 0));
+  return timePasses(cell, methodOf(player, exact), batchesOf(workload, Mode::contact, 0), repetition);
 }
 
-std::vector<Result> Bench::cast(Cell& cell, const BaselineRow& row) const {
-  const Workload& workload = which_.workload;
-  std::vector<bench::Batch> batches = batchesFor(Mode::contact, 0);
+// In cell.threads threads, each with a Baseline of its own.
+std::vector<Result> cast(Cell& cell, const Workload& workload, const BaselineRow& row,
+                         const bench::Repetition& repetition) {
+  std::vector<bench::Batch> batches = batchesOf(workload, Mode::contact, 0);
   unmask(batches, workload);
   const bench::Stopwatch stopwatch;
   std::vector<std::unique_ptr<Baseline>> peers;
@@ -206,12 +140,14 @@ std::vector<Result> Bench::cast(Cell& cell, const BaselineRow& row) const {
     for (const std::unique_ptr<Baseline>& peer : peers) peer->show(objects);
     shown = scene;
   };
-  return timePasses(cell, {cell.method, answer, show}, batches);
+  return timePasses(cell, {cell.method, answer, show}, batches, repetition);
 }
 
-std::vector<Result> Bench::castInChild(Cell& cell, const BaselineRow& row) const {
+// The same in a process of its own. Where the library ends it, Cell::failed says how.
+std::vector<Result> castInChild(Cell& cell, const Workload& workload, const BaselineRow& row,
+                                const bench::Repetition& repetition) {
   const auto work = [&] {
-    const std::vector<Result> results = cast(cell, row);
+    const std::vector<Result> results = cast(cell, workload, row, repetition);
     std::vector<double> values{static_cast<double>(cell.passes)};
     for (const double* time : timesOf(cell)) values.push_back(*time);
     for (const Result& result : results) values.push_back(result.t);
@@ -226,6 +162,73 @@ std::vector<Result> Bench::castInChild(Cell& cell, const BaselineRow& row) const
   std::vector<Result> results;
   std::transform(next, outcome.values.end(), std::back_inserter(results), resultOf);
   return results;
+}
+
+}  // namespace
+
+struct Bench::Engine {
+  Engine(const Workload& workload, const Device& device, const SweeperOptions& given)
+      : options(given), player(workload), sweeper(device, player.scene(), given) {
+    player.show(0);
+    sweeper.sync();
+    prepareMs = 1e3 * stopwatch.lap().wall;
+  }
+
+  bench::Stopwatch stopwatch;
+  double prepareMs = 0;
+  SweeperOptions options;
+  ScenePlayer player;
+  Sweeper sweeper;
+};
+
+Bench::Bench(const Case& which, const Device& device, const bench::Repetition& repetition)
+    : which_(which), device_(device), repetition_(repetition) {
+  ScenePlayer player(which.workload);
+  CpuSweeper exact(player.scene());
+  const std::vector<bench::Batch> batches = batchesOf(which.workload, Mode::contact, 0);
+  truth_ = bench::play(methodOf(player, exact), batches).answers;
+  for (const bench::Batch& batch : batches) {
+    for (const Query& query : batch.queries) {
+      const double size = sensorSize(player.scene(), query);
+      sizes_.push_back(size > 0 ? size : 1);
+    }
+  }
+}
+
+Bench::~Bench() = default;
+
+Cell Bench::measure(const Method& method, const BaselineRow* row) {
+  Cell cell;
+  cell.section = which_.section;
+  cell.workload = which_.name;
+  cell.x = which_.x;
+  cell.method = method.name();
+  cell.family = method.family;
+  cell.size = method.size;
+  cell.threads = method.threads;
+  cell.queries = static_cast<uint32_t>(which_.workload.queries.size());
+  const std::vector<Result> results = row != nullptr ? castInChild(cell, which_.workload, *row, repetition_)
+                                      : method.family == "reference" ? searchOnCpu(cell, which_.workload, repetition_)
+                                                                     : sweep(cell);
+  if (!cell.failed.empty()) return cell;
+  std::vector<Told> told;
+  for (const Result& result : results) told.push_back(toldBy(result));
+  judge(cell, told, truth_, sizes_);
+  if (row == nullptr) countTiers(cell, results);
+  return cell;
+}
+
+std::vector<Result> Bench::sweep(Cell& cell) {
+  const Mode mode = cell.family.starts_with("contact") ? Mode::contact : Mode::sampled;
+  cell.certified = mode != Mode::sampled;
+  const SweeperOptions options{.select = cell.family != "drawing all",
+                               .cpuBatch = cell.family == "contact on device" ? 0 : kNone};
+  if (!engine_ || engine_->options.select != options.select || engine_->options.cpuBatch != options.cpuBatch) {
+    engine_ = std::make_unique<Engine>(which_.workload, device_, options);
+  }
+  cell.prepareMs = engine_->prepareMs;
+  return timePasses(cell, methodOf(engine_->player, engine_->sweeper), batchesOf(which_.workload, mode, cell.size),
+                    repetition_);
 }
 
 }  // namespace radar::tools

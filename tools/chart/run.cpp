@@ -63,10 +63,10 @@ std::vector<Method> peerMethods(const BaselineRow& row, const std::string& secti
   return methods;
 }
 
-Timing timingOf(Extent extent) {
-  if (extent == Extent::full) return {5, 0.2};
-  if (extent == Extent::quick) return {3, 0.03};
-  return {1, 0};
+bench::Repetition repetitionOf(Extent extent) {
+  if (extent == Extent::full) return {.least = 5, .most = kNone, .seconds = 0.2};
+  if (extent == Extent::quick) return {.least = 3, .most = kNone, .seconds = 0.03};
+  return {.least = 1, .most = 1};
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan,
     step();
     if (i < record.cells.size()) continue;
     if (!bench || &bench->which() != planned.which) {
-      bench = std::make_unique<Bench>(*planned.which, device, timingOf(settings.extent));
+      bench = std::make_unique<Bench>(*planned.which, device, repetitionOf(settings.extent));
     }
     record.cells.push_back(bench->measure(planned.method, planned.row));
     writeRecord(folder, record);

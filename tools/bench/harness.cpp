@@ -62,8 +62,8 @@ std::vector<Series> measure(std::span<const Method> methods, std::span<const Bat
 }
 
 std::vector<double> secondsOf(const std::vector<Lap>& laps, double Lap::*clock) {
-  std::vector<double> seconds;
-  for (const Lap& lap : laps) seconds.push_back(lap.*clock);
+  std::vector<double> seconds(laps.size());
+  std::transform(laps.begin(), laps.end(), seconds.begin(), [&](const Lap& lap) { return lap.*clock; });
   return seconds;
 }
 

@@ -46,7 +46,7 @@ std::vector<double> printRows(const std::string& workload, const std::vector<Met
 
 }  // namespace radar::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Benchmarks: microseconds a query. Compare figures of one run only.");
   app.require_subcommand(1);
   int status = 0;
@@ -57,9 +57,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "radar_bench: %s\n", error.what());
-    return 2;
   }
   return status;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "radar_bench: %s\n", error.what());
+  return 2;
 }

@@ -211,8 +211,8 @@ Cell Bench::measure(const Method& method, const BaselineRow* row) {
                                       : method.family == "reference" ? searchOnCpu(cell, which_.workload, repetition_)
                                                                      : sweep(cell);
   if (!cell.failed.empty()) return cell;
-  std::vector<Told> told;
-  for (const Result& result : results) told.push_back(toldBy(result));
+  std::vector<Told> told(results.size());
+  std::transform(results.begin(), results.end(), told.begin(), toldBy);
   judge(cell, told, truth_, sizes_);
   if (row == nullptr) countTiers(cell, results);
   return cell;

@@ -37,6 +37,7 @@ std::vector<std::string> columnNames() {
 // Reads the columns of a line, one after the other.
 struct FromCsv {
   const std::string& file;
+  const std::string& place;
   const std::vector<std::string>& cells;
   size_t& next;
 
@@ -44,7 +45,7 @@ struct FromCsv {
   void operator()(const char* name, Value& value) const {
     const std::string& cell = cells[next++];
     const auto expected = [&](const char* what) {
-      throw InputError(file, name, std::string("expected ") + what + ", got \"" + cell + "\"");
+      throw InputError(file, place + ": " + name, std::string("expected ") + what + ", got \"" + cell + "\"");
     };
     if constexpr (std::is_same_v<Value, std::string>) {
       value = cell;
@@ -125,7 +126,7 @@ Record recordFrom(const std::string& csv, const std::string& file) {
           "expected " + std::to_string(table.front().size()) + " cells, got " + std::to_string(table[row].size()));
     }
     size_t next = 0;
-    eachColumn(record.cells.emplace_back(), FromCsv{file + ": " + place, table[row], next});
+    eachColumn(record.cells.emplace_back(), FromCsv{file, place, table[row], next});
   }
   return record;
 }

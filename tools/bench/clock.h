@@ -4,18 +4,20 @@
 #include <time.h>
 
 #include <cmath>
+#include <cstdint>
 
 namespace radar::bench {
 
-inline double readClock(clockid_t clock) {
+/// Nanoseconds since some point in the past.
+inline int64_t readClock(clockid_t clock) {
   timespec time;
   clock_gettime(clock, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
-/// Seconds since some point in the past.
+/// Seconds that have passed since some point in the past.
 inline double now() {
-  return readClock(CLOCK_MONOTONIC);
+  return 1e-9 * static_cast<double>(readClock(CLOCK_MONOTONIC));
 }
 
 /// What some work took, seconds.
@@ -35,15 +37,15 @@ class Stopwatch {
  public:
   /// Since construction. The clock of the time passed is the last to be started and the first to be read.
   Lap lap() const {
-    Lap lap;
-    lap.wall = now() - start_.wall;
-    lap.thread = readClock(CLOCK_THREAD_CPUTIME_ID) - start_.thread;
-    lap.process = readClock(CLOCK_PROCESS_CPUTIME_ID) - start_.process;
-    return lap;
+    const int64_t wall = readClock(CLOCK_MONOTONIC) - wall_, thread = readClock(CLOCK_THREAD_CPUTIME_ID) - thread_,
+                  process = readClock(CLOCK_PROCESS_CPUTIME_ID) - process_;
+    return {1e-9 * static_cast<double>(process), 1e-9 * static_cast<double>(thread), 1e-9 * static_cast<double>(wall)};
   }
 
  private:
-  Lap start_{readClock(CLOCK_PROCESS_CPUTIME_ID), readClock(CLOCK_THREAD_CPUTIME_ID), now()};
+  int64_t process_ = readClock(CLOCK_PROCESS_CPUTIME_ID);
+  int64_t thread_ = readClock(CLOCK_THREAD_CPUTIME_ID);
+  int64_t wall_ = readClock(CLOCK_MONOTONIC);
 };
 
 template <class Work>

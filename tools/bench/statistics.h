@@ -15,11 +15,12 @@ inline double median(std::vector<double> values) {
 }
 
 /// The value below which `share` of the values lie: the least at or above that rank. NaN of none.
-inline double quantile(std::vector<double> values, double share) {
+inline double quantile(const std::vector<double>& values, double share) {
   if (values.empty()) return NAN;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<size_t>(std::max(rank, 1.0)) - 1];
+  std::vector<double> sorted(values);
+  std::sort(sorted.begin(), sorted.end());
+  const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::max<size_t>(rank, 1) - 1];
 }
 
 }  // namespace radar::tools

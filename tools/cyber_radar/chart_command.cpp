@@ -145,8 +145,7 @@ void chart(Options options) {
   for (const std::string& finding : table1Findings(*record)) std::cout << "  " << finding << "\n";
   std::cout << "growth\n";
   for (const std::string& finding : growthFindings(*record)) std::cout << "  " << finding << "\n";
-  std::cout << "\nIn " << std::filesystem::absolute(options.out).string()
-            << ": chart.csv, points.csv, charts as SVG\n";
+  std::cout << "\nIn " << std::filesystem::absolute(options.out).string() << ": chart.csv, points.csv, charts as SVG\n";
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "radar/cpu_sweeper.h"
 #include "bench/statistics.h"
+#include "radar/cpu_sweeper.h"
 #include "stability/promises.h"
 #include "workloads/workload.h"
 

@@ -48,7 +48,6 @@ bool Buffer::reserve(VkDeviceSize bytes) {
                                     : domain_ == BufferDomain::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                                                         : 0)};
   VkDeviceMemory memory;
-  check(device_->faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
   check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory),
         "vkAllocateMemory (" + what + ")");
   DeviceMemory owned(*device_, memory);

@@ -102,7 +102,6 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
       .allocationSize = requirements.size,
       .memoryTypeIndex = memoryType(device, requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
   VkDeviceMemory memory;
-  check(device.faultAt("vkAllocateMemory"), "vkAllocateMemory (" + what + ")");
   check(device.vk.AllocateMemory(device.device(), &allocate, device.host.allocator, &memory),
         "vkAllocateMemory (" + what + ")");
   memory_ = {device, memory};

@@ -49,10 +49,6 @@ struct Device::Impl {
   void requireSampled(const std::string& who) const;
   /// Throws, naming `who`, if the host gave no queue.
   void requireQueue(const char* who) const;
-  /// Lets a test make the device fail or slow: called before vkQueueSubmit2 and vkAllocateMemory and after
-  /// vkWaitForFences, with that name; an error replaces the call's result. Empty otherwise.
-  std::function<VkResult(std::string_view call)> fault;
-  VkResult faultAt(std::string_view call) const { return fault ? fault(call) : VK_SUCCESS; }
   /// Names an object for debuggers and validation messages.
   void setName(VkObjectType type, uint64_t handle, const char* name) const;
   template <class T>

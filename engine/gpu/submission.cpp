@@ -75,10 +75,12 @@ void Submission::submit() {
                                               .commandBuffer = commands_};
   const VkSubmitInfo2 submit{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commandInfo};
-  check(device_->faultAt("vkQueueSubmit2"), "vkQueueSubmit2");
+  // Here rather than after the wait, which may fail.
+  const VkFence fence = fence_.get();
+  check(device_->vk.ResetFences(device_->device(), 1, &fence), "vkResetFences");
   const HostDevice& host = device_->host;
   if (host.lockQueue) host.lockQueue();
-  const VkResult submitted = device_->vk.QueueSubmit2(host.queue, 1, &submit, fence_.get());
+  const VkResult submitted = device_->vk.QueueSubmit2(host.queue, 1, &submit, fence);
   if (host.unlockQueue) host.unlockQueue();
   check(submitted, "vkQueueSubmit2");
   pending_ = true;
@@ -89,8 +91,6 @@ void Submission::wait() {
   const VkResult waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
   pending_ = false;
   check(waited, "vkWaitForFences");
-  check(device_->vk.ResetFences(device_->device(), 1, &fence), "vkResetFences");
-  check(device_->faultAt("vkWaitForFences"), "vkWaitForFences");
 }
 
 void Submission::submitAndWait() {

@@ -10,19 +10,51 @@ namespace radar::test {
 namespace {
 
 struct Opened {
-  Opened() {
-    if (devices.size() != 2) throw std::runtime_error("expected two devices, as ctest's environment gives");
-    for (size_t i = 0; i < devices.size(); ++i) {
-      devices[i].impl().fault = [this, i](std::string_view call) { return faults[i].answer(call); };
-    }
-  }
   std::vector<Device> devices = openDevices({}, onValidation);
   std::array<Faults, 2> faults;
+  std::array<gpu::Api, 2> calls{devices.at(0).impl().vk, devices.at(1).impl().vk};  // the driver's
 };
 
 Opened& opened() {
   static Opened both;
   return both;
+}
+
+// The device that has this handle.
+template <class HandleOf>
+size_t deviceWith(const HandleOf& isOf) {
+  return isOf(opened().devices[0].handles()) ? 0 : 1;
+}
+
+// These stand for the driver's functions.
+
+VkResult allocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
+                        VkDeviceMemory* memory) {
+  const size_t i = deviceWith([&](const HostDevice& host) { return host.device == device; });
+  const VkResult fault = opened().faults[i].answer("vkAllocateMemory");
+  return fault != VK_SUCCESS ? fault : opened().calls[i].AllocateMemory(device, info, allocator, memory);
+}
+
+VkResult queueSubmit(VkQueue queue, uint32_t count, const VkSubmitInfo2* submits, VkFence fence) {
+  const size_t i = deviceWith([&](const HostDevice& host) { return host.queue == queue; });
+  const VkResult fault = opened().faults[i].answer("vkQueueSubmit2");
+  return fault != VK_SUCCESS ? fault : opened().calls[i].QueueSubmit2(queue, count, submits, fence);
+}
+
+VkResult waitForFences(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all, uint64_t timeout) {
+  const size_t i = deviceWith([&](const HostDevice& host) { return host.device == device; });
+  const VkResult waited = opened().calls[i].WaitForFences(device, count, fences, all, timeout);
+  const VkResult fault = opened().faults[i].answer("vkWaitForFences");
+  return fault != VK_SUCCESS ? fault : waited;
+}
+
+void replaceCalls() {
+  for (const Device& device : opened().devices) {
+    gpu::Api& vk = device.impl().vk;
+    vk.AllocateMemory = allocateMemory;
+    vk.QueueSubmit2 = queueSubmit;
+    vk.WaitForFences = waitForFences;
+  }
 }
 
 }  // namespace
@@ -69,6 +101,8 @@ VkResult Faults::answer(std::string_view call) {
 }
 
 std::span<const Device> twoDevices() {
+  static std::once_flag once;
+  std::call_once(once, replaceCalls);
   return opened().devices;
 }
 

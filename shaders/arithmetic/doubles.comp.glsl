@@ -1,4 +1,4 @@
-// Tries the double arithmetic that pairs of triangles are solved with, with numbers whose results the host knows.
+// Computes with the double arithmetic that solves pairs of triangles; the CPU compares the results with its own.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,7 +12,8 @@ layout(constant_id = 1) const uint kSpoiled = kNoOperation;
 layout(scalar, binding = kSlotDoubleTrials) readonly restrict buffer Trials { DoubleTrial trials[]; };
 layout(scalar, binding = kSlotDoubleOutcomes) writeonly restrict buffer Outcomes { DoubleOutcome outcomes[]; };
 
-double told(uint operation, double result) {
+// The result, falsified if the check asks for that.
+double reported(uint operation, double result) {
   const uvec2 bits = unpackDouble2x32(result);
   return kSpoiled == operation ? packDouble2x32(uvec2(bits.x ^ 1, bits.y)) : result;
 }
@@ -29,7 +30,7 @@ void main() {
   float ofDouble = float(x);
   if (kSpoiled == kFloatOfDouble) ofDouble = uintBitsToFloat(floatBitsToUint(ofDouble) + 4);
   outcomes[i] =
-      DoubleOutcome(told(kDoubleSum, sum), told(kDoubleProduct, product), told(kDoubleQuotient, ratio),
-                    told(kDoubleCorrected, correctedQuotient(x, y)), told(kDoublePlaced, placed), told(kDoubleOfFloat, p.x),
-                    told(kDoubleCopy, trials[i].row[0]), ofDouble, order);
+      DoubleOutcome(reported(kDoubleSum, sum), reported(kDoubleProduct, product), reported(kDoubleQuotient, ratio),
+                    reported(kDoubleCorrected, correctedQuotient(x, y)), reported(kDoublePlaced, placed),
+                    reported(kDoubleOfFloat, p.x), reported(kDoubleCopy, trials[i].row[0]), ofDouble, order);
 }

@@ -1,4 +1,4 @@
-// What the checks of a device's arithmetic compute, shared with C++ (engine/gpu/arithmetic.cpp).
+// Structs of the checks of a device's arithmetic, shared with C++ (engine/gpu/arithmetic.cpp).
 #ifndef RADAR_ARITHMETIC_INTEROP_H
 #define RADAR_ARITHMETIC_INTEROP_H
 
@@ -14,7 +14,7 @@ namespace radar::gpu {
 INTEROP_CONST kTrials = 1024;
 INTEROP_CONST kTrialGroup = 64;
 
-// The operations checked. A check can be told to falsify one of them, to show that it would be found.
+// The operations checked. The shaders can falsify one of them, to show that the check finds it.
 INTEROP_CONST kNoOperation = 0;
 INTEROP_CONST kFloatSum = 1;
 INTEROP_CONST kFloatProduct = 2;
@@ -28,7 +28,7 @@ INTEROP_CONST kFloatSubnormal = 9;
 INTEROP_CONST kDoubleSum = 10;
 INTEROP_CONST kDoubleProduct = 11;
 INTEROP_CONST kDoubleQuotient = 12;
-INTEROP_CONST kDoubleCorrected = 13;  // quotient() of divide.glsl
+INTEROP_CONST kDoubleCorrected = 13;  // correctedQuotient() of divide.glsl
 INTEROP_CONST kDoublePlaced = 14;     // the formula of Transform
 INTEROP_CONST kDoubleOrder = 15;
 INTEROP_CONST kDoubleOfFloat = 16;

@@ -1,5 +1,5 @@
-// Between two rounds of the search: what was left behind comes first in the next one, since it is deepest in the trees, so that
-// few tasks are open at a time; then what nobody has taken.
+// Carries tasks from one round of the search to the next: first the spilled tasks, which are deepest in the trees, so that few
+// tasks are pending at a time; then the tasks that were not taken.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,13 +1,13 @@
-// Unevaluated sums of two doubles and what is told of a contact with them: engine/exact/double_double.h, determinant.cpp and
-// event.cpp again, operation by operation, so that both give the same bits.
+// Unevaluated sums of two doubles, and the numbers of a contact computed with them. The operations are those of
+// engine/exact/double_double.h, determinant.cpp and event.cpp, in the same order, so that both give the same bits.
 
-// 3, but compilers do not know: unrolled, these loops take lavapipe ten seconds to compile. Nor do the loops index arrays,
-// which it keeps in memory: what they take in turn goes round.
+// 3, hidden from compilers: unrolled, the loops below take lavapipe ten seconds to compile. They rotate variables instead of
+// indexing arrays, which lavapipe keeps in memory.
 uint three() { return gl_NumWorkGroups.z + 2; }
 
 #include "shared/divide.glsl"
 
-// Whether every quotient so far was right.
+// Whether every quotient so far was correctly rounded.
 bool sound = true;
 double soundQuotient(double x, double y) {
   sound = sound && divides(x, y);
@@ -19,7 +19,7 @@ struct DoubleDouble {
   double low;
 };
 
-// |p| >= |q| or p = 0.
+// Requires |p| >= |q| or p = 0.
 DoubleDouble quickSum(double p, double q) {
   precise double s = p + q;
   precise double low = q - (s - p);
@@ -61,7 +61,7 @@ DoubleDouble times(DoubleDouble p, DoubleDouble q) {
   return quickSum(r.high, low);
 }
 
-// The same for each component.
+// A DoubleDouble for each component.
 struct DoubleDoubleVector {
   dvec3 high;
   dvec3 low;
@@ -120,11 +120,12 @@ Fine fineDeterminant(Differences d) {
   value = plus(value, DoubleDouble(all.high.y, all.low.y));
   value = plus(value, DoubleDouble(all.high.z, all.low.z));
   const double magnitude = sum3(abs(w.high) * (abs(over.high) + abs(under.high))), size = 1.0LF + sum3(abs(w.high));
-  // 2^-99, 2^-1060 and a little, since this sum is rounded as the device likes.
+  // The host's bound of 2^-99 and 2^-1060, increased because the device may round this sum in any direction.
   return Fine(value, 1.6e-30LF * magnitude + 1.7e-300LF * size);
 }
 
-// A contact's first event, as engine/exact has it: the moving feature's vertex, the resting one's, and an edge of each.
+// A contact's first event, as in engine/exact: a vertex of the moving feature, one of the resting feature, and two edges that
+// span the plane of contact.
 struct Event {
   dvec3 from, to;
   dvec3 x0, x1, y0, y1;
@@ -141,16 +142,16 @@ Event eventOf(uint feature, dvec3 a[3], dvec3 b[3]) {
   return Event(fromA, fromB, fromA, toA, fromB, toB);
 }
 
-// What is told of an event.
+// An event's numbers.
 struct Told {
   double s;     // its parameter
-  double turn;  // less than 0: its denominator is positive
+  double turn;  // sign of the normal; -1: the denominator is positive
   dvec3 point;
   bool known;   // false where double-doubles are not precise enough for s
 };
 
 Told tellEvent(uint feature, Event e, dvec3 direction) {
-  // The parameter's numerator and denominator; on which side of the moving edge the ends of the resting one lie.
+  // The parameter's numerator and denominator, and the sides of the moving edge on which the ends of the resting edge lie.
   const dvec3 zero = dvec3(0.0LF);
   Differences what = Differences(e.from, e.to, e.x0, e.x1, e.y0, e.y1);
   Fine num = Fine(DoubleDouble(0.0LF, 0.0LF), 0.0LF), den = num, side0 = num, side1 = num;
@@ -181,10 +182,10 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
   const double error = soundQuotient(num.error + size * den.error, sure) * (1.0LF + 1e-15LF) + 8.0e-31LF * size + 1e-300LF;
   told.s = parameter.high;
   told.turn = den.value.high > 0.0LF ? -1.0LF : 1.0LF;
-  // The host asks for 2^-60, of an error that it rounds in its own way.
+  // Below the CPU's limit of 2^-60, since the CPU rounds the error differently.
   told.known = sure > 0.0LF && error < 2.0e-19LF * size;
 
-  // Along the motion from a vertex, at the vertex at rest, or along the edge at rest.
+  // The contact point: along the motion from the moving vertex, at the resting vertex, or on the resting edge.
   precise dvec3 edge = e.y1 - e.y0;
   dvec3 origin = e.from, way = direction;
   double share = told.s;
@@ -204,7 +205,7 @@ int exponentOf(double x) { return int(unpackDouble2x32(x).y >> 20 & 0x7ffu) - 10
 double powerOfTwo(int exponent) { return packDouble2x32(uvec2(0, uint(exponent + 1023) << 20)); }
 double mostOf(double x, double y, double z) { return max(max(abs(x), abs(y)), abs(z)); }
 
-// The square root of 1 <= x < 16 by adding, multiplying and dividing only, which the host rounds alike.
+// The square root of 1 <= x < 16, by sums, products and quotients only, which have the same bits on the CPU.
 double rootOf(double x) {
   precise double root = 0.5LF * (1.0LF + x);
   for (uint i = 0; i < three() + 4; ++i) {
@@ -229,8 +230,8 @@ bool normalOf(Event e, double turn, out dvec3 normal) {
   return max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
 }
 
-// Where two triangles that pierce each other do so: engine/exact/common_point.cpp. `inside`: least barycentric coordinate
-// of the best point so far.
+// Finds a common point of two triangles, as engine/exact/common_point.cpp does. `inside`: least barycentric coordinate of the
+// best point so far.
 void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, inout double inside, inout dvec3 best) {
   precise dvec3 x = face1 - face0, y = face2 - face0;
   precise dvec3 normal = x.yzx * y.zxy - x.zxy * y.yzx;

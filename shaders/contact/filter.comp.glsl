@@ -1,4 +1,4 @@
-// Of the candidates, those that may still be first, now that the search has ended.
+// Copies the candidates that may still be first after the search to the refined pairs.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -47,7 +47,7 @@ struct Sweep {
 struct SearchState {
   uint hi;     // bits of a float, at least 0: upper bound on first contact, scaled; initially Sensor::distance
   uint flags;  // kSearch*
-  uint least;  // the least object that certainly meets at the start, or kNobody: of those, no other can be the answer
+  uint least;  // the least object that certainly meets at the start, or kNobody; no greater object can be the answer
 };
 INTEROP_CONST kSearchLost = 1;        // a list was full
 INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small relative to the sensor, for floats
@@ -59,7 +59,7 @@ struct SearchTask {
   uint object;  // kNobody: `b` is a link of the tree over objects
   uint a;       // a node of the sensor's mesh; or, with kLinkLeaf, the left of two children to try
   uint b;       // a node of the object's mesh; or, without kLinkLeaf in `a`, the left of two children to try
-  float gap;    // no contact below before this, scaled
+  float gap;    // no contact of this pair before this, scaled
 };
 
 // A pair of triangles that may be first, according to floats.
@@ -89,7 +89,7 @@ INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
 INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier
 
-// A pair that the device leaves to the host: its ids, its mesh corners, and the object's pose.
+// A pair that the device leaves to the CPU: its ids, its mesh corners, and the object's pose.
 struct UnresolvedPair {
   uint sensor;
   uint object;
@@ -111,9 +111,9 @@ INTEROP_CONST kMostRounds = 64;
 // Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
-  uint candidates;       // found, kept up to the capacity
+  uint candidates;       // found; stored up to the capacity
   uint refinedPairs;
-  uint unresolved;       // found, kept up to the capacity
+  uint unresolved;       // found; stored up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups
   uint nodePairs;        // tested; low word
   uint nodePairsHigh;

@@ -1,19 +1,20 @@
-// When two nodes may meet: slabs along both meshes' axes, then along both nodes' normals (docs/method.md, "Pairs of nodes").
-// A slab along any axis bounds the parameters at which two boxes, one of them moving, can overlap there; what all slabs leave
-// is an interval. Margins hold all that rounding can do to it.
+// Bounds when two nodes may meet, by slabs along both meshes' axes and both nodes' normals (docs/method.md, "Pairs of nodes").
+// A slab along any axis bounds the parameters at which two boxes, one of them moving, can overlap there; the intersection of
+// these intervals is the result. Margins cover all rounding errors.
 
-// A sensor's mesh A seen from an object's mesh B, and the other way round. Parameters are scaled distances.
+// A sensor's mesh A relative to an object's mesh B, and the reverse. Parameters are scaled distances.
 struct MeshPair {
   mat3 fromA, fromB;          // B's normalised coordinates from A's, A's from B's
-  vec3 offsetA, offsetB;      // where the other's origin is, in B's and in A's
+  vec3 offsetA, offsetB;      // origin of A in B's coordinates, and of B in A's
   vec3 inverseA, inverseB;    // 1 / velocity of A in B's coordinates and in A's
   vec3 slackA, slackB;
   vec3 velocityA, velocityB;
-  float farthest;             // nothing of the two meets beyond
-  float leastA, leastB;       // velocities along normals below this are taken for it
+  float farthest;             // the two do not meet beyond this
+  float leastA, leastB;       // velocities along normals are raised to this
   bool inRange;
 };
-// A size or a distance so many times the sensor's overflows in products of three, and so does such an error in cubes.
+// Limits, in multiples of the sensor's size. Beyond the first, products of three sizes or distances may overflow; beyond the
+// second, so may cubes of errors.
 const float kMostRatio = 1.0e12, kMostError = 1.0e9;
 
 float mostOf(vec4 x, vec4 y, vec4 z) { return max3(vec3(sum3(abs(x.xyz)), sum3(abs(y.xyz)), sum3(abs(z.xyz)))); }
@@ -40,12 +41,12 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
 
   MeshPair p;
-  // QueryBatch before it is multiplied. Where floats cannot hold an object, its perUnit is 0.
+  // Tested before multiplying. perUnit is 0 if floats cannot hold the object.
   p.inRange = objectTexel(object, kTexelOrigin).w > 0.0 && most < kMostRatio && error < kMostError &&
               max(mostOf(a0, a1, a2), mostOf(b0, b1, b2)) < kMostRatio * unscale &&
               max(mostOf(na0, na1, na2), mostOf(nb0, nb1, nb2)) < kMostRatio * scale;
   const float by = p.inRange ? scale : 0.0, perBy = p.inRange ? unscale : 0.0;
-  const vec3 lost = 4.0 * kUnit * by * (abs(high) + abs(low));
+  const vec3 positionError = 4.0 * kUnit * by * (abs(high) + abs(low));
   const mat3 matrixA = rows(a0.xyz + fa0.xyz, a1.xyz + fa1.xyz, a2.xyz + fa2.xyz) * by;
   const mat3 matrixB = rows(b0.xyz + fb0.xyz, b1.xyz + fb1.xyz, b2.xyz + fb2.xyz) * by;
   const mat3 inverseA = rows(na0.xyz, na1.xyz, na2.xyz) * perBy, inverseB = rows(nb0.xyz, nb1.xyz, nb2.xyz) * perBy;
@@ -59,14 +60,14 @@ MeshPair meshPairOf(uint sensor, uint object) {
   p.velocityA = inverseB * direction.xyz;
   p.velocityB = inverseA * direction.xyz;
   p.farthest = max(1.00001 * min(sensorTexel(sensor, kTexelCentre).w, most), 9.5367432e-7);
-  // The sum of all that is added up along an axis.
+  // The sum of all absolute terms along an axis.
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
              spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));
-  p.slackA = vec3(nb0.w, nb1.w, nb2.w) + sumB * error + sizeB * lost + 64.0 * kUnit * spanB +
+  p.slackA = vec3(nb0.w, nb1.w, nb2.w) + sumB * error + sizeB * positionError + 64.0 * kUnit * spanB +
              16.0 * kUnit * p.farthest * sumB + 1e-18;
-  p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * lost + 64.0 * kUnit * spanA +
+  p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * positionError + 64.0 * kUnit * spanA +
              16.0 * kUnit * p.farthest * sumA + 1e-18;
-  // With the slack, so that what is divided by a velocity stays below 1e12 times `farthest`.
+  // The slack is included, so that quotients by a velocity stay below 1e12 times `farthest`.
   const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA + p.slackA, vec3(9.5367432e-7)),
              leastB = 9.5367432e-7 / p.farthest * max(reachA + abs3(p.fromB) * reachB + p.slackB, vec3(9.5367432e-7));
   const vec3 wayA = awayFromZero(p.velocityA, leastA), wayB = awayFromZero(p.velocityB, leastB);
@@ -79,18 +80,18 @@ MeshPair meshPairOf(uint sensor, uint object) {
   return p;
 }
 
-// A lower bound of the parameters at which two nodes meet, and how large both are beside each other.
+// A lower bound of the parameters at which two nodes meet, and the sizes of both along B's axes.
 struct Approach {
   float gap;  // kMiss: they do not meet
   float sizeA, sizeB;
 };
 const float kMiss = 3.0e38;
 
-// Adds the slab across the normal of a node of one side, as `own` has it: `other` is the node of the other side, whose
-// coordinates `fromOther` takes to this side's, about `offset`, and which moves by `velocity` against it.
+// Adds the slab along the normal of `own`. `fromOther` and `offset` take coordinates of `other`, the node of the other side,
+// to those of `own`; `other` moves against `velocity`.
 void addNormalSlab(inout float enter, inout float leave, Node own, Node other, mat3 fromOther, vec3 offset, vec3 velocity,
                    vec3 slack, float least, float farthest) {
-  // In the other's coordinates, as a multiple of its own normal and a rest.
+  // The normal in the other's coordinates, as a multiple of the other's normal and a rest.
   const vec3 n = own.normal * fromOther;
   const float along = dot(n, other.normal);
   const vec3 rest = n - along * other.normal;
@@ -115,7 +116,7 @@ Approach approachOf(MeshPair p, Node a, Node b, float limit) {
              reachB = (a.halfExtent + spanB + p.slackB) * abs(p.inverseB);
   float enter = max(max3(middleA - reachA), max3(middleB - reachB));
   float leave = min(min3(middleA + reachA), min3(middleB + reachB));
-  // A stands still in its own coordinates, and B comes against the motion there; the other way round in B's.
+  // In A's coordinates, A rests and B moves against the motion; in B's coordinates, B rests and A moves.
   addNormalSlab(enter, leave, a, b, p.fromB, p.offsetB, p.velocityB, p.slackB, p.leastB, p.farthest);
   addNormalSlab(enter, leave, b, a, p.fromA, p.offsetA, -p.velocityA, p.slackA, p.leastA, p.farthest);
   const bool meets = enter <= leave && leave >= 0.0 && enter <= limit;

@@ -1,4 +1,4 @@
-// The trees, and what places their meshes.
+// The trees and placements, in texel buffers.
 layout(binding = kSlotMeshNodes) uniform utextureBuffer meshNodeTexels;
 layout(binding = kSlotObjectNodes) uniform utextureBuffer objectNodeTexels;
 layout(binding = kSlotPlacements) uniform utextureBuffer placementTexels;
@@ -48,17 +48,17 @@ struct SensorBox {
 };
 
 SensorBox sensorBoxOf(uint sensor) {
-  // `halfExtent` has room for what a velocity is raised by.
+  // `halfExtent` has a margin for the raised velocity.
   return SensorBox(sensorTexel(sensor, kTexelCentre).xyz, sensorTexel(sensor, kTexelHalfExtent).xyz,
                    1.0 / awayFromZero(sensorTexel(sensor, kTexelDirection).xyz, vec3(9.0949470e-13)));
 }
 
-// The distances at which it meets an ObjectNode's; x > y: never.
+// The distances at which the sensor's box meets that of an ObjectNode; x > y: never.
 vec2 meetsBox(SensorBox box, vec4 middle, vec4 extent) {
   const vec3 gap = middle.xyz - box.centre, at = gap * box.inverseDirection;
   const vec3 reach = ((extent.xyz + box.halfExtent) * 1.00001 + 1e-6 * abs(gap)) * abs(box.inverseDirection);
   return vec2(max(max3(at - reach), 0.0), min3(at + reach));
 }
 
-// Half an ulp of 1; an operation may be off by twice that, since Vulkan does not say which way floats are rounded.
+// Half an ulp of 1. An operation may be off by twice that, since Vulkan fixes no rounding direction for floats.
 const float kUnit = 5.9604645e-8;

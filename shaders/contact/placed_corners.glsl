@@ -1,5 +1,5 @@
-// A triangle's corners in the world, in double precision, by the formula of radar.h; sorted, so that what two triangles share
-// has the same bits in both. Included after contact/scene.glsl.
+// A triangle's corners in the world, in double precision, by the formula of radar.h; sorted, so that an edge shared by two
+// triangles has the same bits in both. Included after shared/scene.glsl.
 #include "shared/widen.glsl"
 bool before(dvec3 p, dvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));

@@ -1,4 +1,4 @@
-// Solves the refined pairs in double precision, which brings down what is certainly met.
+// Solves the refined pairs in double precision, which may lower the upper bound of first contact.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -17,9 +17,9 @@ layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { Refin
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 
-// A lower bound that a product may have rounded up, or an upper one down, is moved by this share of it.
+// Lower bounds are lowered and upper bounds raised by this, relative to their value: products may round them inwards.
 const double kRounded = 8.881784197001252e-16LF;
-// As a float.
+// The same for a float.
 const double kRoundedFloat = 2.4e-7LF;
 
 void main() {
@@ -32,7 +32,7 @@ void main() {
   placedCorners(objects[c.object].pose, c.slotB, b);
   const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
-  // One that comes after the start alone counts as never.
+  // A contact that ends before the start counts as never.
   const double low = m.latest >= 0.0LF ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;

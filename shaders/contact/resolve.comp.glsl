@@ -1,6 +1,6 @@
-// What a search has met becomes an answer, an invocation for each sensor. Where the device is certain which features touch
-// first, it tells the numbers, in the arithmetic of engine/exact and with its bits; else it lists the pairs that may be
-// first, with what the host needs to decide them. On a device without doubles that is all that may be first.
+// Writes the answers, one invocation per sensor. If the device is certain which features touch first, it computes the numbers
+// in the arithmetic of engine/exact, with the same bits. Otherwise it lists the pairs that may be first as unresolved, for the
+// CPU to decide. A device without doubles lists all of them.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -31,7 +31,7 @@ const uint kMostListed = 16384;
 
 uint s;
 
-// Ties go by this.
+// Ties are broken by this.
 uvec3 nameOf(RefinedPair c) { return uvec3(c.object, triangleAt(c.slotB).w, triangleAt(c.slotA).w); }
 bool isLess(uvec3 p, uvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
@@ -42,8 +42,9 @@ vec3[3] cornersAt(uint slot) {
   return vec3[3](vertexAt(corner.x), vertexAt(corner.y), vertexAt(corner.z));
 }
 
-// Takes room for so many pairs, or none: then what is left of it is marked as nobody's.
-uint roomFor(uint pairs) {
+// Reserves entries for unresolved pairs and returns the first. If they do not fit, marks the remaining entries unused and
+// returns kNobody.
+uint reserveUnresolved(uint pairs) {
   const uint before = atomicOr(counts.unresolved, 0);
   if (before >= push.unresolvedCapacity) return kNobody;
   const uint at = atomicAdd(counts.unresolved, pairs), end = at + pairs;
@@ -52,7 +53,7 @@ uint roomFor(uint pairs) {
   return kNobody;
 }
 
-void list(uint at, RefinedPair c) {
+void writeUnresolved(uint at, RefinedPair c) {
   const uvec3 name = nameOf(c);
   unresolved[at] =
       UnresolvedPair(s, name.x, name.y, name.z, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
@@ -60,14 +61,14 @@ void list(uint at, RefinedPair c) {
 
 #ifndef RADAR_NO_DOUBLES
 #include "shared/divide.glsl"
-// 0 has no sign: what a device makes of it is its own.
+// 0 is written without sign: Vulkan does not define the sign of 0.
 uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
 uvec2[3] bitsOf(dvec3 v) { return uvec2[3](bitsOf(v.x), bitsOf(v.y), bitsOf(v.z)); }
 double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
 #else
 #include "shared/double_bits.glsl"
 uvec2 bitsOf(uvec2 x) { return x; }
-// Times a power of two, by the exponent.
+// x / scale, a power of two, by the exponent.
 uvec2 unscaled(float x, float scale) {
   const uvec2 bits = doubleBits(floatBitsToUint(x));
   const int shift = int(floatBitsToUint(scale) >> 23) - 127;
@@ -75,7 +76,7 @@ uvec2 unscaled(float x, float scale) {
 }
 #endif
 
-// Of the bits of doubles that are not negative.
+// Compares the bits of non-negative doubles.
 bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
 
 RadarResult nothing(uint status) {
@@ -90,10 +91,10 @@ RadarResult invalid(uint flags) {
   return r;
 }
 
-// Nothing is met; that is certain unless something was to be.
+// No pair is left: the answer is clear, unless the search found a certain contact.
 RadarResult noContact(bool met) { return nothing(met ? RADAR_INVALID : RADAR_CLEAR); }
 
-// To a query that asks for no more, whichever way it is found out.
+// The answer to an `anyHit` query: the same bits, whichever contact was found.
 RadarResult within() {
   RadarResult r = nothing(RADAR_HIT);
   r.detected = RADAR_DETECTED;
@@ -130,15 +131,15 @@ Corners cornersOf(RefinedPair c) {
 }
 
 bool sameParts(uint featureP, Corners cornersP, uint featureQ, Corners cornersQ) {
-  // A face by its three corners, an edge by two, a vertex by one.
+  // 0: vertex on face, 1: face on vertex, 2: edge on edge.
   const uint kindP = featureP < 3 ? 0 : featureP < kFeatureEdges ? 1 : 2;
   const uint kindQ = featureQ < 3 ? 0 : featureQ < kFeatureEdges ? 1 : 2;
   const Event p = eventOf(featureP, cornersP.a, cornersP.b), q = eventOf(featureQ, cornersQ.a, cornersQ.b);
   return kindP == kindQ && p.from == q.from && p.to == q.to && p.x0 == q.x0 && p.x1 == q.x1 && p.y0 == q.y0 && p.y1 == q.y1;
 }
 
-// Tells of the refined pair's first contact, at s > 0; false where rounding is not certain.
-bool tellHit(uint feature, Corners corners, inout RadarResult r) {
+// Sets the refined pair's first contact, at s > 0. Returns whether its numbers certainly have the CPU's bits.
+bool setHit(uint feature, Corners corners, inout RadarResult r) {
   const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
   const Event e = eventOf(feature, corners.a, corners.b);
   const Told told = tellEvent(feature, e, direction);
@@ -159,54 +160,55 @@ bool tellHit(uint feature, Corners corners, inout RadarResult r) {
   return sound && told.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
-void tellOverlap(Corners corners, inout RadarResult r) {
+void setOverlap(Corners corners, inout RadarResult r) {
   dvec3 point;
   r.status = RADAR_OVERLAP;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
   if (commonPoint(corners.a, corners.b, point)) r.point = bitsOf(point);
 }
 
-// What of a sensor's refined pairs may be first.
-struct Kept {
-  uint count;            // of all refined pairs
-  double limit;          // none is first that begins beyond
-  double low;            // they do not meet before
-  uint open;             // that may be first
-  uvec4 least, pierced;  // of all, and of those that certainly meet at the start: the least name, and whose it is
+// A summary of a sensor's refined pairs.
+struct PairSummary {
+  uint count;            // number of refined pairs
+  double limit;          // a pair that begins beyond this is not first
+  double low;            // no contact before this
+  uint possible;         // number of pairs that may be first
+  uvec4 least, pierced;  // least name and its refined pair: of those that may be first; of those that also certainly meet at
+                         // the start
 };
 
-Kept keep(uint first, double hi) {
+PairSummary summarise(uint first, double hi) {
   const double length = sweeps[s].directionLength;
-  Kept kept = Kept(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody));
-  for (uint i = first; i != kNobody && kept.count < kMostListed; i = refinedPairs[i].next) {
+  PairSummary pairs = PairSummary(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody));
+  for (uint i = first; i != kNobody && pairs.count < kMostListed; i = refinedPairs[i].next) {
     const RefinedPair c = refinedPairs[i];
-    if ((c.flags & kPairMeets) != 0) kept.limit = min(kept.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
-    ++kept.count;
+    if ((c.flags & kPairMeets) != 0) pairs.limit = min(pairs.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
+    ++pairs.count;
   }
-  for (uint i = first, k = 0; k < kept.count; i = refinedPairs[i].next, ++k) {
+  for (uint i = first, k = 0; k < pairs.count; i = refinedPairs[i].next, ++k) {
     const RefinedPair c = refinedPairs[i];
-    if (c.low > kept.limit) continue;
-    kept.low = min(kept.low, c.low);
-    ++kept.open;
+    if (c.low > pairs.limit) continue;
+    pairs.low = min(pairs.low, c.low);
+    ++pairs.possible;
     const uvec3 name = nameOf(c);
-    if (isLess(name, kept.least.xyz)) kept.least = uvec4(name, i);
-    if ((c.flags & kPairPierces) != 0 && isLess(name, kept.pierced.xyz)) kept.pierced = uvec4(name, i);
+    if (isLess(name, pairs.least.xyz)) pairs.least = uvec4(name, i);
+    if ((c.flags & kPairPierces) != 0 && isLess(name, pairs.pierced.xyz)) pairs.pierced = uvec4(name, i);
   }
-  return kept;
+  return pairs;
 }
 
-// Tells of what may be first where all of it certainly is, with the same features; where something certainly meets at the
-// start: where nothing of a lesser name may, too. False where that is not certain.
-bool tell(uint first, Kept kept, inout RadarResult r) {
-  if (kept.count > kMostCompared || sweeps[s].anyHit != 0) return false;
-  const bool pierces = kept.pierced.w != kNobody;
-  const uvec4 winner = pierces ? kept.pierced : kept.least;
+// Sets the answer if it is certain, else returns false. It is certain if all pairs that may be first certainly begin at the
+// same features; or if a pair certainly meets at the start, and every pair of a lesser name that may be first does, too.
+bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
+  if (pairs.count > kMostCompared || sweeps[s].anyHit != 0) return false;
+  const bool pierces = pairs.pierced.w != kNobody;
+  const uvec4 winner = pierces ? pairs.pierced : pairs.least;
   const RefinedPair one = refinedPairs[winner.w];
   const Corners corners = cornersOf(one);
   bool certain = pierces || (one.flags & kPairSharp) != 0;
   for (uint i = first; i != kNobody && certain; i = refinedPairs[i].next) {
     const RefinedPair c = refinedPairs[i];
-    if (c.low > kept.limit) continue;
+    if (c.low > pairs.limit) continue;
     if (pierces) {
       certain = (c.flags & kPairPierces) != 0 || !isLess(nameOf(c), winner.xyz);
     } else {
@@ -219,39 +221,39 @@ bool tell(uint first, Kept kept, inout RadarResult r) {
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
-  if (!pierces) return tellHit(one.flags & 0xffu, corners, r);
-  tellOverlap(corners, r);
+  if (!pierces) return setHit(one.flags & 0xffu, corners, r);
+  setOverlap(corners, r);
   return sound;
 }
 
 RadarResult answer(SearchState state) {
   const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
   if (sweeps[s].anyHit != 0 && met) return within();
-  const Kept kept = keep(heads[s], hiOf(state));
-  if (kept.least.w == kNobody) return noContact(met);
-  if (kept.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
+  const PairSummary pairs = summarise(heads[s], hiOf(state));
+  if (pairs.least.w == kNobody) return noContact(met);
+  if (pairs.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
   RadarResult r = nothing(RADAR_UNDECIDED);
-  if (tell(heads[s], kept, r)) return r;
-  uint at = roomFor(kept.open);
+  if (setCertainAnswer(heads[s], pairs, r)) return r;
+  uint at = reserveUnresolved(pairs.possible);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
-    if (refinedPairs[i].low <= kept.limit) list(at++, refinedPairs[i]);
+    if (refinedPairs[i].low <= pairs.limit) writeUnresolved(at++, refinedPairs[i]);
   }
-  return undecided(met, bitsOf(kept.low));
+  return undecided(met, bitsOf(pairs.low));
 }
 #else
 RadarResult answer(SearchState state) {
   const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
   if (sweeps[s].anyHit != 0 && met) return within();
   if (heads[s] == kNobody) return noContact(met);
-  // What is in the list was held against `hi`.
+  // The list has only pairs that begin no later than `hi` (link.comp).
   float low = 3.0e38;
   uint count = 0;
   for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
     low = min(low, refinedPairs[i].first);
   }
   if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
-  uint at = roomFor(count);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) list(at++, refinedPairs[i]);
+  uint at = reserveUnresolved(count);
+  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
   return undecided(met, unscaled(low, sweeps[s].scale));
 }
 #endif

@@ -1,10 +1,10 @@
-// The search for first contact. A workgroup is one subgroup, whose lanes walk the trees, each for a sensor: down the tree over
-// objects, then down both meshes' trees together, nearest first, the rest on a stack. Pairs of leaves go into a queue that the
-// lanes share, and pairs of triangles that may meet into another, so that all lanes work on what is dear. What a lane has not
-// done when its time is up becomes tasks for the next round; so does what does not fit its stack. Nothing is lost.
+// The search for first contact. A workgroup is one subgroup. Each lane walks the trees for one sensor: down the tree over
+// objects, then down both meshes' trees together, nearest first, with the other nodes on a stack. The lanes share a queue of
+// leaf pairs and a queue of triangle pairs that may meet, so that all lanes take part in the expensive tests. When the budget
+// ends or a stack is nearly full, pending nodes become tasks of the next round; none is dropped silently.
 //
-// All loops are left by all lanes at once, so that `work` counts what lavapipe counts: it ends loops silently after 65,535
-// iterations of a subgroup in all.
+// All lanes leave a loop together, so that `work` counts as lavapipe does: it silently ends loops after 65,535 iterations of
+// a subgroup in total.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -35,19 +35,19 @@ layout(push_constant) uniform PushConstants { SearchPush push; };
 #include "node_pair.glsl"
 #include "triangle_pair.glsl"
 
-// Lanes that must be at work in a loop for it to go on while the others could fetch work: fewer leave it.
+// A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work.
 const uint kFew = (kLanes + 1) / 2;
-// Iterations of a loop over nodes before the queues are looked at.
+// Iterations of a loop over nodes before the queues are checked.
 const uint kObjectSteps = 16, kNodeSteps = 24;
-// Pairs of leaves that make it worth while to look at triangles.
-const uint kEnough = kQueue / 4;
-// Iterations of a lane while there are too few tasks for the device, so that there are soon more.
+// Number of leaf pairs from which on their triangles are tested.
+const uint kLeafBatch = kQueue / 4;
+// Budget while there are too few tasks for the device, so that they are soon split into more.
 const uint kSplitBudget = 48;
 
 shared uvec4 leafQueue[kQueue];      // link of a, link of b, object, sensor
 shared float leafGaps[kQueue];
 shared uvec4 pairQueue[kQueue];      // slot of a, slot of b, object, sensor
-shared SearchTask gifts[kLanes];     // from lanes that have more than they can do to those that have nothing
+shared SearchTask gifts[kLanes];     // from lanes with several entries to idle lanes
 
 // The same in all lanes.
 uint leafHead, leafTail, pairHead, pairTail, work;
@@ -55,11 +55,11 @@ bool tasksLeft;
 
 // Of a lane.
 uint sensor, object;
-float limit;                         // nothing beyond counts, scaled
-uint least;                          // SearchState::least: no object beyond counts
-uvec3 stack[kStack];                 // as SearchTask's a, b, gap; of the tree over objects: kNobody, link, gap
+float limit;                         // contacts beyond this do not count, scaled
+uint least;                          // SearchState::least: greater objects do not count
+uvec3 stack[kStack];                 // a, b, gap of a SearchTask; for the tree over objects: kNobody, link, gap
 uint depth, objectDepth;             // entries in use; those of the tree over objects come first
-uvec3 current;                       // the pair to try next; x is kNobody: none
+uvec3 current;                       // the pair to test next; none if x is kNobody
 MeshPair meshes;
 uint nodePairs, trianglePairs, solves;
 // Of its sensor.
@@ -69,13 +69,14 @@ float scale, unscale, enough;
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
 uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
 
-// Nothing beyond counts. Where only a decision is asked, a certain contact ends the search; so does what makes it fail.
+// Contacts beyond this do not count. It is negative, which ends the search, if an `anyHit` query has a certain contact or the
+// search has failed.
 float limitOf(SearchState state, float enoughOfS) {
   const float hi = uintBitsToFloat(state.hi);
   return hi < enoughOfS || state.flags != 0 ? -1.0 : hi;
 }
 
-// For an object: where another with a lesser number meets at the start, it cannot be the answer.
+// The limit for an object. If a lesser object certainly meets at the start, this one cannot be the answer.
 float limitOf(uint s, uint objectB) {
   const SearchState state = states[s];
   return objectB > state.least ? -1.0 : limitOf(state, sensorTexel(s, kTexelHalfExtent).w);
@@ -97,7 +98,7 @@ void pushPair(bool has, uint slotA, uint slotB, uint objectB, uint sensorA) {
   pairTail += subgroupBallotBitCount(who);
 }
 
-// Of a pair of nodes that are not both leaves: the larger is descended.
+// The stack entry that descends the larger of two nodes, which are not both leaves.
 uvec3 entryOf(uint ia, Node a, uint ib, Node b, Approach approach) {
   const bool intoA = isLeaf(b.link) || (!isLeaf(a.link) && approach.sizeA > approach.sizeB);
   const uint gap = floatBitsToUint(approach.gap);
@@ -115,7 +116,7 @@ void loadSensor() {
   enough = sensorTexel(sensor, kTexelHalfExtent).w;
 }
 
-// Begins a task; returns the object whose meshes' nodes it names, or kNobody.
+// Begins a task; returns its object, or kNobody if it is a node of the tree over objects or no longer counts.
 uint begin(SearchTask task) {
   sensor = task.sensor;
   loadSensor();
@@ -131,7 +132,7 @@ uint begin(SearchTask task) {
   return task.object;
 }
 
-// Gives idle lanes tasks, as long as there are any; returns the object of one that names nodes.
+// Gives tasks to idle lanes while there are any; returns the object of the lane's new task, or kNobody.
 uint takeTasks() {
   const bool idle = isIdle();
   const uvec4 who = subgroupBallot(idle && tasksLeft);
@@ -146,7 +147,7 @@ uint takeTasks() {
   return named;
 }
 
-// Lanes with more than one entry give their oldest, which is the largest, to lanes without any.
+// Once all tasks are taken, lanes with more than one entry give their oldest, which is the largest, to idle lanes.
 uint shareTasks(uint named) {
   const bool idle = isIdle() && !tasksLeft, gives = !tasksLeft && depth > 0 && depth + (current.x != kNobody ? 1 : 0) > 1;
   const uvec4 idleLanes = subgroupBallot(idle), givers = subgroupBallot(gives);
@@ -155,7 +156,7 @@ uint shareTasks(uint named) {
     const uvec3 entry = stack[0];
     gifts[rankOf(givers)] =
         SearchTask(sensor, objectDepth > 0 ? kNobody : object, entry.x, entry.y, uintBitsToFloat(entry.z));
-    // The last entry of each kind moves into the gap.
+    // The last entry of each kind fills the hole.
     if (objectDepth > 0) {
       stack[0] = stack[objectDepth - 1];
       stack[objectDepth - 1] = stack[depth - 1];
@@ -171,7 +172,7 @@ uint shareTasks(uint named) {
   return named;
 }
 
-// What is pending becomes tasks of the next round.
+// Turns pending entries into tasks of the next round.
 void spill() {
   while (countOf(!isIdle()) != 0) {
     const bool has = !isIdle();
@@ -201,7 +202,7 @@ void spill() {
 
 // ---- nodes -------------------------------------------------------------------------------------------------------------
 
-// Lanes without an object walk the tree over objects until they find the next one.
+// Lanes without an object walk the tree over objects until they find one.
 uint findObjects(uint named) {
   for (uint step = 0; step < kObjectSteps; ++step) {
     const bool searching =
@@ -230,9 +231,10 @@ uint findObjects(uint named) {
   return named;
 }
 
-bool takesPart(uint named) {
+// Whether the object shares a mask bit with the query and is not excluded.
+bool isEligible(uint named) {
   const uvec4 asks = sensorBits(sensor, kTexelMask);
-  // What is excluded is in ascending order.
+  // Excluded objects are in ascending order.
   uint first = asks.y, end = asks.z;
   while (countOf(first < end) != 0) {
     ++work;
@@ -249,14 +251,14 @@ bool takesPart(uint named) {
   return !isExcluded && (objectBits(named, kTexelError).z & asks.x) != 0;
 }
 
-// Lanes that have been given an object, with nodes (`current`) or without, begin with it.
+// Lanes with a new object begin at its root, or at the nodes of their task (`current`).
 void enterObjects(uint named) {
   bool leaves = false;
   Node a, b;
   Approach approach;
   ++work;
-  // All lanes go through the loop over what is excluded.
-  const bool enters = takesPart(named == kNobody ? 0 : named) && named != kNobody;
+  // All lanes run the loop over excluded objects.
+  const bool enters = isEligible(named == kNobody ? 0 : named) && named != kNobody;
   if (enters) {
     object = named;
     meshes = meshPairOf(sensor, object);
@@ -274,9 +276,9 @@ void enterObjects(uint named) {
   pushLeaves(leaves, a, b, approach.gap);
 }
 
-// Both meshes' trees: tries the two children of one node with the other node.
+// Descends both meshes' trees: tests the two children of one node with the other node.
 void descend() {
-  // Whether lanes that leave could find something to do.
+  // Whether lanes without work could find some after the loop.
   const bool more = countOf(current.x == kNobody && (depth > 0 || tasksLeft)) != 0;
   for (uint step = 0; step < kNodeSteps; ++step) {
     if (current.x == kNobody && depth > objectDepth) current = stack[--depth];
@@ -323,7 +325,7 @@ void descend() {
 
 // ---- triangles ---------------------------------------------------------------------------------------------------------
 
-// Up to two triangles a leaf: what may meet of them goes into the queue of pairs. `all`: until no leaf is left.
+// Tests the pairs of triangles, up to two per leaf, and queues those that may meet. `all`: until no leaf is left.
 void tryLeaves(bool all) {
   while ((leafTail - leafHead >= kLanes || (all && leafTail != leafHead)) && pairTail - pairHead + 4 * kLanes <= kQueue) {
     ++work;
@@ -365,7 +367,7 @@ void keepCandidate(bool keeps, uvec4 pair, float low) {
   }
 }
 
-// Solves pairs in float: lowers what is certainly met, and keeps what may be first.
+// Solves pairs in float: lowers the upper bound of first contact, and keeps the pairs that may be first as candidates.
 void solvePairs(bool all) {
   while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
     ++work;
@@ -381,7 +383,7 @@ void solvePairs(bool all) {
       const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(m.earliest, m.unknown), 0.0);
       float bound = limitOf(pair.w, pair.z);
-      // A subnormal number might be taken for 0 later.
+      // A subnormal number might be flushed to 0 later.
       const float by = m.ahead ? max(m.by, 1e-37) : kMiss;
       if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
       if (m.ahead && m.by < 0.0) atomicMin(states[pair.w].least, pair.z);
@@ -395,7 +397,7 @@ void solvePairs(bool all) {
 
 // ------------------------------------------------------------------------------------------------------------------------
 
-void tellStats() {
+void addCounts() {
   const uint before0 = atomicAdd(counts.nodePairs, nodePairs), before1 = atomicAdd(counts.trianglePairs, trianglePairs),
              before2 = atomicAdd(counts.solves, solves);
   if (before0 + nodePairs < before0) atomicAdd(counts.nodePairsHigh, 1);
@@ -409,7 +411,7 @@ void main() {
     return;
   }
   const uint count = counts.rounds[push.round].tasks;
-  // What all of them may leave behind has room: of few tasks' room few workgroups take part.
+  // Only as many workgroups take part as can spill all their entries.
   const uint room = (push.taskCapacity - count) / ((kStack + 1) * kLanes);
   if (count == 0 || workgroupIndex() >= max(room, 1u)) return;
   const uint budget = count < push.width ? min(push.budget, kSplitBudget) : push.budget;
@@ -434,7 +436,7 @@ void main() {
       descend();
       idle = subgroupAll(isIdle()) && !tasksLeft;
       last = idle || work >= budget || subgroupAny(depth + 2 > kStack);
-    } while (!last && leafTail - leafHead < kEnough);
+    } while (!last && leafTail - leafHead < kLeafBatch);
     subgroupBarrier();
     do {
       tryLeaves(last);
@@ -444,5 +446,5 @@ void main() {
     } while (last && (leafTail != leafHead || pairTail != pairHead));
   }
   spill();
-  tellStats();
+  addCounts();
 }

@@ -1,19 +1,19 @@
-// Pairs of triangles in the sensor's frame, in float: placed about points near them, so that neither the size of their
-// meshes nor the distance between these costs precision, and what may be first among them (docs/method.md, "Pairs of
-// triangles in float").
+// Pairs of triangles in the sensor's frame, in float, and a test for those that may meet (docs/method.md, "Pairs of triangles
+// in float"). Triangles are placed about points near them, so that neither the size of their meshes nor the distance between
+// the meshes costs precision.
 
-// Where the triangles of a leaf of each side are: at turned * (q - anchor), the scene's + offset.
+// Places the triangles of a pair of leaves: turned * (q - anchor), for the scene's plus offset.
 struct PairFrame {
   mat3 turnedA, turnedB;
-  vec3 anchorA, anchorB;  // normalised, of 8 bits
+  vec3 anchorA, anchorB;  // normalised coordinates, rounded to 8 bits
   vec3 offset;
   vec3 originA, originB;  // q = (vertex - origin) * perUnit
   float perUnitA, perUnitB;
-  vec3 columnsA, columnsB;  // of the scaled matrices: sums of absolute values
-  float errorA, errorB;     // how far a vertex is off on any axis, beside what is due to its distance from the anchor
+  vec3 columnsA, columnsB;  // column sums of the absolute scaled matrices
+  float errorA, errorB;     // error of a vertex on any axis, without the part due to its distance from the anchor
 };
 
-// high + low = p + q, but for what a device may round off the low part.
+// Adds q to high + low; only the sum of the low parts may be rounded.
 void addExactly(inout float high, inout float low, float q) {
   precise float s = high + q;
   precise float part = s - high;
@@ -22,7 +22,7 @@ void addExactly(inout float high, inout float low, float q) {
   low += rest;
 }
 
-// One row of B's anchor less A's. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
+// One row of B's anchor minus A's, in the world. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
 float rowApart(vec4 coarseA, vec4 fineA, vec3 anchorA, vec4 coarseB, vec4 fineB, vec3 anchorB) {
   float high = coarseB.w, low = 0.0;
   addExactly(high, low, -coarseA.w);
@@ -37,7 +37,7 @@ float rowApart(vec4 coarseA, vec4 fineA, vec3 anchorA, vec4 coarseB, vec4 fineB,
 vec3 normalised(vec3 vertex, vec3 origin, float perUnit) { return (vertex - origin) * perUnit; }
 vec3 anchorOf(vec3 q) { return floor(q * 128.0 + 0.5) * 0.0078125; }
 
-// `vertexA` and `vertexB`: of the leaves.
+// `vertexA` and `vertexB` are vertices of the leaves.
 PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const vec4 a0 = sensorTexel(sensor, 0), a1 = sensorTexel(sensor, 1), a2 = sensorTexel(sensor, 2);
   const vec4 fa0 = sensorTexel(sensor, kTexelFine), fa1 = sensorTexel(sensor, kTexelFine + 1),
@@ -93,11 +93,11 @@ PlacedTriangle placedB(PairFrame f, uint slot) {
   return placedTriangle(slot, f.turnedB, f.originB, f.perUnitB, f.anchorB, f.offset, f.columnsB, f.errorB);
 }
 
-// Differences of coordinates of the two sides are off by this, at most.
+// Bound on the error of differences of coordinates of the two triangles.
 float differenceError(PlacedTriangle a, PlacedTriangle b) { return 2.0 * (a.error + b.error); }
 
-// Whether an edge certainly has the whole other triangle on its outer side, seen along the motion. `turn`: the sign of the
-// area of the edge's own triangle, 0 where that is not certain.
+// Whether the whole other triangle is certainly on the edge's outer side, seen along the motion. `turn`: the sign of the area
+// of the edge's own triangle, 0 if it is uncertain.
 bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float error) {
   const vec2 e = to - from, d0 = other.corners[0].xy - from, d1 = other.corners[1].xy - from, d2 = other.corners[2].xy - from;
   const float s0 = turn * (e.x * d0.y - e.y * d0.x), s1 = turn * (e.x * d1.y - e.y * d1.x), s2 = turn * (e.x * d2.y - e.y * d2.x);
@@ -107,8 +107,8 @@ bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float e
   return max(s0, max(s1, s2)) < -margin;
 }
 
-// Whether the other triangle certainly stays beyond `limit` of the plane of x and y, or behind it: g0, g1, g2 lead from the
-// sensor's side to the scene's, from or to its corners.
+// Whether the other triangle certainly stays beyond the plane of x and y until `limit`, or is behind it. g0, g1, g2 lead from
+// the sensor's triangle to the scene's; one of their ends is a corner of the other triangle.
 bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g2, float error, float limit) {
   const vec3 n = cross(x, y);
   const float turn = float(signOf(area));
@@ -120,12 +120,12 @@ bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g
   return turn != 0.0 && (min(h0, min(h1, h2)) > reached || max(h0, max(h1, h2)) < -margin);
 }
 
-// Whether a pair may meet at or before `limit`: cheap, and right where it says no.
+// Whether a pair may meet at or before `limit`. Cheap; false is certain.
 bool mayMeet(PlacedTriangle a, PlacedTriangle b, float limit) {
   const float error = differenceError(a, b);
   const vec3 a0 = a.corners[0], a1 = a.corners[1], a2 = a.corners[2], b0 = b.corners[0], b1 = b.corners[1], b2 = b.corners[2];
   const vec3 lowA = min(a0, min(a1, a2)), highA = max(a0, max(a1, a2)), lowB = min(b0, min(b1, b2)), highB = max(b0, max(b1, b2));
-  // Comparing rounds nothing; the sums round by less than `error` is larger than it need be.
+  // Comparisons are exact, and the slack in `error` is larger than the rounding errors of the sums.
   const bool near = all(lessThanEqual(lowA.xy, highB.xy + error)) && all(lessThanEqual(lowB.xy, highA.xy + error)) &&
                     highB.z + error >= lowA.z && lowB.z - highA.z - error <= limit;
   const vec3 xA = a1 - a0, yA = a2 - a0, xB = b1 - b0, yB = b2 - b0;

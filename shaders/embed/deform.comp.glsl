@@ -1,4 +1,4 @@
-// The vertices of a mesh that a host deforms, as its buffer has them: an invocation per vertex.
+// Copies the vertices of a mesh that a host deforms from the host's buffer; one invocation per vertex.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -7,7 +7,7 @@
 
 layout(local_size_x = kHostGroup) in;
 
-// Bits, of which none may be lost.
+// A Vertex whose position is copied as bits: copying it as floats may flush subnormals to 0.
 struct VertexBits {
   uvec3 position;
   uint pad;
@@ -20,10 +20,10 @@ layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations 
 
 layout(push_constant) uniform PushConstants { DeformPush push; };
 
-// The bits of the float next to c / (2^bits - 1), as of 0 < c < 2^bits: in binary, c again and again.
+// Bits of the float nearest to c / (2^bits - 1), for 0 < c < 2^bits. The quotient's binary digits repeat those of c.
 uint quotientBits(uint c, int bits) {
   const int leading = findMSB(c);
-  const uint twice = c << bits | c;  // its leading digit is at `bits` + leading; 25 digits from there are wanted
+  const uint twice = c << bits | c;  // its leading digit is at `bits` + leading; 25 digits from there are needed
   const int more = 24 - bits - leading;
   const uint digits = more <= 0 ? twice >> -more : twice << more | c >> (bits - more);
   return floatBitsToUint(float((digits + 1) >> 1)) + (uint(leading - bits - 23) << 23);
@@ -57,10 +57,10 @@ void main() {
   const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
   const MeshRecord mesh = meshes[push.mesh];
   const vec3 local = uintBitsToFloat(bits) - mesh.origin;
-  // Bounds end at 2^120: from 2^121 on differences might overflow.
+  // Bounds are at most 2^120; differences of coordinates from 2^121 on might overflow.
   const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) || any(greaterThan(local, mesh.hi)) ||
                       any(greaterThan(mesh.lo, local));
   if (outside && atomicCompSwap(violation.mesh, kNobody, push.mesh) == kNobody) atomicExchange(violation.vertex, i);
-  // The recording is invalid now, but the search must still terminate: any position inside the bounds will do.
+  // The recording is invalid now, but the search must still terminate, so any position inside the bounds is written.
   vertices[mesh.firstVertex + i].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
 }

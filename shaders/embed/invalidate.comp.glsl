@@ -1,4 +1,4 @@
-// Makes every answer invalid if a host's geometry has left its bounds, since the search may have skipped parts of it.
+// Makes every answer invalid if a host's geometry has left its bounds: the search may have skipped parts of it.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

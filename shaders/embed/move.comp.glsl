@@ -1,5 +1,5 @@
-// Objects where a host's transforms put them, an invocation each: their poses, exactly, and their placements, with what
-// arithmetic loses of these (docs/method.md, "A host's geometry").
+// Moves objects to a host's transforms, one invocation per object: writes their poses, which are exact, and their
+// placements, which carry error bounds (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -25,7 +25,7 @@ float sum3(vec3 v) { return v.x + v.y + v.z; }
 struct Transform {
   uvec4 bits[3];
   bool isFinite;
-  bvec3 flushes;  // a row has an entry that a device may take for 0
+  bvec3 flushes;  // the row has an entry that a device may flush to 0
 };
 
 Transform transformOf(Moved moved) {
@@ -44,7 +44,7 @@ vec3 coordinatesOf(MeshRecord mesh, float factor) {
   return factor * abs(mesh.origin) + factor * max(abs(mesh.lo), abs(mesh.hi));
 }
 
-// Whether what is added up to place a vertex stays below about 2^123, asked so that nothing overflows.
+// Whether the absolute terms that place a vertex add up to less than about 2^123. The test itself cannot overflow.
 bool fitsFloats(Transform t, MeshRecord mesh) {
   const float small = 1.3552527e-20;  // 2^-66
   const vec3 coordinates = coordinatesOf(mesh, small);
@@ -56,7 +56,7 @@ bool fitsFloats(Transform t, MeshRecord mesh) {
   return fits;
 }
 
-// Where the mesh's origin is, as the sum of two floats, and how far that may be off.
+// The mesh's origin in the world is high + low, within `error`.
 struct Position {
   vec3 high, low, error;
 };
@@ -67,7 +67,7 @@ Position positionOf(Transform t, vec3 origin) {
     const vec4 m = uintBitsToFloat(t.bits[row]);
     const float sum = dot(abs(m.xyz), abs(origin));
 #ifdef RADAR_NO_DOUBLES
-    // Exact where the origin is 0.
+    // Exact if the origin is 0.
     p.high[row] = origin == vec3(0.0) ? m.w : dot(m.xyz, origin) + m.w;
     p.low[row] = 0.0;
     p.error[row] = origin == vec3(0.0) ? 0.0 : 16.0 * kUnit * (sum + abs(m.w));
@@ -81,7 +81,7 @@ Position positionOf(Transform t, vec3 origin) {
   return p;
 }
 
-// Whether the mesh's box may be out of the object's bounds.
+// Whether the mesh's box may leave the object's bounds.
 bool leavesBounds(Transform t, Moved moved, MeshRecord mesh, Position position) {
   const vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
   const vec3 flushed = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
@@ -93,12 +93,12 @@ bool leavesBounds(Transform t, Moved moved, MeshRecord mesh, Position position) 
     sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 16.0;
     reach[row] = dot(abs(m), halfExtent);
   }
-  const vec3 lost = 16.0 * kUnit * (sum + reach) + flushed;
-  return any(greaterThan(sum + reach, vec3(1e37))) || any(greaterThan(abs(at) + reach + lost, moved.halfExtent));
+  const vec3 margin = 16.0 * kUnit * (sum + reach) + flushed;
+  return any(greaterThan(sum + reach, vec3(1e37))) || any(greaterThan(abs(at) + reach + margin, moved.halfExtent));
 }
 
-// Of a matrix whose largest entry is 1 to 2, rows that are about the inverse's: any will do, since what they are off is
-// measured. None is as large as `most`.
+// Approximate rows of the inverse of a matrix whose largest entry is 1 to 2. Any rows are valid, since the caller bounds
+// their error. All components are smaller than `most`.
 void inverseRows(vec3 m0, vec3 m1, vec3 m2, float most, out vec3 n[3]) {
   const vec3 c0 = vec3(m0.x, m1.x, m2.x), c1 = vec3(m0.y, m1.y, m2.y), c2 = vec3(m0.z, m1.z, m2.z);
   const vec3 r0 = cross(c1, c2), r1 = cross(c2, c0), r2 = cross(c0, c1);
@@ -114,7 +114,8 @@ void inverseRows(vec3 m0, vec3 m1, vec3 m2, float most, out vec3 n[3]) {
 // A power of two, -126 <= exponent <= 127.
 float powerOfTwo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 
-// Exponents of the matrix's largest entry, times the mesh's unit, and of the unit. What may be taken for 0 is out of range.
+// Exponents of the matrix's largest entry times the mesh's unit, and of the unit. A matrix that may flush to 0 gets an
+// exponent out of range.
 ivec2 exponentsOf(Transform t, MeshRecord mesh) {
   uint most = 0;
   for (int row = 0; row < 3; ++row) {
@@ -127,7 +128,7 @@ ivec2 exponentsOf(Transform t, MeshRecord mesh) {
 
 void writePlacement(Moved moved, MeshRecord mesh, Transform t, Position position) {
   const ivec2 exponents = exponentsOf(t, mesh);
-  // kMostCoordinate; asked before it is multiplied. Where floats do not hold it, nothing of the rest counts.
+  // 2^80, tested before multiplying. Out of range, perUnit becomes 0 and the other members do not count.
   const bool inRange = all(lessThan(exponents, ivec2(80))) && all(greaterThanEqual(exponents, ivec2(-80)));
   const float unit = inRange ? mesh.unit : 0.0, large = powerOfTwo(inRange ? exponents.x : 0),
               perLarge = powerOfTwo(inRange ? -exponents.x : 0);
@@ -143,7 +144,7 @@ void writePlacement(Moved moved, MeshRecord mesh, Transform t, Position position
     const vec3 leading = uintBitsToFloat(floatBitsToUint(m[row]) & 0xffffff00u);
     placements[moved.object].coarse[row] = vec4(leading, position.high[row]);
     placements[moved.object].fine[row] = vec4(m[row] - leading, position.low[row]);
-    // n . matrix - unit vector, over the mesh.
+    // Residual: n . matrix - unit vector, times the mesh's reach.
     float off = 0.0;
     for (int j = 0; j < 3; ++j) {
       const vec3 column = vec3(scaled[0][j], scaled[1][j], scaled[2][j]);
@@ -156,7 +157,7 @@ void writePlacement(Moved moved, MeshRecord mesh, Transform t, Position position
   placements[moved.object].reach = reach;
   placements[moved.object].root = mesh.firstNode;
   placements[moved.object].origin = mesh.origin;
-  // 2^-35, and what flushes to 0.
+  // 2^-35 of the size, and 1e-37 for numbers that flush to 0.
   placements[moved.object].error = 1.00001 * (error + 3e-11 * size) + 1e-37;
   placements[moved.object].size = 1.00001 * size + 1e-37;
   placements[moved.object].mesh = moved.mesh;

@@ -1,4 +1,4 @@
-// The boxes and slabs of a deformed mesh's nodes, those of one depth at a time, from the deepest on: an invocation per node.
+// Recomputes the boxes and slabs of a deformed mesh's nodes, one depth per dispatch, deepest first; one invocation per node.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -16,8 +16,8 @@ layout(scalar, binding = kSlotRefitNodes) readonly restrict buffer RefitNodes { 
 
 layout(push_constant) uniform PushConstants { RefitPush push; };
 
-// Coordinates are below 4; sums of three products and what follows are off by less, whichever way a device rounds.
-const float kLost = 8e-6;
+// Bound on the error of a slab, in any rounding direction: it is computed from sums of three products of coordinates below 4.
+const float kSlabError = 8e-6;
 
 struct Range {
   float least;
@@ -30,12 +30,12 @@ void setBox(uint n, vec3 low, vec3 high) {
   nodes[n].halfExtent = max(high - centre, centre - low) * 1.000001 + 2.4e-38;
 }
 
-// A normal of 0 says nothing, and holds every vertex.
+// The slab of a normal of 0 holds every vertex.
 void setSlab(uint n, vec3 normal, Range range) {
-  const bool says = normal != vec3(0.0);
+  const bool hasNormal = normal != vec3(0.0);
   nodes[n].normal = normal;
-  nodes[n].slabMiddle = says ? 0.5 * (range.least + range.most) : 0.0;
-  nodes[n].slabHalf = says ? 0.5 * (range.most - range.least) * 1.000001 + kLost : 0.0;
+  nodes[n].slabMiddle = hasNormal ? 0.5 * (range.least + range.most) : 0.0;
+  nodes[n].slabHalf = hasNormal ? 0.5 * (range.most - range.least) * 1.000001 + kSlabError : 0.0;
 }
 
 vec3 unitOrZero(vec3 v) {
@@ -65,7 +65,7 @@ void refitLeaf(uint n, uint link) {
   setSlab(n, normal, range);
 }
 
-// Along `normal`, what a node's slab and box leave of its vertices.
+// Bounds a node's vertices along `normal` by its slab and its box.
 Range rangeOf(MeshNode node, vec3 normal) {
   const float along = dot(normal, node.normal);
   const vec3 rest = normal - along * node.normal;
@@ -77,7 +77,7 @@ Range rangeOf(MeshNode node, vec3 normal) {
 void refitParent(uint n, uint link) {
   const MeshNode p = nodes[link], q = nodes[link + 1];
   setBox(n, min(p.centre - p.halfExtent, q.centre - q.halfExtent), max(p.centre + p.halfExtent, q.centre + q.halfExtent));
-  // The larger counts more.
+  // The mean of the children's normals, weighted by size.
   const vec3 normal = unitOrZero(dot(p.halfExtent, p.halfExtent) * p.normal + dot(q.halfExtent, q.halfExtent) * q.normal);
   const Range rangeP = rangeOf(p, normal), rangeQ = rangeOf(q, normal);
   setSlab(n, normal, Range(min(rangeP.least, rangeQ.least), max(rangeP.most, rangeQ.most)));

@@ -1,4 +1,4 @@
-// Depth only: places a mesh in a sensor's window. R and M differ in the matrix alone.
+// Places a mesh in a sensor's window; only depth is written. R and M differ only in the matrix.
 #version 460
 #extension GL_ARB_shader_viewport_layer_array : require
 #extension GL_EXT_scalar_block_layout : require

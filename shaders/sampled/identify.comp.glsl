@@ -1,7 +1,7 @@
-// Names the triangles behind the candidates: a workgroup takes kItemTriangles triangles of one draw, an invocation one
-// triangle, and looks which candidates' centres it covers at the depth the scope holds there. The least (object,
-// triangle) wins. Coverage is taken `snap` wider than exact, since fixed-function rasterisation snaps vertices; a pixel
-// only proposes, so a neighbour named in its stead costs accuracy, never truth.
+// Identifies the triangles of the candidates. A workgroup takes kItemTriangles triangles of one draw; an invocation tests
+// which candidates' pixel centres each of its triangles covers at the depth that the scope stores there. The least (object,
+// triangle) wins. Coverage is tested `snap` wider than exact, since fixed-function rasterisation snaps vertices. A pixel
+// only proposes a pair, so identifying a neighbour instead costs accuracy, not correctness.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -38,7 +38,7 @@ float insideBy(vec2 from, vec2 to, vec2 centre, float turn, float snap) {
   return turn * (a - b) + (abs(edge.x) + abs(edge.y)) * snap + 9.5367431640625e-7 * (abs(a) + abs(b));
 }
 
-// What all triangles of a draw share.
+// The values that all triangles of a draw share.
 struct Surface {
   uint view;
   bool isSensor;
@@ -46,7 +46,7 @@ struct Surface {
   vec2 window;
 };
 
-// Names the triangle (pixels across, stored depth along) at the candidates that it covers.
+// Offers the triangle (pixels across, stored depth along) to the candidates that it covers.
 void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec3 low = min(min(p0, p1), p2), high = max(max(p0, p1), p2);
   const vec2 lowEdge = low.xy - s.snap, highEdge = high.xy + s.snap;
@@ -56,15 +56,15 @@ void nameAt(Surface s, vec3 p0, vec3 p1, vec3 p2, uint name) {
   const vec2 rise = vec2(p1.z - p0.z, p2.z - p0.z);
   const float area = a.x * b.y - a.y * b.x;
   const float turn = area < 0.0 ? -1.0 : 1.0;
-  // Slivers: the plane's gradient is rounding, or overflows; the vertices' range of depth stands in for it.
+  // The gradient of a sliver is all rounding error, or overflows; the vertices' depth range is used instead.
   const bool sliver = abs(area) <= 0.0009765625 * (abs(a.x * b.y) + abs(a.y * b.x)) ||
                       abs(area) <= 1.52587890625e-5 * max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y)));
   const vec2 slope = vec2(rise.x * b.y - rise.y * a.y, rise.y * a.x - rise.x * b.x);
   const vec2 gradient = sliver ? vec2(0.0) : slope / (sliver ? 1.0 : area);
   const float slack = s.slack + (abs(gradient.x) + abs(gradient.y)) * s.snap;
 
-  // Most triangles cover no candidate: cells are skipped by a cheap test until one has its candidate in the triangle's
-  // box. Lavapipe runs both sides of an `if`, but leaves a loop.
+  // Most triangles cover no candidate. The inner loop skips cells until one has its candidate in the triangle's box: a
+  // loop, because lavapipe leaves a loop early but runs both sides of an `if`.
   const vec2 lastOfAll = vec2(kCellsPerSide - 1);
   const uvec2 firstCell = uvec2(clamp(lowEdge / s.cellSide, vec2(0.0), lastOfAll));
   const uvec2 lastCell = uvec2(clamp(highEdge / s.cellSide, vec2(0.0), lastOfAll));

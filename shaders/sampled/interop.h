@@ -17,8 +17,8 @@ INTEROP_CONST kCellsPerSide = 16;
 INTEROP_CONST kCells = 256;
 // Candidates are identified and solved in order of (L, pixel), kRound at a time, until one meets.
 INTEROP_CONST kRound = 64;
-// Room for pairs of one sensor that the device leaves to the CPU, in order of candidates: one round, which is what a
-// device without doubles leaves.
+// Maximum number of unresolved pairs per sensor, in order of candidates: one round, which is what a device without
+// doubles leaves to the CPU.
 INTEROP_CONST kUnresolvedPerView = 64;
 // Triangles of one draw per identify workgroup. Each invocation takes several, since loading the draw's matrix costs as
 // much as a triangle.
@@ -79,7 +79,7 @@ struct Answer {
   uint object;
   uint triB;
   uint triA;
-  uint feature;    // the feature that attains hi (solve.comp)
+  uint feature;    // the feature that attains hi
   float minL;      // the paper's min(L)
   uint flags;      // kAnswer*
   uint candidates;

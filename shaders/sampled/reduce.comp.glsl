@@ -1,5 +1,5 @@
-// L = R + M - d and its minimum, for all sensors in one dispatch: a workgroup per sensor, an invocation per cell. Each
-// cell proposes its least L that a contact can have; the candidates are written in the order of (L, pixel).
+// Computes L = R + M - d and its minimum for all sensors in one dispatch: one workgroup per sensor, one invocation per
+// cell. Each cell proposes its least L that may be a contact. The candidates are written in order of (L, pixel).
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -17,14 +17,14 @@ layout(binding = kSlotMask) uniform sampler2DArray maskScope;
 
 const float kFar = 3.0e38;
 
-// The candidates, in no order yet. Keys are y << 16 | x: they order pixels row by row.
+// The candidates, not yet sorted. Pixels are y << 16 | x here, which orders them row by row.
 shared float listL[kCells];
 shared uint listPixel[kCells];
 shared uint listCount;
 shared uint minLOrdered;
 shared uint detectedAny;
 
-// Unsigned integers in the order of the floats, and back.
+// Maps floats to unsigned integers of the same order, and back.
 uint ordered(float x) {
   const uint bits = floatBitsToUint(x);
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
@@ -48,8 +48,8 @@ void main() {
   barrier();
   const vec2 texel = 1.0 / vec2(textureSize(rangeScope, 0).xy);
 
-  // Whole quads of texels, without branches: what lies outside the window, where R is empty or the sensor is not counts
-  // as infinitely far. (u, v) below are the texel's place in its quad, in the order of textureGather.
+  // Quads of texels are read whole and without branches. A texel outside the window, with an empty R or without the sensor
+  // counts as infinitely far. (u, v4) is a texel's place in its quad, in the order of textureGather.
   const uvec4 u = uvec4(0, 1, 1, 0), v4 = uvec4(1, 1, 0, 0);
   uvec4 detected4 = uvec4(0);
   vec4 minL4 = vec4(kFar), bestL4 = vec4(kFar), bestRange4 = vec4(1.0), bestMask4 = vec4(1.0);
@@ -66,7 +66,7 @@ void main() {
       detected4 |= seen & uvec4(lessThanEqual(range, vec4(view.rangeLimit)));
       const vec4 L = mix(vec4(kFar), view.rangeScale * range - (view.maskBase - view.maskScale * mask), bvec4(both));
       minL4 = min(minL4, L);
-      // Rows and columns ascend, so at equal L the earlier pixel stays.
+      // Rows and columns ascend, so the earlier pixel wins at equal L.
       const bvec4 better = bvec4(uvec4(greaterThanEqual(L, vec4(-view.slack))) & uvec4(lessThan(L, bestL4)));
       bestL4 = mix(bestL4, L, better);
       bestPixel4 = mix(bestPixel4, row << 16 | column, better);

@@ -1,6 +1,6 @@
-// Solves the proposed pairs: a workgroup per sensor, an invocation per distinct pair. Candidates are taken kRound at a
-// time, best first, until a round has a pair that certainly meets within D. With RADAR_NO_DOUBLES, on a device without, every pair
-// is left to the host.
+// Solves the proposed pairs: one workgroup per sensor, one invocation per distinct pair. Candidates are taken kRound at a
+// time, best first, until a round has a pair that certainly meets within D. With RADAR_NO_DOUBLES, for devices without
+// doubles, all pairs are unresolved.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -28,10 +28,10 @@ shared uvec2 named[kRound];     // (itemB, itemA) of the round's candidates
 shared uvec2 pairs[kRound];     // the distinct ones
 shared uint pairCount;
 shared uvec4 pairIds[kRound];   // object, triB, triA, feature or kNobody
-shared bool pairOpen[kRound];
+shared bool isUnresolved[kRound];
 
 #ifndef RADAR_NO_DOUBLES
-// A pair's t may be given this much late, relative to max(sensor's size, t), 2^-21; beyond, it counts as not decided.
+// 2^-21. A pair counts as solved if its t is late by at most this times max(sensor's size, t).
 const double kTolerance = 4.76837158203125e-7LF;
 
 shared double pairHi[kRound];
@@ -67,9 +67,9 @@ uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   const dvec3 direction = dvec3(views[v].direction[0], views[v].direction[1], views[v].direction[2]);
   const double length = views[v].directionLength;
   const Impact meeting = impactOf(a, b, direction);
-  // Never early: something certain lies at or after the start, so all up to it is met. Not late either: nothing that may
-  // count comes earlier by more than the tolerance. Features without a parameter are
-  // bounded by the extent of their parts.
+  // Contact fills one interval, and a feature certainly meets at or after the start, so the pair certainly meets by `s`.
+  // It is solved if no feature that may count comes earlier by more than the tolerance. Features without a parameter are
+  // bounded by the extents of their parts.
   const double s = max(meeting.by, 0.0LF);
   const double tolerance = kTolerance * max(quotient(views[v].size, length), s);
   const double earliest = max(min(meeting.earliest, meeting.unknown), 0.0LF);
@@ -78,11 +78,11 @@ uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   pairHi[lane] = hi;
   const double low = earliest * length * (1.0LF - 8.881784197001252e-16LF);
   pairLow[lane] = low;
-  pairOpen[lane] = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
+  isUnresolved[lane] = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
   return meets && hi <= views[v].distance ? meeting.feature : kNobody;
 }
 
-void tell(uint v, uint winner) {
+void writeWinner(uint v, uint winner) {
   answers[v].hi = pairHi[winner];
   answers[v].object = pairIds[winner].x;
   answers[v].triB = pairIds[winner].y;
@@ -95,11 +95,11 @@ SampledUnresolved unresolvedPair(uint i) { return SampledUnresolved(pairLow[i], 
 bool better(uint x, uint y) { return false; }
 
 uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
-  pairOpen[lane] = true;
+  isUnresolved[lane] = true;
   return kNobody;
 }
 
-void tell(uint v, uint winner) {}
+void writeWinner(uint v, uint winner) {}
 
 SampledUnresolved unresolvedPair(uint i) { return SampledUnresolved(double(0), pairIds[i].x, pairIds[i].y, pairIds[i].z, 0); }
 #endif
@@ -116,7 +116,7 @@ void main() {
   const uint v = gl_WorkGroupID.x;
   const uint lane = gl_LocalInvocationID.x;
   const uint count = answers[v].candidates;
-  uint solved = 0, open = 0;
+  uint solved = 0, unresolved = 0;
   uint winner = kNobody;
   for (uint first = 0; first < count && winner == kNobody; first += kRound) {
     const bool inRound = first + lane < count;
@@ -139,16 +139,16 @@ void main() {
       if (pairIds[i].w != kNobody && (winner == kNobody || better(i, winner))) winner = i;
     }
     solved += pairCount;
-    for (uint i = 0; i < pairCount && open < kUnresolvedPerView; ++i) {
-      if (!pairOpen[i]) continue;
-      if (lane == 0) unresolvedPairs[kUnresolvedPerView * v + open] = unresolvedPair(i);
-      ++open;
+    for (uint i = 0; i < pairCount && unresolved < kUnresolvedPerView; ++i) {
+      if (!isUnresolved[i]) continue;
+      if (lane == 0) unresolvedPairs[kUnresolvedPerView * v + unresolved] = unresolvedPair(i);
+      ++unresolved;
     }
-    if (lane == 0 && winner != kNobody) tell(v, winner);
+    if (lane == 0 && winner != kNobody) writeWinner(v, winner);
     barrier();
   }
   if (lane == 0) {
     answers[v].pairs = solved;
-    answers[v].unresolvedPairs = open;
+    answers[v].unresolvedPairs = unresolved;
   }
 }

@@ -1,30 +1,30 @@
-// Quotients of doubles, rounded to nearest on every device that adds and multiplies so. Vulkan asks little of the division of
-// doubles, and some drivers compose it of other operations: where a device's own is not right to the bit, it is corrected.
+// Quotients of doubles, rounded to nearest on every device whose sums and products are. Vulkan leaves the precision of double
+// division open, and some drivers compose it from other operations: if a device does not round it correctly, it is corrected.
 #ifndef RADAR_DIVIDE_GLSL
 #define RADAR_DIVIDE_GLSL
 
-layout(constant_id = 0) const bool kDividesRight = true;
+layout(constant_id = 0) const bool kDivisionIsRounded = true;
 
 uint exponentField(double x) { return unpackDouble2x32(x).y >> 20 & 0x7ffu; }
 
-// Whether quotient() is right: nothing is, or becomes, too large or too small.
+// Whether quotient() is correctly rounded: no operand, intermediate value or result is too large or too small.
 bool divides(double x, double y) {
   const uint p = exponentField(x), q = exponentField(y);
   return q - 60u < 1930u && (x == 0.0LF || (p - 60u < 1930u && abs(int(p) - int(q)) < 900));
 }
 
-// Of two doubles that divides() likes.
+// Requires divides(x, y).
 double correctedQuotient(double x, double y) {
   const uvec2 xBits = unpackDouble2x32(x), yBits = unpackDouble2x32(y);
   // Significands, from 1 to 2.
   const double p = packDouble2x32(uvec2(xBits.x, (xBits.y & 0xfffffu) | 0x3ff00000u));
   const double q = packDouble2x32(uvec2(yBits.x, (yBits.y & 0xfffffu) | 0x3ff00000u));
-  // The inverse to 2^-21, as every device divides floats, and twice as many bits with each of two steps.
+  // The inverse to 2^-21, the precision of float division on every device. Each of two steps doubles the number of bits.
   const double guess = double(1.0 / float(q));
   precise double better = guess + guess * (1.0LF - q * guess);
   precise double inverse = better + better * (1.0LF - q * better);
   precise double near = p * inverse;
-  // What the quotient leaves is exact by Dekker's product, once to make it less than an ulp off, and once to round.
+  // Dekker's product gives the remainder exactly: first to bring the error below an ulp, then to round.
   double ratio = near, rest = 0.0LF;
   for (uint i = 0; i < 2; ++i) {
     precise double split = 134217729.0LF * ratio, splitQ = 134217729.0LF * q;  // 2^27 + 1
@@ -39,7 +39,7 @@ double correctedQuotient(double x, double y) {
       ratio = closer;
     }
   }
-  // An ulp of the quotient, times q: a quotient is never half way between two doubles.
+  // An ulp of the quotient, times q. A quotient is never half-way between two doubles, so there are no ties.
   const uvec2 bits = unpackDouble2x32(ratio);
   precise double ulp = packDouble2x32(uvec2(0, (bits.y & 0x7ff00000u) - (52u << 20))) * q;
   const int step = 2.0LF * rest > ulp ? 1 : 2.0LF * rest < -ulp ? -1 : 0;
@@ -50,10 +50,10 @@ double correctedQuotient(double x, double y) {
   return x == 0.0LF ? packDouble2x32(uvec2(0, sign)) : packDouble2x32(uvec2(low, (bits.y + carry + (shift << 20)) | sign));
 }
 
-// 0 where divides() says no.
+// 0 unless divides(x, y).
 double quotient(double x, double y) {
   if (!divides(x, y)) return 0.0LF;
-  if (!kDividesRight) return correctedQuotient(x, y);
+  if (!kDivisionIsRounded) return correctedQuotient(x, y);
   precise double ratio = x / y;
   return ratio;
 }

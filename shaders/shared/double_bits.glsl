@@ -1,6 +1,6 @@
-// The bits of doubles, low word first, for shaders that may have none.
+// The bits of doubles, low word first, for shaders that may have no doubles.
 
-// Of the double with the value of a float, which arithmetic may lose where that is small.
+// Bits of the double equal to the float with these bits. Converting by arithmetic may flush a small float to 0.
 uvec2 doubleBits(uint bits) {
   const uint sign = bits & 0x80000000u, magnitude = bits & 0x7fffffffu;
   if (magnitude == 0) return uvec2(0, sign);

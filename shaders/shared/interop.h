@@ -1,5 +1,5 @@
-// What all tiers share between C++ and GLSL (scalar layout; tests/unit compares the offsets): trees, meshes, objects. Each
-// tier adds its structs, push constants and binding numbers in an interop.h of its own folder.
+// Trees, meshes and objects: the structs that C++ and GLSL share in all tiers (scalar layout; tests/unit compares the
+// offsets). Each tier adds its structs, push constants and binding numbers in an interop.h of its own folder.
 #ifndef RADAR_INTEROP_H
 #define RADAR_INTEROP_H
 

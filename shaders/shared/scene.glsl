@@ -1,5 +1,5 @@
-// What the contact tier's shaders read of the scene and of the sensors: texel buffers, which lavapipe loads faster than
-// storage buffers; all of integers, whose bits no device changes.
+// Vertices and triangles in texel buffers, which lavapipe loads faster than storage buffers. Texels are integers, whose bits
+// no device changes.
 layout(binding = kSlotVertices) uniform utextureBuffer vertexTexels;
 layout(binding = kSlotTriangles) uniform utextureBuffer triangleTexels;
 

@@ -1,20 +1,21 @@
-// The contact of two triangles moving against each other, with error bounds: in double precision along `direction`, from
-// placed corners that are exact (t = s * |direction|); in float along z, from corners in the sensor's frame, each known to
-// within an error.
+// First contact of two triangles, one of them moving, with error bounds. In double precision the motion is along `direction`
+// and placed corners are exact (t = s * |direction|). In float the motion is along z, and corners are in the sensor's frame,
+// each within an error.
 
 struct BoundedFloat {
   float value;
   float error;
 };
 
-// An ulp of 1: Vulkan promises that adding and multiplying is rounded, not which way. What may flush to 0 is below kFlushed.
+// An ulp of 1: Vulkan guarantees that sums and products are rounded, but not in which direction. Numbers that may flush to 0
+// are below kFlushed.
 const float kUlp = 1.1920929e-7;
 const float kFlushed = 2.4e-38;
 
-// -1, 1: certain; 0: too close to tell.
+// -1, 1: certain; 0: unknown.
 int signOf(BoundedFloat x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
 
-// What a feature is: 1 the two certainly pass over each other, 0 perhaps, -1 certainly not.
+// The state of a feature: 1 its two parts certainly pass over each other, 0 unknown, -1 certainly not.
 int vertexOverFace(int side0, int side1, int side2, int face) {
   if (face == 0) return (side0 > 0 || side1 > 0 || side2 > 0) && (side0 < 0 || side1 < 0 || side2 < 0) ? -1 : 0;
   if (side0 == -face || side1 == -face || side2 == -face) return -1;
@@ -28,7 +29,7 @@ int edgeOverEdge(int a0, int a1, int b0, int b1) {
 
 float norm1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
 
-// z of x cross y. Components of x and y are off by `error` at most.
+// z of x cross y. Components of x and y are off by at most `error`.
 BoundedFloat faceOf(vec3 x, vec3 y, float error) {
   const float p = x.x * y.y, q = x.y * y.x;
   const float given = error * (abs(x.x) + abs(x.y) + abs(y.x) + abs(y.y) + 2.0 * error);
@@ -47,7 +48,7 @@ BoundedFloat planeOf(vec3 gap, vec3 x, vec3 y, float error) {
                       1.0001 * given + 12.0 * kUlp * dot(abs(gap), abs(p) + abs(q)) + kFlushed * (6.0 + 6.0 * g));
 }
 
-// above / below, if `known`: below is certainly not 0, and neither the quotient nor its error is out of all reach.
+// above / below, if `known`: below is certainly not 0, and the quotient and its error are less than 1e30.
 BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) {
   const float divisor = abs(below.value) - below.error;
   const bool nonzero = divisor > 0.5 * abs(below.value);
@@ -119,7 +120,7 @@ Bounded quotientOf(Bounded above, Bounded below, out bool known) {
 double depthOf(dvec3 x, dvec3 direction) { return dot(direction, x); }
 double depthSlack(dvec3 span, dvec3 direction) { return 3.552713678800501e-15LF * dot(abs(direction), span); }
 double squaredOf(dvec3 direction) { return dot(direction, direction); }
-// Whatever is met is far below, and its products with lengths and scales do not overflow.
+// Far above every contact; its products with lengths and scales do not overflow.
 const double kNever = 1.0e200LF;
 double neverOf(dvec3 direction) { return kNever; }
 

@@ -1,22 +1,22 @@
-// When a pair of triangles meets, as far as the arithmetic can tell (docs/exact.md, "On the device: floats and doubles").
-// A template: contact.glsl includes it once for each precision, with REAL, REAL3, BOUNDED, IMPACT, ALONG and the functions that err
-// in that precision: sideOf, faceOf, planeOf, quotient, quotientOf, depthOf, depthSlack, squaredOf, neverOf. Parameters are multiples of the
-// direction that ALONG stands for.
+// Bounds the time of impact of a pair of triangles (docs/exact.md, "On the device: floats and doubles"). A template:
+// triangle_pair_bounds.glsl includes it once for each precision, with REAL, REAL3, BOUNDED, IMPACT, ALONG and the functions
+// with error bounds in that precision: sideOf, faceOf, planeOf, quotient, quotientOf, depthOf, depthSlack, squaredOf,
+// neverOf. Parameters are multiples of the direction: ALONG in doubles, z in float.
 
 struct IMPACT {
-  bool ahead;     // it certainly meets at some s >= 0, no later than `by`
-  REAL by;        // the earliest upper end of a certain feature; below 0: it certainly meets before the start, too
-  REAL at;        // the parameter of that feature, `error` at most off
+  bool ahead;     // the pair certainly meets at some s >= 0, no later than `by`
+  REAL by;        // the earliest upper end of a certain feature; below 0: the pair certainly meets before the start, too
+  REAL at;        // the parameter of that feature, off by at most `error`
   REAL error;
   uint feature;
   REAL earliest;  // lower end of all features that may count and have a parameter
-  REAL others;    // the same, less the one that attains `by`
-  REAL unknown;   // lower end of those without: parallel edges, a face edge-on
-  REAL latest;    // upper end of all that may count
+  REAL others;    // the same, without the feature that attains `by`
+  REAL unknown;   // lower end of the features without a parameter: parallel edges, a face edge-on
+  REAL latest;    // upper end of all features that may count
 };
 
-// Adds a feature whose plane is spanned by x and y: `gap` leads from the sensor's part to the scene's, `below` is
-// faceOf(x, y). [least, most] holds the depth of the scene's part less that of the sensor's.
+// Adds a feature whose plane is spanned by x and y. `gap` leads from the sensor's part to the scene's; `below` is
+// faceOf(x, y). The depth of the scene's part minus that of the sensor's is in [least, most].
 void addFeature(inout IMPACT m, uint feature, int state, REAL3 gap, REAL3 x, REAL3 y, BOUNDED below, REAL least, REAL most,
                 REAL slack, REAL squared, ALONG along) {
   bool known;
@@ -45,11 +45,11 @@ void addFeature(inout IMPACT m, uint feature, int state, REAL3 gap, REAL3 x, REA
 REAL least3(REAL x, REAL y, REAL z) { return min(x, min(y, z)); }
 REAL most3(REAL x, REAL y, REAL z) { return max(x, max(y, z)); }
 
-// a moves, b rests. Edges are (0,1), (1,2), (0,2), so that triangles whose corners are sorted give the same edges, bit for
-// bit, whichever triangle an edge is found in. Written out: lavapipe keeps what is indexed by a loop in memory.
+// a moves, b rests. Edges are (0,1), (1,2), (0,2), so that an edge shared by two triangles with sorted corners has the same
+// bits in both. Loops are unrolled by hand: lavapipe keeps arrays that a loop indexes in memory.
 IMPACT impactOf(REAL3 a[3], REAL3 b[3], ALONG along) {
-  // sA: vertices of a against edges of b, sB: vertices of b against edges of a; the last edge runs against the
-  // triangle's sense.
+  // sA: vertices of a against edges of b; sB: vertices of b against edges of a. The last edge runs against the triangle's
+  // orientation.
   const ivec3 sA0 = ivec3(sideOf(b[0], b[1], a[0], along), sideOf(b[1], b[2], a[0], along), sideOf(b[0], b[2], a[0], along));
   const ivec3 sA1 = ivec3(sideOf(b[0], b[1], a[1], along), sideOf(b[1], b[2], a[1], along), sideOf(b[0], b[2], a[1], along));
   const ivec3 sA2 = ivec3(sideOf(b[0], b[1], a[2], along), sideOf(b[1], b[2], a[2], along), sideOf(b[0], b[2], a[2], along));

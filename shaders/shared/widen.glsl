@@ -1,4 +1,4 @@
-// Floats as doubles, by their bits: a device may take a subnormal float for 0 where it converts.
+// Converts floats to doubles by their bits: a device's own conversion may flush subnormal floats to 0.
 #ifndef RADAR_WIDEN_GLSL
 #define RADAR_WIDEN_GLSL
 #include "double_bits.glsl"

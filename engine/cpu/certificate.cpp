@@ -13,21 +13,21 @@ inline Vector minus(const Vector& p, const Vector& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
-/// -1 or 1, the sign of w . (x cross y); 0 where doubles cannot tell. All three are differences of doubles, rounded
-/// once.
+/// -1 or 1: the sign of w . (x cross y); 0 if doubles cannot decide it. All three vectors are differences of doubles,
+/// rounded once.
 inline int sureSign(const Vector& w, const Vector& x, const Vector& y) {
   const exact::Estimate rough = exact::estimate(w, x, y, exact::underflowOf(w));
   return std::abs(rough.value) > rough.error ? exact::signOf(rough.value) : 0;
 }
 
-/// Whether a line along d from p passes through the inside of a triangle.
+/// Whether a line along d through p certainly passes through the inside of a triangle.
 bool isOver(const Vector& p, const exact::Triangle& face, const Vector& d) {
   const Vector to[3] = {minus(face[0], p), minus(face[1], p), minus(face[2], p)};
   const int side = sureSign(d, to[0], to[1]);
   return side != 0 && sureSign(d, to[1], to[2]) == side && sureSign(d, to[2], to[0]) == side;
 }
 
-/// The corner that is farthest in the direction side * (x cross y); -1 where none certainly is, by itself.
+/// The one corner that is certainly farthest in the direction side * (x cross y), or -1.
 int farthest(const exact::Triangle& triangle, const Vector& x, const Vector& y, int side) {
   const int first = side * sureSign(minus(triangle[1], triangle[0]), x, y);
   const int second = side * sureSign(minus(triangle[2], triangle[0]), x, y);
@@ -42,7 +42,8 @@ Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vec
   const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
   const int side = sureSign(d, x, y);
   if (side == 0) return kNoFeature;
-  // To the face of b comes what a has farthest along the motion, to that of a what b has farthest against it.
+  // The face of b is touched by the corner of a farthest along the motion, the face of a by that of b farthest against
+  // it.
   const int corner = ofA ? farthest(b, x, y, -side) : farthest(a, x, y, side);
   if (corner < 0 || !isOver(ofA ? b[corner] : a[corner], face, d)) return kNoFeature;
   return ofA ? 3 + corner : corner;
@@ -54,7 +55,7 @@ Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Ve
   const Vector x = minus(a1, a0), y = minus(b1, b0);
   const int side = sureSign(d, x, y);
   if (side == 0 || sureSign(minus(a2, a0), x, y) != -side || sureSign(minus(b2, b0), x, y) != side) return kNoFeature;
-  // Seen along d, the ends of either edge are on different sides of the other.
+  // Seen along d, the ends of each edge must be on different sides of the other.
   const Vector w00 = minus(b0, a0), w01 = minus(b1, a0), w10 = minus(b0, a1), w11 = minus(b1, a1);
   const int p = sureSign(d, w00, w10), r = sureSign(d, w00, w01);
   if (p == 0 || r == 0 || sureSign(d, w01, w11) != -p || sureSign(d, w10, w11) != -r) return kNoFeature;

@@ -17,7 +17,7 @@ inline constexpr Feature kNoFeature = -1;
 /// other.
 Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
 
-/// The contact by features that certainlyFirst certified: the `first` of exact::contact, to the bit.
+/// The contact by features that certainlyFirst certified. It has the bits of exact::contact's `first`.
 exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction);
 
 }  // namespace radar::cpu

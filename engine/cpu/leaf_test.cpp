@@ -40,7 +40,8 @@ unsigned lanesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) {
   return ofA & ((b.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0011);
 }
 
-/// What an axis is off by for as long as it matters, three times; and the least speed that keeps it so.
+/// Three times the error of an axis; and the speed to which lower ones are raised, which changes positions by at most
+/// the error within the duration.
 template <class Real>
 struct Margin {
   Lanes<Real> width, speed;
@@ -48,12 +49,12 @@ struct Margin {
       : width(Lanes<Real>(3) * error), speed(error * Lanes<Real>(1 / duration)) {}
 };
 
-/// Collects what the axes tell. They do it by numbers only: where one is not a number, it tells nothing.
+/// Intersects the intervals of the axes. A NaN leaves the result unchanged.
 template <class Real>
 struct Collected {
   Lanes<Real> from = -Real(INFINITY), to = Real(INFINITY), axis = Real(0);
 
-  /// The pairs meet only where speed t is within `half` of `middle`.
+  /// Adds an axis: the pairs meet only at times t at which speed * t is within `half` of `middle`.
   void add(const Lanes<Real>& middle, const Lanes<Real>& half, const Lanes<Real>& speed, const Margin<Real>& margin,
            Axis number) {
     const Lanes<Real> inverse = Lanes<Real>(1) / max(abs(speed), margin.speed);
@@ -63,7 +64,7 @@ struct Collected {
     from = max(start, from);
     to = min(at + wide, to);
   }
-  /// A bit for each lane that may meet by then.
+  /// One bit per lane whose pair may meet by `duration`.
   unsigned possible(Real duration) const {
     unsigned bits = 0;
     for (int i = 0; i < 4; ++i) {
@@ -95,7 +96,7 @@ LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const Sight& sigh
     position = std::max(position, 2 * sight.slack[k] + 16 * kUnit * sight.magnitude[k]);
     usable_ = usable_ && sight.magnitude[k] + sight.slack[k] < kMostMagnitude<Real>;
   }
-  if (!usable_) return;  // nor need the numbers fit a float
+  if (!usable_) return;  // the numbers may not fit a float
   travelSize_ = static_cast<Real>(travelSize);
   positionError_ = static_cast<Real>(1.01 * position);
   edgeError_ = static_cast<Real>(1.01 * edge);
@@ -108,7 +109,7 @@ void LeafTest<Real>::showA(const gpu::MeshNode& leaf) {
   a_.size = 4 * edgeError_;
   const Corners<Real> own(meshA_, leaf, true);
   for (int k = 0; k < 3; ++k) {
-    // In doubles, so that the difference of two corners is as precise as it is small.
+    // In doubles, so that a small difference of two corners is precise.
     using D = Lanes<double>;
     const Vector& row = matrix_[k];
     a_.corner[k] = D(row[0]) * own.first[0] + D(row[1]) * own.first[1] + D(row[2]) * own.first[2];
@@ -144,7 +145,7 @@ LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::Me
 
   showA(a);
   showB(b);
-  LaneVec<Real> gap, travel;  // from corner 0 of A's triangle to that of B's; of A in a unit of time
+  LaneVec<Real> gap, travel;  // gap: from corner 0 of A's triangle to that of B's; travel: of A per unit of time
   L gapSize = Real(0);
   for (int k = 0; k < 3; ++k) {
     const Lanes<double> moved = offset_[k] + double(begin) * travel_[k];

@@ -8,9 +8,9 @@ namespace radar::cpu {
 
 namespace {
 
-// Of two nodes whose sizes differ by less than this factor both are opened, else the larger one, two levels at once.
+// Two nodes whose sizes differ by less than this factor are both opened; else the larger is opened by two levels.
 constexpr float kSimilar = 4;
-// Floats are used where they round positions by no more than this part of a triangle's edge.
+// Floats are used if they round positions by at most this fraction of a mean triangle edge.
 constexpr double kFloatShare = 0.125;
 
 bool isLeaf(const gpu::MeshNode& node) {
@@ -36,7 +36,7 @@ bool floatsSuffice(const MeshPair& pair) {
   return 16 * kRounding<float> * magnitude <= kFloatShare * edge;
 }
 
-/// Opens pairs of nodes.
+/// Splits pairs of nodes.
 class Opener {
  public:
   explicit Opener(const MeshPair& pair) : nodesA_(pair.sensor.mesh.tree.nodes), nodesB_(pair.other.mesh.tree.nodes) {
@@ -45,10 +45,10 @@ class Opener {
     scale_ = static_cast<float>(std::min(scale / 3, 0x1p100));
   }
 
-  /// What (a, b), not both leaves, consists of: four pairs, of which `count` differ.
+  /// The four parts of a pair (a, b), not both leaves, of which `count` differ.
   struct Parts {
     uint32_t a[4], b[4];
-    unsigned valid;  ///< a bit for each that counts; the others are there already
+    unsigned valid;  ///< one bit per part; 0 if it repeats another
     uint32_t count;
   };
   Parts open(uint32_t placeA, uint32_t placeB) const {
@@ -74,7 +74,7 @@ class Opener {
   }
 
  private:
-  /// The children of the nodes `first` and `first` + 1, or those themselves where they have none.
+  /// The children of the nodes `first` and `first` + 1; a leaf stands for itself.
   static void openTwice(const std::vector<gpu::MeshNode>& nodes, uint32_t first, uint32_t (&places)[4], Parts& out) {
     out.valid = 0;
     out.count = 0;
@@ -88,12 +88,12 @@ class Opener {
   }
 
   const std::vector<gpu::MeshNode>&nodesA_, &nodesB_;
-  float scale_;  // of A's nodes, as B sees them
+  float scale_;  // of A's nodes in B's frame
 };
 
 constexpr int32_t kNever = 0x7f800000;  // the bits of infinity
 
-/// A lane's number, below the bits of a float that is not above `from`, such that they order as numbers do.
+/// A key that orders like `from`, rounded down, with the lane's number in its low two bits.
 int32_t keyOf(float from, int lane) {
   const auto bits = std::bit_cast<int32_t>(from);
   return ((bits ^ (bits >> 31 & 0x7fffffff)) & ~3) | lane;
@@ -103,13 +103,14 @@ float nearOf(int32_t key) {
   return std::bit_cast<float>(std::max(key, 0) & ~3);
 }
 
-/// Keys of the lanes, the nearest last, kNever and more where nothing meets. Of those that may meet at the start, where
-/// most do in shapes that interlock, the one that might have met longest ago comes first: it mostly is the deepest.
+/// Keys of the lanes, nearest last; at least kNever if the pair does not meet. Of the pairs that may meet at the start,
+/// the one whose interval begins earliest is nearest: it usually is the deepest. In shapes that interlock, most pairs
+/// may meet at the start.
 template <class Real>
 std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
   Lanes<Real> from = times.from;
   if constexpr (sizeof(Real) > sizeof(float)) {
-    // Rounded down, whichever way the conversion goes, and within the range of floats.
+    // Moved down by more than the conversion can round up, and clamped to the range of floats.
     from = from - abs(from) * Lanes<Real>(0x1p-23);
     from = max(Lanes<Real>(-0x1p100), min(from, Lanes<Real>(0x1p100)));
   }
@@ -130,20 +131,20 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
   return keys;
 }
 
-/// Shows `first` the pairs of triangles of two leaves, the earliest first.
+/// Passes the pairs of triangles of two leaves to `first`, earliest first.
 template <class Real>
 void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
                 FirstContact& first, SearchStats& stats) {
-  // Or later, by less than rounding to Real and back takes.
+  // Raised by more than rounding to Real may lower it.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(first.latest())); };
   const LeafTimes<Real> found = test(a, b, near, latest());
   stats.pairs += trianglesOf(a) * trianglesOf(b);
-  for (unsigned open = found.possible; open != 0 && !first.isDecided();) {
-    int lane = std::countr_zero(open);
+  for (unsigned pending = found.possible; pending != 0 && !first.isDecided();) {
+    int lane = std::countr_zero(pending);
     for (int i = lane + 1; i < 4; ++i) {
-      if ((open >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
+      if ((pending >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
     }
-    open &= ~(1u << lane);
+    pending &= ~(1u << lane);
     if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
     const uint32_t triA = pair.sensor.mesh.tree.order[(a.link & gpu::kLinkItem) + (lane & 1)];
     const uint32_t triB = pair.other.mesh.tree.order[(b.link & gpu::kLinkItem) + (lane >> 1)];
@@ -196,7 +197,7 @@ void MeshSearch::descend(const MeshPair& pair, double near, FirstContact& first,
       nodesB[i] = &treeB.nodes[parts.b[i]];
     }
     for (const int32_t key : inOrder(nodeTimes(nodesA, nodesB), parts.valid)) {
-      // Written one by one: the processor waits for what it reads back in other pieces.
+      // Written member by member, as it is read back: otherwise store forwarding fails and the processor waits.
       top->near = nearOf(key);
       top->a = parts.a[key & 3];
       top->b = parts.b[key & 3];

@@ -7,10 +7,10 @@ namespace radar::cpu {
 
 namespace {
 
-// Slabs along normals are looked at where one is thinner than this part of its box.
+// Slabs along normals are tested if one of the two is thinner than this fraction of its box.
 constexpr float kThin = 0.5f;
 
-/// Not below `x`, which is 0 or more, and no subnormal.
+/// Rounds `x` up; `x` is not negative and not subnormal.
 template <class Real>
 Real roundedUp(double x) {
   return static_cast<Real>(x * (1 + 4 * kRounding<Real>));
@@ -27,7 +27,7 @@ bool anyPositive(const Lanes<Real>& x) {
   return x[0] > 0 || x[1] > 0 || x[2] > 0 || x[3] > 0;
 }
 
-/// The place-th four floats of each node, one of them in each lane.
+/// Loads floats 4 * place to 4 * place + 3 of each node; out[i] has the i-th of them, one lane per node.
 void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
   static_assert(sizeof(gpu::MeshNode) == 3 * sizeof(FourFloats));
   FourFloats rows[4];
@@ -42,7 +42,7 @@ void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
 template <class Real>
 NodeTest<Real>::Axes::Axes(const Sight& sight) {
   for (int k = 0; k < 3; ++k) {
-    // A speed of 0 would tell nothing; the difference is slack.
+    // A speed near 0 is raised; the slack covers the difference.
     const double used = std::copysign(std::max(std::abs(sight.travel[k]), double{kLeastSpeed<Real>}), sight.travel[k]);
     const double wide = sight.slack[k] + std::abs(used - sight.travel[k]);
     const double magnitude = sight.magnitude[k] + kLeastSpeed<Real>, inverse = 1 / used;
@@ -65,7 +65,7 @@ NodeTest<Real>::Axes::Axes(const Sight& sight) {
   }
 }
 
-/// What the test reads of four nodes.
+/// Boxes and slabs of four nodes.
 template <class Real>
 struct NodeTest<Real>::Nodes {
   LaneVec<Real> centre, half, normal;
@@ -85,7 +85,7 @@ struct NodeTest<Real>::Nodes {
     for (int k = 0; k < 3; ++k) normal[k] = lanes[k];
     slabHalf = lanes[3];
   }
-  /// Above 0 where the slab is thin.
+  /// Positive if the slab is thin.
   Lanes<Real> thinness() const {
     return Lanes<Real>(Real(kThin)) * (abs(normal[0]) * half[0] + abs(normal[1]) * half[1] + abs(normal[2]) * half[2]) -
            slabHalf;
@@ -112,7 +112,7 @@ template <class Real>
   for (int j = 0; j < 3; ++j) {
     covector[j] = scaled[0] * axes.matrix[0][j] + scaled[1] * axes.matrix[1][j] + scaled[2] * axes.matrix[2][j];
   }
-  // The other's extent along the covector: by its own slab as far as its normal goes that way, by its box for the rest.
+  // The other's extent along the covector: its slab bounds the part along its normal, its box bounds the rest.
   const Lanes<Real> along = dot(covector, other.normal);
   for (int j = 0; j < 3; ++j) {
     rest[j] = covector[j] - along * other.normal[j];

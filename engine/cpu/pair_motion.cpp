@@ -11,7 +11,7 @@ double dot(const Vector& p, const Vector& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Of `sizes`, which are not negative, weighted by |p|.
+/// Sum of `sizes`, which are not negative, weighted by |p|.
 double sizeAlong(const Vector& p, const Vector& sizes) {
   return std::abs(p[0]) * sizes[0] + std::abs(p[1]) * sizes[1] + std::abs(p[2]) * sizes[2];
 }
@@ -25,7 +25,7 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
     gap[k] = a.origin[k] - b.origin[k];
     if (std::abs(unit[k]) > std::abs(unit[fastest])) fastest = k;
   }
-  // Once A has passed B along this axis, nothing meets any more.
+  // Once A has passed B along this axis, they do not meet any more.
   const int f = fastest;
   const double way = std::abs(gap[f]) + a.extent[f] + b.extent[f] + a.error[f] + b.error[f];
   if (const double passed = 1.01 * way / std::abs(unit[f]); passed < span) span = passed;
@@ -64,7 +64,7 @@ void narrow(TimeSpan& times, const Sight& sight, const gpu::MeshNode& own, const
       times = {1, 0};
       return;
     }
-    // Quotients of at most 1, whatever the speed.
+    // The test above keeps the quotients at most 1, whatever the speed.
     if (way - half > speed * times.from) times.from = (way - half) / speed;
     if (way + half < speed * times.to) times.to = (way + half) / speed;
   }

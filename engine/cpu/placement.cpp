@@ -8,15 +8,15 @@ namespace radar::cpu {
 
 namespace {
 
-/// A power of two that takes `x` to about 1; 0 and subnormals stay small.
+/// A power of two that scales `x` to about 1; 0 and subnormals stay small.
 double scaleOf(double x) {
   const uint64_t exponent = std::bit_cast<uint64_t>(x) >> 52 & 0x7ff;
   return std::bit_cast<double>((exponent < 2045 ? 2046 - exponent : 1) << 52);
 }
 
-/// Not finite where that is out of range.
+/// The inverse, except for rounding; not finite if it is out of range.
 Matrix roughInverse(Matrix m) {
-  // Columns of about 1, so that their products neither under- nor overflow.
+  // Columns are scaled to about 1, so that their products neither underflow nor overflow.
   Vector scale;
   for (int k = 0; k < 3; ++k) {
     scale[k] = scaleOf(std::max({std::abs(m[0][k]), std::abs(m[1][k]), std::abs(m[2][k])}));

@@ -13,7 +13,7 @@ struct Placement {
   Vector origin;
   Matrix linear;
   Vector extent;  ///< per world axis: bound on |linear * q|
-  Vector error;   ///< per world axis: bound on the difference between `radar::place` and the formula above
+  Vector error;   ///< per world axis: bound on the difference between `transformPoint` and the formula above
 
   Placement(const Mesh& mesh, const Transform& worldFromMesh);
 };

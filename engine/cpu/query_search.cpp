@@ -16,8 +16,7 @@ Vector middleOf(const Mesh& mesh, const Placement& placement) {
   return middle;
 }
 
-/// A scene's objects and the upper nodes of its tree do not fit a cache: what a node leads to is asked for while the
-/// node is looked at.
+/// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
 void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& nodes, const Scene::Impl& scene) {
   const uint32_t item = node.link & gpu::kLinkItem;
   const void* next = &nodes[0] + item;
@@ -28,7 +27,7 @@ void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& n
 
 }  // namespace
 
-/// A query, and what is made of it before the search.
+/// A query, prepared for the search.
 struct QuerySearch::Task {
   const Query& query;
   const Scene::Impl& scene;
@@ -50,7 +49,8 @@ struct QuerySearch::Task {
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
 
-  bool takesPart(ObjectId id) const {
+  /// Whether the object shares a mask bit with the query and is not excluded.
+  bool isEligible(ObjectId id) const {
     if ((scene.objects[id].object.mask & query.mask) == 0) return false;
     return std::find(query.exclude.begin(), query.exclude.end(), id) == query.exclude.end();
   }
@@ -97,7 +97,7 @@ void QuerySearch::searchTree(Task& task, const ObjectTree& tree) {
 }
 
 void QuerySearch::searchObject(Task& task, ObjectId id) {
-  if (task.first.isDecided() || !task.takesPart(id)) return;
+  if (task.first.isDecided() || !task.isEligible(id)) return;
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (task.first.isBefore({id, mesh.tree.below[0].least, 0})) return;
@@ -107,7 +107,7 @@ void QuerySearch::searchObject(Task& task, ObjectId id) {
   const Placement placement(mesh, object.worldFromMesh);
   const PairMotion motion(task.placement, placement, task.motion, task.first.latest());
   TimeSpan times;
-  // The sensor's axes first: those of the object need an inverse, and most objects do not get that far.
+  // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
   const Sight fromSensor(task.axes, placement, motion, -1);
   narrow(times, fromSensor, rootA, rootB);
   if (times.empty()) return;

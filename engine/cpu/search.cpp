@@ -11,8 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A thread is started where it takes this much work off the others: what it costs to start, to warm up and to wait for.
-// Measured with batches of 30 to 64 queries on two virtual cores: 90 to 190 us.
+// Seconds of work that justify another thread: the cost of starting it, warming it up and waiting for it. Batches of 30
+// to 64 queries on two virtual cores measured 90 to 190 us.
 constexpr double kWorthThread = 150e-6;
 
 double secondsSince(Clock::time_point start) {
@@ -34,7 +34,7 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier 
     }
   };
   const Clock::time_point start = Clock::now();
-  // Alone, until it is known that threads are worth starting; mostly the last run tells.
+  // The caller works alone until starting threads pays off. The time per query of the last run usually decides at once.
   size_t done = 0;
   double each = secondsPerQuery_;
   while (workers > 1 && done < count && each * static_cast<double>(count - done) < 2 * kWorthThread) {
@@ -46,7 +46,8 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier 
     const double worth = each * static_cast<double>(count - done) / kWorthThread;
     if (worth < static_cast<double>(workers)) workers = static_cast<size_t>(worth);
   }
-  // Small enough for the threads to end together, large enough for them to share no line of results most of the time.
+  // Small enough for the threads to end at about the same time, large enough that they rarely share a cache line of
+  // results.
   const size_t rest = count - done, chunk = std::clamp<size_t>(rest / (16 * workers), 1, 16);
   parallelFor(rest, chunk, static_cast<unsigned>(workers),
               [&](unsigned worker, size_t first, size_t last) { answer(worker, done + first, done + last); });

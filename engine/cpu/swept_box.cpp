@@ -23,7 +23,7 @@ SweptBox::SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree)
     middle[k] = box.middle(k) - anchor;
     half[k] = 0.5 * box.hi[k] - 0.5 * box.lo[k];
     magnitude[k] = std::abs(box.middle(k)) + half[k] + std::abs(anchor) + reach;
-    // Once the box has passed all objects along an axis, it meets nothing any more.
+    // Once the box has passed all objects along an axis, it meets none of them any more.
     if (const double passed = 1.01 * (std::abs(middle[k]) + half[k] + reach) / speed; speed > 0.5 && passed < latest) {
       latest = passed;
     }
@@ -31,7 +31,7 @@ SweptBox::SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree)
   latest = std::max(latest, 0x1p-1000);
   for (int k = 0; k < 3; ++k) {
     const double speed = motion.unit[k], rounding = 32 * kUnit * (magnitude[k] + latest * std::abs(speed)) + 0x1p-1000;
-    // A speed of 0 would tell nothing; the difference is slack.
+    // A speed near 0 is raised; `wide` covers the difference.
     const double used = std::copysign(std::max(std::abs(speed), rounding / latest), speed), rate = 1 / used;
     const double wide = half[k] + rounding + latest * std::abs(used - speed);
     const bool usable = (magnitude[k] + wide) * std::abs(rate) < 0x1p900;

@@ -7,14 +7,14 @@ namespace radar::cpu {
 
 namespace {
 
-// Between these products of three neither over- nor underflow to any effect.
+// Between these limits, overflow and underflow of products of three factors do not affect the result.
 constexpr double kMostError = 0x1p200, kLeastWidth = 0x1p-250;
 constexpr int kNext[3] = {1, 2, 0};
 
-/// The pair as seen along the motion: orientations of each edge of one with each vertex of the other, [edge][vertex].
+/// The pair seen along the motion: orientations of each edge of one with each vertex of the other, [edge][vertex].
 struct Outlines {
   double overA[3][3], overB[3][3];
-  double bound;  ///< on the error of each
+  double bound;  ///< bound on the error of each orientation
 };
 
 double most(const double (&v)[3]) {
@@ -25,14 +25,14 @@ double least(const double (&v)[3]) {
   return std::min(std::min(v[0], v[1]), v[2]);
 }
 
-/// Whether all three orientations are beyond doubt on the other side of the edge than the triangle itself, of signed
-/// area `area`.
+/// Whether an edge certainly separates the triangles. `over`: its orientations with the other triangle's vertices.
+/// `area`: the signed area of its own triangle, within `areaError`.
 bool separates(const double (&over)[3], double bound, double area, double areaError) {
   return (area > areaError && most(over) < -bound) || (area < -areaError && least(over) > bound);
 }
 
-/// `width`: bound on the differences across. False if an edge separates the pair.
-bool look(const ViewedTriangle& a, const ViewedTriangle& b, double width, Outlines& out) {
+/// Computes the orientations; false if an edge separates the pair. `width`: bound on the differences across the motion.
+bool outline(const ViewedTriangle& a, const ViewedTriangle& b, double width, Outlines& out) {
   const double error = a.error + b.error + kUnit * width;
   out.bound = 4 * width * error + 4 * error * error + 4 * kUnit * width * width;
   double x[3][3], y[3][3];
@@ -55,7 +55,7 @@ bool look(const ViewedTriangle& a, const ViewedTriangle& b, double width, Outlin
   return true;
 }
 
-/// Bounds on the interval of contact, from the events that are possible: incident, or not surely otherwise.
+/// Bounds on the interval of contact, from all events that are not certainly impossible.
 struct Span {
   double first = INFINITY, last = -INFINITY;
 
@@ -70,8 +70,8 @@ struct Span {
   }
 };
 
-/// A vertex at `height` over a face: t = `turn` * (depth of the face there - height). p, q, r: the vertex's
-/// orientations with the face's edges, which are the weights of the corners opposite to them, of depths zp, zq, zr.
+/// Adds the event of a vertex at `height` on a face: t = `turn` * (depth of the face there - height). p, q, r are the
+/// vertex's orientations with the face's edges; they weight the opposite corners, whose depths are zp, zq, zr.
 void addCorner(Span& span, double bound, double error, double turn, double height, double p, double q, double r,
                double zp, double zq, double zr, double range) {
   if (!((p >= -bound && q >= -bound && r >= -bound) || (p <= bound && q <= bound && r <= bound))) return;
@@ -113,9 +113,9 @@ Span spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& se
 
 // The bounds are derived in docs/exact.md.
 bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
-  // What is not a number is not within either.
+  // Also true if the error is NaN.
   if (!(a.error + b.error < kMostError)) return true;
-  Vector below, above;  // what differences b - a lie between
+  Vector below, above;  // bounds on differences b - a
   for (int k = 0; k < 3; ++k) {
     below[k] = b.lo[k] - a.hi[k];
     above[k] = b.hi[k] - a.lo[k];
@@ -125,7 +125,7 @@ bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
   if (below[0] > 0 || below[1] > 0 || above[0] < 0 || above[1] < 0) return false;
   if (below[2] > latest || above[2] < 0) return false;
   Outlines seen;
-  if (!look(a, b, width, seen)) return false;
+  if (!outline(a, b, width, seen)) return false;
   const Span span = spanOf(a, b, seen);
   return span.first <= latest && span.last >= 0;
 }

@@ -7,7 +7,7 @@ namespace radar::cpu {
 
 namespace {
 
-/// A power of two that takes `size` to about 1, if there is one.
+/// A power of two that scales `size` to about 1, or 1 if there is none.
 double scaleOf(double size) {
   if (!(size > 0 && std::isfinite(size))) return 1;
   const double scale = std::ldexp(1.0, -std::ilogb(size));
@@ -43,7 +43,7 @@ ViewedTriangle::ViewedTriangle(const exact::Triangle& world, const View& view) {
     farthest = std::max(farthest, size);
     sum += size;
   }
-  // The greatest of numbers may hide one that is none; their sum does not.
+  // A maximum may hide a NaN; a sum does not.
   error = std::isfinite(sum) ? 24 * kUnit * farthest : sum;
   for (int k = 0; k < 3; ++k) {
     lo[k] = std::min({corners[0][k], corners[1][k], corners[2][k]}) - error;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-// Shaders compute the same, operation by operation (shaders/double_double.glsl).
+// shaders/contact/double_double.glsl has the same operations in the same order.
 
 namespace radar::exact {
 
@@ -27,7 +27,7 @@ double dot(const Vector& p, const Vector& q) {
   return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
 }
 
-/// All of `face` and `other` is relative to a corner of `face`.
+/// Considers the crossings of the edges of `other` with `face`.
 void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
   const Vector normal = cross(minus(face[1], face[0]), minus(face[2], face[0]));
   const double square = dot(normal, normal);
@@ -64,7 +64,7 @@ Vector commonPoint(const Triangle& first, const Triangle& second) {
     pb[i] = minus(b[i], origin);
     for (int k = 0; k < 3; ++k) size = std::max({size, std::abs(pa[i][k]), std::abs(pb[i][k])});
   }
-  // Of unit size, so that products neither under- nor overflow.
+  // Scaled to unit size, so that products neither underflow nor overflow.
   for (Triangle* t : {&pa, &pb}) {
     for (Vector& p : *t) {
       for (double& c : p) c /= size;

@@ -14,8 +14,8 @@ constexpr int next(int i) {
   return i == 2 ? 0 : i + 1;
 }
 
-/// Keeps the ends of the interval among the events it is shown. Where several events share an end, the one that is
-/// kept depends on the events alone, not on the order in which they come.
+/// Keeps the first and the last of the events added. If several events share an end, the choice depends on the events
+/// only, not on their order.
 class Ends {
  public:
   void add(const Event& event) {
@@ -44,16 +44,16 @@ class Ends {
     return compare(ratioOf(p), ratioOf(q));
   }
 
-  static constexpr int kMost = 18;  // 9 vertices on edges either way; in space 3 + 3 + 9
+  static constexpr int kMost = 18;  // planar: 9 vertices on edges each way; otherwise 3 + 3 + 9
   int count_ = 0, first_ = 0, last_ = 0;
-  bool isPoint_ = true;  // so far all events have one parameter
+  bool isPoint_ = true;  // all events so far have the same parameter
   std::array<Event, kMost> events_;
   std::array<bool, kMost> hasRatio_;
-  std::array<Ratio, kMost> ratios_;  // large, and hardly ever touched
+  std::array<Ratio, kMost> ratios_;  // large, rarely touched
 };
 
-/// All signs of orientation that the two triangles have as seen along the direction: 18 minors of the 9 differences
-/// b[k] - a[i]. Reversing the direction and swapping the triangles changes no bit of their magnitudes.
+/// The signs of all orientations of the two triangles, seen along the direction: 18 minors of the 9 differences b[k] -
+/// a[i]. Reversing the direction and swapping the triangles changes no bit of the minors' magnitudes.
 class Signs {
  public:
   int edgeOfA[3][3];  ///< [i][k]: vertex k of b against the edge of a from i to next(i)
@@ -79,10 +79,10 @@ class Signs {
     }
   }
 
-  /// Whether vertex i of a lies over the closed face b, which is not edge-on; and the other way round.
+  /// Whether vertex i of a is over the closed face b, which is not edge-on; and vice versa.
   bool vertexOverFace(int i) const { return oneSided(edgeOfB[0][i], edgeOfB[1][i], edgeOfB[2][i]); }
   bool faceOverVertex(int k) const { return oneSided(edgeOfA[0][k], edgeOfA[1][k], edgeOfA[2][k]); }
-  /// Whether edge i of a crosses edge k of b, not in parallel, and not where one of the former two says the same.
+  /// Whether edge i of a crosses edge k of b, not in parallel, and not where a vertex over a face is the same event.
   bool edgesCross(int i, int k) const {
     const int p = edgeOfA[i][k], q = edgeOfA[i][next(k)], r = edgeOfB[k][i], s = edgeOfB[k][next(i)];
     if (p * q > 0 || r * s > 0 || (p == 0 && q == 0)) return false;
@@ -96,7 +96,7 @@ class Signs {
   }
 
   int exactMinor(int i, int k, int j, int l) {
-    // Where one sign is hard, others are: the pair is taken to integers once.
+    // If one sign needs integers, others usually do, so the pair is converted once.
     if (fit_ == Fit::unknown) {
       const std::array<const Vector*, 6> corners{&a_[0], &a_[1], &a_[2], &b_[0], &b_[1], &b_[2]};
       const std::array<const Vector*, 1> way{&direction_};
@@ -116,8 +116,8 @@ class Signs {
   std::array<IntVector, 1> way_;
 };
 
-/// Both triangles lie on one line as seen along the direction, or on two points: a problem in a plane that contains the
-/// direction. Its basic solutions are a vertex on an edge or, where all is on one line, a vertex on a vertex.
+/// For two triangles on one line, or two points, as seen along the direction: a problem in a plane that contains the
+/// direction. Its basic solutions are a vertex on an edge or, if all points are on one line, a vertex on a vertex.
 void addPlanar(const Triangle& a, const Triangle& b, const Vector& direction, Ends& ends) {
   int across = 0;
   int side[3][3];
@@ -155,7 +155,7 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
     addPlanar(a, b, direction, ends);
     return ends.interval();
   }
-  // Every basic solution of the linear programme "least s with a point of a, moved, on a point of b" is one of these.
+  // These include every basic solution of the linear programme: least s at which a point of a, moved, is a point of b.
   for (int i = 0; i < 3; ++i) {
     if (signs.vertexOverFace(i)) ends.add(vertexFace(direction, a[i], b));
     if (signs.faceOverVertex(i)) ends.add(faceVertex(direction, a, b[i]));

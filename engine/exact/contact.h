@@ -18,7 +18,7 @@ namespace radar::exact {
 
 using Triangle = std::array<Vector, 3>;
 
-/// Replaces -0 by 0, because Vulkan lets a device lose the sign of 0; device and CPU then give the same bits.
+/// Replaces -0 by 0, so that device and CPU give the same bits: Vulkan does not define the sign of 0.
 inline Vector withoutZeroSigns(Vector v) {
   for (double& c : v) c = c == 0 ? 0 : c;
   return v;

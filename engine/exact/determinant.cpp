@@ -8,7 +8,7 @@ namespace radar::exact {
 
 namespace {
 
-// DoubleDouble: two products of 7 u^2 and three sums of 3 u^2 make 23 u^2; differences are exact.
+// Two DoubleDouble products of 7 u^2 and three sums of 3 u^2 add up to 23 u^2; differences are exact.
 constexpr double kFineRelative = 0x1p-99;
 thread_local uint64_t decisions = 0;
 
@@ -52,7 +52,7 @@ Dyadic component(const Difference& v, int k) {
   return Dyadic(v.to[k]) - Dyadic(v.from[k]);
 }
 
-Dyadic longDeterminant(const Determinant& d) {
+Dyadic dyadicDeterminant(const Determinant& d) {
   Dyadic value;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
@@ -68,14 +68,14 @@ Dyadic longDeterminant(const Determinant& d) {
 
 Dyadic exactly(const Determinant& d) {
   const auto w = scaledVector(d.w), x = scaledVector(d.x), y = scaledVector(d.y);
-  if (!w || !x || !y) return longDeterminant(d);
+  if (!w || !x || !y) return dyadicDeterminant(d);
   return determinant(w->c, x->c, y->c).value(w->exponent + x->exponent + y->exponent);
 }
 
 int exactSign(const Determinant& d) {
   countExactDecision();
   const auto w = scaledVector(d.w), x = scaledVector(d.x), y = scaledVector(d.y);
-  return w && x && y ? determinant(w->c, x->c, y->c).sign() : longDeterminant(d).sign();
+  return w && x && y ? determinant(w->c, x->c, y->c).sign() : dyadicDeterminant(d).sign();
 }
 
 int sign(const Determinant& d) {

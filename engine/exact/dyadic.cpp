@@ -20,7 +20,7 @@ Dyadic::Dyadic(double value) {
   const int field = static_cast<int>(image >> 52 & 0x7ff);
   uint64_t mantissa = image & ((uint64_t{1} << 52) - 1);
   if (field != 0) mantissa |= uint64_t{1} << 52;
-  // Trailing zeros go into the exponent: grids and small integers stay small.
+  // Trailing zeros go into the exponent, so that grids and small integers stay small.
   const int zeros = std::countr_zero(mantissa);
   limbs_[0] = mantissa >> zeros;
   size_ = 1;
@@ -108,7 +108,7 @@ Dyadic Dyadic::sum(const Dyadic& p, const Dyadic& q, bool negateQ) {
     out.negative_ = negativeQ;
     return out;
   }
-  // The summand with the higher exponent is brought to the lower one.
+  // The summand with the higher exponent is shifted to the lower exponent.
   const bool pHigher = p.exponent_ > q.exponent_;
   Dyadic out = pHigher ? p : q;
   const Dyadic& other = pHigher ? q : p;
@@ -154,14 +154,14 @@ Dyadic operator*(const Dyadic& p, const Dyadic& q) {
 double quotient(const Dyadic& num, const Dyadic& den) {
   assert(den.size_ != 0);
   if (num.size_ == 0) return 0;
-  // Scaled so that the integer quotient has 63 or 64 bits, then restoring division bit by bit.
+  // The operands are scaled so that the integer quotient has 63 or 64 bits; then restoring division, bit by bit.
   Dyadic rest = num, step = den;
   rest.negative_ = step.negative_ = false;
   const int shift = 63 - (static_cast<int>(num.bits()) - static_cast<int>(den.bits()));
   int exponent = num.exponent_ - den.exponent_ - shift;
   rest.shiftLeft(static_cast<uint32_t>(std::max(shift, 0)));
   step.shiftLeft(static_cast<uint32_t>(std::max(-shift, 0)));
-  // Doubling the rest instead of halving the step: rest < 2 * step * 2^63 at first.
+  // The rest is doubled instead of halving the step; at first, rest < 2 * step * 2^63.
   step.shiftLeft(63);
   uint64_t digits = 0;
   for (int bit = 0; bit < 64; ++bit) {
@@ -173,7 +173,7 @@ double quotient(const Dyadic& num, const Dyadic& den) {
     if (bit < 63) rest.shiftLeft(1);
   }
   if (rest.size_ != 0) digits |= 1;  // sticky: the lowest bit is far below the rounding position
-  // Below the normal range fewer bits are kept; they must be cut once, with the sticky bit, not rounded twice.
+  // Below the normal range fewer bits are kept; they must be rounded once, with the sticky bit, not twice.
   const int top = 64 - std::countl_zero(digits);
   const int surplus = -1074 - exponent;
   if (surplus > top - 53) {

@@ -12,7 +12,7 @@ namespace radar::exact {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
-// Covers what underflows, with room; subnormal numbers would be slow.
+// Covers underflow, with a margin; subnormal numbers would be slow.
 constexpr double kLeast = 0x1p-1000;
 
 Determinant numerator(const Event& e) {
@@ -23,7 +23,8 @@ Determinant denominator(const Event& e) {
   return {{kOrigin, e.direction}, {e.x0, e.x1}, {e.y0, e.y1}};
 }
 
-/// Fills in the parameter. With num = n + dn, den = d + dd: n/d - num/den = (dn - (n/d) dd) / -den.
+/// Creates an event and computes its parameter. With num = n + dn, den = d + dd: n/d - num/den = (dn - (n/d) dd) /
+/// -den.
 Event evaluated(Kind kind, const Vector& direction, const Vector& from, const Vector& to, const Vector& x0,
                 const Vector& x1, const Vector& y0, const Vector& y1) {
   Event e{kind, direction, from, to, x0, x1, y0, y1, 0, 0};
@@ -54,7 +55,7 @@ struct FineParameter {
   double error;
 };
 
-/// The parameter as a double-double: one step of long division. Its own error is below 2^-102 |s|.
+/// The parameter as a double-double, by one step of long division, whose own error is below 2^-102 |s|.
 FineParameter fineParameter(const Event& e) {
   const FineEstimate num = fineEstimate(numerator(e)), den = fineEstimate(denominator(e));
   const double first = num.value.high / den.value.high;
@@ -123,7 +124,7 @@ std::optional<int> compareRoughly(const Event& p, const Event& q) {
   const double apart = p.s - q.s, margin = (1 + 8 * kUnit) * (p.error + q.error);
   if (std::abs(apart) > margin) return signOf(apart);
   if (!precedes(p, q) && !precedes(q, p)) return 0;
-  // Equal estimates are a tie, most likely, which only exact arithmetic can tell.
+  // Equal estimates are most likely a tie, which only exact arithmetic can decide.
   if (apart == 0) return std::nullopt;
   const FineParameter fp = fineParameter(p), fq = fineParameter(q);
   const DoubleDouble fine = fp.s - fq.s;
@@ -159,12 +160,12 @@ double parameter(const Event& e) {
 
 namespace {
 
-/// An estimate made right: the length is between the midpoints from its nearest double to the neighbours.
+/// Corrects an estimate: the length is between the midpoints from its nearest double to that double's neighbours.
 double exactLength(const Vector& d, double root) {
   Dyadic square;
   for (double c : d) square = square + Dyadic(c) * Dyadic(c);
   const Dyadic fourfold = square * Dyadic(4);
-  const auto isBeyond = [&](double p, double q) {  // the length, doubled, against p + q
+  const auto isBeyond = [&](double p, double q) {  // compares twice the length with p + q
     const Dyadic sum = Dyadic(p) + Dyadic(q);
     return (fourfold - sum * sum).sign();
   };
@@ -188,7 +189,7 @@ double length(const Vector& d) {
   if (root < 0x1p-400 || root > 0x1p400) return exactLength(d, root);
   DoubleDouble square;
   for (double c : d) square = square + product(c, c);
-  // |d| - root = (|d|^2 - root^2) / (|d| + root), of which 40 bits are right.
+  // |d| - root = (|d|^2 - root^2) / (|d| + root), correct to 40 bits.
   const double rest = (square - product(root, root)).high / (2 * root),
                error = 0x1p-40 * std::abs(rest) + 0x1p-90 * root;
   const double below = root + (rest - error), above = root + (rest + error);
@@ -215,7 +216,8 @@ Vector point(const Event& e, double s) {
     case Kind::edgeEdge:
       break;
   }
-  // The resting edge from y0 to y1 crosses the moving one where the orientations of its ends say.
+  // The orientations of the resting edge's ends, y0 and y1, give the share of the edge at which the moving edge
+  // crosses.
   const Difference d{kOrigin, e.direction};
   const DoubleDouble p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
   const DoubleDouble q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
@@ -225,8 +227,7 @@ Vector point(const Event& e, double s) {
 
 namespace {
 
-/// The square root of 1 <= x < 16 by what every device rounds alike, so that shaders find the same bits
-/// (double_double.glsl).
+/// The square root of 1 <= x < 16, by operations with the same bits on every device (double_double.glsl).
 double rootOf(double x) {
   double root = 0.5 * (1 + x);
   for (int i = 0; i < 7; ++i) root = 0.5 * (root + x / root);
@@ -242,7 +243,7 @@ Vector normal(const Event& e) {
     x[k] = difference(e.x1[k], e.x0[k]);
     y[k] = difference(e.y1[k], e.y0[k]);
   }
-  // Scaled by powers of two, so that tiny and huge edges neither under- nor overflow.
+  // Scaled by powers of two, so that products of tiny and huge edges neither underflow nor overflow.
   for (DoubleDouble* v : {x, y}) {
     const int size = std::ilogb(std::max({std::abs(v[0].high), std::abs(v[1].high), std::abs(v[2].high)}));
     for (int k = 0; k < 3; ++k) v[k] = {std::ldexp(v[k].high, -size), std::ldexp(v[k].low, -size)};

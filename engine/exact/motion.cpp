@@ -10,7 +10,7 @@ namespace radar {
 
 namespace {
 
-// Beyond, a length or a quotient may lose more than a rounding.
+// Below this, the relative error of a length or a quotient may exceed its rounding error.
 constexpr double kLeastNormal = 0x1p-900;
 
 Vector normalized(Vector v) {

@@ -35,7 +35,7 @@ void addProduct(Limbs& sum, Wide p, int64_t q) {
   }
 }
 
-/// Mantissa and exponent of a double; 0 has no exponent of its own.
+/// Mantissa and exponent of a double; the exponent of 0 is meaningless.
 struct Parts {
   uint64_t digits = 0;
   int exponent = 0;

@@ -33,8 +33,9 @@ void* findLoader() {
 }
 #endif
 
-PFN_vkVoidFunction found(PFN_vkVoidFunction function, const char* name) {
-  if (function == nullptr) throw Error(std::string("the Vulkan function ") + name + " is missing: Vulkan 1.3 has it");
+PFN_vkVoidFunction required(PFN_vkVoidFunction function, const char* name) {
+  if (function == nullptr)
+    throw Error(std::string("the Vulkan function ") + name + " is missing; Vulkan 1.3 requires it");
   return function;
 }
 
@@ -48,14 +49,14 @@ PFN_vkGetInstanceProcAddr systemLoader() {
 
 Api::Api(PFN_vkGetInstanceProcAddr get) : GetInstanceProcAddr(get != nullptr ? get : systemLoader()) {
 #define RADAR_LOAD(name) \
-  name = reinterpret_cast<PFN_vk##name>(found(GetInstanceProcAddr(nullptr, "vk" #name), "vk" #name));
+  name = reinterpret_cast<PFN_vk##name>(required(GetInstanceProcAddr(nullptr, "vk" #name), "vk" #name));
   RADAR_GLOBAL_FUNCTIONS(RADAR_LOAD)
 #undef RADAR_LOAD
 }
 
 void Api::load(VkInstance instance) {
 #define RADAR_LOAD(name) \
-  name = reinterpret_cast<PFN_vk##name>(found(GetInstanceProcAddr(instance, "vk" #name), "vk" #name));
+  name = reinterpret_cast<PFN_vk##name>(required(GetInstanceProcAddr(instance, "vk" #name), "vk" #name));
   RADAR_INSTANCE_FUNCTIONS(RADAR_LOAD)
 #undef RADAR_LOAD
 #define RADAR_LOAD(name) name = reinterpret_cast<PFN_vk##name>(GetInstanceProcAddr(instance, "vk" #name));
@@ -65,7 +66,7 @@ void Api::load(VkInstance instance) {
 
 void Api::load(VkDevice device) {
 #define RADAR_LOAD(name) \
-  name = reinterpret_cast<PFN_vk##name>(found(GetDeviceProcAddr(device, "vk" #name), "vk" #name));
+  name = reinterpret_cast<PFN_vk##name>(required(GetDeviceProcAddr(device, "vk" #name), "vk" #name));
   RADAR_DEVICE_FUNCTIONS(RADAR_LOAD)
 #undef RADAR_LOAD
 }

@@ -29,7 +29,7 @@
   X(GetQueryPoolResults) X(MapMemory) X(QueueSubmit2) X(ResetCommandBuffer) X(ResetFences) X(UpdateDescriptorSets) \
   X(WaitForFences)
 
-// Of VK_EXT_debug_utils: null if the instance lacks it.
+// Functions of VK_EXT_debug_utils: null if the instance lacks it.
 #define RADAR_DEBUG_FUNCTIONS(X) \
   X(CmdBeginDebugUtilsLabelEXT) X(CmdEndDebugUtilsLabelEXT) X(CreateDebugUtilsMessengerEXT) \
   X(DestroyDebugUtilsMessengerEXT) X(SetDebugUtilsObjectNameEXT)

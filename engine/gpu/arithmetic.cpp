@@ -19,13 +19,13 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// What kind of numbers a trial has: most are ordinary, of all signs, with every bit of the significand in use.
+// The kind of numbers in a trial. Ordinary numbers have both signs and use every bit of the significand.
 enum class Kind {
   wide,       ///< magnitudes far apart
-  cancelled,  ///< a sum that cancels shows what was rounded before, and what a fused multiply-add did not round
-  halfway,    ///< of doubles: a quotient next to the middle between two
-  subnormal,  ///< x is too small for a normal number
-  overflow    ///< of floats: the product is too large
+  cancelled,  ///< a sum cancels, which shows whether a product was rounded before, or fused into a multiply-add
+  halfway,    ///< doubles: a quotient close to the middle between two doubles
+  subnormal,  ///< x is subnormal
+  overflow    ///< floats: the product overflows
 };
 
 Kind kindOf(size_t trial) {
@@ -74,7 +74,7 @@ std::vector<FloatTrial> floatTrials() {
       t.x = std::ldexp(t.x, 80);
       t.y = std::ldexp(t.y, 80);
     }
-    // Any bits but those of what is no number: subnormal numbers, too.
+    // Any bits but those of infinities and NaNs; includes subnormal numbers.
     const auto bits = static_cast<uint32_t>(numbers.bits());
     t.copied = std::bit_cast<float>((bits & 0x7f800000u) == 0x7f800000u || i % 4 == 0 ? bits & 0x807fffffu : bits);
   }
@@ -114,7 +114,7 @@ std::vector<DoubleTrial> doubleTrials() {
   return trials;
 }
 
-// Runs a shader over trials and reads its outcomes.
+// Runs a shader on the trials and reads its outcomes.
 template <class Outcome, class Trial>
 std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
                                 std::span<const uint32_t> constants, const std::vector<Trial>& trials,
@@ -153,7 +153,7 @@ bool sameBits(Real p, Real q) {
   return std::memcmp(&p, &q, sizeof(Real)) == 0;
 }
 
-// A unit in the last place of what is next to x.
+// A unit in the last place of x.
 double ulpOf(float x) {
   return std::ldexp(1.0, std::max(x == 0 ? -126 : std::ilogb(x), -126) - 23);
 }
@@ -161,7 +161,7 @@ double ulpOf(double x) {
   return std::ldexp(1.0, std::max(x == 0 ? -1022 : std::ilogb(x), -1022) - 52);
 }
 
-// An exact result, which two doubles hold: high + low, |low| at most half an ulp of high.
+// An exact result as two doubles: high + low, |low| at most half an ulp of high.
 struct ExactResult {
   double high, low;
 };
@@ -171,7 +171,7 @@ ExactResult exactSum(double x, double y) {
   return {sum, (x - (sum - part)) + (y - part)};
 }
 
-// Which way a device rounds, by all that it has rounded: what none of its results contradicts.
+// The rounding direction of a device: one that no result contradicts.
 class Rounding {
  public:
   void add(ExactResult exact, float result) {
@@ -184,14 +184,14 @@ class Rounding {
   const char* words() const {
     if (isNearest_) return "rounded to nearest";
     if (isTowardsZero_) return "rounded towards zero";
-    return isDown_ ? "rounded down" : isUp_ ? "rounded up" : "rounded now up, now down";
+    return isDown_ ? "rounded down" : isUp_ ? "rounded up" : "rounded in no fixed direction";
   }
 
  private:
   bool isNearest_ = true, isTowardsZero_ = true, isDown_ = true, isUp_ = true;
 };
 
-// Makes the checks, one after the other; `consequence` is told where one fails, `otherwise` where it does not.
+// Collects the results of the checks, one check after the other.
 class Findings {
  public:
   explicit Findings(std::vector<ArithmeticCheck>& checks) : checks_(checks) {}
@@ -206,7 +206,7 @@ class Findings {
     check.worst = check.tried == 1 ? ulps : std::max(check.worst, ulps);
   }
   uint32_t tried() const { return checks_.back().tried; }
-  /// Returns whether all was right.
+  /// Returns whether the check passed. Its consequence is `otherwise` if it did, else `consequence`.
   bool end(const std::string& found, const char* otherwise, const char* consequence) {
     ArithmeticCheck& check = checks_.back();
     check.found =
@@ -222,9 +222,9 @@ class Findings {
 constexpr const char* kBoundsHold = "the search's bounds hold";
 constexpr const char* kUnusable = "the search's bounds do not hold: the device is not used";
 constexpr const char* kSolved = "pairs of triangles are solved in doubles";
-constexpr const char* kUnsolved = "doubles are not used: the CPU decides what is too close for floats";
+constexpr const char* kUnsolved = "doubles are not used: the CPU decides pairs that are too close for floats";
 
-// A sum or a product: off by less than an ulp, rounded whichever way.
+// Checks that a sum or a product is off by less than an ulp, whatever the rounding direction.
 bool checkRounded(Findings& findings, const char* operation, const std::vector<FloatTrial>& trials,
                   const std::vector<FloatOutcome>& outcomes, ExactResult (*exactOf)(const FloatTrial&),
                   float FloatOutcome::*member) {
@@ -235,7 +235,7 @@ bool checkRounded(Findings& findings, const char* operation, const std::vector<F
     const ExactResult exact = exactOf(trials[i]);
     const float result = outcomes[i].*member;
     const double off = std::abs((result - exact.high) - exact.low), ulp = ulpOf(static_cast<float>(exact.high));
-    // Below a power of two ulps are half as large; that is where `result` may be larger than what is exact.
+    // The larger ulp counts: just below a power of two, `exact` has half the ulp of a result that reaches that power.
     findings.result(off < std::max(ulp, ulpOf(result)), off / ulp);
     rounding.add(exact, result);
   }
@@ -243,7 +243,7 @@ bool checkRounded(Findings& findings, const char* operation, const std::vector<F
 }
 
 const char* inWords(size_t kept, size_t flushed) {
-  return flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "kept at times, flushed to 0 at others";
+  return flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "sometimes kept, sometimes flushed to 0";
 }
 
 bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, const std::vector<FloatOutcome>& outcomes) {
@@ -301,9 +301,9 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
 
   findings.begin("loading and storing floats", "the same bits, subnormal numbers included");
   for (size_t i = 0; i < trials.size(); ++i) findings.result(sameBits(outcomes[i].copied, trials[i].copied));
-  usable &= findings.end("the same bits", "corners reach the CPU as they are", kUnusable);
+  usable &= findings.end("the same bits", "corners reach the CPU unchanged", kUnusable);
 
-  findings.begin("float multiplication of subnormal numbers", "right, or as if they were 0");
+  findings.begin("float multiplication of subnormal numbers", "correct, or as if they were 0");
   size_t kept = 0, flushed = 0;
   for (size_t i = 0; i < trials.size(); ++i) {
     if (kindOf(i) != Kind::subnormal) continue;
@@ -313,7 +313,7 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
     flushed += product == 0 ? 1 : 0;
     findings.result(isKept || product == 0);
   }
-  usable &= findings.end(inWords(kept, flushed), "bounds have room for what is flushed", kUnusable);
+  usable &= findings.end(inWords(kept, flushed), "the bounds allow for flushing", kUnusable);
 
   findings.begin("float multiplication that overflows", "");
   size_t infinite = 0, largest = 0;
@@ -326,8 +326,8 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
   }
   findings.end(infinite == findings.tried()  ? "infinity"
                : largest == findings.tried() ? "the largest float"
-                                             : "now this, now that",
-               "nothing rests on it: no sum or product of the search overflows", "");
+                                             : "infinity, the largest float or another number",
+               "irrelevant: no sum or product of the search overflows", "");
   return usable;
 }
 
@@ -335,7 +335,7 @@ double distanceInUlps(double result, double exact) {
   return std::abs(result - exact) / ulpOf(exact);
 }
 
-// Results that are to have the bits of the CPU's.
+// Checks that results have the same bits as on the CPU.
 bool checkBits(Findings& findings, const char* operation, const std::vector<DoubleTrial>& trials,
                const std::vector<DoubleOutcome>& outcomes, double (*exactOf)(const DoubleTrial&),
                double DoubleOutcome::*member, bool subnormals, const char* otherwise = kSolved,
@@ -371,7 +371,7 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
   usable &= checkBits(
       findings, "double division, composed of the above", trials, outcomes,
       [](const DoubleTrial& t) { return t.x / t.y; }, &DoubleOutcome::corrected, false,
-      "may stand in for the device's own division");
+      "can replace the device's own division");
   usable &= checkBits(
       findings, "loading and storing doubles", trials, outcomes, [](const DoubleTrial& t) { return t.row[0]; },
       &DoubleOutcome::copied, true);
@@ -404,12 +404,12 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
     findings.result(true);
   }
   findings.end(kept + flushed == findings.tried() ? inWords(kept, flushed) : "neither kept nor flushed to 0",
-               "nothing rests on it: bounds have room for what is lost there", "");
+               "irrelevant: the bounds allow for the loss", "");
 
   arithmetic.doubles = usable;
   arithmetic.dividesRight = checkBits(
       findings, "double division", trials, outcomes, [](const DoubleTrial& t) { return t.x / t.y; },
-      &DoubleOutcome::quotient, false, "used as it is", "not used: divisions are composed of sums and products");
+      &DoubleOutcome::quotient, false, "used", "not used: divisions are composed of sums and products");
 }
 
 }  // namespace

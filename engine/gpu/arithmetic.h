@@ -1,4 +1,4 @@
-// The checks of radar/arithmetic.h, and what the engine may rely on.
+// The checks of radar/arithmetic.h, and the conclusions that the engine draws from them.
 #pragma once
 
 #include "gpu/device.h"
@@ -14,8 +14,8 @@ struct Arithmetic {
   bool dividesRight = false;  ///< quotients of doubles do, too; else shaders correct them
 };
 
-/// Runs the checks, those of doubles only if shaderFloat64 is enabled. `spoiled`, a k... of shaders/interop.h: an
-/// operation whose results the shader falsifies, to show that the check would find it. Submits and waits.
+/// Runs the checks, those of doubles only if shaderFloat64 is enabled. `spoiled`, an operation of
+/// shaders/arithmetic/interop.h: the shader falsifies its results, to show that the check finds it. Submits and waits.
 Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t spoiled = kNoOperation);
 
 }  // namespace radar::gpu

@@ -4,7 +4,7 @@ namespace radar::gpu {
 
 namespace {
 
-// Sampled: what is read as texels.
+// SAMPLED_READ: texel buffers.
 constexpr VkAccessFlags2 kComputeReadWrite =
     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
 
@@ -50,7 +50,7 @@ void uploadToRead(const Commands& commands) {
 }
 
 void transferToComputeReadWrite(const Commands& commands) {
-  // A clear by the specification, a copy by validation layer 1.3.239.
+  // vkCmdFillBuffer is a clear in the specification, a copy in validation layer 1.3.239.
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kComputeReadWrite);
 }

@@ -67,7 +67,7 @@ bool Buffer::reserve(VkDeviceSize bytes) {
 
 namespace {
 
-// Vulkan requires every device to read these nine from uniform texel buffers.
+// Vulkan requires every device to support these nine formats in uniform texel buffers.
 uint32_t bytesOfTexel(VkFormat format, const char* name) {
   switch (format) {
     case VK_FORMAT_R32_UINT:
@@ -83,7 +83,8 @@ uint32_t bytesOfTexel(VkFormat format, const char* name) {
     case VK_FORMAT_R32G32B32A32_SFLOAT:
       return 16;
     default:
-      throw Error(std::string(name) + ": not every device reads texels of VkFormat " + std::to_string(format));
+      throw Error(std::string(name) + ": not every device supports texel buffers of VkFormat " +
+                  std::to_string(format));
   }
 }
 
@@ -99,7 +100,7 @@ TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, BufferDom
 }
 
 VkDeviceSize TexelBuffer::maxBytes() const {
-  // Shaders number texels by an int.
+  // Shaders index texels by an int.
   const uint32_t texels = device_->properties.limits.maxTexelBufferElements;
   return VkDeviceSize{std::min<uint32_t>(texels, INT32_MAX)} * texelBytes_;
 }
@@ -123,7 +124,7 @@ bool TexelBuffer::reserve(VkDeviceSize bytes) {
   }
   const bool grew = buffer_.reserve(bytes);
   if (grew) view_ = {};
-  if (view_.get() == VK_NULL_HANDLE) makeView();  // also where it could not be made before
+  if (view_.get() == VK_NULL_HANDLE) makeView();  // also if an earlier call failed to create it
   return grew;
 }
 
@@ -140,7 +141,7 @@ void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkD
   if (bytes == 0) return;
   assert(used_ + bytes <= staging_.capacity() && offset + bytes <= target.capacity());
   std::memcpy(staging_.mapped() + used_, data, bytes);
-  // Neighbouring pieces of one target are one copy.
+  // Adjacent pieces of one target are merged into one copy.
   if (!copies_.empty()) {
     Copy& last = copies_.back();
     if (last.target == target.get() && last.region.srcOffset + last.region.size == used_ &&

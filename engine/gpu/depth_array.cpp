@@ -9,7 +9,7 @@ namespace radar::gpu {
 namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-// Framebuffers kept for ranges of layers drawn before; batches of one shape need a few dozen.
+// Maximum number of cached framebuffers, one per range of layers; batches of one shape need a few dozen.
 constexpr size_t kKeptTargets = 512;
 
 ImageView layerView(const Device::Impl& device, VkImage image, uint32_t first, uint32_t count) {

@@ -31,7 +31,7 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   if (host.sampled) {
     reasonsAgainstSampled = gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), Mode::sampled);
     if (reasonsAgainstSampled.empty() && !gpu::doesGraphics(vk, host.physicalDevice, host.queueFamily)) {
-      reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does no graphics"};
+      reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does not support graphics"};
     }
   } else {
     reasonsAgainstSampled = {"HostDevice::sampled is false"};
@@ -43,12 +43,12 @@ Device::Impl::~Impl() = default;
 
 void Device::Impl::requireSampled(const std::string& who) const {
   if (reasonsAgainstSampled.empty()) return;
-  throw Error(who + ": mode sampled cannot be answered on " + name, VK_SUCCESS, reasonsAgainstSampled);
+  throw Error(who + ": " + name + " does not support mode sampled", VK_SUCCESS, reasonsAgainstSampled);
 }
 
 void Device::Impl::requireQueue(const char* who) const {
   if (host.queue != VK_NULL_HANDLE) return;
-  throw Error(std::string("HostDevice::queue: ") + who + " submits, and there is none");
+  throw Error(std::string("HostDevice::queue is null; ") + who + " needs a queue to submit to");
 }
 
 void Device::Impl::setName(VkObjectType type, uint64_t handle, const char* text) const {
@@ -97,7 +97,7 @@ Device Device::adopt(const HostDevice& host) {
   const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   auto impl = std::make_unique<Impl>(host);
-  // Without a queue nothing can be tried; composed quotients are right wherever doubles are.
+  // Without a queue nothing can be checked; composed quotients are correct on every device whose doubles are.
   impl->doubles = host.doubles;
   if (host.queue != VK_NULL_HANDLE) {
     const gpu::Arithmetic arithmetic = gpu::tryArithmetic(*impl, host.doubles);

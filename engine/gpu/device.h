@@ -39,9 +39,10 @@ struct Device::Impl {
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may request a size; else all have the same
   bool doubles = false;              ///< shaders may compute with them
-  bool dividesRight = false;  ///< quotients of doubles have the CPU's bits; else shaders/divide.glsl computes them
+  bool dividesRight =
+      false;  ///< quotients of doubles have the CPU's bits; else shaders/shared/divide.glsl corrects them
 
-  /// The specialization constants of shaders that include shaders/divide.glsl.
+  /// The specialization constants of shaders that include shaders/shared/divide.glsl.
   std::array<uint32_t, 1> divisionConstants() const { return {dividesRight ? 1u : 0u}; }
 
   VkDevice device() const { return host.device; }

@@ -1,4 +1,4 @@
-// A device of its own: the engine makes instance, device and queue, then adopts them like a host's.
+// Opens a device: creates instance, device and queue, then adopts them like a host's.
 #include <algorithm>
 #include <cstring>
 
@@ -59,7 +59,7 @@ bool hasExtension(const gpu::Api& vk, const char* name) {
                      [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-// Throws away nothing that the layers call a warning or an error.
+// Passes on all messages, and lets the call that caused one proceed.
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   static_cast<Device::Impl::Owned*>(user)->onValidation(data->pMessage);

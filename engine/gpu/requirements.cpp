@@ -18,7 +18,7 @@ struct Requirement {
 };
 
 const Requirement kRequired[] = {
-    {"scalarBlockLayout", "buffers share the structs of C++", Mode::contact,
+    {"scalarBlockLayout", "buffers have the layout of the C++ structs", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan12.scalarBlockLayout; }},
     {"synchronization2", "barriers name exact stages", Mode::contact,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.synchronization2; }},
@@ -36,7 +36,7 @@ bool isNeeded(Mode what, Mode mode) {
   return what == Mode::contact || mode == Mode::sampled;
 }
 
-// A search is dearer to a large subgroup, whose lanes wait for each other.
+// The search is slower with larger subgroups, because lanes wait for each other.
 constexpr uint32_t kLargeSubgroup = 64;
 
 std::vector<VkQueueFamilyProperties> queueFamiliesOf(const Api& vk, VkPhysicalDevice device) {
@@ -119,21 +119,21 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
 std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode) {
   std::vector<std::string> reasons;
   if (facts.apiVersion < VK_API_VERSION_1_3) {
-    return {"Vulkan 1.3 is needed, it has " + versionText(facts.apiVersion)};
+    return {"needs Vulkan 1.3, has " + versionText(facts.apiVersion)};
   }
   for (const MissingFeature& feature : facts.missingFeatures) {
     if (isNeeded(feature.mode, mode)) reasons.push_back("lacks the feature " + feature.text);
   }
-  if (!facts.computeQueue) reasons.push_back("has no queue family that does compute");
+  if (!facts.computeQueue) reasons.push_back("has no queue family that supports compute");
   if (mode == Mode::sampled && !facts.graphicsAndComputeQueue) {
-    reasons.push_back("has no queue family that does graphics and compute");
+    reasons.push_back("has no queue family that supports graphics and compute");
   }
-  if (!facts.subgroups.ballots) reasons.push_back("has no votes and ballots of subgroups in compute shaders");
-  if (!facts.subgroups.isFixed) reasons.push_back("the size of its subgroups varies and cannot be chosen");
+  if (!facts.subgroups.ballots) reasons.push_back("lacks subgroup votes and ballots in compute shaders");
+  if (!facts.subgroups.isFixed) reasons.push_back("its subgroup size varies and cannot be chosen");
   for (const DeviceLimit& limit : facts.limits) {
     if (limit.has >= limit.needed || !isNeeded(limit.mode, mode)) continue;
-    reasons.push_back("the limit " + limit.name + " must be at least " + std::to_string(limit.needed) + ", it is " +
-                      std::to_string(limit.has));
+    reasons.push_back("the limit " + limit.name + " is " + std::to_string(limit.has) + ", must be at least " +
+                      std::to_string(limit.needed));
   }
   return reasons;
 }

@@ -1,4 +1,4 @@
-// The numbers are those of "SPIR-V Specification", Khronos, sections 3 (enumerants) and 2.3 (physical layout).
+// Enumerants and physical layout follow "SPIR-V Specification", Khronos, sections 3 and 2.3.
 #include "gpu/spirv.h"
 
 #include <algorithm>
@@ -122,7 +122,7 @@ void Module::add(Instruction i) {
 
 Instruction Module::type(uint32_t id) const {
   const auto found = types_.find(id);
-  if (found == types_.end()) fail("type %" + std::to_string(id) + " is not understood");
+  if (found == types_.end()) fail("type %" + std::to_string(id) + " is not supported");
   return found->second;
 }
 
@@ -146,7 +146,7 @@ std::string Module::nameOf(uint32_t variable, uint32_t typeId) const {
   return {};
 }
 
-// GLSL does not pad a struct at its end.
+// GLSL does not pad the end of a struct.
 Extent Module::extentOf(uint32_t typeId) const {
   const Instruction t = type(typeId);
   switch (op(t)) {
@@ -173,7 +173,7 @@ Extent Module::extentOf(uint32_t typeId) const {
     }
     default:
       fail("type %" + std::to_string(typeId) + " (instruction " + std::to_string(op(t)) +
-           ") in a block is not understood");
+           ") in a block is not supported");
   }
 }
 

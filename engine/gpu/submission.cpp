@@ -40,7 +40,7 @@ Commands Submission::begin() {
   assert(!pending_);
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(commands_->ResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // a failed recording may have been left
+  check(commands_->ResetCommandBuffer(commands_, 0), "vkResetCommandBuffer");  // an earlier recording may have failed
   check(commands_->BeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer");
   stages_.clear();
   if (timestamps_) {
@@ -54,7 +54,7 @@ void Submission::endStage() {
   if (stages_.empty()) return;
   device_->endLabel(commands_);
   if (!timestamps_) return;
-  // In profiling runs only: without a full barrier a timestamp is written before the stage's work is done.
+  // Profiling only: without a full barrier, a timestamp may be written before the stage's work is done.
   everythingToEverything(commands_);
   commands_->CmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
                                 static_cast<uint32_t>(stages_.size()));

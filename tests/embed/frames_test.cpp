@@ -134,10 +134,10 @@ TEST_CASE("an engine without a queue records, submits nothing, and refuses by na
     CHECK(sameBits(read[i], expected[i]));
     test::isSeen(renderer.seen(i), expected[i]);
   }
-  CHECK_THROWS_WITH(Sweeper(device, row.scene), "HostDevice::queue: a Sweeper submits, and there is none");
-  CHECK_THROWS_WITH(Pool({&device, 1}, row.scene), "HostDevice::queue: a Pool submits, and there is none");
+  CHECK_THROWS_WITH(Sweeper(device, row.scene), "HostDevice::queue is null; a Sweeper needs a queue to submit to");
+  CHECK_THROWS_WITH(Pool({&device, 1}, row.scene), "HostDevice::queue is null; a Pool needs a queue to submit to");
   CHECK_THROWS_WITH(addMesh(row.scene, device, HostMesh{}),
-                    "HostDevice::queue: addMesh of a HostMesh submits, and there is none");
+                    "HostDevice::queue is null; addMesh of a HostMesh needs a queue to submit to");
   CHECK(test::counts().submissions == 0);
   CHECK(test::counts().waits == 0);
 }

@@ -171,11 +171,12 @@ TEST_CASE("mode sampled is refused, with all that the device lacks for it, befor
     sweeper.run({&query, 1});
     FAIL("it was answered");
   } catch (const Error& error) {
-    CHECK_THAT(error.what(), Catch::Contains("query 0: mode sampled cannot be answered"));
+    CHECK_THAT(error.what(), Catch::StartsWith("query 0: ") && Catch::Contains("does not support mode sampled"));
     CHECK(error.reasons == reasons);
   }
   query.mode = Mode::contact;
-  CHECK_THROWS_WITH(sweeper.scopes(query), Catch::Contains("scopes(): mode sampled cannot be answered"));
+  CHECK_THROWS_WITH(sweeper.scopes(query),
+                    Catch::StartsWith("scopes(): ") && Catch::Contains("does not support mode sampled"));
   least.host.handles.sampled = false;
   const Device unaware = Device::adopt(least.host.handles);
   CHECK_FALSE(unaware.supports(Mode::sampled));

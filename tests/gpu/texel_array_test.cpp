@@ -103,5 +103,5 @@ TEST_CASE("an element is made of whole texels, of a format that every device rea
   CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32_UINT),
                     "triples: elements of 12 bytes are not whole texels of 8");
   CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32B32_UINT),
-                    "triples: not every device reads texels of VkFormat 104");
+                    "triples: not every device supports texel buffers of VkFormat 104");
 }

@@ -1,5 +1,4 @@
-// Turns what a search left to the host into answers: `exact` decides pairs that are too close for the device's
-// arithmetic.
+// Decides the unresolved pairs of a search exactly: those that are too close for the device's arithmetic.
 #pragma once
 
 #include <span>
@@ -9,7 +8,7 @@
 
 namespace radar {
 
-/// The pairs that a device left to the host, by sensor: all pairs of a sensor, or none if there was no room.
+/// A device's unresolved pairs, by sensor: all pairs of a sensor, or none if there was no room.
 class UnresolvedPairs {
  public:
   /// `pairs` must outlive this, in place.
@@ -22,8 +21,8 @@ class UnresolvedPairs {
 };
 
 /// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
-/// For a query with `anyHit`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search met
-/// something that is not among `pairs`.
+/// For a query with `anyHit`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search
+/// found a certain contact, but none of `pairs` meets.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query);
 
 /// The answer to a query with nothing in reach.

@@ -6,21 +6,21 @@
 
 #include "gpu/barrier.h"
 
-// pass      reads                                  writes                        barrier behind it
-// --------- -------------------------------------- ----------------------------- ------------------------------
-// upload    staging                                scene, sensors, sweeps,       transferToComputeReadWrite
-//                                                  states, tasks, counts,
-//                                                  excluded, results; heads
-// search    scene, sensors, excluded, tasks        states, counts, candidates,   computeWriteToComputeReadWrite
-//                                                  the other list of tasks
-// collect   tasks                                  counts, states, the other     computeWriteToComputeReadWrite
-//   (rounds of both)                               list of tasks
-//                                                                                computeWriteToIndirect
-// filter    states, counts, candidates             counts, refined pairs            computeWriteToComputeReadWrite
-// refine    scene, sweeps, counts                  refined pairs, states            computeWriteToComputeReadWrite
-//   (where the device has doubles)
-// link      states, counts                         refined pairs, heads             computeWriteToComputeReadWrite
-// resolve   scene, sweeps, states, heads,          counts, results, unresolved   (the caller's)
+// pass      reads                                writes                                 barrier after it
+// --------- ------------------------------------ -------------------------------------- ------------------------------
+// upload    staging                              scene, sensors, sweeps, states, tasks, transferToComputeReadWrite
+//                                                counts, excluded, results, heads
+// Rounds of both:
+// search    scene, sensors, excluded, tasks      states, counts, candidates,            computeWriteToComputeReadWrite
+//                                                the other list of tasks
+// collect   tasks                                counts, states,                        computeWriteToComputeReadWrite
+//                                                the other list of tasks
+// After the last round:                                                                 computeWriteToIndirect
+// filter    states, counts, candidates           counts, refined pairs                  computeWriteToComputeReadWrite
+// refine    scene, sweeps, counts                refined pairs, states                  computeWriteToComputeReadWrite
+//             (only with doubles)
+// link      states, counts                       refined pairs, heads                   computeWriteToComputeReadWrite
+// resolve   scene, sweeps, states, heads,        counts, results, unresolved            (the caller's)
 //           refined pairs
 
 namespace radar {
@@ -33,16 +33,16 @@ namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-// Tasks that lists have room for beside those of the sensors, at most, where nothing is asked: 20 bytes each, twice.
+// Default maximum number of tasks, in addition to one per sensor: 20 bytes each, in two lists.
 constexpr uint32_t kMostTasks = 1u << 21;
-// Candidates, of 20 bytes and once more 56: some 10 a sensor among boxes, 30 of meshes, hundreds where shapes
-// interlock. Where nothing is known of a batch, so many for each and in all; and at most.
+// Capacity for candidates, of 20 bytes and 56 as refined pairs: at first per sensor, at least in total, and the most
+// that it grows to. Sensors have some 10 candidates among boxes, 30 among meshes, hundreds where shapes interlock.
 constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
-// Pairs that are left to the host, 184 bytes each: for each sensor, where nothing is known; and at most.
+// Capacity for unresolved pairs, of 184 bytes: at first per sensor, and at most in total.
 constexpr uint32_t kUnresolved = 4, kMostUnresolved = 1u << 20;
 
-// A device that runs on the processor has as many lanes at work as it has threads, times the width of a vector.
-bool isProcessor(const Device::Impl& device) {
+// Whether the device runs on the CPU: it then has as many lanes at work as threads times the width of a vector.
+bool runsOnCpu(const Device::Impl& device) {
   return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
 }
 
@@ -75,14 +75,14 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
   if (room_.budget == 0) room_.budget = kMostBudget;
   if (room_.width == 0) {
     room_.width =
-        isProcessor(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
+        runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
   }
   if (kernels_->refine) refine_.emplace(*kernels_->refine);
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
   if (room_.groups != 0) return room_.groups;
-  return isProcessor(*device_) ? std::max(32u, sensors / 256) : 4096;
+  return runsOnCpu(*device_) ? std::max(32u, sensors / 256) : 4096;
 }
 
 void ContactPass::reserveLists(uint32_t sensors) {
@@ -217,8 +217,8 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
     const gpu::SearchPush push{round, taskRoom_, candidateRoom_, room_.budget, room_.width};
     search_[round % 2].dispatch(commands, groupsFor(sensorCount_), push);
     gpu::computeWriteToComputeReadWrite(commands);
-    const bool givesUp = isLast && round + 1 == rounds;
-    collect_[round % 2].dispatch(commands, gpu::kCollectGroups, gpu::CollectPush{round, taskRoom_, givesUp ? 1u : 0u});
+    const bool abandons = isLast && round + 1 == rounds;
+    collect_[round % 2].dispatch(commands, gpu::kCollectGroups, gpu::CollectPush{round, taskRoom_, abandons ? 1u : 0u});
     gpu::computeWriteToComputeReadWrite(commands);
   }
   stage("solve");
@@ -242,7 +242,7 @@ std::span<const gpu::UnresolvedPair> ContactPass::unresolved(const gpu::SearchCo
 
 bool ContactPass::learn(const gpu::SearchCounts& counts) {
   if (counts.unresolved > unresolvedRoom_) wantedUnresolved_ = 2 * counts.unresolved;
-  // Searches that had no room ended there: how much they would have taken is not known.
+  // Searches without room ended early, so their actual need is unknown.
   if (counts.candidates <= candidateRoom_ || candidateRoom_ >= kMostCandidates || room_.candidates != 0) return false;
   wantedCandidates_ = std::min(4 * candidateRoom_, kMostCandidates);
   return true;

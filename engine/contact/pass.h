@@ -16,7 +16,7 @@ namespace radar {
 struct SearchRoom {
   uint32_t tasks = 0;       ///< in addition to one per sensor
   uint32_t candidates = 0;  ///< for all sensors together
-  uint32_t unresolved = 0;  ///< pairs left to the host; all of a sensor's pairs are listed, or none
+  uint32_t unresolved = 0;  ///< unresolved pairs; all of a sensor's pairs are listed, or none
   uint32_t groups = 0;      ///< workgroups per round
   uint32_t budget = 0;      ///< iterations of a workgroup per round
   uint32_t width = 0;       ///< below this number, tasks are split early
@@ -46,7 +46,7 @@ class ContactPass {
 
   const gpu::Array<Result>& results() const { return results_; }
   const gpu::Array<gpu::SearchCounts>& counts() const { return counts_; }
-  /// The pairs left to the host, in host memory. Valid until the device works again.
+  /// The unresolved pairs, in host memory. Valid until the device works again.
   std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const;
   uint32_t sensorCount() const { return sensorCount_; }
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.

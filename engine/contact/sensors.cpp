@@ -12,22 +12,23 @@ namespace radar {
 
 namespace {
 
-// A sensor smaller than this, beside what it may travel through, is scaled to less than 1: distances stay below 2^40.
+// A sensor smaller than this share of the scene's extent is scaled to less than 1, so that distances stay below 2^40.
 constexpr double kLeastShare = 0x1p-38;
-// Scaled. With kLeastShare whatever is met is nearer than this, and a search that finds nothing need not look farther.
+// Scaled. Longer distances are clipped to this: by kLeastShare, every contact is nearer.
 constexpr double kMostDistance = 0x1p42;
-// Scaled. A shorter way, other than none, might be taken for 0, and what is met must be told from what is not.
+// Scaled. Shorter distances, other than 0, are out of range: floats might flush them to 0, which would make contact
+// before D indistinguishable from contact at D.
 constexpr double kLeastDistance = 0x1p-100;
 
-// Sums of axes of: how far the farthest point of the scene is from `centre`.
+// Distance from `centre` to the farthest point of the scene, as a sum over the axes.
 double farthestOf(const Box& world, const Vector& centre) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += std::max(std::abs(world.lo[k] - centre[k]), std::abs(world.hi[k] - centre[k]));
   return sum;
 }
 
-// The sensor's box in the world, with room for what its place loses in float, and for what a direction's component
-// loses that is raised above 0 (search.comp), over the whole way.
+// The sensor's box in the world, widened by the rounding of its centre to float and by the change of direction
+// components that sensorBoxOf (nodes.glsl) raises above 0, over the whole distance.
 void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farthest) {
   for (int k = 0; k < 3; ++k) {
     out.centre[k] = static_cast<float>(box.middle(k) - anchor[k]);

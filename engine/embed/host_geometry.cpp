@@ -12,21 +12,18 @@
 #include "spirv/embed_move_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/embed_refit_comp.h"
 
-// pass    reads                              writes                     barrier behind it
-// ------- ---------------------------------- -------------------------- -------------------------------
-// copy    staging, the host's buffers        moved, words, refit nodes, transferToComputeReadWrite
-//                                            violation
-// deform  words, meshes                      vertices, violation
-// move    words, moved, meshes               placements, objects,       computeWriteToComputeReadWrite
-//                                            violation
-// refit   vertices, triangles, meshes, refit nodes                      computeWriteToComputeReadWrite
-//   (one    nodes, nodes
-//   a depth)
+// pass        reads                         writes                         barrier after it
+// ----------- ----------------------------- ------------------------------ -------------------------------
+// copy        staging, the host's buffers   moved, words, refit nodes,     transferToComputeReadWrite
+//                                           violation
+// deform      words, meshes                 vertices, violation            (none)
+// move        words, moved, meshes          placements, objects, violation computeWriteToComputeReadWrite
+// refit       vertices, triangles, meshes,  nodes                          computeWriteToComputeReadWrite
+//   per depth   refit nodes, nodes
 //
-// Behind the answers:
+// After the answers and a computeWriteToComputeReadWrite:
 //
-// invali- violation                          results                    before: computeWriteTo-
-//   date                                                                ComputeReadWrite; the caller's
+// invalidate  violation                     results                        (the caller's)
 
 namespace radar {
 
@@ -36,7 +33,7 @@ namespace {
 
 constexpr VkDeviceSize kTransformBytes = 48;
 
-// Made once for a device.
+// Created once per device.
 struct HostGeometryKernels {
   explicit HostGeometryKernels(const Device::Impl& device)
       : deform(device, k_embed_deform_comp, "deform"),
@@ -97,14 +94,14 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
   violation_.reserve(1);
 }
 
-// Returns where in `words_` the bytes will be.
+// Returns the bytes' offset in `words_`.
 uint32_t HostGeometryPass::copyFrom(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
   const VkDeviceSize at = copied_;
   copied_ += gpu::Upload::aligned(bytes);
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   if (copied_ + sizeof(uint32_t) > limit) {
-    throw Error("record: the host's geometry takes more than the " + std::to_string(limit) +
-                " bytes that this device allows");
+    throw Error("record: the host's geometry exceeds the " + std::to_string(limit) +
+                " bytes of the device's maxStorageBufferRange");
   }
   sources_.push_back({buffer, {first, at, bytes}});
   return static_cast<uint32_t>(at);
@@ -128,7 +125,7 @@ void HostGeometryPass::addMoved(const MovedObjects& objects, const Scene::Impl& 
   }
 }
 
-// By depth: a node is refitted after its children.
+// Lists the nodes by depth, because a node is refitted after its children.
 void HostGeometryPass::listNodes(const Scene::Impl& scene) {
   std::vector<uint64_t> versions;
   for (const Deformed& deformed : meshes_) versions.push_back(scene.meshes[deformed.mesh].version);
@@ -241,11 +238,11 @@ std::string HostGeometryPass::boundsViolation() const {
   const gpu::BoundsViolation& violation = *violation_.mapped();
   if (violation.mesh != kNone) {
     return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(violation.vertex) +
-           " is out of its bounds, or not finite";
+           " is outside its bounds or not finite";
   }
   if (violation.object == kNone) return {};
   return "object " + std::to_string(violation.object) +
-         ": its mesh's box is out of its bounds, or its transform not finite";
+         ": its mesh's box is outside its bounds, or its transform is not finite";
 }
 
 }  // namespace radar

@@ -14,7 +14,7 @@ struct Range {
   VkDeviceSize first, bytes;
 };
 
-/// The ranges' bytes, one behind the other.
+/// Reads the ranges' bytes, concatenated.
 std::vector<std::byte> download(const Device::Impl& device, const std::vector<Range>& ranges) {
   VkDeviceSize total = 0;
   for (const Range& range : ranges) total += range.bytes;

@@ -7,17 +7,17 @@
 #include "embed/host_geometry.h"
 #include "gpu/barrier.h"
 
-// pass     reads           writes   barrier behind it
-// -------- --------------- -------- -----------------
-// (contact/pass.cpp, behind its upload host_geometry.cpp)
-//                                   computeWriteToCopy
-// readback counts, results readback writtenToHost
+// pass                                            reads           writes   barrier after it
+// ----------------------------------------------- --------------- -------- ------------------
+// contact/pass.cpp; host_geometry.cpp between its                          computeWriteToCopy
+//   upload and search, and after its resolve
+// readback                                        counts, results readback writtenToHost
 
 namespace radar {
 
 namespace {
 
-// Ids of excluded objects a query, that there is room for from the start.
+// Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
 
@@ -59,28 +59,28 @@ struct Recorder::Impl {
   GpuScene copy;
   HostGeometryPass geometry;
   ContactPass pass;
-  gpu::Buffer readback;      ///< counts, then results
-  std::vector<Query> asked;  ///< in the last record(); none if it failed
+  gpu::Buffer readback;                ///< counts, then results
+  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
   SensorBatch sensors;
   std::vector<Result> known;
 };
 
 void Recorder::Impl::checkCapacity() const {
   const uint64_t limit = device.properties.limits.maxStorageBufferRange;
-  const auto refuse = [](const char* what, uint64_t got, uint64_t most) {
+  const auto limitTo = [](const char* what, uint64_t got, uint64_t most) {
     if (got <= most) return;
     throw Error(std::string("Capacity::") + what + ": this device allows " + std::to_string(most) + ", got " +
                 std::to_string(got));
   };
-  refuse("queries", capacity.queries, limit / sizeof(gpu::Sweep));
-  refuse("candidates", capacity.candidates, limit / sizeof(gpu::RefinedPair));
-  refuse("rounds", capacity.rounds, gpu::kMostRounds);
-  refuse("unresolvedPairs", capacity.unresolvedPairs, limit / sizeof(gpu::UnresolvedPair));
+  limitTo("queries", capacity.queries, limit / sizeof(gpu::Sweep));
+  limitTo("candidates", capacity.candidates, limit / sizeof(gpu::RefinedPair));
+  limitTo("rounds", capacity.rounds, gpu::kMostRounds);
+  limitTo("unresolvedPairs", capacity.unresolvedPairs, limit / sizeof(gpu::UnresolvedPair));
   if (capacity.rounds == 0 || capacity.rounds % 2 != 0) {
-    throw Error("Capacity::rounds: expected an even number from 2 on, got " + std::to_string(capacity.rounds));
+    throw Error("Capacity::rounds: expected an even number of at least 2, got " + std::to_string(capacity.rounds));
   }
   if (capacity.candidates == 0 || capacity.unresolvedPairs == 0)
-    throw Error("Capacity: expected room for a pair, got none");
+    throw Error("Capacity: candidates and unresolvedPairs: expected at least 1 each, got 0");
 }
 
 void Recorder::Impl::validateAll(std::span<const Query> queries) const {
@@ -115,7 +115,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   Impl& self = *impl_;
   self.validateAll(queries);
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-  self.asked.clear();  // until all is recorded there is nothing to read
+  self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
   self.copy.willOverwrite(self.geometry.overwritten());
@@ -148,7 +148,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   gpu::writtenToHost(commands);
   self.device.endLabel(commands);
   self.copy.confirm(self.scene.impl());
-  self.asked.assign(queries.begin(), queries.end());
+  self.recordedQueries.assign(queries.begin(), queries.end());
 }
 
 void Recorder::reset() {
@@ -161,7 +161,7 @@ VkBuffer Recorder::results() const {
 
 std::vector<Result> Recorder::read() {
   Impl& self = *impl_;
-  std::vector<Result> results(self.asked.size());
+  std::vector<Result> results(self.recordedQueries.size());
   if (results.empty()) return results;
   std::copy_n(reinterpret_cast<const Result*>(self.readback.mapped() + kFirstResult), results.size(), results.begin());
   const UnresolvedPairs unresolved(self.pass.unresolved(self.counts()));
@@ -169,7 +169,7 @@ std::vector<Result> Recorder::read() {
     const uint32_t query = self.sensors.sweeps[i].result;
     const auto pairs = unresolved.of(i);
     if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
-    results[query] = decideUnresolved(results[query], pairs, self.asked[query]);
+    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query]);
   }
   return results;
 }

@@ -7,18 +7,19 @@ namespace radar {
 
 namespace {
 
-// A device takes a third of its fair share of what is left: chunks are large at first, small at the end, and a guess of
-// its speed that is wrong by less than three does not make the others wait.
+// A device takes a third of its fair share of the remaining queries. So chunks are large at first and small at the end,
+// and overestimating its speed by less than three does not make the others wait.
 constexpr double kShares = 3;
-// A device whose speed is not known yet takes so little that a very slow one does not make the others wait.
+// A device of unknown speed takes so little that even a very slow one does not make the others wait.
 constexpr double kFirstShares = 32;
-// What a submission costs beside its work is below a tenth of this on every device seen, mostly far below.
+// Least duration of a chunk. The overhead of a submission was below a tenth of this on every device measured.
 constexpr double kLeastMs = 1;
-// A device that is alone waits for nobody: it only has to have a chunk to encode while it works on another.
+// The same for a single device, which needs chunks only to encode one while it works on another.
 constexpr double kLeastMsAlone = 10;
-// Speeds change (first use of a pipeline, other work on the machine): the newest chunk counts half.
+// Weight of the newest chunk: speeds change with the first use of a pipeline and other work on the machine.
 constexpr double kNewest = 0.5;
-// A device 30 times slower is tried again once in eight batches, one that was only slow once soon takes part again.
+// Growth of the estimated speed of a device that was passed over: one that is 30 times slower is tried again once in
+// eight batches; one that was slow only once takes part again soon.
 constexpr double kPassed = 1.5;
 
 }  // namespace
@@ -27,7 +28,7 @@ void ChunkScheduler::finished(size_t worker, size_t queries, double ms) {
   if (queries == 0 || ms <= 0) return;
   const double rate = static_cast<double>(queries) / ms;
   double& known = workers_[worker].rate;
-  // Times are averaged, not rates: one chunk that was free must not make a device look fast for long.
+  // Times are averaged, not rates, so that one chunk without work does not make a device look fast for long.
   known = known == 0 ? rate : 1 / (kNewest / rate + (1 - kNewest) / known);
 }
 
@@ -39,7 +40,7 @@ size_t ChunkScheduler::alive() const {
   return std::count_if(workers_.begin(), workers_.end(), [](const Worker& w) { return w.alive; });
 }
 
-// Who is not known yet is taken for the mean of those who are.
+// A worker of unknown speed counts as the mean of the others.
 double ChunkScheduler::rateOf(size_t worker) const {
   if (workers_[worker].rate > 0) return workers_[worker].rate;
   double sum = 0, count = 0;
@@ -63,9 +64,9 @@ size_t ChunkScheduler::take(size_t worker, size_t batch, size_t all, size_t inFl
   const bool known = workers_[worker].rate > 0, alone = alive() == 1;
   if (!alone) {
     if (inFlight > 0 && !known) return 0;
-    // Taking ahead is for the time when this device is done; by then the others may have done it all.
+    // A chunk taken ahead starts when this device is done with those in flight; by then the others may have done all.
     if (inFlight > 0 && static_cast<double>(inFlight) / mine >= left / sum) return 0;
-    // One query here may take longer than all that is left elsewhere. The fastest device never waits for another.
+    // One query here may take longer than all that is left elsewhere. This never applies to the fastest device.
     if (inFlight == 0 && mine < fastest && 1 / mine > (left + 1) / (sum - mine)) return 0;
   }
   const double share = static_cast<double>(batch) * mine / sum / (known || alone ? kShares : kFirstShares);

@@ -35,18 +35,18 @@ std::vector<Device> openDevices(std::span<const uint32_t> indices,
 
 struct Pool::Impl {
   Impl(std::span<const Device> devices, const Scene& ownScene, const SweeperOptions& options)
-      : scene(ownScene), exchange(reportsOf(devices)) {
+      : scene(ownScene), workQueue(reportsOf(devices)) {
     try {
       for (uint32_t i = 0; i < devices.size(); ++i) {
         if (!devices[i].supports(Mode::sampled)) withoutSampled = &devices[i].impl();
-        workers.push_back(std::make_unique<Worker>(i, devices[i], scene, options, exchange));
+        workers.push_back(std::make_unique<Worker>(i, devices[i], scene, options, workQueue));
       }
     } catch (...) {
-      exchange.close();
+      workQueue.close();
       throw;
     }
   }
-  ~Impl() { exchange.close(); }
+  ~Impl() { workQueue.close(); }
 
   static std::vector<PoolDevice> reportsOf(std::span<const Device> devices) {
     if (devices.empty()) throw Error("Pool: expected at least one device, got none");
@@ -55,14 +55,14 @@ struct Pool::Impl {
       devices[i].impl().requireQueue("a Pool");
       for (size_t k = 0; k < i; ++k) {
         if (devices[i].handles().queue != devices[k].handles().queue) continue;
-        throw Error("Pool: devices " + std::to_string(k) + " and " + std::to_string(i) + " have one queue");
+        throw Error("Pool: devices " + std::to_string(k) + " and " + std::to_string(i) + " share a queue");
       }
       reports.push_back({.name = devices[i].name(), .driver = devices[i].driver()});
     }
     return reports;
   }
 
-  /// Any device may get any query.
+  /// Throws if a device does not support a query's mode: any device may get any query.
   void requireModes(std::span<const Query> queries) const {
     if (withoutSampled == nullptr) return;
     for (size_t i = 0; i < queries.size(); ++i) {
@@ -71,9 +71,9 @@ struct Pool::Impl {
   }
 
   const Scene& scene;
-  const Device::Impl* withoutSampled = nullptr;  // a device that does not support the mode
-  WorkQueue exchange;
-  std::vector<std::unique_ptr<Worker>> workers;  // their threads end before the exchange does
+  const Device::Impl* withoutSampled = nullptr;  // a device that does not support mode sampled
+  WorkQueue workQueue;
+  std::vector<std::unique_ptr<Worker>> workers;  // declared last, so that their threads end before the queue does
 };
 
 Pool::Pool(std::span<const Device> devices, const Scene& scene, const SweeperOptions& options)
@@ -82,19 +82,19 @@ Pool::~Pool() = default;
 
 std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, std::stop_token stop) {
   impl_->requireModes(queries);
-  return impl_->exchange.post(std::move(queries), std::move(stop), impl_->scene);
+  return impl_->workQueue.post(std::move(queries), std::move(stop), impl_->scene);
 }
 
 void Pool::edit(const std::function<void()>& change) {
-  impl_->exchange.edit(change);
+  impl_->workQueue.edit(change);
 }
 
 void Pool::drain() {
-  impl_->exchange.drain();
+  impl_->workQueue.drain();
 }
 
 std::vector<PoolDevice> Pool::devices() const {
-  return impl_->exchange.devices();
+  return impl_->workQueue.devices();
 }
 
 }  // namespace radar

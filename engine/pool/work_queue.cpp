@@ -115,7 +115,7 @@ bool WorkQueue::leave(uint32_t worker) {
   return true;
 }
 
-// Queries that nobody has taken.
+// Number of queries not yet taken.
 size_t WorkQueue::waiting() const {
   size_t count = 0;
   for (const Chunk& chunk : returned_) count += chunk.count;
@@ -179,7 +179,7 @@ void WorkQueue::deliver(const Chunk& chunk, std::span<const Result> results,
   share_.finished(trace.device, chunk.count, deviceMs);
   job.answers.chunks.push_back(std::move(trace));
   settle(job, chunk.count);
-  if (waiting() > 0) work_.notify_all();  // speeds have changed, so who let the others go first may be needed now
+  if (waiting() > 0) work_.notify_all();  // estimated speeds have changed, so a worker that deferred may be needed now
 }
 
 void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks) {
@@ -193,10 +193,10 @@ void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<C
     if (share_.alive() == 0) answerUntaken({});
     if (closed_) answerUntaken("the pool was closed");
   }
-  work_.notify_all();  // who let the others go first may be needed now
+  work_.notify_all();  // workers that deferred to others may be needed now
 }
 
-// Without a reason: since no device is left.
+// An empty reason stands for the list of retired devices.
 void WorkQueue::answerUntaken(const std::string& reason) {
   std::string why = reason;
   if (why.empty()) {
@@ -215,7 +215,7 @@ void WorkQueue::fail(Job& job, size_t first, size_t count, const std::string& re
   settle(job, count);
 }
 
-// So many queries more are answered; the last one ends the job.
+// Counts answered queries; the last one ends the job.
 void WorkQueue::settle(Job& job, size_t count) {
   job.answered += count;
   if (job.answered < job.queries.size()) return;

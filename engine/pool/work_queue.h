@@ -49,7 +49,7 @@ class WorkQueue {
   /// The next chunk for a worker with `inFlight` queries in flight. If there is none: sleeps, unless the worker has
   /// queries in flight or is to end; then returns nothing.
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
-  /// `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
+  /// Stores a chunk's answers. `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
   void deliver(const Chunk& chunk, std::span<const Result> results, const std::map<size_t, std::string>& reasons,
                const SweepStats& stats, ChunkTrace trace, double deviceMs);
   /// Ends the worker; its chunks go to the others.

@@ -16,7 +16,7 @@ bool isOutOfMemory(VkResult result) {
 
 void nameThread([[maybe_unused]] uint32_t number) {
 #ifdef __linux__
-  // 15 characters at most.
+  // Linux allows 15 characters.
   pthread_setname_np(pthread_self(), ("radar-device-" + std::to_string(number % 100)).c_str());
 #endif
 }
@@ -24,10 +24,8 @@ void nameThread([[maybe_unused]] uint32_t number) {
 }  // namespace
 
 Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options,
-               WorkQueue& exchange)
-    : number_(number), device_(device), scene_(scene), options_(options), queue_(exchange), thread_([this] {
-        run();
-      }) {}
+               WorkQueue& queue)
+    : number_(number), device_(device), scene_(scene), options_(options), queue_(queue), thread_([this] { run(); }) {}
 
 void Worker::run() {
   nameThread(number_);
@@ -36,12 +34,12 @@ void Worker::run() {
     while (serve()) {
     }
   } catch (const std::exception& error) {
-    // What another lane has with the device ends before its chunk goes to others.
+    // The other lane's work on the device must end before its chunk goes to other workers.
     std::vector<Chunk> chunks = chunksInFlight();
     for (Lane& lane : lanes_) {
       try {
         if (lane.sweep) lane.sweep->finish();
-      } catch (const std::exception&) {  // the first error is the one to tell
+      } catch (const std::exception&) {  // the first error is the one to report
       }
     }
     queue_.retire(number_, error.what(), std::move(chunks));
@@ -75,7 +73,7 @@ void Worker::begin(Lane& lane, Chunk chunk) {
   lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
   lane.results.assign(lane.chunk.count, Result());
   if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_, scene_, options_, copy_);
-  // The scene changes only while nothing is in flight, so the copy that both lanes read may be written now.
+  // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
   if (const uint64_t version = scene_.version(); version != seenVersion_) {
     lane.sweep->sync();
     seenVersion_ = version;
@@ -91,14 +89,15 @@ void Worker::finish(Lane& lane) {
   lane.trace.done = std::max(lane.trace.submitted, queue_.at(sweep.deviceDone));
   lane.trace.decoded = queue_.now();
   lane.trace.stages = sweep.stats.stages;
-  // Any other failed call is the trouble of the queries at hand.
+  // A lost device retires the worker; so does a lack of memory, unless it is the last worker or the chunk has run out
+  // of memory on another device, too. Any other failure makes the chunk's queries invalid.
   if (sweep.failure) {
     const bool forMemory = isOutOfMemory(sweep.failure->result);
     const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
-  // The first use of a pipeline may take a hundred times as long: it says nothing of the device's speed.
+  // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
   bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
   const bool usedDevice = sweep.stats.submissions != 0;
   const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;

@@ -1,4 +1,4 @@
-// One thread per queue: takes chunks from the exchange and keeps its device busy.
+// One thread per device: takes chunks from the queue of batches and keeps its device busy.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@ namespace radar {
 class Worker {
  public:
   /// Starts at once. All arguments but `options` must outlive the worker. `number`: its index in the pool.
-  Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, WorkQueue& exchange);
-  /// Waits until the exchange lets the thread end.
+  Worker(uint32_t number, const Device& device, const Scene& scene, const SweeperOptions& options, WorkQueue& queue);
+  /// Waits until the queue lets the thread end.
   ~Worker() { thread_.join(); }
 
  private:

@@ -8,10 +8,10 @@ namespace radar {
 
 namespace {
 
-// Triangles that one render pass should draw: more, and lavapipe's bins outgrow its caches (30 dense sensors in one
-// pass were 1.5 times slower than a pass each).
+// Target number of triangles per render pass. With more, lavapipe's bins outgrow its caches: 30 dense sensors in one
+// pass were 1.5 times slower than in a pass each.
 constexpr uint64_t kPassTriangles = 8192;
-// Most layers that one render pass draws into.
+// Maximum number of layers per render pass.
 constexpr uint32_t kMaxPassLayers = 64;
 
 uint32_t layersPerPass(std::span<const ViewPlan* const> plans) {
@@ -44,20 +44,20 @@ struct Pending {
   std::span<const Run> runs() const { return std::span(plan->runs).subspan(placed->firstRun, placed->runs); }
 };
 
-// A draw to identify, and what of its mesh is drawn.
+// A draw whose triangles are identified, and the runs that it draws.
 struct Identified {
   uint32_t draw;
   std::span<const Run> runs;
 };
 
-// In the order in which equal draws stand together: same mesh, same first run.
+// An order that makes equal draws adjacent: those of the same mesh and first run.
 bool drawnBefore(const Pending& a, const Pending& b) {
   const Run x = a.runs()[0], y = b.runs()[0];
   return std::tuple(a.placed->mesh, x.first, x.count) < std::tuple(b.placed->mesh, y.first, y.count);
 }
 
-// Appends the draws of one pass: what several draw alike is one instanced call. Notes where each identified one went,
-// in the order given.
+// Appends the draws of one pass. Draws of the same single run become one instanced call. Appends the draws whose
+// triangles are identified to `identified`, in the order of `pending`.
 DepthPass addPass(SampledBatch& batch, std::vector<Pending>& pending, std::vector<Identified>& identified,
                   const DepthPass& shape) {
   DepthPass pass = shape;
@@ -99,7 +99,7 @@ void addItems(SampledBatch& batch, const Identified& identified) {
   }
 }
 
-// Plans of one resolution, from view `firstView`.
+// Packs plans of one resolution, which become the views from `firstView` on.
 void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView) {
   const uint32_t perPass = layersPerPass(plans);
   const uint32_t resolution = plans[0]->view.resolution;

@@ -9,7 +9,7 @@ namespace radar {
 
 namespace {
 
-constexpr double kNull = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Vector minus(const Vector& a, const Vector& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -19,17 +19,17 @@ Vector plus(const Vector& a, const Vector& b, double scale) {
   return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
 }
 
-// Unit, against the motion; null where x and y are parallel.
+// The unit normal of x and y, against the motion; NaN if they are parallel.
 Vector normalOf(const Vector& x, const Vector& y, const Vector& direction) {
   Vector n{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
   const double length = lengthOf(n) * (dot(n, direction) > 0 ? -1 : 1);
-  if (length == 0) return {kNull, kNull, kNull};
+  if (length == 0) return {kNaN, kNaN, kNaN};
   for (double& c : n) c /= length;
   return n;
 }
 
-// Where edge p + x of the sensor, moved to the contact, crosses edge q + y: the point on y, by areas seen along the
-// motion.
+// The point on the edge from q to q + y at which the sensor's edge from p to p + x crosses it at the contact; computed
+// from areas seen along the motion.
 Vector crossing(const Vector& p, const Vector& x, const Vector& q, const Vector& y, const Vector& direction) {
   const Vector side{x[1] * direction[2] - x[2] * direction[1], x[2] * direction[0] - x[0] * direction[2],
                     x[0] * direction[1] - x[1] * direction[0]};

@@ -15,7 +15,7 @@ exact::Triangle sortedTriangle(const Mesh& mesh, const Transform& worldFromMesh,
   return corners;
 }
 
-// Within D or not, and nothing else.
+// Reduces an answer to the decision whether contact is within D.
 Result decisionOf(const Result& found) {
   Result result;
   result.status = found.status == Status::overlap ? Status::hit : found.status;
@@ -28,7 +28,7 @@ Result decisionOf(const Result& found) {
   return result;
 }
 
-// What is known to be in the way, by the device alone.
+// Sets the contact that the device found.
 void setFound(Result& result, const gpu::Answer& answer, const Query& query, const Scene::Impl& scene) {
   result.status = answer.hi == 0 ? Status::overlap : Status::hit;
   result.t = result.hi = answer.hi;
@@ -36,7 +36,7 @@ void setFound(Result& result, const gpu::Answer& answer, const Query& query, con
   result.object = answer.object;
   result.triB = answer.triB;
   result.triA = answer.triA;
-  if (result.status == Status::overlap) return;  // the surfaces already cross: no first point of contact
+  if (result.status == Status::overlap) return;  // the surfaces already cross, so there is no first point of contact
   const Object& object = scene.objects[answer.object].object;
   describe(result, answer.feature, placedTriangle(scene.meshes[query.mesh], query.worldFromMesh, answer.triA),
            placedTriangle(scene.meshes[object.mesh], object.worldFromMesh, answer.triB), query.direction);
@@ -52,7 +52,7 @@ Result decodeClear() {
   return result;
 }
 
-Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> open, const Query& query,
+Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> unresolved, const Query& query,
                      const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs) {
   Result result;
   result.tier = Tier::sampled;
@@ -60,10 +60,10 @@ Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnre
   result.lo = 0;
   result.status = Status::undecided;
   if (answer.object != kNone) setFound(result, answer, query, scene);
-  // An unresolved pair can improve on that only if it may meet before.
+  // An unresolved pair matters only if it may meet before that contact.
   const Motion motion(query);
   exact::EarliestContact earliest(motion);
-  for (const gpu::SampledUnresolved& pair : open.first(answer.unresolvedPairs)) {
+  for (const gpu::SampledUnresolved& pair : unresolved.first(answer.unresolvedPairs)) {
     if (answer.object != kNone && pair.low >= answer.hi) continue;
     if (query.anyHit && (answer.object != kNone || earliest.found())) break;
     const Object& object = scene.objects[pair.object].object;

@@ -11,15 +11,15 @@ namespace radar {
 
 namespace {
 
-// In halves of the window across, in depths of the picture along: what is larger than this beside them might overflow
-// in products of the identify stage (docs/method.md, "Ranges, infinities and rounding").
+// Larger clip coordinates might overflow in products of the identify stage (docs/method.md, "Ranges, infinities and
+// rounding"). Units: half the window across, the picture's depth along.
 constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
 
-// Why the pictures cannot be set up, before anything is calculated; empty: they can.
+// The reason why the scopes cannot be drawn, as far as it is known before the view is set up; else empty.
 std::string outOfRange(const Query& query, const Scene::Impl& scene) {
   const Vector direction = scaledDirection(query.direction);
   if (std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})) != 0) {
-    return "range: the direction's components differ by more than doubles can scale";
+    return "range: the direction's components differ too much in size for doubles";
   }
   if (!scene.objectTree().inRange()) return "range: an object has coordinates beyond 2^80";
   if (!isInRange(placementOf(scene.meshes[query.mesh], query.worldFromMesh))) {
@@ -28,7 +28,7 @@ std::string outOfRange(const Query& query, const Scene::Impl& scene) {
   return {};
 }
 
-// Whether floats hold the mesh in the window, with what its vertices may be off.
+// Whether floats can hold the mesh in the window, and the errors of its vertices.
 bool fitsWindow(const Mesh& mesh, const Affine& clipFromMesh, double snap, double slack) {
   bool fits = fitsFloats(mesh, clipFromMesh) && snap < kMostAcross && slack < kMostAlong;
   for (int row = 0; row < 3; ++row) {
@@ -66,7 +66,7 @@ uint32_t pixelsAcross(const SensorWindow& window, int axis, double pixel, uint32
 
 void fillView(gpu::View& view, const Query& query, const SensorWindow& window, const Selection& reach,
               const ViewPlan& plan, uint32_t resolution) {
-  // The far plane lies a little behind what must be seen, so that contact exactly at D is not cut off.
+  // The far plane is a little beyond the depth that must be visible, so that contact exactly at D is not clipped.
   const double rangeScale = reach.depth + std::max({64 * kFloatUnit * reach.depth, 2 * reach.error, window.margin});
   const double maskScale = plan.length + 2 * window.margin;
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), view.pose);
@@ -84,13 +84,13 @@ void fillView(gpu::View& view, const Query& query, const SensorWindow& window, c
   view.maskBase = static_cast<float>(plan.length + window.margin);
   view.maskScale = static_cast<float>(maskScale);
   view.slack = static_cast<float>(reach.error + window.error + 4 * kFloatUnit * (rangeScale + maskScale));
-  // No picture holds more than 1.
+  // Stored depths are at most 1.
   view.rangeLimit =
       static_cast<float>(std::min((plan.d + reach.error + window.error) / rangeScale + 4 * kFloatUnit, 2.0));
 }
 
-// What the pictures can show of a mesh, its own error aside: whole pixels, which may pass the window's edge, and as
-// much again as snapping and float rounding move a vertex.
+// The box that the scopes can show, without a mesh's own error: whole pixels, which may pass the window's edge, plus
+// twice the distance by which snapping and float rounding move a vertex.
 Box visibleBox(const SensorWindow& window, const ViewPlan& plan, uint32_t subPixelBits) {
   const double around =
       plan.pixel * 2 * (std::ldexp(1.0, -static_cast<int>(subPixelBits)) + 6 * kFloatUnit * plan.view.resolution);
@@ -107,7 +107,7 @@ void addWhole(ViewPlan& plan, Placed& placed, const Mesh& mesh) {
   plan.runs.push_back({0, mesh.triangleCount()});
 }
 
-// Adds the clusters that `wanted` holds for; calls found(box) for each.
+// Adds the clusters for which `wanted` holds; calls found(box) for each.
 template <class Wanted, class Found>
 void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine& frameFromMesh, double error,
                  const Wanted& wanted, const Found& found) {
@@ -122,11 +122,11 @@ void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine&
   placed.runs = static_cast<uint32_t>(plan.runs.size()) - placed.firstRun;
 }
 
-// Fills inReach, unless no cluster meets the swept prism, and mask where it is not drawn whole.
+// Fills inReach, unless no cluster meets the swept prism, and `mask`, unless it is drawn whole.
 void addReached(ViewPlan& plan, const Scene::Impl& scene, const Selection& reach, const Box& visible, Drawn drawn,
                 const Mesh& sensor, const SensorWindow& window, const auto& placeInRange) {
   bool inPrism = false;
-  std::vector<Box> columns;  // around what is seen of each object, endless along the motion
+  std::vector<Box> columns;  // around the visible clusters of each object, unbounded along the motion
   for (const SelectedObject& r : reach.objects) {
     Placed placed = placeInRange(r.object, r.frameFromMesh, r.error);
     const Mesh& mesh = scene.meshes[placed.mesh];
@@ -152,7 +152,8 @@ void addReached(ViewPlan& plan, const Scene::Impl& scene, const Selection& reach
     plan.runs.resize(plan.mask.runs);
   }
   if (drawn != Drawn::inReach || !inPrism) return;
-  // A pixel that R and M share lies in a column and in a sensor cluster's box, each wider by the same snapping.
+  // A pixel in both R and M is in a column and in the box of a cluster of the sensor, each widened by the same
+  // snapping.
   const double around = window.box.lo[0] - visible.lo[0];
   const auto passesOver = [&](const Box& box) {
     return std::any_of(columns.begin(), columns.end(), [&](const Box& c) { return overlap(box, c, around); });
@@ -160,8 +161,8 @@ void addReached(ViewPlan& plan, const Scene::Impl& scene, const Selection& reach
   addClusters(plan, plan.mask, sensor, window.frameFromMesh, window.error, passesOver, [](const Box&) {});
 }
 
-// Objects out of reach. What meets the visible box although nothing of it is in reach must not make a difference: the
-// pictures reach a rounding farther than select does.
+// Adds objects out of reach. Those that meet the visible box are left out: the scopes reach farther than select by a
+// rounding error, which must not change the answer.
 void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, const Selection& reach, const Box& visible,
                const Vector& origin, const auto& placeInRange) {
   auto next = reach.objects.begin();
@@ -210,7 +211,7 @@ ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subP
   const Selection reach = selectionOf(query, scene, window);
   fillView(plan.view, query, window, reach, plan, resolution);
 
-  // The scales as the shaders see them, rounded to float: pictures and what is read from them agree.
+  // The scales are those rounded to float, as shaders use them, so that drawing and reading the scopes agree.
   const double backPlane = window.box.lo[2];
   const double rangeScale = plan.view.rangeScale, maskScale = plan.view.maskScale, maskBase = plan.view.maskBase;
   const auto place = [&](ObjectId object, MeshId mesh, const Affine& m, double error, double scaleZ, double offsetZ) {
@@ -239,7 +240,8 @@ ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subP
   addReached(plan, scene, reach, visible, drawn, sensor, window, placeInRange);
   const bool fits = std::all_of(plan.inReach.begin(), plan.inReach.end(), [](const Placed& p) { return p.fits; });
   if (!plan.inReach.empty() && !(plan.mask.fits && fits)) {
-    plan.outOfRange = "range: an object in reach is too large beside the sensor, or its place too coarse, for floats";
+    plan.outOfRange =
+        "range: an object in reach is too large relative to the sensor, or placed too imprecisely, for floats";
     return plan;
   }
   for (const Run& run : plan.runs) plan.items += (run.count + gpu::kItemTriangles - 1) / gpu::kItemTriangles;

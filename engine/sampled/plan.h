@@ -19,7 +19,7 @@ struct Run {
 struct Placed {
   ObjectId object = kNone;  ///< kNone: the sensor
   MeshId mesh = kNone;
-  bool fits = true;  ///< floats hold it; if not, nothing below is set
+  bool fits = true;  ///< floats can hold it; if not, the members below are not set
   std::array<float, 12> clipFromMesh{};
   std::array<float, 3> origin{};    ///< of local vertices
   float snap = 0;                   ///< largest distance of a covered pixel centre from the triangle, pixels
@@ -27,7 +27,7 @@ struct Placed {
   uint32_t firstRun = 0, runs = 0;  ///< the runs drawn, ascending, in ViewPlan::runs
 };
 
-/// What a view draws. Pictures differ only in pixels of M where R is empty; answers are the same.
+/// The meshes that a view draws. Scopes differ only in pixels of M where R is empty; answers are the same.
 enum class Drawn {
   everything,  ///< every object, whole: the naive baseline
   wholeMask,   ///< clusters in reach, and the whole sensor: shows all of M

@@ -7,11 +7,11 @@ namespace radar {
 
 namespace {
 
-// A few dozen roundings, with room; relative.
+// Relative bound on a few dozen rounding errors, with a margin.
 constexpr double kRounding = 0x1p-45;
 
-// Separating axes: the world's and the prism's own. The cross products are left out: objects have tighter tests of
-// their own behind this one.
+// Tests the world's axes and the prism's as separating axes. Cross products are not tested, since tighter tests of the
+// objects follow.
 bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double slack) {
   for (int k = 0; k < 3; ++k) {
     if (b.lo[k] > prismInWorld.hi[k] || b.hi[k] < prismInWorld.lo[k]) return false;

@@ -12,7 +12,7 @@ double largest(const Vector& v) {
   return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
 }
 
-// What double precision may lose between `place` and the frame, world units.
+// Bound on the double-precision error of a vertex in the frame, relative to `transformPoint`, world units.
 double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
   double worst = 0;
   for (int row = 0; row < 3; ++row) {
@@ -24,7 +24,7 @@ double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin
   return 0x1p-47 * (worst + largest(origin));
 }
 
-// Around a box of the world.
+// A box in the frame around a box in the world.
 Box turnedBox(const Box& world, const std::array<Vector, 3>& axes, const Vector& origin) {
   Vector centre, half;
   for (int k = 0; k < 3; ++k) {
@@ -42,7 +42,7 @@ Box turnedBox(const Box& world, const std::array<Vector, 3>& axes, const Vector&
   return box;
 }
 
-// The turned vertices' own box: tighter than the turned box, and M fills the window. Padded by its rounding.
+// The box of the vertices in the frame, which is tighter than the mesh's box in the frame, so that M fills the window.
 Box tightBox(const Mesh& mesh, const Affine& m) {
   Box box;
   for (int row = 0; row < 3; ++row) {
@@ -104,7 +104,7 @@ bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh) {
 }
 
 double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
-  // What float loses below its normal range: of a product, of an entry for each unit of the mesh, of a vertex.
+  // The 2^-120 terms cover floats below the normal range: of a product, of an entry per unit of the mesh, of a vertex.
   const double extent = mesh.reach[0] + double{mesh.reach[1]} + mesh.reach[2];
   double worst = 0, scale = 0;
   for (int row = 0; row < 3; ++row) {

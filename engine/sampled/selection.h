@@ -1,4 +1,4 @@
-// What a sensor can reach: the objects in its swept prism (tier select).
+// The objects that a sensor can reach: those in its swept prism (tier select).
 #pragma once
 
 #include <vector>

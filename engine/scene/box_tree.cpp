@@ -12,7 +12,7 @@ namespace radar {
 namespace {
 
 constexpr int kBins = 16;
-// Below, a thread costs more than it saves.
+// With fewer items, a thread costs more than it saves.
 constexpr size_t kWorthAThread = 1u << 15;
 
 struct Item {
@@ -30,7 +30,7 @@ struct Growing {
       hi[k] = std::max(hi[k], q[k]);
     }
   }
-  // In doubles: the squares of what a float holds may overflow.
+  // In doubles, since squares of floats may overflow.
   double area() const {
     const double x = double(hi[0]) - lo[0], y = double(hi[1]) - lo[1], z = double(hi[2]) - lo[2];
     return x < 0 ? 0 : x * y + y * z + z * x;
@@ -43,10 +43,10 @@ float middle(const FloatBox& box, int axis) {
 
 struct Cut {
   int axis = -1;
-  uint32_t bin = 0;  ///< the first of the right side
+  uint32_t bin = 0;  ///< first bin of the right side
 };
 
-// Which bin an item's middle falls into. The extents of middles can overflow a float's range, not a double's.
+// Assigns items to bins by their middles. Extents are doubles, since those of floats may overflow.
 class Binning {
  public:
   explicit Binning(const Growing& middles) {
@@ -66,7 +66,7 @@ class Binning {
   Vector first_{}, scale_{};
 };
 
-// Where the sum of (area times items) of both sides is least.
+// The cut with the least sum of (area times number of items) over both sides.
 Cut bestCut(std::span<const Item> items, const Binning& binning) {
   Cut best;
   double bestCost = std::numeric_limits<double>::infinity();
@@ -102,7 +102,7 @@ Cut bestCut(std::span<const Item> items, const Binning& binning) {
   return best;
 }
 
-// Orders the items so that those of the left side come first; returns how many those are.
+// Moves the items of the left side to the front; returns their number.
 size_t split(std::span<Item> items, const Growing& middles) {
   const Binning binning(middles);
   const Cut cut = bestCut(items, binning);
@@ -112,7 +112,7 @@ size_t split(std::span<Item> items, const Growing& middles) {
                                    [&](const Item& item) { return binning.binOf(item.box, cut.axis) < cut.bin; });
     left = static_cast<size_t>(at - items.begin());
   }
-  // Middles that coincide: any halves will do.
+  // If all middles coincide, any halves will do.
   return left == 0 || left == items.size() ? items.size() / 2 : left;
 }
 
@@ -178,7 +178,7 @@ class Builder {
     return tree;
   }
 
-  // The rest of a subtree whose root stands at `at` already.
+  // Appends a subtree, whose root goes to index `at`.
   static void append(Subtree& whole, const Subtree& part, size_t at) {
     const auto offset = static_cast<uint32_t>(whole.nodes.size() - 1);
     const auto moved = [&](BoxTree::Node node) {

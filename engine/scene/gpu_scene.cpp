@@ -15,10 +15,10 @@ using gpu::Upload;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-// Integers, also for floats: a device may change the bits of floats that are subnormal or none.
+// Floats are stored as integers, since a device may change the bits of subnormal floats and NaNs.
 constexpr VkFormat kTexels = VK_FORMAT_R32G32B32A32_UINT;
 
-// A texel buffer may be as large as it likes, a storage buffer not.
+// maxStorageBufferRange limits storage buffers; texel buffers have a limit of their own (TexelBuffer).
 template <class T>
 void checkLimit(const Device::Impl& device, const char* what, uint64_t count) {
   const uint64_t bytes = count * sizeof(T), limit = device.properties.limits.maxStorageBufferRange;
@@ -31,7 +31,7 @@ void copyPoint(const Vector& from, float (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
 
-// Those of `all` that are not in `less`; both ascend.
+// Appends the elements of `all` that are not in `less`; both ascend.
 template <class Id>
 void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std::vector<Id>& out) {
   std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(out));
@@ -68,7 +68,7 @@ VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
   return meshes + prepareIndices(scene) + prepareObjects(scene);
 }
 
-// Gives every mesh its place in the buffers.
+// Assigns every mesh its place in the buffers.
 void GpuScene::layOut(const Scene::Impl& scene) {
   records_.assign(scene.meshes.size(), {});
   uint64_t vertices = 0, triangles = 0, nodes = 0;
@@ -98,7 +98,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
   buffers_.meshes.reserve(records_.size());
 }
 
-// What shaders write is bound as storage buffers, of which they reach only as much as the device allows.
+// Buffers that shaders write are bound as storage buffers, so they are subject to maxStorageBufferRange.
 void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
   if (!next_.objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
   if (next_.meshes.empty()) return;
@@ -118,7 +118,7 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
   if (recordsChanged_) {
     layOut(scene);
     bytes += Upload::aligned(sizeof(gpu::MeshRecord) * records_.size());
-    seenPoses_ = 0;  // placements name nodes
+    seenPoses_ = 0;  // placements refer to nodes
   } else {
     addDifference(overwritten_.meshes, next_.meshes, changedMeshes_);
   }

@@ -12,9 +12,9 @@ namespace radar {
 
 namespace {
 
-// Leaves of one triangle, and of four, made searches slower.
+// Searches were slower with leaves of one triangle, and of four.
 constexpr uint32_t kLeafTriangles = 2;
-// Larger nodes have no slab along their normal: hardly any is flat, and each level costs a look at all vertices.
+// Larger nodes have no slab along their normal: they are rarely flat, and each level costs a pass over all vertices.
 constexpr uint32_t kSlabTriangles = 1024;
 constexpr size_t kChunk = 4096;
 
@@ -38,7 +38,7 @@ class Builder {
     parallelFor(tree.nodes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
       for (size_t i = first; i < last; ++i) fill(out, tree.nodes[i], i);
     });
-    for (size_t i = out.nodes.size(); i-- > 0;) {  // children stand behind their parents
+    for (size_t i = out.nodes.size(); i-- > 0;) {  // children come after their parents
       const BoxTree::Node& node = tree.nodes[i];
       if (node.child == 0) continue;
       out.below[i].least = std::min(out.below[node.child].least, out.below[node.child + 1].least);
@@ -78,7 +78,7 @@ class Builder {
     if (from.count <= kSlabTriangles) fitSlab(tree, from, node);
   }
 
-  // A slab across the triangles' mean normal: any normal would do, that one is thin.
+  // The slab along the triangles' mean normal. Any normal would be valid; this one gives a thin slab.
   void fitSlab(const MeshTree& tree, const BoxTree::Node& from, gpu::MeshNode& node) const {
     Vector sum{};
     for (uint32_t place = from.first; place < from.first + from.count; ++place) {
@@ -90,7 +90,7 @@ class Builder {
       }
     }
     const double length = std::hypot(sum[0], sum[1], sum[2]);
-    if (!(length > 0)) return;  // normal, middle and half extent are 0, which holds every vertex
+    if (!(length > 0)) return;  // a slab whose normal, middle and half extent are 0 holds every vertex
     for (int k = 0; k < 3; ++k) node.normal[k] = static_cast<float>(sum[k] / length);
     double least = std::numeric_limits<double>::max(), most = -least;
     for (uint32_t place = from.first; place < from.first + from.count; ++place) {
@@ -102,7 +102,7 @@ class Builder {
       }
     }
     node.slabMiddle = static_cast<float>(0.5 * (least + most));
-    // The sums round by 2^-51 of coordinates below 4.
+    // Rounding errors of the sums are at most 2^-51 of coordinates below 4.
     const double half = std::max(most - node.slabMiddle, node.slabMiddle - least) + 0x1p-48;
     node.slabHalf = std::nextafter(static_cast<float>(half), std::numeric_limits<float>::max());
   }
@@ -116,7 +116,7 @@ void fitBox(const Point& lo, const Point& hi, float (&centre)[3], float (&half)[
   for (int k = 0; k < 3; ++k) {
     centre[k] = 0.5f * lo[k] + 0.5f * hi[k];
     const float reach = std::max(hi[k] - centre[k], centre[k] - lo[k]);
-    // Flat boxes stay flat: subnormal numbers are slow, and devices flush them.
+    // Flat boxes stay flat, and other extents are normal numbers: subnormal numbers are slow, and devices flush them.
     constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
     half[k] = reach == 0 ? 0 : std::max(std::nextafter(reach, kMost), kLeast);
   }

@@ -11,7 +11,7 @@ namespace radar {
 
 namespace {
 
-// Refitting keeps a tree as long as its boxes are not twice as large as when it was built.
+// The tree is rebuilt once refitting has made its cost this many times that after the last build.
 constexpr double kRebuildAt = 2.0;
 constexpr size_t kChunk = 8192;
 
@@ -23,7 +23,7 @@ double halfArea(const gpu::ObjectNode& node) {
 FloatBox floatBox(const Box& box, const Vector& anchor) {
   FloatBox out;
   for (int k = 0; k < 3; ++k) {
-    // The differences are rounded, too.
+    // Covers the rounding of the differences.
     const double lo = box.lo[k] - anchor[k], hi = box.hi[k] - anchor[k];
     out.lo[k] = roundDown(lo - 0x1p-52 * std::abs(lo));
     out.hi[k] = roundUp(hi + 0x1p-52 * std::abs(hi));
@@ -58,7 +58,7 @@ void ObjectTree::update(const Scene::Impl& scene) {
   for (size_t i = 0; i < boxes_.size(); ++i) {
     if (!scene.objects[i].used) continue;
     world_.merge(boxes_[i]);
-    // So asked that a box which has overflowed to what is not a number is out of range.
+    // A NaN makes the tree out of range, too.
     for (int k = 0; k < 3; ++k) {
       inRange_ = inRange_ && boxes_[i].lo[k] >= -kMostCoordinate && boxes_[i].hi[k] <= kMostCoordinate;
     }
@@ -95,7 +95,7 @@ void ObjectTree::build(const Scene::Impl& scene) {
 
 void ObjectTree::refit() {
   if (!inRange_) nodes_.clear();
-  for (size_t i = nodes_.size(); i-- > 0;) {  // children stand behind their parents
+  for (size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
     gpu::ObjectNode& node = nodes_[i];
     FloatBox box;
     if ((node.link & gpu::kLinkLeaf) != 0) {

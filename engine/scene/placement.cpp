@@ -10,19 +10,19 @@ namespace radar {
 
 namespace {
 
-// An entry of an inverse matrix, and what it is off, are out of range from here on.
+// Entries of an inverse matrix, and their residuals, are out of range from here on.
 constexpr double kMostInverse = 0x1p100;
-// What a device may take for 0 of the placement's floats, together.
+// Bound on the total error of a placement's floats that a device flushes to 0.
 constexpr double kFlushed = 1e-37;
 
-// The leading 16 bits: the shader's products with numbers of 8 bits are exact.
+// The leading 16 bits, so that the shader's products with 8-bit numbers are exact.
 float leadingBits(double x) {
   return std::bit_cast<float>(std::bit_cast<uint32_t>(static_cast<float>(x)) & 0xffffff00u);
 }
 
 using Matrix = std::array<double, 9>;
 
-// Any rows will do that are about the inverse's; what they are off is measured.
+// The inverse, except for rounding. Any rows would be valid, since setInverse() computes their residual.
 Matrix inverseOf(const Matrix& m) {
   const double a = m[4] * m[8] - m[5] * m[7], b = m[5] * m[6] - m[3] * m[8], c = m[3] * m[7] - m[4] * m[6];
   const double inverse = 1 / (m[0] * a + m[1] * b + m[2] * c);
@@ -31,7 +31,7 @@ Matrix inverseOf(const Matrix& m) {
           c * inverse, (m[1] * m[6] - m[0] * m[7]) * inverse, (m[0] * m[4] - m[1] * m[3]) * inverse};
 }
 
-// Returns whether floats hold the rows.
+// Sets the inverse rows and their residuals. Returns whether floats hold them.
 bool setInverse(gpu::Placement& out, const Matrix& matrix) {
   const Matrix inverse = inverseOf(matrix);
   for (int row = 0; row < 3; ++row) {
@@ -50,7 +50,7 @@ bool setInverse(gpu::Placement& out, const Matrix& matrix) {
       off += std::abs(product) * out.reach[j];
       sum += magnitude * out.reach[j];
     }
-    // Shaders add to it, and may round each sum down.
+    // The factor covers shaders' sums with this number, which may round down.
     n[3] = roundUp(1.00001 * (off + 0x1p-48 * sum));
     if (!(n[3] < kMostInverse)) return false;
   }
@@ -83,7 +83,7 @@ gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh) {
     magnitude = std::max(magnitude, sum);
     out.coarse[4 * row + 3] = static_cast<float>(position);
     out.fine[4 * row + 3] = static_cast<float>(position - out.coarse[4 * row + 3]);
-    // The sum of what placing, the position's parts and the shader's sums of them lose; and of fine parts.
+    // Covers the rounding of placing, of the position's two parts and of the shader's sums of them, also of fine parts.
     out.error = std::max(out.error, roundUp(0x1p-44 * sum));
   }
   out.size = roundUp(size);

@@ -10,7 +10,7 @@ namespace radar {
 /// (kMostCoordinate).
 gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh);
 
-/// Whether floats hold the mesh and its pose.
+/// Whether floats can hold the mesh and its pose.
 inline bool isInRange(const gpu::Placement& placement) {
   return placement.perUnit > 0;
 }

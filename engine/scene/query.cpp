@@ -1,4 +1,4 @@
-// What a query promises, and an answer before anything is known.
+// Validation of queries, and the initial values of a Result.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@ std::string validate(const Transform& pose) {
   for (double value : pose.m) {
     if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
   }
-  // Columns, then rows scaled to length 1, so that an honest 1e-5 scale along one axis is no singular matrix.
+  // Columns, then rows are scaled to length 1, so that a scale of 1e-5 along one axis does not look singular.
   Transform scaled = pose;
   for (int k = 0; k < 3; ++k) {
     const double length = std::hypot(pose.m[k], pose.m[4 + k], pose.m[8 + k]);

@@ -10,10 +10,10 @@ namespace radar {
 
 namespace {
 
-// Of the largest coordinate: so that a transform within its bounds stays there in float arithmetic.
+// Bounds are widened by this part of their largest coordinate, so that float arithmetic does not leave them.
 constexpr double kBoundsRoom = 0x1p-18;
 constexpr double kMostBound = 0x1p120;
-// So that a float holds the inverse of a mesh's unit.
+// Least exponent of a mesh's unit: a float must hold its inverse.
 constexpr int kLeastUnit = -126;
 
 std::string idText(const char* kind, uint32_t id) {
@@ -34,11 +34,11 @@ double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
   return std::sqrt(sum);
 }
 
-// Throws where the bounds are none.
+// Throws if the bounds are invalid.
 Box boxOf(const char* call, const Bounds& bounds) {
   for (int k = 0; k < 3; ++k) {
     if (!(bounds.lo[k] <= bounds.hi[k] && bounds.lo[k] >= -kMostBound && bounds.hi[k] <= kMostBound)) {
-      throw Error(std::string(call) + ": bounds: expected lo <= hi, of at most 2^120, got " +
+      throw Error(std::string(call) + ": bounds: expected lo <= hi and magnitudes of at most 2^120, got " +
                   std::to_string(bounds.lo[k]) + " and " + std::to_string(bounds.hi[k]));
     }
   }
@@ -50,13 +50,13 @@ Box boxOf(const char* call, const Bounds& bounds) {
   return box;
 }
 
-// A float that makes position - origin exact for every position in [lo, hi], by Sterbenz's lemma where it is not 0.
+// A float that makes position - origin exact for every position in [lo, hi]: 0, or exact by Sterbenz's lemma.
 double originOf(double lo, double hi) {
   const double middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
   return std::abs(middle) >= 2.5 * half ? static_cast<float>(middle) : 0;
 }
 
-// `box`: what a host may make of the mesh; empty: nothing else.
+// Computes the derived members. `box`: the bounds within which a host may deform the mesh, or empty.
 void derive(Mesh& mesh, Box box) {
   // Vertices that no triangle uses must not widen the window.
   for (uint32_t vertex : mesh.indices) {
@@ -191,7 +191,7 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   }
   for (size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] >= positions.size() / 3) {
-      throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " names vertex " +
+      throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
                   std::to_string(indices[i]) + " of " + std::to_string(positions.size() / 3));
     }
   }
@@ -203,7 +203,7 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   mesh.version = nextVersion();
   Box box;
   if (bounds) box = boxOf("addMesh", *bounds);
-  // What a host writes there are floats.
+  // The host writes floats, so the bounds are rounded outwards to floats.
   for (int k = 0; k < 3 && bounds; ++k) {
     box.lo[k] = roundDown(box.lo[k]);
     box.hi[k] = roundUp(box.hi[k]);

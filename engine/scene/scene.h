@@ -56,7 +56,7 @@ struct Scene::Impl {
   uint64_t identity;
   std::vector<Mesh> meshes;
   std::vector<ObjectSlot> objects;
-  FreeIds freeMeshes, freeObjects;  ///< the least is given next
+  FreeIds freeMeshes, freeObjects;  ///< the least is used next
   /// Increase with every change of their kind; a reader that has seen the current value is up to date.
   uint64_t meshVersion = 0;
   uint64_t structureVersion = 0;  ///< objects added or removed

@@ -120,7 +120,7 @@ Fine fineDeterminant(Differences d) {
   value = plus(value, DoubleDouble(all.high.y, all.low.y));
   value = plus(value, DoubleDouble(all.high.z, all.low.z));
   const double magnitude = sum3(abs(w.high) * (abs(over.high) + abs(under.high))), size = 1.0LF + sum3(abs(w.high));
-  // The host's bound of 2^-99 and 2^-1060, increased because the device may round this sum in any direction.
+  // The CPU's bound of 2^-99 and 2^-1060, increased because the device may round this sum in any direction.
   return Fine(value, 1.6e-30LF * magnitude + 1.7e-300LF * size);
 }
 

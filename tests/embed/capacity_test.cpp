@@ -193,10 +193,10 @@ TEST_CASE("more room than a device has, or none, is refused by the member that a
   refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");
   refused({.rounds = 66}, "Capacity::rounds: this device allows 64, got 66");
   refused({.unresolvedPairs = 1u << 30}, "Capacity::unresolvedPairs: this device allows");
-  refused({.rounds = 3}, "Capacity::rounds: expected an even number from 2 on, got 3");
-  refused({.rounds = 0}, "Capacity::rounds: expected an even number from 2 on, got 0");
-  refused({.candidates = 0}, "expected room for a pair");
-  refused({.unresolvedPairs = 0}, "expected room for a pair");
+  refused({.rounds = 3}, "Capacity::rounds: expected an even number of at least 2, got 3");
+  refused({.rounds = 0}, "Capacity::rounds: expected an even number of at least 2, got 0");
+  refused({.candidates = 0}, "candidates and unresolvedPairs: expected at least 1 each, got 0");
+  refused({.unresolvedPairs = 0}, "candidates and unresolvedPairs: expected at least 1 each, got 0");
 }
 
 TEST_CASE("an object that floats cannot hold makes the queries that reach it out of range, and no other") {

@@ -90,14 +90,14 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
   expectSeen(look(inside, at));
   CHECK(recorder.boundsViolation().empty());
   expectRefused(look(beyond, at));
-  CHECK(recorder.boundsViolation() == "mesh 1: vertex 1 is out of its bounds, or not finite");
+  CHECK(recorder.boundsViolation() == "mesh 1: vertex 1 is outside its bounds or not finite");
   expectRefused(look(infinite, at));
   expectRefused(look(none, at));
   expectRefused(look(vast, at));
   expectSeen(look(inside, at));
   CHECK(recorder.boundsViolation().empty());
   expectRefused(look(inside, away));
-  CHECK(recorder.boundsViolation() == "object 0: its mesh's box is out of its bounds, or its transform not finite");
+  CHECK(recorder.boundsViolation() == "object 0: its mesh's box is outside its bounds, or its transform is not finite");
   expectRefused(look(inside, huge));
   expectRefused(look(inside, lost));
   expectSeen(look(inside, at));
@@ -291,10 +291,11 @@ TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with
   objects({.transforms = buffer.get(), .stride = 44, .objects = {&wall.wall, 1}}, "at least 48 bytes, got 44");
   objects({.objects = {&wall.wall, 1}}, "expected a buffer of transforms");
   for (const VkDeviceSize stride : {VkDeviceSize{1} << 40, VkDeviceSize{1} << 63, ~VkDeviceSize{0}}) {
-    mesh({wall.mesh, {.buffer = buffer.get(), .stride = stride}}, "bytes that this device allows");
+    mesh({wall.mesh, {.buffer = buffer.get(), .stride = stride}}, "bytes of the device's maxStorageBufferRange");
     wall.scene.setBounds(wall.far, {{-9, -9, -9}, {99, 9, 9}});
     const ObjectId both[] = {wall.wall, wall.far};
-    objects({.transforms = buffer.get(), .stride = stride, .objects = both}, "bytes that this device allows");
+    objects({.transforms = buffer.get(), .stride = stride, .objects = both},
+            "bytes of the device's maxStorageBufferRange");
   }
 
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};

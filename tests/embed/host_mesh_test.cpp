@@ -91,6 +91,6 @@ TEST_CASE("a mesh of the host's that cannot be read is refused by the member tha
   refused({.vertexCount = 3, .indices = buffer.get(), .indexType = VK_INDEX_TYPE_UINT8_EXT, .indexCount = 3},
           "addMesh: indexType: expected 16 or 32 bits");
   refused({.vertexCount = 3}, "finite");
-  refused({.vertexCount = 2, .indices = buffer.get(), .firstIndex = 36, .indexCount = 3}, "names vertex 3 of 2");
+  refused({.vertexCount = 2, .indices = buffer.get(), .firstIndex = 36, .indexCount = 3}, "refers to vertex 3 of 2");
   CHECK(scene.meshLimit() == 0);
 }

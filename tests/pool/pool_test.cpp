@@ -158,5 +158,5 @@ TEST_CASE("devices are opened by number, each once, and a pool takes no queue tw
   CHECK_THROWS_WITH(Pool({}, scene), Catch::Contains("at least one device"));
   std::vector<Device> same;
   for (int i = 0; i < 2; ++i) same.push_back(Device::adopt(twoDevices()[0].handles()));
-  CHECK_THROWS_WITH(Pool(same, scene), Catch::Contains("devices 0 and 1 have one queue"));
+  CHECK_THROWS_WITH(Pool(same, scene), Catch::Contains("devices 0 and 1 share a queue"));
 }

@@ -23,7 +23,7 @@ std::string query(const std::string& id, const std::string& rest) {
 
 const std::string kGood = query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8)");
 
-/// Runs query on the file; it must fail as bad input does, and leave nothing behind.
+/// Runs `query` on the file. It must end with status 2 and leave all files as they were.
 void requireRefused(const ScratchFolder& folder, const std::string& text, const std::string& place,
                     const std::string& expectation) {
   folder.write("q.json", text);
@@ -40,7 +40,7 @@ void requireRefused(const ScratchFolder& folder, const std::string& text, const 
 
 }  // namespace
 
-TEST_CASE("every kind of bad query file ends with status 2, a message that names the place, and no output") {
+TEST_CASE("a bad query file ends with status 2, a message that names the place, and no output") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   folder.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
@@ -75,14 +75,14 @@ TEST_CASE("every kind of bad query file ends with status 2, a message that names
                  "not available in this version");
 }
 
-TEST_CASE("a missing query file is named") {
+TEST_CASE("the message about a missing query file names it") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "query no.json");
   CHECK(run.status == 2);
   CHECK_THAT(run.err, Contains("no.json: expected a query file"));
 }
 
-TEST_CASE("options that do not exist, or have values out of range, are refused by name") {
+TEST_CASE("the message about an unknown option or a bad value names it") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));
@@ -102,7 +102,7 @@ TEST_CASE("options that do not exist, or have values out of range, are refused b
   CHECK(folder.list() == "a.obj q.json");
 }
 
-TEST_CASE("a sweep with bad numbers or files is refused by the option's name") {
+TEST_CASE("sweep refuses bad numbers and files and names the option or the file") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   for (const auto& [arguments, words] :
@@ -125,7 +125,7 @@ TEST_CASE("a sweep with bad numbers or files is refused by the option's name") {
   }
 }
 
-TEST_CASE("scopes asks for what it needs") {
+TEST_CASE("scopes names an option that is missing or does not apply") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));
@@ -141,7 +141,7 @@ TEST_CASE("scopes asks for what it needs") {
   CHECK(folder.list() == "a.obj q.json");
 }
 
-TEST_CASE("without a Vulkan driver the program says so and how to get one, and the reference works") {
+TEST_CASE("without a Vulkan driver the program explains how to get one, and mode reference still answers") {
   const ScratchFolder folder;
   folder.write("a.obj", kMesh);
   folder.write("q.json", queryFile(kGood));

@@ -17,14 +17,14 @@ bool isPng(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("the devices are listed with their numbers") {
+TEST_CASE("devices lists the devices with their numbers") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "devices");
   CHECK(run.status == 0);
   CHECK_THAT(run.out, Contains("0  ") && Contains("usable"));
 }
 
-TEST_CASE("mode sampled answers, says what resolution it chose, and counts its stages") {
+TEST_CASE("mode sampled reports the chosen resolution and writes statistics of its stages") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload table1 --boxes 500 --sensors 16 --out w").status == 0);
   const Run run = runProgram(folder, "query w/queries.json --mode sampled --out a.jsonl --stats s.json");
@@ -38,7 +38,7 @@ TEST_CASE("mode sampled answers, says what resolution it chose, and counts its s
   CHECK(first.contains("paper_min_l"));
 }
 
-TEST_CASE("scopes draws R, M and L, and writes their values on request") {
+TEST_CASE("scopes draws R, M and L and writes their values on request") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
   const Run run = runProgram(folder,
@@ -55,7 +55,7 @@ TEST_CASE("scopes draws R, M and L, and writes their values on request") {
   for (const char* name : {"p/R.f32", "p/M.f32", "p/L.f32"}) CHECK(folder.read(name).size() == 4u * 32 * 32);
 }
 
-TEST_CASE("the demo leaves a table, answers, questions and pictures") {
+TEST_CASE("demo writes a table, queries, answers and pictures") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "demo --out d");
   INFO(run.err);
@@ -66,7 +66,7 @@ TEST_CASE("the demo leaves a table, answers, questions and pictures") {
   CHECK(runProgram(folder, "query d/queries.json --mode reference").out == folder.read("d/answers-reference.jsonl"));
 }
 
-TEST_CASE("stability asks every family, and leaves a page, a table and pictures") {
+TEST_CASE("stability runs every family and writes a page, tables and pictures") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "stability --cases 52 --resolution 64 --out s");
   INFO(run.out);
@@ -82,7 +82,7 @@ TEST_CASE("stability asks every family, and leaves a page, a table and pictures"
   CHECK(isPng(folder.read("s/stability/edge-on.png")));
 }
 
-TEST_CASE("stability asks one case again") {
+TEST_CASE("stability can run a single case") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "stability --family slope --first 40 --cases 1 --resolution 64");
   CHECK(run.status == 0);

@@ -18,7 +18,7 @@ std::vector<nlohmann::json> linesOf(const std::string& text) {
   return lines;
 }
 
-/// A triangle in the plane z = 0 moves up towards others.
+/// Writes queries in which a triangle in the plane z = 0 moves up towards others.
 void writeTriangles(const ScratchFolder& folder) {
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
   folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
@@ -37,7 +37,7 @@ void writeTriangles(const ScratchFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("query answers in the file's order, over scenes with a base, masks and exclusions") {
+TEST_CASE("query answers in the order of the file and respects base scenes, masks and exclusions") {
   const ScratchFolder folder;
   writeTriangles(folder);
   const Run run = runProgram(folder, "query q.json --mode reference");
@@ -90,7 +90,7 @@ TEST_CASE("query writes answers and statistics to files") {
   CHECK(runProgram(folder, "query q.json").out == runProgram(folder, "query q.json --mode contact").out);
 }
 
-TEST_CASE("sweep says in words what is hit, where and when, and --json prints the answer line") {
+TEST_CASE("sweep describes the contact in words, and --json prints the answer line") {
   const ScratchFolder folder;
   writeTriangles(folder);
   const std::string arguments = "sweep a.obj a.obj --at 0 0 -3 --rotate 0 0 1 90 --direction 0 0 1 --distance 9 ";
@@ -107,7 +107,7 @@ TEST_CASE("sweep says in words what is hit, where and when, and --json prints th
   CHECK_THAT(clear.out, Contains("clear: certainly no contact within 9"));
 }
 
-TEST_CASE("every workload is written, read and answered, the same each time") {
+TEST_CASE("workload writes the same files each time, and query answers them") {
   const ScratchFolder folder;
   writeTriangles(folder);
   for (const std::string name :
@@ -125,7 +125,7 @@ TEST_CASE("every workload is written, read and answered, the same each time") {
   }
 }
 
-TEST_CASE("modes contact and reference tell the same contacts") {
+TEST_CASE("modes contact and reference report the same contacts") {
   const ScratchFolder folder;
   writeTriangles(folder);
   for (const std::string name : {"table1 --boxes 1000 --sensors 24", "soup --objects 20 --sensors 40 --triangles 12"}) {
@@ -148,7 +148,7 @@ TEST_CASE("modes contact and reference tell the same contacts") {
   }
 }
 
-TEST_CASE("help teaches with examples") {
+TEST_CASE("help shows examples, and a call without a command points to the help") {
   const ScratchFolder folder;
   CHECK_THAT(runProgram(folder, "--help").out, Contains("cyber-radar demo"));
   for (const char* command : {"sweep", "query", "scopes", "workload"}) {

@@ -1,4 +1,4 @@
-// The built program, run as a person runs it.
+// Runs the built program in a shell.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct Run {
   std::string out, err;
 };
 
-/// Runs `cyber-radar arguments` in a shell, in the folder. `environment` is put in front: "NAME=value".
+/// Runs `cyber-radar arguments` in `folder`. `environment` precedes the command: "NAME=value".
 Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
 
 }  // namespace radar::test

@@ -9,7 +9,7 @@ using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
-TEST_CASE("query on all devices, or on named ones, writes the answers of one device") {
+TEST_CASE("query on several devices writes the same answers as on one") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload figure7 --teapots 6 --boxes 200 --steps 3 --out w").status == 0);
   const Run one = runProgram(folder, "query w/queries.json --mode contact --device 0");
@@ -25,7 +25,7 @@ TEST_CASE("query on all devices, or on named ones, writes the answers of one dev
   }
 }
 
-TEST_CASE("devices that are not there, or not to be read, end with status 2 and the option's or device's name") {
+TEST_CASE("an unknown device or a bad option ends with status 2 and a message that names it") {
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
   REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 2 --out w").status == 0);
@@ -46,7 +46,7 @@ TEST_CASE("devices that are not there, or not to be read, end with status 2 and 
   refused("scale --mode fast", "--mode");
 }
 
-TEST_CASE("scale measures, says what limits it, and leaves a report, a table, a chart and a trace") {
+TEST_CASE("scale prints a report and writes it with a table, a chart and a trace") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "scale --sensors 2,3 --boxes 2000 --steps 2 --repeat 1 --resolution 32 --out s");
   INFO(run.err);
@@ -69,7 +69,7 @@ TEST_CASE("scale measures, says what limits it, and leaves a report, a table, a 
   CHECK(folder.list() == "s");
 }
 
-TEST_CASE("scale takes a query file, and the first queries of each of its batches") {
+TEST_CASE("scale measures the first queries of each batch of a query file") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload table1 --boxes 100 --sensors 12 --shape box --out w").status == 0);
   const Run run = runProgram(folder, "scale w/queries.json --mode contact --sensors 4,12 --repeat 1");

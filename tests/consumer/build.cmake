@@ -1,4 +1,4 @@
-# Builds the README's example in a project of its own and runs it: cmake -DHOW=... -P build.cmake.
+# Builds the README's example in a separate project and runs it: cmake -DHOW=... -P build.cmake.
 cmake_minimum_required(VERSION 3.25)
 
 file(MAKE_DIRECTORY ${FOLDER})
@@ -12,24 +12,24 @@ if(HOW STREQUAL "pkg-config")
   execute_process(COMMAND ${CXX} -std=c++20 ${SOURCE}/tests/consumer/readme.cpp ${flags} -o ${FOLDER}/app
     COMMAND_ERROR_IS_FATAL ANY)
 else()
-  # A quick build: what is tried is whether it builds, and that it finds the contact.
+  # A debug build without debug information takes the least time.
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer/project -B ${FOLDER} -G Ninja -DHOW=${HOW}
     -DSOURCE=${SOURCE} -DCMAKE_PREFIX_PATH=${INSTALLED} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-g0
     -DCMAKE_CXX_COMPILER=${CXX} COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${CMAKE_COMMAND} --build ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)
 endif()
-execute_process(COMMAND ${FOLDER}/app OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
-if(NOT said MATCHES "touches object 0 after 5")
-  message(FATAL_ERROR "the example said \"${said}\", expected \"touches object 0 after 5\"")
+execute_process(COMMAND ${FOLDER}/app OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+if(NOT output MATCHES "touches object 0 after 5")
+  message(FATAL_ERROR "the example printed \"${output}\", expected \"touches object 0 after 5\"")
 endif()
 
 if(HOW STREQUAL "FetchContent")
-  # A shared library shows its interface and nothing else.
+  # The shared library exports its interface and nothing else.
   file(GLOB library ${FOLDER}/_deps/cyberradar-build/engine/libcyber-radar.so.*.*.*)
   execute_process(COMMAND ${NM} -DC --defined-only ${library} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "[^\n]* radar::(gpu|exact|cpu|tools)::[^\n]*" inner "${symbols}")
   string(REGEX MATCHALL "[^\n]* radar::(ContactPass|ContactSubmitter|ObjectTree|GpuScene|SampledRecorder)::[^\n]*" more "${symbols}")
   if(inner OR more OR NOT symbols MATCHES "radar::Sweeper::run")
-    message(FATAL_ERROR "the shared library shows more, or less, than its interface:\n${inner}\n${more}")
+    message(FATAL_ERROR "expected the shared library to export exactly its interface; inner symbols that it exports:\n${inner}\n${more}")
   endif()
 endif()

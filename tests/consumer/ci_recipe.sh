@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Does what docs/ci.md says, word for word: ci_recipe.sh CI_MD PROGRAM FOLDER.
+# Runs the shell commands of docs/ci.md: ci_recipe.sh CI_MD PROGRAM FOLDER.
 set -euo pipefail
 recipe=$(sed -n '/^```sh$/,/^```$/{/^```/!p}' "$1")
 rm -rf "$3"

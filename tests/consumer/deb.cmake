@@ -1,4 +1,4 @@
-# Makes the Debian package, looks at it, unpacks it and runs its program: cmake -DBUILD=... -P deb.cmake.
+# Builds the Debian package, checks its contents, unpacks it and runs its program: cmake -DBUILD=... -P deb.cmake.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${FOLDER})
@@ -24,7 +24,7 @@ foreach(file bin/cyber-radar include/radar/radar.h lib/libcyber-radar.a lib/cmak
   endif()
 endforeach()
 if(NOT contents MATCHES "^drwxr-xr-x root/root ")
-  message(FATAL_ERROR "expected the files of ${deb} to be root's:\n${contents}")
+  message(FATAL_ERROR "expected the files of ${deb} to belong to root:\n${contents}")
 endif()
 
 execute_process(COMMAND dpkg-deb -x ${deb} ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)

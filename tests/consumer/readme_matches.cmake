@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Every block of C++ in README is one of EXAMPLES, word for word.
+# Checks that the C++ blocks of README are the files EXAMPLES, word for word.
 file(READ ${README} readme)
 foreach(example IN LISTS EXAMPLES)
   file(READ ${example} code)

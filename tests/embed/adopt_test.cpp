@@ -1,4 +1,5 @@
-// A miniature host: it owns instance, device and queue; the engine borrows them and destroys nothing.
+// The engine on a host's device. The host owns instance, device and queue; the engine borrows them and destroys
+// nothing.
 #include <mutex>
 #include <thread>
 
@@ -14,17 +15,17 @@ namespace {
 using namespace radar;
 
 constexpr Mode kModes[] = {Mode::sampled, Mode::contact};
-// However few queries there are, the device answers them.
+// Sends queries to the device, however few they are.
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 
-// A box ahead of another.
+// A box in front of another.
 struct Boxes {
   Boxes() {
     const tools::MeshData box = tools::makeBox({1, 1, 1});
     query.mesh = scene.addMesh(box.positions, box.indices);
     scene.addObject({query.mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
   }
-  Result ask(const Device& device, Mode mode) {
+  Result sweep(const Device& device, Mode mode) {
     query.mode = mode;
     return Sweeper(device, scene, kOnDevice).run({&query, 1})[0];
   }
@@ -34,20 +35,20 @@ struct Boxes {
 
 }  // namespace
 
-TEST_CASE("an adopted device answers like an opened one and is still the host's afterwards") {
+TEST_CASE("an adopted device answers like an opened one, and the host can use it afterwards") {
   Boxes boxes;
   test::Host host;
   CHECK(unsupportedReasons(host.handles, Mode::sampled).empty());
   for (const Mode mode : kModes) {
-    const Result expected = boxes.ask(test::device(), mode);
-    const Result result = boxes.ask(Device::adopt(host.handles), mode);
+    const Result expected = boxes.sweep(test::device(), mode);
+    const Result result = boxes.sweep(Device::adopt(host.handles), mode);
     CHECK(result.status == Status::hit);
     CHECK(result.t == expected.t);
   }
   CHECK(vkDeviceWaitIdle(host.handles.device) == VK_SUCCESS);
 }
 
-TEST_CASE("a host's own dispatch, allocator and pipeline cache are all that an engine uses") {
+TEST_CASE("the engine uses only the host's function loader, allocator and pipeline cache") {
   Boxes boxes;
   test::Host host;
   VkPipelineCache cache;
@@ -56,10 +57,10 @@ TEST_CASE("a host's own dispatch, allocator and pipeline cache are all that an e
   host.handles.getInstanceProcAddr = test::countingLoader();
   host.handles.allocator = test::countingAllocator();
   host.handles.pipelineCache = cache;
-  test::forget();
+  test::resetCounts();
   {
     const Device device = Device::adopt(host.handles);
-    for (const Mode mode : kModes) CHECK(boxes.ask(device, mode).status == Status::hit);
+    for (const Mode mode : kModes) CHECK(boxes.sweep(device, mode).status == Status::hit);
   }
   const test::Counts& counts = test::counts();
   CHECK(counts.submissions >= std::size(kModes));
@@ -67,12 +68,12 @@ TEST_CASE("a host's own dispatch, allocator and pipeline cache are all that an e
   CHECK(counts.allocations > 0);
   CHECK(counts.live == 0);
   CHECK(counts.lookedUp.contains("vkQueueSubmit2"));
-  // What would wait for the host's own work, or end it, is not even looked up.
+  // The engine does not even look up functions that wait for the host's own work.
   for (const char* never : {"vkDeviceWaitIdle", "vkQueueWaitIdle"}) CHECK_FALSE(counts.lookedUp.contains(never));
   vkDestroyPipelineCache(host.handles.device, cache, nullptr);
 }
 
-TEST_CASE("a dispatch that lacks a function is refused by its name") {
+TEST_CASE("adopt throws and names a function that the host's loader lacks") {
   test::Host host;
   host.handles.getInstanceProcAddr = [](VkInstance instance, const char* name) -> PFN_vkVoidFunction {
     return std::string(name) == "vkGetDeviceProcAddr" ? nullptr : vkGetInstanceProcAddr(instance, name);
@@ -80,7 +81,7 @@ TEST_CASE("a dispatch that lacks a function is refused by its name") {
   CHECK_THROWS_WITH(Device::adopt(host.handles), Catch::Contains("vkGetDeviceProcAddr is missing"));
 }
 
-TEST_CASE("two engines on two threads share a host's queue under its lock") {
+TEST_CASE("two engines on two threads share a host's queue under the host's lock") {
   test::Host host;
   std::mutex mutex;
   uint64_t locked = 0;
@@ -90,7 +91,7 @@ TEST_CASE("two engines on two threads share a host's queue under its lock") {
   };
   host.handles.unlockQueue = [&] { mutex.unlock(); };
   host.handles.getInstanceProcAddr = test::countingLoader();
-  test::forget();
+  test::resetCounts();
   std::vector<std::jthread> threads;
   std::array<double, 2> t{};
   for (double& answer : t) {
@@ -124,6 +125,6 @@ TEST_CASE("several sweepers share one device and one scene") {
   }
 }
 
-TEST_CASE("a device that does not exist is refused with the number there are") {
+TEST_CASE("opening a device that does not exist throws and names its number") {
   CHECK_THROWS_WITH(Device::open({.index = 1000}), Catch::Contains("device 1000 does not exist"));
 }

@@ -1,4 +1,4 @@
-// What a recording has room for: a query that outgrows it is invalid, or open, and says why; never is an answer wrong.
+// Capacities of a recording: a query that exceeds one is invalid or unresolved and has its flag; no answer is wrong.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -14,24 +14,24 @@ using test::execute;
 using test::Row;
 using test::sameBits;
 
-// Answered on the processor, whatever their number.
+// The CPU's answers.
 std::vector<Result> truthOf(const Scene& scene, std::span<const Query> queries) {
   return Sweeper(test::device(), scene, {.cpuBatch = 100'000}).run(queries);
 }
 
-struct Told {
-  size_t refused = 0, open = 0, answered = 0;
+struct Outcomes {
+  size_t refused = 0, unresolved = 0, answered = 0;
 };
 
-// Each answer is the truth's, to the bit, or has one of `flags` and claims nothing that is not true.
-Told tell(std::span<const Query> queries, const std::vector<Result>& read, const std::vector<Result>& truth,
-          uint32_t flags) {
-  Told told;
+// Checks that each answer has the bits of `truth`, or has one of `flags` and contradicts nothing in `truth`.
+Outcomes checkAnswers(std::span<const Query> queries, const std::vector<Result>& read, const std::vector<Result>& truth,
+                      uint32_t flags) {
+  Outcomes outcomes;
   REQUIRE(read.size() == truth.size());
   for (size_t i = 0; i < read.size(); ++i) {
     CAPTURE(i, read[i].flags, read[i].lo, truth[i].t);
     if (read[i].flags == 0) {
-      ++told.answered;
+      ++outcomes.answered;
       CHECK(sameBits(read[i], truth[i]));
       continue;
     }
@@ -40,19 +40,19 @@ Told tell(std::span<const Query> queries, const std::vector<Result>& read, const
     CHECK(std::isnan(read[i].hi));
     CHECK(read[i].object == kNone);
     if (read[i].flags == kFlagUnresolved) {
-      ++told.open;
+      ++outcomes.unresolved;
       CHECK(read[i].status == Status::undecided);
       CHECK(read[i].lo <= (truth[i].status == Status::clear ? queries[i].distance : truth[i].hi));
     } else {
-      ++told.refused;
+      ++outcomes.refused;
       CHECK(read[i].status == Status::invalid);
       CHECK(std::isnan(read[i].lo));
     }
   }
-  return told;
+  return outcomes;
 }
 
-// Scenes in which many pairs may be first, as far as floats can tell.
+// Families in which many pairs may touch first as far as floats can tell.
 constexpr tools::Family kDense[] = {tools::Family::nonConvex, tools::Family::interlocking, tools::Family::lattice,
                                     tools::Family::soup};
 
@@ -64,16 +64,17 @@ struct FamilyQueries {
     for (size_t i = 0; i < queries.size(); i += 5) queries[i].anyHit = true;
     truth = truthOf(scene, queries);
   }
-  Told told(const Capacity& capacity, uint32_t flags) const {
+  Outcomes outcomes(const Capacity& capacity, uint32_t flags) const {
     Recorder recorder(test::device(), scene, capacity);
-    return tell(queries, execute(recorder, queries), truth, flags);
+    return checkAnswers(queries, execute(recorder, queries), truth, flags);
   }
   Scene scene;
   std::vector<Query> queries;
   std::vector<Result> truth;
 };
 
-// A teapot inside a sphere, hardly smaller: pairs of nodes without end. And a light query beside it, which hits a box.
+// A teapot inside a sphere that is hardly larger, so that very many node pairs overlap; and beside it a cheap query
+// that hits a box.
 struct HeavyAndLight {
   HeavyAndLight() {
     const tools::MeshData teapot = tools::makeTeapot(), ball = tools::makeUvSphere(100, 100),
@@ -96,66 +97,68 @@ struct HeavyAndLight {
 
 }  // namespace
 
-TEST_CASE("with too little room for candidates queries are refused by that flag, and the others keep their bits",
+TEST_CASE("a query that exceeds Capacity::candidates gets kFlagCandidates, and the others keep their bits",
           "[subgroups]") {
   size_t refused = 0, answered = 0;
   for (const tools::Family family : kDense) {
-    const FamilyQueries asked(family);
+    const FamilyQueries batch(family);
     for (const uint32_t candidates : {1u, 200u, 1000u, 1u << 17}) {
       CAPTURE(tools::nameOf(family), candidates);
-      const Told told = asked.told({.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17},
-                                   kFlagCandidates);
-      refused += told.refused;
-      answered += told.answered;
-      CHECK(told.open == 0);
-      if (candidates == 1u << 17) CHECK(told.refused == 0);
+      const Outcomes outcomes = batch.outcomes(
+          {.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17}, kFlagCandidates);
+      refused += outcomes.refused;
+      answered += outcomes.answered;
+      CHECK(outcomes.unresolved == 0);
+      if (candidates == 1u << 17) CHECK(outcomes.refused == 0);
     }
   }
   CHECK(refused > 50);
   CHECK(answered > 4 * 48);
 }
 
-TEST_CASE("with too few rounds a long search is refused by that flag, and a short one beside it is not",
+TEST_CASE("a query that exceeds Capacity::rounds gets kFlagRounds, and a short one beside it is answered",
           "[subgroups]") {
-  const HeavyAndLight asked;
-  CHECK(asked.truth[1].status == Status::hit);
-  Recorder recorder(test::device(), asked.scene, {.queries = 2, .rounds = 2});
-  const std::vector<Result> read = execute(recorder, asked.queries);
+  const HeavyAndLight batch;
+  CHECK(batch.truth[1].status == Status::hit);
+  Recorder recorder(test::device(), batch.scene, {.queries = 2, .rounds = 2});
+  const std::vector<Result> read = execute(recorder, batch.queries);
   CHECK(read[0].flags == kFlagRounds);
-  CHECK(tell(asked.queries, read, asked.truth, kFlagRounds).answered == 1);
-  Recorder patient(test::device(), asked.scene,
+  CHECK(checkAnswers(batch.queries, read, batch.truth, kFlagRounds).answered == 1);
+  Recorder patient(test::device(), batch.scene,
                    {.queries = 2, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 16});
-  CHECK(tell(asked.queries, execute(patient, asked.queries), asked.truth, 0).answered == 2);
+  CHECK(checkAnswers(batch.queries, execute(patient, batch.queries), batch.truth, 0).answered == 2);
 }
 
-TEST_CASE("with too little room for unresolved pairs queries stay open, with a lower bound that holds", "[subgroups]") {
-  // Boxes flush along the way: contact at a whole number, where nothing but exact arithmetic is certain.
-  const FamilyQueries asked(tools::Family::lattice);
-  size_t open = 0, answered = 0;
+TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets kFlagUnresolved and a valid lower bound",
+          "[subgroups]") {
+  // The boxes touch at whole numbers, where only exact arithmetic can decide.
+  const FamilyQueries batch(tools::Family::lattice);
+  size_t unresolved = 0, answered = 0;
   for (const uint32_t unresolvedPairs : {1u, 20u, 100u}) {
     CAPTURE(unresolvedPairs);
-    const Told told = asked.told({.queries = 48, .rounds = 64, .unresolvedPairs = unresolvedPairs}, kFlagUnresolved);
-    open += told.open;
-    answered += told.answered;
-    CHECK(told.refused == 0);
-    if (unresolvedPairs == 1) CHECK(told.open > 10);
+    const Outcomes outcomes =
+        batch.outcomes({.queries = 48, .rounds = 64, .unresolvedPairs = unresolvedPairs}, kFlagUnresolved);
+    unresolved += outcomes.unresolved;
+    answered += outcomes.answered;
+    CHECK(outcomes.refused == 0);
+    if (unresolvedPairs == 1) CHECK(outcomes.unresolved > 10);
   }
   CHECK(answered > 10);
-  CHECK(open > 20);
-  CHECK(asked.told({.queries = 48, .rounds = 64, .unresolvedPairs = 1u << 17}, 0).answered == 48);
+  CHECK(unresolved > 20);
+  CHECK(batch.outcomes({.queries = 48, .rounds = 64, .unresolvedPairs = 1u << 17}, 0).answered == 48);
 }
 
-TEST_CASE("with too little room for everything at once no answer is wrong", "[subgroups]") {
+TEST_CASE("no answer is wrong when all capacities are too small", "[subgroups]") {
   for (const tools::Family family : tools::kFamilies) {
     CAPTURE(tools::nameOf(family));
-    const FamilyQueries asked(family, 24);
-    asked.told({.queries = 24, .candidates = 100, .rounds = 2, .unresolvedPairs = 10},
-               kFlagUnresolved | kFlagCandidates | kFlagRounds);
+    const FamilyQueries batch(family, 24);
+    batch.outcomes({.queries = 24, .candidates = 100, .rounds = 2, .unresolvedPairs = 10},
+                   kFlagUnresolved | kFlagCandidates | kFlagRounds);
   }
 }
 
-TEST_CASE("a sensor of many triangles among few large boxes is answered with the usual capacity", "[subgroups]") {
-  // 99 times 64 triangles, among 50 boxes of which each is larger than it.
+TEST_CASE("the default capacity suffices for a sensor of many triangles among a few large boxes", "[subgroups]") {
+  // A sensor of more than 98 * 64 triangles among 50 boxes that are larger than it.
   tools::Random random(12);
   const tools::MeshData teapot = tools::makeTeapot(), box = tools::makeBox({1, 1, 1});
   Scene scene;
@@ -179,12 +182,13 @@ TEST_CASE("a sensor of many triangles among few large boxes is answered with the
   Recorder recorder(test::device(), scene);
   for (const size_t count : {1u, 64u}) {
     const std::span<const Query> some = std::span(queries).first(count);
-    const Told told = tell(some, execute(recorder, some), {truth.begin(), truth.begin() + ptrdiff_t(count)}, 0);
-    CHECK(told.answered == count);
+    const Outcomes outcomes =
+        checkAnswers(some, execute(recorder, some), {truth.begin(), truth.begin() + ptrdiff_t(count)}, 0);
+    CHECK(outcomes.answered == count);
   }
 }
 
-TEST_CASE("more room than a device has, or none, is refused by the member that asks for it") {
+TEST_CASE("a Recorder refuses an invalid capacity or one beyond the device's limits and names the member") {
   Row row(1);
   const auto refused = [&](const Capacity& capacity, const char* why) {
     CHECK_THROWS_WITH(Recorder(test::device(), row.scene, capacity), Catch::Contains(why));
@@ -199,7 +203,7 @@ TEST_CASE("more room than a device has, or none, is refused by the member that a
   refused({.unresolvedPairs = 0}, "candidates and unresolvedPairs: expected at least 1 each, got 0");
 }
 
-TEST_CASE("an object that floats cannot hold makes the queries that reach it out of range, and no other") {
+TEST_CASE("an object that floats cannot represent gives kFlagRange only to the queries that reach it") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   tools::MeshData huge = box;
@@ -208,7 +212,8 @@ TEST_CASE("an object that floats cannot hold makes the queries that reach it out
   const auto at = [](double x, double scale, double squashed) {
     return Transform{{scale, 0, 0, x, 0, scale, 0, 0.1, 0, 0, squashed, 5}};
   };
-  // Too small; too small beside the sensor; too flat; of a mesh that is too large, made small again; and a usual one.
+  // Too small; too small relative to the sensor; too flat; of a mesh that is too large, although scaled down; and an
+  // ordinary box.
   scene.addObject({cube, at(0, 1e-30, 1e-30), ~0u});
   scene.addObject({cube, at(10, 1e-14, 1e-14), ~0u});
   scene.addObject({cube, at(20, 1, 1e-40), ~0u});
@@ -230,5 +235,5 @@ TEST_CASE("an object that floats cannot hold makes the queries that reach it out
     CHECK(read[i].status == Status::invalid);
     CHECK(read[i].flags == kFlagRange);
   }
-  CHECK(tell(queries, read, truth, kFlagRange).answered == 1);
+  CHECK(checkAnswers(queries, read, truth, kFlagRange).answered == 1);
 }

@@ -1,4 +1,4 @@
-// What a host's frames cost it: no allocation, no submission, no wait, of any engine that records.
+// Recording costs a host's frames no allocation, no submission and no wait.
 #include <catch2/catch.hpp>
 
 #include <array>
@@ -16,36 +16,36 @@ using test::Renderer;
 using test::Row;
 using test::sameBits;
 
-// A scene that a frame shows, its queries and their answers.
-struct Shown {
+// The scene of a frame, its queries and their expected results.
+struct FrameScene {
   tools::Workload workload;
   std::vector<Query> queries;
   std::vector<Result> expected;
 };
 
-std::vector<Shown> showFamilies(const Device& device, uint32_t queries) {
+std::vector<FrameScene> makeFrameScenes(const Device& device, uint32_t queries) {
   Scene scene;
   Sweeper sweeper(device, scene);
-  std::vector<Shown> all;
+  std::vector<FrameScene> all;
   for (const tools::Family family : tools::kFamilies) {
-    Shown shown{tools::makeWorkload({.family = family, .queries = queries, .seed = 8}), {}, {}};
-    tools::replaceBy(shown.workload, 0, scene);
-    shown.queries = test::queriesOf(shown.workload);
-    shown.expected = sweeper.run(shown.queries);
-    all.push_back(std::move(shown));
+    FrameScene content{tools::makeWorkload({.family = family, .queries = queries, .seed = 8}), {}, {}};
+    tools::replaceBy(content.workload, 0, scene);
+    content.queries = test::queriesOf(content.workload);
+    content.expected = sweeper.run(content.queries);
+    all.push_back(std::move(content));
   }
   return all;
 }
 
 }  // namespace
 
-TEST_CASE("a thousand frames of all families allocate nothing, submit nothing and wait for nothing") {
+TEST_CASE("recording a thousand frames of all families allocates nothing, submits nothing and waits for nothing") {
   test::Host host;
   const Device hosts = Device::adopt(host.handles);
-  const std::vector<Shown> families = showFamilies(hosts, 30);
+  const std::vector<FrameScene> families = makeFrameScenes(hosts, 30);
   host.handles.getInstanceProcAddr = test::countingLoader();
   host.handles.allocator = test::countingAllocator();
-  test::forget();
+  test::resetCounts();
   {
     const Device device = Device::adopt(host.handles);
     Scene scene;
@@ -54,7 +54,7 @@ TEST_CASE("a thousand frames of all families allocate nothing, submit nothing an
     Renderer renderers[kInFlight] = {Renderer(hosts), Renderer(hosts)};
     Recorder recorders[kInFlight] = {Recorder(device, scene, kRoom), Recorder(device, scene, kRoom)};
     const test::Counts before = test::counts();
-    // By then both recorders have seen every family.
+    // After that many frames both recorders have seen every family.
     const auto warm = static_cast<uint32_t>(kInFlight * families.size());
     int64_t allocations = 0;
     size_t wrong = 0;
@@ -63,16 +63,16 @@ TEST_CASE("a thousand frames of all families allocate nothing, submit nothing an
       Renderer& renderer = renderers[frame % kInFlight];
       Recorder& recorder = recorders[frame % kInFlight];
       if (frame >= kInFlight) {
-        // What was submitted two frames ago; the last frame is still with the device.
-        const Shown& past = families[(frame - kInFlight) % families.size()];
+        // Reads the frame that was submitted two frames ago while the last one may still execute.
+        const FrameScene& past = families[(frame - kInFlight) % families.size()];
         renderer.wait();
         const std::vector<Result> read = recorder.read();
         for (size_t i = 0; i < read.size(); ++i) wrong += !sameBits(read[i], past.expected[i]);
       }
       if (frame >= kFrames) continue;
-      const Shown& shown = families[frame % families.size()];
-      tools::replaceBy(shown.workload, 0, scene);
-      renderer.record(recorder, shown.queries);
+      const FrameScene& content = families[frame % families.size()];
+      tools::replaceBy(content.workload, 0, scene);
+      renderer.record(recorder, content.queries);
       renderer.submit();
     }
     const test::Counts after = test::counts();
@@ -85,12 +85,12 @@ TEST_CASE("a thousand frames of all families allocate nothing, submit nothing an
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("frames in which objects move allocate nothing, and see them where they are") {
+TEST_CASE("recording frames in which objects move allocates nothing, and queries find the objects where they are") {
   test::Host host;
   const Device hosts = Device::adopt(host.handles);
   host.handles.getInstanceProcAddr = test::countingLoader();
   host.handles.allocator = test::countingAllocator();
-  test::forget();
+  test::resetCounts();
   {
     const Device device = Device::adopt(host.handles);
     Row row(30);
@@ -105,8 +105,9 @@ TEST_CASE("frames in which objects move allocate nothing, and see them where the
       }
       renderer.record(recorder, row.queries);
       renderer.submitAndWait();
-      const Renderer::Seen& seen = renderer.seen(4);
-      hits += seen.status == static_cast<uint32_t>(Status::hit) || (seen.flags == kFlagUnresolved && !device.doubles());
+      const Renderer::ShaderResult& result = renderer.shaderResult(4);
+      hits +=
+          result.status == static_cast<uint32_t>(Status::hit) || (result.flags == kFlagUnresolved && !device.doubles());
     }
     CHECK(hits == kFrames);
     CHECK(test::counts().allocations == allocations);
@@ -114,13 +115,13 @@ TEST_CASE("frames in which objects move allocate nothing, and see them where the
   CHECK(test::counts().live == 0);
 }
 
-TEST_CASE("an engine without a queue records, submits nothing, and refuses by name what would have to") {
+TEST_CASE("an engine without a queue records, submits nothing, and names the queue when it refuses what submits") {
   test::Host host;
-  const Device hosts = Device::adopt(host.handles);  // whose queue stands for the host's
+  const Device hosts = Device::adopt(host.handles);  // its queue stands for the host's own
   host.handles.queue = VK_NULL_HANDLE;
   host.handles.doubles = hosts.doubles();
   host.handles.getInstanceProcAddr = test::countingLoader();
-  test::forget();
+  test::resetCounts();
   const Device device = Device::adopt(host.handles);
   CHECK(device.doubles() == hosts.doubles());
   Row row(30);
@@ -132,7 +133,7 @@ TEST_CASE("an engine without a queue records, submits nothing, and refuses by na
   for (size_t i = 0; i < read.size(); ++i) {
     CAPTURE(i);
     CHECK(sameBits(read[i], expected[i]));
-    test::isSeen(renderer.seen(i), expected[i]);
+    test::checkShaderResult(renderer.shaderResult(i), expected[i]);
   }
   CHECK_THROWS_WITH(Sweeper(device, row.scene), "HostDevice::queue is null; a Sweeper needs a queue to submit to");
   CHECK_THROWS_WITH(Pool({&device, 1}, row.scene), "HostDevice::queue is null; a Pool needs a queue to submit to");

@@ -38,8 +38,8 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSub
   return queueSubmit2(queue, count, infos, fence);
 }
 
-// Under the same lock: where one thread submits while another waits, the layer's synchronization validation forgets
-// the wait now and then, and reports hazards that are none.
+// Takes the lock of submit(): if one thread submits while another waits, synchronization validation sometimes misses
+// the wait and reports false hazards.
 VKAPI_ATTR VkResult VKAPI_CALL waitFor(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
                                        uint64_t timeout) {
   const std::lock_guard lock(mutex);
@@ -85,7 +85,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, c
   return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
 }
 
-// The size stands before the block, for reallocation.
+// Least number of bytes before a block. They hold its size, which reallocation needs, and its offset.
 constexpr size_t kHeader = 64;
 
 VKAPI_ATTR void* VKAPI_CALL allocate(void*, size_t size, size_t alignment, VkSystemAllocationScope) {
@@ -160,7 +160,7 @@ Host::Host(Mode mode) {
 }
 
 Host::~Host() {
-  vkDestroyDevice(handles.device, nullptr);  // the layers complain of what an engine left behind
+  vkDestroyDevice(handles.device, nullptr);  // the layers report what an engine has leaked
   const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(handles.instance, "vkDestroyDebugUtilsMessengerEXT"));
   destroy(handles.instance, messenger_, nullptr);
@@ -173,7 +173,7 @@ const Counts& counts() {
   return counted;
 }
 
-void forget() {
+void resetCounts() {
   counted = {};
   allocations = 0;
 }

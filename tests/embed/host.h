@@ -1,5 +1,4 @@
-// A miniature host: it owns instance, device and queue, and sees what the engine does with them, since every function
-// that the engine calls is looked up through it.
+// A miniature host: it owns instance, device and queue, and its loader counts the calls that the engine makes.
 #pragma once
 
 #include <set>
@@ -11,7 +10,7 @@ namespace radar::test {
 
 class Host {
  public:
-  /// With what `mode` requires and nothing else.
+  /// Enables what `mode` requires and nothing else.
   explicit Host(Mode mode = Mode::sampled);
   ~Host();
   Host(const Host&) = delete;
@@ -23,15 +22,15 @@ class Host {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// What engines have done through `countingLoader` and `countingAllocator` since `forget`.
+/// What engines have done through countingLoader() and countingAllocator() since resetCounts().
 struct Counts {
   std::set<std::string> lookedUp;          ///< functions
-  int64_t allocations = 0, live = 0;       ///< of host memory, through the callbacks
+  int64_t allocations = 0, live = 0;       ///< of host memory through the callbacks
   uint64_t submissions = 0, waits = 0;     ///< vkQueueSubmit2, vkWaitForFences
-  VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline made
+  VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline created
 };
 const Counts& counts();
-void forget();
+void resetCounts();
 PFN_vkGetInstanceProcAddr countingLoader();
 const VkAllocationCallbacks* countingAllocator();
 

@@ -1,5 +1,5 @@
-// Meshes that a host deforms, and objects that it moves, on its device: the answers are those of a scene that has them
-// so.
+// Meshes that a host deforms and objects that it moves on the device: answers equal those of a scene with the same
+// geometry.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -27,8 +27,8 @@ using test::kRoom;
 using test::OnDevice;
 using test::sameBits;
 
-/// A box with room around the vertices.
-Bounds around(std::span<const float> positions) {
+/// The smallest bounds of the vertices.
+Bounds boundsOf(std::span<const float> positions) {
   Bounds bounds{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
   for (size_t i = 0; i < positions.size(); ++i) {
     bounds.lo[i % 3] = std::min(bounds.lo[i % 3], double{positions[i]});
@@ -37,8 +37,8 @@ Bounds around(std::span<const float> positions) {
   return bounds;
 }
 
-/// The box of a box, placed.
-Bounds placed(const Bounds& box, const Transform& pose) {
+/// The bounds of a placed box.
+Bounds placedBounds(const Bounds& box, const Transform& pose) {
   Bounds out;
   for (int k = 0; k < 3; ++k) {
     const double* r = &pose.m[4 * static_cast<size_t>(k)];
@@ -53,11 +53,11 @@ Bounds placed(const Bounds& box, const Transform& pose) {
   return out;
 }
 
-/// A workload as a host has it: the scene knows rest poses and bounds, the host's buffers what is true.
-class Hosted {
+/// A workload whose geometry lies in a host's buffers; the scene knows only rest poses and bounds.
+class HostWorkload {
  public:
-  /// The truth's poses become what floats can say. Two meshes of three and every other object are the host's.
-  Hosted(tools::Workload& truth, uint32_t seed, Scene& to) : scene(to), random_(seed) {
+  /// Rounds the poses of `truth` to floats. About two thirds of the meshes and half of the objects become the host's.
+  HostWorkload(tools::Workload& truth, uint32_t seed, Scene& to) : scene(to), random_(seed) {
     tools::replaceBy({.scenes = {{}}}, 0, scene);
     for (const tools::MeshData& mesh : truth.meshes) addMesh(mesh);
     for (tools::Instance& instance : truth.scenes[0].instances) {
@@ -82,7 +82,7 @@ class Hosted {
       scene.addMesh(mesh.positions, mesh.indices);
       return;
     }
-    const Bounds bounds = around(mesh.positions);
+    const Bounds bounds = boundsOf(mesh.positions);
     std::vector<float> rest = mesh.positions;
     const bool near = random_() % 2 == 0;
     for (size_t i = 0; i < rest.size(); ++i) {
@@ -112,8 +112,8 @@ class Hosted {
       box.lo[k] = mesh.origin[k] + mesh.box.lo[k];
       box.hi[k] = mesh.origin[k] + mesh.box.hi[k];
     }
-    Bounds bounds = placed(box, instance.worldFromMesh);
-    // What float arithmetic loses of a mesh far from its origin.
+    Bounds bounds = placedBounds(box, instance.worldFromMesh);
+    // Room for the rounding of float arithmetic on a mesh far from its origin.
     double magnitude = 0;
     for (size_t i = 0; i < 12; ++i) {
       const double column = i % 4 == 3 ? 1 : std::abs(box.lo[i % 4]) + std::abs(box.hi[i % 4]);
@@ -139,16 +139,16 @@ class Hosted {
   std::vector<MovedObjects> moved_;
 };
 
-/// A scene's copy on the device, with what a host has put in place of it.
+/// A scene's copy on the device, overwritten with a host's geometry.
 struct OnDeviceScene {
-  OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : resident(test::device().impl()) {
+  OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : copy(test::device().impl()) {
     CHECK(validate(geometry, scene).empty());
     const Device::Impl& device = test::device().impl();
-    HostGeometryPass pass(device, resident);
+    HostGeometryPass pass(device, copy);
     gpu::Upload upload(device);
     pass.stage(geometry, scene.impl());
-    upload.begin(resident.prepare(scene.impl()));
-    resident.upload(scene.impl(), upload);
+    upload.begin(copy.prepare(scene.impl()));
+    copy.upload(scene.impl(), upload);
     gpu::Submission submission(device, false);
     const gpu::Commands commands = submission.begin();
     upload.record(commands);
@@ -158,16 +158,16 @@ struct OnDeviceScene {
     submission.submitAndWait();
     CHECK(pass.boundsViolation().empty());
   }
-  GpuScene resident;
+  GpuScene copy;
 };
 
-/// What a deformed mesh's vertices and nodes are there.
-struct Deformed {
-  Deformed(const Scene& scene, const DeformedMesh& deformed) {
+/// The vertices and nodes of a deformed mesh, read back from the device.
+struct DeformedCopy {
+  DeformedCopy(const Scene& scene, const DeformedMesh& deformed) {
     const OnDeviceScene there(scene, {.meshes = {&deformed, 1}});
-    const GpuScene::Buffers& buffers = there.resident.buffers();
+    const GpuScene::Buffers& buffers = there.copy.buffers();
     const Mesh& mesh = scene.impl().meshes[deformed.mesh];
-    const gpu::MeshRecord& record = there.resident.record(deformed.mesh);
+    const gpu::MeshRecord& record = there.copy.record(deformed.mesh);
     vertices = test::elementsOf(buffers.vertices, record.firstVertex, mesh.vertexCount());
     nodes = test::elementsOf(buffers.meshNodes, record.firstNode, mesh.tree.nodes.size());
     firstNode = record.firstNode;
@@ -179,7 +179,7 @@ struct Deformed {
   uint32_t firstNode, firstTriangle;
 };
 
-/// Exactly: |sum of normal * q - middle| <= half.
+/// Whether |sum of normal * q - middle| <= half, in exact arithmetic.
 bool isBetween(const float (&normal)[3], const std::array<float, 3>& q, float middle, float half) {
   using exact::Dyadic;
   Dyadic at = Dyadic(0.0) - Dyadic(middle);
@@ -187,9 +187,9 @@ bool isBetween(const float (&normal)[3], const std::array<float, 3>& q, float mi
   return (Dyadic(half) - at).sign() >= 0 && (Dyadic(half) + at).sign() >= 0;
 }
 
-/// Every node's box and slab hold the vertices below it as they are now, and leaves are where the scene's tree has
-/// them.
-void checkNodes(const Mesh& mesh, const Deformed& deformed) {
+/// Checks that every node's box and slab contain the deformed vertices below it and that its link is that of the
+/// scene's tree.
+void checkNodes(const Mesh& mesh, const DeformedCopy& deformed) {
   constexpr float kAxes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   size_t slabs = 0, thin = 0;
   for (size_t n = 0; n < deformed.nodes.size(); ++n) {
@@ -220,8 +220,8 @@ void checkNodes(const Mesh& mesh, const Deformed& deformed) {
   CHECK(thin > 0);
 }
 
-/// Asks `rounds` scenes of each family.
-void meetHosted(uint32_t rounds) {
+/// Compares answers over host geometry with a sweeper's, on `rounds` scenes of each family.
+void compareFamilies(uint32_t rounds) {
   Scene truth, scene;
   Sweeper sweeper(test::device(), truth);
   Recorder recorder(test::device(), scene, kRoom);
@@ -230,16 +230,17 @@ void meetHosted(uint32_t rounds) {
     const tools::Family family = tools::kFamilies[i % tools::kFamilies.size()];
     const uint32_t seed = 31 + i;
     tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = seed});
-    const Hosted hosted(workload, seed, scene);
+    const HostWorkload host(workload, seed, scene);
     tools::replaceBy(workload, 0, truth);
     std::vector<Query> queries = test::queriesOf(workload);
     for (size_t q = 0; q < queries.size(); q += 7) queries[q].anyHit = true;
-    const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, hosted.geometry());
+    const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, host.geometry());
     for (size_t q = 0; q < queries.size(); ++q) {
       CAPTURE(tools::nameOf(family), seed, q, got[q].flags, got[q].t, expected[q].t);
       ++answers;
       if (got[q].flags != 0) {
-        // Rest poses at random make every node as large as the mesh: room may run out, and nothing else.
+        // With random rest poses every node is as large as the mesh, so capacities may be exceeded; nothing else may go
+        // wrong.
         CHECK((got[q].flags & (kFlagUnresolved | kFlagCandidates | kFlagRounds)) != 0);
         CHECK(got[q].status == (got[q].flags == kFlagUnresolved ? Status::undecided : Status::invalid));
         if (got[q].flags == kFlagUnresolved && expected[q].status != Status::clear)
@@ -249,7 +250,7 @@ void meetHosted(uint32_t rounds) {
         CHECK(got[q].status == expected[q].status);
         CHECK_FALSE(expected[q].lo > got[q].hi);
       } else if (expected[q].tier == Tier::select || got[q].tier == Tier::select) {
-        // Bounds reach farther than what is within them: the search may have to find that nothing is there.
+        // Bounds are larger than their contents, so only one side may need the search to find that nothing is there.
         CHECK(got[q].status == expected[q].status);
       } else {
         CHECK(sameBits(got[q], expected[q]));
@@ -264,15 +265,17 @@ void meetHosted(uint32_t rounds) {
 
 }  // namespace
 
-TEST_CASE("what a host deforms and moves is met as in a scene that has it so, bit for bit", "[subgroups]") {
-  meetHosted(1);
+TEST_CASE("geometry that a host deforms and moves gives the bits of a scene with the same geometry", "[subgroups]") {
+  compareFamilies(1);
 }
 
-TEST_CASE("what a host deforms and moves is met as in a scene that has it so, in many scenes", "[.][many]") {
-  meetHosted(60);
+TEST_CASE("geometry that a host deforms and moves gives the bits of a scene with the same geometry, in many scenes",
+          "[.][many]") {
+  compareFamilies(60);
 }
 
-TEST_CASE("every 16-bit position comes to the device as it is read while loading, and every node holds what is below") {
+TEST_CASE(
+    "every 16-bit position has the same value on the device as when loaded, and every node contains its vertices") {
   const VkFormat format = GENERATE(VK_FORMAT_R16G16B16_SFLOAT, VK_FORMAT_R16G16B16A16_SNORM, VK_FORMAT_R16G16B16_UNORM);
   const uint32_t vertices = 21846;
   const HostPositions positions{
@@ -292,12 +295,12 @@ TEST_CASE("every 16-bit position comes to the device as it is read while loading
   Scene scene;
   std::vector<uint32_t> indices(3 * (vertices / 3));
   for (uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
-  const MeshId mesh = scene.addMesh(std::vector<float>(expected.size()), indices, around(expected));
+  const MeshId mesh = scene.addMesh(std::vector<float>(expected.size()), indices, boundsOf(expected));
 
   const OnDevice buffer(bytes);
   HostPositions there = positions;
   there.buffer = buffer.get();
-  const Deformed deformed(scene, {mesh, there});
+  const DeformedCopy deformed(scene, {mesh, there});
   for (size_t i = 0; i < expected.size(); ++i) {
     if (std::memcmp(&deformed.vertices[i / 3].position[i % 3], &expected[i], 4) != 0) FAIL("vertex " << i / 3);
   }
@@ -305,7 +308,7 @@ TEST_CASE("every 16-bit position comes to the device as it is read while loading
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("every node of a deformed mesh holds what is below, however far that is from its rest pose") {
+TEST_CASE("every node of a deformed mesh contains its vertices, however far they are from the rest pose") {
   std::mt19937 random(17);
   for (const tools::MeshData& data :
        {tools::makeTorus(3, 1, 30, 20), tools::makeHook(3, 1, 0.5, 0.2), tools::makeUvSphere(40, 40)}) {
@@ -315,28 +318,29 @@ TEST_CASE("every node of a deformed mesh holds what is below, however far that i
         rest[i] = static_cast<float>(rest[i] + away);
         moved[i] = static_cast<float>(rest[i] + 0.3 * (static_cast<double>(random() >> 8) * 0x1p-23 - 1));
       }
-      Bounds bounds = around(rest);
+      Bounds bounds = boundsOf(rest);
       for (size_t k = 0; k < 3; ++k) {
         bounds.lo[k] -= 0.4;
         bounds.hi[k] += 0.4;
       }
       Scene scene;
-      scene.addMesh(data.positions, data.indices);  // so that the other's first node is not the buffer's
+      scene.addMesh(data.positions, data.indices);  // shifts the nodes of the next mesh in the buffer
       const MeshId mesh = scene.addMesh(rest, data.indices, bounds);
       std::vector<std::byte> bytes(gpu::bytesOf(moved));
       std::memcpy(bytes.data(), moved.data(), bytes.size());
       const OnDevice buffer(bytes);
       CAPTURE(data.triangleCount(), away);
-      const Deformed deformed(scene, {mesh, {.buffer = buffer.get()}});
+      const DeformedCopy deformed(scene, {mesh, {.buffer = buffer.get()}});
       CHECK(std::memcmp(deformed.vertices[0].position, moved.data(), 12) == 0);
       checkNodes(scene.impl().meshes[mesh], deformed);
     }
   }
 }
 
-TEST_CASE("an object that a host moves is placed where its transform says, but for what its placement says",
-          "[subgroups]") {
-  // Of transforms, to both sides of 1: usual sizes, those that floats hold, and beyond.
+TEST_CASE(
+    "an object that a host moves is placed according to its transform, within the error that its placement states",
+    "[subgroups]") {
+  // Exponents of the transforms' scales: ordinary ones, the range of floats, and beyond it.
   const int smallest = GENERATE(-30, -79, -140), largest = std::min(-smallest, 85);
   CAPTURE(smallest);
   std::mt19937_64 bits(23);
@@ -363,9 +367,9 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
     Transform pose;
     const double scale = powerOfTwo(smallest, largest), away = i % 3 == 0 ? 0 : powerOfTwo(smallest - 10, largest + 25);
     for (double& value : pose.m) value = static_cast<float>(scale * uniform(-1, 1));
-    // Some are flat, or nearly.
+    // Some poses are flat or nearly flat.
     for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 2] *= i % 5 == 0 ? 0 : i % 5 == 1 ? 0x1p-20 : 1;
-    // A flat mesh has no use for the last column, whatever is there.
+    // A flat mesh does not use the last column, so any value may be there.
     const double unused = i % 4 == 3 && i % 3 == 0 && smallest < -30 ? powerOfTwo(smallest, 126) / scale : 1;
     for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 2] = static_cast<float>(pose.m[4 * row + 2] * unused);
     for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 3] = static_cast<float>(uniform(-away, away));
@@ -377,9 +381,8 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
   const OnDevice transforms(bytes);
   const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
   const OnDeviceScene there(scene, {.objects = {&moved, 1}});
-  const std::vector<gpu::Placement> placements =
-      test::elementsOf(there.resident.buffers().placements, 0, objects.size());
-  const std::vector<gpu::ObjectRecord> records = test::elementsOf(there.resident.buffers().objects, 0, objects.size());
+  const std::vector<gpu::Placement> placements = test::elementsOf(there.copy.buffers().placements, 0, objects.size());
+  const std::vector<gpu::ObjectRecord> records = test::elementsOf(there.copy.buffers().objects, 0, objects.size());
   test::BoundsUsed used;
   size_t inRange = 0;
   for (uint32_t i = 0; i < objects.size(); ++i) {
@@ -388,7 +391,7 @@ TEST_CASE("an object that a host moves is placed where its transform says, but f
     CHECK(std::equal(poses[i].m.begin(), poses[i].m.end(), records[i].pose));
     CHECK(placements[i].mesh == i % 40);
     CHECK(placements[i].mask == ~0u);
-    CHECK(placements[i].root == there.resident.record(i % 40).firstNode);
+    CHECK(placements[i].root == there.copy.record(i % 40).firstNode);
     for (const float* rows : {placements[i].coarse, placements[i].fine, placements[i].inverse}) {
       CHECK(std::all_of(rows, rows + 12, [](float x) { return std::isfinite(x); }));
     }

@@ -1,5 +1,5 @@
-// What a host promises of the meshes that it deforms and the objects that it moves, and what becomes of an answer where
-// it does not hold; what it costs a frame.
+// The bounds that a host guarantees for meshes that it deforms and objects that it moves, the answers when they are
+// violated, and the cost of such frames.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -31,7 +31,7 @@ using test::execute;
 using test::kRoom;
 using test::OnDevice;
 
-/// A wall at z = 5 that a host has, and a sensor that moves towards it.
+/// A wall at z = 5 that a host may deform and move, and a sensor that moves towards it.
 struct Wall {
   Wall() {
     const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
@@ -61,7 +61,7 @@ std::vector<std::byte> floats(std::initializer_list<float> values) {
 
 }  // namespace
 
-TEST_CASE("where something has left its bounds no answer counts, until it is back") {
+TEST_CASE("every answer is invalid with kFlagBounds while any geometry is outside its bounds") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const OnDevice inside(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})), beyond(floats({-1, -1, 1, 1, -1, 2.001f, 0, 1, 1})),
@@ -69,7 +69,7 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
       none(floats({-1, -1, 1, 1, NAN, 1, 0, 1, 1}));
   const OnDevice at(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7})), away(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9})),
       huge(floats({1, 0, 0, 0, 0, 3e38f, 0, 0, 0, 0, 1, 7})), lost(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, NAN, 7}));
-  const auto look = [&](const OnDevice& vertices, const OnDevice& transform) {
+  const auto sweep = [&](const OnDevice& vertices, const OnDevice& transform) {
     const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
     const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
     return execute(recorder, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
@@ -81,30 +81,30 @@ TEST_CASE("where something has left its bounds no answer counts, until it is bac
       CHECK(std::isnan(result.lo));
     }
   };
-  const auto expectSeen = [&](const std::vector<Result>& results) {
+  const auto expectHitAndClear = [&](const std::vector<Result>& results) {
     CHECK(results[0].status == Status::hit);
     CHECK(results[0].t == Approx(8));
     CHECK(results[0].flags == 0);
     CHECK(results[1].status == Status::clear);
   };
-  expectSeen(look(inside, at));
+  expectHitAndClear(sweep(inside, at));
   CHECK(recorder.boundsViolation().empty());
-  expectRefused(look(beyond, at));
+  expectRefused(sweep(beyond, at));
   CHECK(recorder.boundsViolation() == "mesh 1: vertex 1 is outside its bounds or not finite");
-  expectRefused(look(infinite, at));
-  expectRefused(look(none, at));
-  expectRefused(look(vast, at));
-  expectSeen(look(inside, at));
+  expectRefused(sweep(infinite, at));
+  expectRefused(sweep(none, at));
+  expectRefused(sweep(vast, at));
+  expectHitAndClear(sweep(inside, at));
   CHECK(recorder.boundsViolation().empty());
-  expectRefused(look(inside, away));
+  expectRefused(sweep(inside, away));
   CHECK(recorder.boundsViolation() == "object 0: its mesh's box is outside its bounds, or its transform is not finite");
-  expectRefused(look(inside, huge));
-  expectRefused(look(inside, lost));
-  expectSeen(look(inside, at));
+  expectRefused(sweep(inside, huge));
+  expectRefused(sweep(inside, lost));
+  expectHitAndClear(sweep(inside, at));
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what floats cannot hold is out of range, or has left its bounds, and nothing else is") {
+TEST_CASE("geometry that floats cannot represent gives kFlagRange or kFlagBounds, and only to the queries concerned") {
   Scene scene;
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
@@ -118,11 +118,11 @@ TEST_CASE("what floats cannot hold is out of range, or has left its bounds, and 
   queries[1].worldFromMesh.m[3] = 30;
   queries[2].worldFromMesh.m[11] = -1e25;
   Recorder recorder(test::device(), scene, kRoom);
-  // A flat mesh has no use for the third column, but floats for squares of it.
+  // A flat mesh does not use the third column, but the squares of its values overflow.
   const OnDevice usual(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4})),
       huge(floats({1, 0, 3e38f, 0, 0, 1, 3e38f, 0, 0, 0, 3e38f, 4})),
       none(floats({3e38f, -3e38f, 0, 0, 3e38f, -3e38f, 0, 0, 0, 0, 1, 0}));
-  const auto look = [&](const OnDevice& transform) {
+  const auto sweep = [&](const OnDevice& transform) {
     const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
     return execute(recorder, queries, {.objects = {&moved, 1}});
   };
@@ -136,22 +136,22 @@ TEST_CASE("what floats cannot hold is out of range, or has left its bounds, and 
     CHECK(result.flags == flag);
     CHECK(std::isnan(result.lo));
   };
-  std::vector<Result> read = look(usual);
+  std::vector<Result> read = sweep(usual);
   expectHit(read[0], 4);
   expectHit(read[1], 5);
   expectRefused(read[2], kFlagRange);
-  read = look(huge);
+  read = sweep(huge);
   expectRefused(read[0], kFlagRange);
   expectHit(read[1], 5);
-  read = look(none);
+  read = sweep(none);
   for (const Result& result : read) expectRefused(result, kFlagBounds);
-  // Where one object is too far away for the tree, every query is refused.
+  // If one object is too far away for the tree over objects, every query is invalid.
   scene.setTransform(object, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1e25}});
   for (const Result& result : execute(recorder, queries)) expectRefused(result, kFlagRange);
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("a transform that flattens a mesh is met as what it leaves, and one that leaves a point is out of range") {
+TEST_CASE("a mesh flattened to a plane or a line is hit, and one flattened to a point gives kFlagRange") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({2, 2, 2});
   const MeshId cube = scene.addMesh(box.positions, box.indices);
@@ -159,59 +159,59 @@ TEST_CASE("a transform that flattens a mesh is met as what it leaves, and one th
   scene.setBounds(object, {{-3, -3, 3}, {3, 3, 12}});
   Query query{.mesh = cube, .direction = {0, 0, 1}, .distance = 20};
   Recorder recorder(test::device(), scene);
-  const auto look = [&](std::initializer_list<float> rows) {
+  const auto sweep = [&](std::initializer_list<float> rows) {
     const OnDevice transform(floats(rows));
     const MovedObjects moved{.transforms = transform.get(), .objects = {&object, 1}};
     return execute(recorder, {&query, 1}, {.objects = {&moved, 1}})[0];
   };
-  const Result whole = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 1, 8}),
-               flat = look({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 0, 8}),
-               line = look({1, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8}),
-               point = look({0, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8});
+  const Result whole = sweep({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 1, 8}),
+               flat = sweep({1, 0, 0, 0.25f, 0, 1, 0, 0.25f, 0, 0, 0, 8}),
+               line = sweep({1, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8}),
+               point = sweep({0, 0, 0, 0.25f, 0, 0, 0, 0.25f, 0, 0, 0, 8});
   CHECK(whole.status == Status::hit);
   CHECK(whole.t == 6);
   CHECK(flat.status == Status::hit);
   CHECK(flat.t == 7);
   CHECK(line.status == Status::hit);
   CHECK(line.t == 7);
-  // Sizes of 0 have no floats beside them.
+  // A size of 0 is out of range.
   CHECK(point.status == Status::invalid);
   CHECK(point.flags == kFlagRange);
-  const Result tiny = look({1e-30f, 0, 0, 0.25f, 0, 1e-30f, 0, 0.25f, 0, 0, 1e-30f, 8});
+  const Result tiny = sweep({1e-30f, 0, 0, 0.25f, 0, 1e-30f, 0, 0.25f, 0, 0, 1e-30f, 8});
   CHECK(tiny.status == Status::invalid);
   CHECK(tiny.flags == kFlagRange);
 }
 
-TEST_CASE("what a host no longer names is as the scene has it") {
+TEST_CASE("geometry that a recording no longer names is the scene's own again") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const OnDevice vertices(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})),
       transform(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7}));
   const DeformedMesh deformed{wall.mesh, {.buffer = vertices.get()}};
   const MovedObjects moved{.transforms = transform.get(), .objects = {&wall.wall, 1}};
-  const auto look = [&](const HostGeometry& geometry) { return execute(recorder, wall.queries, geometry)[0].t; };
-  CHECK(look({}) == Approx(5));
-  CHECK(look({.meshes = {&deformed, 1}, .objects = {&moved, 1}}) == Approx(8));
-  CHECK(look({.meshes = {&deformed, 1}}) == Approx(6));
-  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
-  CHECK(look({}) == Approx(5));
-  // Recorded, but not executed.
+  const auto sweep = [&](const HostGeometry& geometry) { return execute(recorder, wall.queries, geometry)[0].t; };
+  CHECK(sweep({}) == Approx(5));
+  CHECK(sweep({.meshes = {&deformed, 1}, .objects = {&moved, 1}}) == Approx(8));
+  CHECK(sweep({.meshes = {&deformed, 1}}) == Approx(6));
+  CHECK(sweep({.objects = {&moved, 1}}) == Approx(7));
+  CHECK(sweep({}) == Approx(5));
+  // Recordings that never execute have no effect.
   gpu::Submission submission(test::device().impl(), false);
   recorder.record(submission.begin(), wall.queries, {.objects = {&moved, 1}});
   recorder.reset();
-  CHECK(look({}) == Approx(5));
+  CHECK(sweep({}) == Approx(5));
   recorder.record(submission.begin(), wall.queries);
   recorder.reset();
-  CHECK(look({.objects = {&moved, 1}}) == Approx(7));
-  // What changes in the scene meanwhile counts, too.
+  CHECK(sweep({.objects = {&moved, 1}}) == Approx(7));
+  // Changes of the scene apply, too.
   wall.scene.setTransform(wall.wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}});
-  CHECK(look({.meshes = {&deformed, 1}}) == Approx(5));
+  CHECK(sweep({.meshes = {&deformed, 1}}) == Approx(5));
   wall.scene.removeObject(wall.wall);
-  CHECK(std::isnan(look({})));
+  CHECK(std::isnan(sweep({})));
 }
 
-TEST_CASE("whichever meshes a recording deforms, what is met is where they are now") {
-  // Four walls side by side. Each pair of them in turn is deformed, to the side, where small sensors then meet them.
+TEST_CASE("each recording deforms exactly the meshes that it names, whichever the previous one named") {
+  // Four walls side by side. Each recording deforms two of them sideways, into the way of small sensors.
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
   Scene scene;
@@ -248,7 +248,7 @@ TEST_CASE("whichever meshes a recording deforms, what is met is where they are n
   }
 }
 
-TEST_CASE("a scene without objects is recorded, too") {
+TEST_CASE("a scene without objects can be recorded, also with a deformed mesh") {
   Wall wall;
   wall.scene.removeObject(wall.wall);
   wall.scene.removeObject(wall.far);
@@ -266,7 +266,7 @@ TEST_CASE("a scene without objects is recorded, too") {
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with it") {
+TEST_CASE("the recorder refuses bad geometry, names what is wrong and stays usable") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const OnDevice buffer(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1, 0, 0, 0}));
@@ -304,11 +304,11 @@ TEST_CASE("geometry that a recorder cannot take is refused by what is wrong with
                     Catch::Contains("addMesh: bounds: expected lo <= hi"));
   CHECK_THROWS_WITH(wall.scene.setBounds(wall.wall, {{0, 0, 0}, {1, NAN, 1}}), Catch::Contains("setBounds: bounds"));
   CHECK_THROWS_WITH(wall.scene.setBounds(9, {}), Catch::Contains("object 9 does not exist"));
-  // The recorder is as before.
+  // The recorder still works.
   CHECK(execute(recorder, wall.queries)[0].t == Approx(5));
 }
 
-TEST_CASE("a host that deforms and moves in the same command buffer needs the documented barrier") {
+TEST_CASE("a host that writes geometry in the same command buffer without the documented barrier causes a hazard") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const float vertices[] = {-1, -1, 1, 1, -1, 1, 0, 1, 1}, transform[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7};
@@ -338,17 +338,18 @@ TEST_CASE("a host that deforms and moves in the same command buffer needs the do
 }
 
 TEST_CASE(
-    "frames in which a host skins and moves on its device allocate nothing, submit nothing and wait for nothing") {
+    "recording frames in which a host skins and moves on the device allocates nothing, submits nothing and waits for "
+    "nothing") {
   test::Host host;
   const Device hosts = Device::adopt(host.handles);
   host.handles.getInstanceProcAddr = test::countingLoader();
   host.handles.allocator = test::countingAllocator();
-  test::forget();
+  test::resetCounts();
   {
     const Device device = Device::adopt(host.handles);
     const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
     const uint32_t triangle[] = {0, 1, 2};
-    // At rest: three vertices of 8 floats, then 20 transforms, 10 to the side.
+    // At rest: three vertices of 8 floats each, then 20 transforms that translate by 10 along x.
     std::vector<float> rest(24);
     for (size_t i = 0; i < 9; ++i) rest[8 * (i / 3) + i % 3] = corners[i];
     for (int i = 0; i < 20; ++i) rest.insert(rest.end(), {1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});

@@ -1,4 +1,4 @@
-// Meshes out of a host's buffers, in the formats that renderers use.
+// Meshes read from a host's buffers, in the formats that renderers use.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -24,8 +24,8 @@ std::vector<uint32_t> indicesOf(const Scene& scene, MeshId mesh) {
 
 }  // namespace
 
-TEST_CASE("interleaved float vertices with 16-bit and 32-bit indices, at offsets, are read as they lie there") {
-  std::vector<std::byte> vertices(20), small(6), large(4);  // what comes before
+TEST_CASE("interleaved float vertices and 16-bit or 32-bit indices are read at their offsets") {
+  std::vector<std::byte> vertices(20), small(6), large(4);  // padding before the data
   append<float>(vertices, {1, 2, 3, /* a normal */ 9, 9, 4, 5, 6, 9, 9, 7, 8, 9.5f, 9, 9, -1, -2, -3});
   append<uint16_t>(small, {2, 1, 0, 3, 2, 1});
   append<uint32_t>(large, {2, 1, 0, 3, 2, 1});
@@ -44,16 +44,17 @@ TEST_CASE("interleaved float vertices with 16-bit and 32-bit indices, at offsets
   mesh.firstIndex = 4;
   mesh.indexType = VK_INDEX_TYPE_UINT32;
   CHECK(indicesOf(scene, addMesh(scene, test::device(), mesh)) == std::vector<uint32_t>{2, 1, 0, 3, 2, 1});
-  // Without indices, each three vertices are a triangle.
+  // Without indices, every three vertices form a triangle.
   mesh.indices = VK_NULL_HANDLE;
   mesh.vertexCount = 3;
   CHECK(indicesOf(scene, addMesh(scene, test::device(), mesh)) == std::vector<uint32_t>{0, 1, 2});
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("16-bit positions are what a vertex shader would see") {
+TEST_CASE("16-bit positions are read as a vertex shader would see them") {
   std::vector<std::byte> half, snorm, unorm;
-  // 1, -2, 65504; the least normal and subnormal; 1/3 in half; each with a fourth component.
+  // In half precision: 1, -2, 65504; the smallest normal and subnormal numbers and 1/3; -0, 0 and pi; each with a
+  // fourth component.
   append<uint16_t>(half, {0x3c00, 0xc000, 0x7bff, 0, 0x0400, 0x0001, 0x3555, 0, 0x8000, 0x0000, 0x4248, 0});
   append<int16_t>(snorm, {32767, -32767, -32768, 0, 1, -1, 0, 0, 16384, 0, 5, 0});
   append<uint16_t>(unorm, {65535, 0, 32768, 1, 2, 3, 4, 5, 6});
@@ -73,7 +74,7 @@ TEST_CASE("16-bit positions are what a vertex shader would see") {
                                                                     6 / 65535.0f});
 }
 
-TEST_CASE("a mesh of the host's that cannot be read is refused by the member that is wrong") {
+TEST_CASE("addMesh refuses a host's mesh that cannot be read and names the wrong member") {
   std::vector<std::byte> bytes;
   append<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, NAN});
   append<uint32_t>(bytes, {0, 1, 3});

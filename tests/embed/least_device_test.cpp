@@ -1,4 +1,4 @@
-// A device that has what mode contact needs, and of everything else as little as Vulkan 1.3 allows.
+// A device that has what mode contact needs and otherwise only the least that Vulkan 1.3 allows.
 #include <cmath>
 #include <cstring>
 
@@ -26,7 +26,7 @@ VKAPI_ATTR void VKAPI_CALL leastProperties(VkPhysicalDevice device, VkPhysicalDe
   limits.maxComputeWorkGroupCount[0] = limits.maxComputeWorkGroupCount[1] = 65535;
   limits.maxComputeSharedMemorySize = 16384;
   limits.maxPushConstantsSize = 128;
-  limits.maxPerStageDescriptorStorageBuffers = 8;  // the one thing that must be more: Vulkan asks for 4
+  limits.maxPerStageDescriptorStorageBuffers = 8;  // the only one that must be higher: Vulkan guarantees 4
   limits.maxPerStageDescriptorSampledImages = 16;
   limits.maxTexelBufferElements = 65536;
   limits.maxStorageBufferRange = 1u << 27;
@@ -82,7 +82,7 @@ void checkSame(const std::vector<Result>& found, const std::vector<Result>& exac
 
 }  // namespace
 
-TEST_CASE("a device with the least limits, no doubles and no graphics answers mode contact as the CPU does") {
+TEST_CASE("a device with the least limits, no doubles and no graphics gives the CPU's answers in mode contact") {
   LeastDevice least;
   CHECK(unsupportedReasons(least.host.handles, Mode::contact).empty());
   const Device device = Device::adopt(least.host.handles);
@@ -106,7 +106,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics answers mo
   }
 }
 
-TEST_CASE("a scene beyond the device's limits, and many sensors at once, are answered all the same") {
+TEST_CASE("too many sensors for one submission are split, and a scene beyond the device's limits is left to the CPU") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
   const tools::MeshData box = tools::makeBox({1, 1, 1});
@@ -129,17 +129,17 @@ TEST_CASE("a scene beyond the device's limits, and many sensors at once, are ans
   checkSame(sweeper.run(queries), cpu.run(queries));
   CHECK(sweeper.stats().submissions == 2);
   CHECK(sweeper.stats().cpuQueries < queries.size());
-  // More objects than one of their placements holds.
+  // More placements than such a texel buffer holds.
   addRow(6000, 40);
   sweeper.sync();
   checkSame(sweeper.run(queries), cpu.run(queries));
   CHECK(sweeper.stats().cpuQueries == queries.size());
 }
 
-TEST_CASE("what a host writes must fit a storage buffer, though what is read need not") {
+TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the device's largest storage buffer") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
-  // Vertices of 16 bytes, of which 2^27 bytes hold no more than 2^23.
+  // A vertex has 16 bytes, so 2^27 bytes hold 2^23 of them.
   constexpr uint32_t kVertices = (1u << 23) + 1;
   Scene scene;
   const std::vector<float> positions(size_t{3} * kVertices);
@@ -156,7 +156,7 @@ TEST_CASE("what a host writes must fit a storage buffer, though what is read nee
                     Catch::StartsWith("the scene's vertices need a buffer of 134217744 bytes"));
 }
 
-TEST_CASE("mode sampled is refused, with all that the device lacks for it, before anything is answered") {
+TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device lacks for it") {
   LeastDevice least;
   least.host.handles.sampled = true;
   const std::vector<std::string> reasons = unsupportedReasons(least.host.handles, Mode::sampled);
@@ -169,7 +169,7 @@ TEST_CASE("mode sampled is refused, with all that the device lacks for it, befor
   Sweeper sweeper(device, scene);
   try {
     sweeper.run({&query, 1});
-    FAIL("it was answered");
+    FAIL("run() did not throw");
   } catch (const Error& error) {
     CHECK_THAT(error.what(), Catch::StartsWith("query 0: ") && Catch::Contains("does not support mode sampled"));
     CHECK(error.reasons == reasons);

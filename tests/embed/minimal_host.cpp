@@ -5,7 +5,7 @@
 #include <vulkan/vulkan.h>
 
 int main() {
-  // Stands for a renderer's own set-up: an instance, a device with what the engine needs, a queue.
+  // Stands for a renderer's own set-up: an instance, a device with the required features, and a queue.
   VkInstance instance;
   const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
@@ -30,7 +30,7 @@ int main() {
   if (vkCreateDevice(host.physicalDevice, &deviceInfo, nullptr, &host.device) != VK_SUCCESS) return 1;
   vkGetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);
 
-  // The engine, on that device. It ends before the device does.
+  // The engine uses that device and must be destroyed before it.
   {
     const radar::Device device = radar::Device::adopt(host);
     radar::Scene scene;

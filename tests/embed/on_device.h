@@ -1,4 +1,4 @@
-// What a renderer has in its buffers, and searches recorded over it.
+// Buffers of a host on the device, and searches recorded over them.
 #pragma once
 
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace radar::test {
 
-/// Bytes in a buffer on the device.
+/// A buffer on the device with the given bytes.
 class OnDevice {
  public:
   explicit OnDevice(const std::vector<std::byte>& bytes)
@@ -41,7 +41,7 @@ void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
   }
 }
 
-/// For what the tests record.
+/// The capacity of most recordings in the tests.
 inline constexpr Capacity kRoom{.queries = 48, .candidates = 1u << 17, .rounds = 64, .unresolvedPairs = 1u << 17};
 
 inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries,

@@ -1,4 +1,4 @@
-// A host's shader that reads recorded answers, with no doubles of its own.
+// A host's shader that reads recorded answers without using doubles.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -7,7 +7,7 @@
 
 layout(local_size_x = 64) in;
 
-struct Seen {
+struct ShaderResult {
   uint status;
   uint object;
   uint flags;
@@ -16,13 +16,13 @@ struct Seen {
 };
 
 layout(scalar, binding = 0) readonly buffer Results { RadarResult results[]; };
-layout(scalar, binding = 1) writeonly buffer Sight { Seen seen[]; };
+layout(scalar, binding = 1) writeonly buffer ShaderResults { ShaderResult shaderResults[]; };
 layout(push_constant) uniform Push { uint count; } push;
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= push.count) return;
   const RadarResult r = results[i];
-  seen[i] = Seen(r.status, r.object, r.flags, radarFloat(r.t),
+  shaderResults[i] = ShaderResult(r.status, r.object, r.flags, radarFloat(r.t),
                  float[3](radarFloat(r.normal[0]), radarFloat(r.normal[1]), radarFloat(r.normal[2])));
 }

@@ -3,8 +3,8 @@
 #include <radar/recorder.h>
 #include <vulkan/vulkan.h>
 
-// Once a frame, outside a render pass: the queries' answers are ready for the host's compute shaders behind it.
-// `recorder` is this frame in flight's own; what it recorded before has been executed and waited for.
+// Called once per frame, outside a render pass. Compute shaders that the host records afterwards can read the answers.
+// Each frame in flight has its own `recorder`, whose previous recording has executed and been waited for.
 void recordQueries(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries) {
   recorder.record(commands, queries);
   const VkMemoryBarrier2 answersToShaders{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,

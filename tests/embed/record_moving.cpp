@@ -4,18 +4,18 @@
 #include <radar/recorder.h>
 #include <vulkan/vulkan.h>
 
-// What a renderer's compute shaders move: a character that they skin, and crates that they push about a hall.
+// Geometry that a renderer's compute shaders move: a character that they skin and crates that they push around a hall.
 struct Moving {
   radar::MeshId body;
   VkBuffer skinned;     // the character's vertices, 32 bytes each, a float3 position first
-  VkBuffer transforms;  // of the crates, a VkTransformMatrixKHR each
+  VkBuffer transforms;  // a VkTransformMatrixKHR for each crate
   std::vector<radar::ObjectId> crates;
 };
 
-// While loading: `restPose` holds the character as it was modelled.
+// Called while loading. `restPose` holds the character as it was modelled.
 void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh restPose, radar::MeshId crate,
                Moving& moving) {
-  restPose.bounds = radar::Bounds{{-1.5, -1.5, 0}, {1.5, 1.5, 2.5}};  // whatever it does, about its origin
+  restPose.bounds = radar::Bounds{{-1.5, -1.5, 0}, {1.5, 1.5, 2.5}};  // around its origin, in any pose
   moving.body = radar::addMesh(scene, device, restPose);
   scene.addObject({.mesh = moving.body});
   for (int i = 0; i < 20; ++i) {
@@ -24,7 +24,7 @@ void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh
   }
 }
 
-// Once a frame, behind the compute shaders: what they wrote is what the queries meet.
+// Called once per frame, after the compute shaders have been recorded. The queries see what these shaders write.
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
                   const Moving& moving) {
   const VkMemoryBarrier2 movedToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,

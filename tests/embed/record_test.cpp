@@ -1,4 +1,4 @@
-// Searches recorded into a host's command buffers: the same answers, on the device and read back.
+// Searches recorded into a host's command buffers give a sweeper's answers, on the device and read back.
 #include <catch2/catch.hpp>
 
 #include "embed/on_device.h"
@@ -15,7 +15,7 @@ using test::sameBits;
 
 }  // namespace
 
-TEST_CASE("recorded answers are those of a sweeper, bit for bit, on the device and read back", "[subgroups]") {
+TEST_CASE("recorded answers equal a sweeper's, on the device and read back", "[subgroups]") {
   Scene scene;
   Recorder recorder(test::device(), scene, kRoom);
   Sweeper sweeper(test::device(), scene);
@@ -29,18 +29,18 @@ TEST_CASE("recorded answers are those of a sweeper, bit for bit, on the device a
     renderer.record(recorder, queries);
     renderer.submitAndWait();
     const std::vector<Result> read = recorder.read(), expected = sweeper.run(queries);
-    size_t open = 0;
+    size_t unresolved = 0;
     for (size_t i = 0; i < queries.size(); ++i) {
       CAPTURE(tools::nameOf(family), i);
       CHECK(sameBits(read[i], expected[i]));
-      open += test::isSeen(renderer.seen(i), expected[i]);
+      unresolved += test::checkShaderResult(renderer.shaderResult(i), expected[i]);
     }
-    if (test::device().doubles() && family == tools::Family::convex) CHECK(open <= 2);
+    if (test::device().doubles() && family == tools::Family::convex) CHECK(unresolved <= 2);
   }
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what has changed in the scene since does not matter to reading") {
+TEST_CASE("changes of the scene after the recording do not affect reading") {
   Row row(12);
   Recorder recorder(test::device(), row.scene);
   gpu::Submission submission(test::device().impl(), false);
@@ -53,7 +53,7 @@ TEST_CASE("what has changed in the scene since does not matter to reading") {
   for (size_t i = 0; i < read.size(); ++i) CHECK(sameBits(read[i], expected[i]));
 }
 
-TEST_CASE("a host that leaves the documented barrier out is told by synchronization validation") {
+TEST_CASE("synchronization validation reports a host that leaves out the documented barrier") {
   Row row(12);
   Recorder recorder(test::device(), row.scene);
   Renderer renderer(test::device());
@@ -67,7 +67,7 @@ TEST_CASE("a host that leaves the documented barrier out is told by synchronizat
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what cannot be recorded is refused by the query's number, and nothing is recorded") {
+TEST_CASE("record throws for a query that it cannot record, names its number and records nothing") {
   Row row(3);
   Recorder recorder(test::device(), row.scene, {.queries = 3});
   gpu::Submission submission(test::device().impl(), false);
@@ -91,11 +91,11 @@ TEST_CASE("what cannot be recorded is refused by the query's number, and nothing
   refused("expected at most 3 queries, got 4");
 }
 
-TEST_CASE("commands that were never executed are made up for") {
+TEST_CASE("after reset, a recording that never executed does not affect the next one") {
   Row row(12);
   Recorder recorder(test::device(), row.scene);
   gpu::Submission submission(test::device().impl(), false);
-  recorder.record(submission.begin(), row.queries);  // and begun anew: given up
+  recorder.record(submission.begin(), row.queries);  // never executed, since begin() starts again
   recorder.reset();
   recorder.record(submission.begin(), row.queries);
   submission.submitAndWait();
@@ -103,8 +103,8 @@ TEST_CASE("commands that were never executed are made up for") {
   for (size_t i = 0; i < read.size(); ++i) CHECK(sameBits(read[i], expected[i]));
 }
 
-TEST_CASE("recordings of different sizes and scenes follow each other", "[subgroups]") {
-  // None, one, many and few again; objects come and go between.
+TEST_CASE("one recorder records batches of different sizes while the scene changes", "[subgroups]") {
+  // No query, one, many and few again; objects are removed and added in between.
   Row row(30);
   Recorder recorder(test::device(), row.scene);
   Sweeper sweeper(test::device(), row.scene);
@@ -125,7 +125,7 @@ TEST_CASE("recordings of different sizes and scenes follow each other", "[subgro
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("a query that leaves objects out, by name or by mask, is recorded as it is run") {
+TEST_CASE("exclusions and masks apply to recordings as to sweepers") {
   Row row(12);
   row.scene.removeObject(3);
   row.scene.addObject({row.mesh, {{1, 0, 0, 3.3, 0, 1, 0, 0.2, 0, 0, 1, 3.5}}, 4u});
@@ -133,7 +133,7 @@ TEST_CASE("a query that leaves objects out, by name or by mask, is recorded as i
     if (i % 3 == 0) row.queries[i].exclude = {7, 0, 2, 1};
     if (i % 3 == 1) row.queries[i].mask = 3;
   }
-  // More than there is room for at first.
+  // More exclusions than there is room for at first.
   for (ObjectId id = 0; id < 8; ++id) {
     for (int times = 0; times < 20; ++times) row.queries[2].exclude.push_back(id);
   }

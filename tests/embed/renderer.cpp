@@ -15,9 +15,9 @@ Renderer::Renderer(const Device& device)
       submission_(device_, false),
       bindings_(device_, 2, sizeof(uint32_t)),
       pipeline_(gpu::computePipeline(device_, bindings_.layout(), k_read_results_comp, "host's pass")),
-      seen_(device_, "what the host sees", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
-  seen_.reserve(4096 * sizeof(Seen));
-  bindings_.setBuffer(1, seen_.get());
+      shaderResults_(device_, "shader results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
+  shaderResults_.reserve(4096 * sizeof(ShaderResult));
+  bindings_.setBuffer(1, shaderResults_.get());
 }
 
 void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool withBarrier) {
@@ -35,20 +35,20 @@ void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool w
   commands->CmdDispatch(commands, (count + 63) / 64, 1, 1);
 }
 
-bool isSeen(const Renderer::Seen& seen, const Result& expected) {
-  if (seen.flags == kFlagUnresolved) {
-    CHECK(seen.status == static_cast<uint32_t>(Status::undecided));
-    CHECK(std::isnan(seen.t));
+bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expected) {
+  if (found.flags == kFlagUnresolved) {
+    CHECK(found.status == static_cast<uint32_t>(Status::undecided));
+    CHECK(std::isnan(found.t));
     return true;
   }
-  CHECK(seen.flags == 0);
-  CHECK(seen.status == static_cast<uint32_t>(expected.status));
-  CHECK(seen.object == expected.object);
+  CHECK(found.flags == 0);
+  CHECK(found.status == static_cast<uint32_t>(expected.status));
+  CHECK(found.object == expected.object);
   if (std::isnan(expected.t)) {
-    CHECK(std::isnan(seen.t));
+    CHECK(std::isnan(found.t));
   } else {
-    CHECK(std::abs(seen.t) <= std::abs(expected.t));
-    CHECK(seen.t == Approx(expected.t).epsilon(3e-7).margin(1e-37));
+    CHECK(std::abs(found.t) <= std::abs(expected.t));
+    CHECK(found.t == Approx(expected.t).epsilon(3e-7).margin(1e-37));
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// A host's renderer, as far as searches go: its command buffer, and a pass of its own that reads the answers.
+// The part of a host's renderer that deals with searches: a command buffer and a compute pass that reads the answers.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ namespace radar::test {
 
 class Renderer {
  public:
-  /// What its pass sees of an answer (tests/embed/read_results.comp).
-  struct Seen {
+  /// An answer as the host's pass reads it (tests/embed/read_results.comp).
+  struct ShaderResult {
     uint32_t status, object, flags;
     float t;
     float normal[3];
@@ -24,25 +24,27 @@ class Renderer {
 
   explicit Renderer(const Device& device);
 
-  /// Records the queries, and behind the barrier that radar/recorder.h asks for the host's own pass.
+  /// Records the queries, the barrier that radar/recorder.h requires, and the host's own pass.
   void record(Recorder& recorder, std::span<const Query> queries, bool withBarrier = true);
   void submit() { submission_.submit(); }
   void wait() { submission_.wait(); }
   void submitAndWait() { submission_.submitAndWait(); }
-  const Seen& seen(size_t i) const { return reinterpret_cast<const Seen*>(seen_.mapped())[i]; }
+  const ShaderResult& shaderResult(size_t i) const {
+    return reinterpret_cast<const ShaderResult*>(shaderResults_.mapped())[i];
+  }
 
  private:
   const Device::Impl& device_;
   gpu::Submission submission_;
   Bindings bindings_;
   gpu::Pipeline pipeline_;
-  gpu::Buffer seen_;
+  gpu::Buffer shaderResults_;
 };
 
-/// Checks what the renderer's pass sees of an answer; returns whether it was left open.
-bool isSeen(const Renderer::Seen& seen, const Result& expected);
+/// Checks an answer that the host's pass has read; returns whether it is unresolved.
+bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expected);
 
-/// A row of boxes, each a step behind the last, and turned ones as sensors, some of which pass them all.
+/// A row of boxes, each farther away than the previous one, and rotated boxes as sensors, some of which miss them all.
 struct Row {
   explicit Row(uint32_t sensors);
   Scene scene;
@@ -50,7 +52,7 @@ struct Row {
   std::vector<Query> queries;
 };
 
-/// The workload's queries, of mode contact.
+/// The workload's queries in mode contact.
 std::vector<Query> queriesOf(const tools::Workload& workload);
 
 }  // namespace radar::test

@@ -1,4 +1,4 @@
-// What a device calculates, and what would be found if it did not.
+// The checks of a device's arithmetic pass, and they detect an operation that is spoiled on purpose.
 #include <catch2/catch.hpp>
 
 #include "gpu/arithmetic.h"
@@ -39,7 +39,7 @@ std::vector<std::string> failed(const gpu::Arithmetic& arithmetic) {
 
 }  // namespace
 
-TEST_CASE("a device's arithmetic passes every check, and its doubles are used if nobody switched them off") {
+TEST_CASE("a device's arithmetic passes every check, and its doubles are used unless they are switched off") {
   const std::vector<ArithmeticCheck> checks = checkArithmetic(test::device());
   CHECK(checks.size() == (test::wantsDoubles() ? 20 : 10));
   for (const ArithmeticCheck& check : checks) {
@@ -53,7 +53,7 @@ TEST_CASE("a device's arithmetic passes every check, and its doubles are used if
   CHECK(test::device().impl().dividesRight == test::wantsDoubles());
 }
 
-TEST_CASE("an operation that is spoiled is found, and what follows is heeded") {
+TEST_CASE("a spoiled operation fails its check, and the engine no longer relies on it") {
   const bool hasDoubles = test::wantsDoubles();
   const uint32_t operations = hasDoubles ? gpu::kOperations : gpu::kDoubleSum;
   for (uint32_t spoiled = 1; spoiled < operations; ++spoiled) {

@@ -1,4 +1,4 @@
-// What a batch must not change in mode contact, and sizes that strain it.
+// In mode contact, batches do not change answers, and large meshes and many simultaneous contacts are handled.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 
 using namespace radar;
 
-struct Loaded {
-  explicit Loaded(tools::Workload w) : workload(std::move(w)), player(workload) {
+struct LoadedWorkload {
+  explicit LoadedWorkload(tools::Workload w) : workload(std::move(w)), player(workload) {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
   }
@@ -31,8 +31,8 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
   }
 }
 
-// SweeperOptions::cpuBatch: all on the device, all beside it.
-constexpr uint32_t kOnDevice = 0, kAlone = kNone - 1;
+// SweeperOptions::cpuBatch: all queries on the device, all on the CPU.
+constexpr uint32_t kOnDevice = 0, kOnCpu = kNone - 1;
 
 Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
@@ -45,8 +45,8 @@ MeshId add(Scene& scene, const tools::MeshData& mesh) {
 }  // namespace
 
 TEST_CASE(
-    "in mode contact a batch of any size gives the same bits as one query at a time, on the device and beside it") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
+    "in mode contact a batch of any size gives the same bits as one query at a time, on the device and on the CPU") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
   const uint32_t cpuBatch = GENERATE(kOnDevice, 500u, kNone);
   CAPTURE(cpuBatch);
   Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = cpuBatch});
@@ -57,30 +57,30 @@ TEST_CASE(
     CAPTURE(size);
     checkSame(sweeper.run(std::span(loaded.queries).first(size)), {single.begin(), single.begin() + size});
     if (size < cpuBatch && cpuBatch != kNone) CHECK(sweeper.stats().cpuQueries == size);
-    // Without doubles, the device may leave some open.
+    // Without doubles, the device may leave some queries unresolved.
     if (size >= cpuBatch && test::device().doubles()) CHECK(sweeper.stats().cpuQueries == 0);
   }
-  Sweeper processor(test::device(), loaded.player.scene(), {.cpuBatch = kAlone});
+  Sweeper processor(test::device(), loaded.player.scene(), {.cpuBatch = kOnCpu});
   checkSame(processor.run(loaded.queries), single);
   CHECK(processor.stats().cpuQueries == loaded.queries.size());
   CHECK(processor.stats().submissions == 0);
 }
 
-TEST_CASE("in mode contact soups give the same bits alone, in a batch, reversed and from another sweeper") {
-  Loaded loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
+TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
   Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
   std::vector<Result> single;
   for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
   checkSame(sweeper.run(loaded.queries), single);
-  Sweeper other(test::device(), loaded.player.scene(), {.cpuBatch = kAlone});
+  Sweeper other(test::device(), loaded.player.scene(), {.cpuBatch = kOnCpu});
   std::reverse(loaded.queries.begin(), loaded.queries.end());
   std::vector<Result> backward = other.run(loaded.queries);
   std::reverse(backward.begin(), backward.end());
   checkSame(backward, single);
 }
 
-TEST_CASE("queries of both modes in one batch get the bits they get apart") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}));
+TEST_CASE("queries of both modes in one batch have the same bits as in separate batches") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}));
   Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
   std::vector<Query> contact = loaded.queries, sampled = loaded.queries, mixed = loaded.queries;
   for (size_t i = 0; i < mixed.size(); ++i) {
@@ -94,14 +94,14 @@ TEST_CASE("queries of both modes in one batch get the bits they get apart") {
   checkSame(sweeper.run(mixed), expected);
 }
 
-TEST_CASE("in mode contact a mesh of 160,000 triangles is answered as a scene and as a sensor") {
+TEST_CASE("mode contact handles a mesh of 160,000 triangles as an object and as a sensor") {
   Scene scene;
   const MeshId sphere = add(scene, tools::makeUvSphere(200, 400)), cube = add(scene, tools::makeBox({0.5, 0.5, 0.5}));
   REQUIRE(scene.mesh(sphere).triangleCount() > 159'000);
   scene.addObject({sphere, {}, ~0u});
   scene.addObject({cube, at(0.1, 0.2, 20), ~0u});
-  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kAlone)});
-  // The ball's points nearest to a corner of the box, where it is highest over the box: at most its radius from z = 0.
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kOnCpu)});
+  // The ball's half height above the box's corner that is nearest to its axis, at an offset of (0.1, 0.05).
   const double reach = std::sqrt(1 - 0.1 * 0.1 - 0.05 * 0.05);
   const auto check = [&](const Query& query, ObjectId object, double least, double most) {
     const Result result = sweeper.run({&query, 1})[0];
@@ -112,7 +112,7 @@ TEST_CASE("in mode contact a mesh of 160,000 triangles is answered as a scene an
     CHECK(result.t <= most);
     CHECK(result.hi - result.lo <= 1e-9 * 10);
   };
-  // The box reaches over the pole, which is exactly 1 from the middle.
+  // The box covers the ball's pole, which is exactly 1 from the centre.
   check({.mesh = cube, .worldFromMesh = at(0.1, 0.2, -5), .direction = {0, 0, 1}, .distance = 10}, 0, 3.75, 3.7500001);
   check({.mesh = cube, .worldFromMesh = at(5, 0.3, 0.25), .direction = {-3, 0, 0}, .distance = 10}, 0, 3.75, 3.76);
   check({.mesh = sphere, .worldFromMesh = at(0, 0, 10), .direction = {0, 0, 1}, .distance = 50}, 1, 8.75, 8.7500001);
@@ -127,14 +127,14 @@ TEST_CASE("in mode contact a mesh of 160,000 triangles is answered as a scene an
   CHECK(sweeper.run({&within, 1})[0].status == Status::clear);
 }
 
-TEST_CASE("of many objects met at exactly the same moment the least id is told") {
+TEST_CASE("of many objects touched at exactly the same time the one with the lowest id is reported") {
   Scene scene;
   const MeshId box = add(scene, tools::makeBox({1, 1, 1})), plate = add(scene, tools::makePlate(128, 128, 1));
-  // The ids run against the order in space.
+  // Ids decrease along x and y.
   for (int y = 31; y >= 0; --y) {
     for (int x = 31; x >= 0; --x) scene.addObject({box, at(2 * x, 2 * y, 0), ~0u});
   }
-  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kAlone)});
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kOnCpu)});
   Query query{.mesh = plate, .worldFromMesh = at(32, 32, -6), .direction = {0, 0, 0.5}, .distance = 10};
   for (uint32_t least = 0; least < 4; ++least) {
     CAPTURE(least);

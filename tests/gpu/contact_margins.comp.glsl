@@ -1,4 +1,4 @@
-// What the search's bounds say of pairs that are known to touch.
+// Evaluates the search's bounds for pairs that are known to touch.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -14,7 +14,7 @@
 layout(local_size_x = 64) in;
 
 layout(scalar, binding = kSlotTouches) readonly restrict buffer Touches { Touch touches[]; };
-layout(scalar, binding = kSlotTold) writeonly restrict buffer Tellings { Told tellings[]; };
+layout(scalar, binding = kSlotPairBounds) writeonly restrict buffer Bounds { PairBounds pairBounds[]; };
 
 layout(push_constant) uniform PushConstants { uint count; };
 
@@ -22,25 +22,25 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   const Touch t = touches[i];
-  Told told;
+  PairBounds found;
   const int node = int(2 * t.objectNode);
   const vec2 box = meetsBox(sensorBoxOf(t.sensor), uintBitsToFloat(texelFetch(objectNodeTexels, node)),
                             uintBitsToFloat(texelFetch(objectNodeTexels, node + 1)));
-  told.boxGap = box.x;
-  told.boxEnd = box.y;
+  found.boxGap = box.x;
+  found.boxEnd = box.y;
   const MeshPair meshes = meshPairOf(t.sensor, t.object);
-  told.inRange = meshes.inRange ? 1 : 0;
+  found.inRange = meshes.inRange ? 1 : 0;
   const Node nodeA = nodeAt(t.nodeA), nodeB = nodeAt(t.nodeB);
-  told.gap = approachOf(meshes, nodeA, nodeB, t.limit).gap;
+  found.gap = approachOf(meshes, nodeA, nodeB, t.limit).gap;
   const PairFrame f = pairFrameOf(t.sensor, t.object, vertexAt(triangleAt(t.slotA).x), vertexAt(triangleAt(t.slotB).x));
   const PlacedTriangle a = placedA(f, t.slotA), b = placedB(f, t.slotB);
-  told.anchorA = f.anchorA;
-  told.cornersA = a.corners;
-  told.cornersB = b.corners;
-  told.errorA = a.error;
-  told.errorB = b.error;
-  told.mayMeet = mayMeet(a, b, t.limit) ? 1 : 0;
+  found.anchorA = f.anchorA;
+  found.cornersA = a.corners;
+  found.cornersB = b.corners;
+  found.errorA = a.error;
+  found.errorB = b.error;
+  found.mayMeet = mayMeet(a, b, t.limit) ? 1 : 0;
   const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
-  told.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
-  tellings[i] = told;
+  found.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
+  pairBounds[i] = found;
 }

@@ -1,4 +1,4 @@
-// What contact_margins_test and its shader agree on.
+// Shared by contact_margins_test and its shader.
 #ifndef RADAR_CONTACT_MARGINS_INTEROP_H
 #define RADAR_CONTACT_MARGINS_INTEROP_H
 
@@ -10,15 +10,17 @@ using uint = uint32_t;
 using Point = gpu::Point;
 #endif
 
-// A pair of triangles that touch, a node of each mesh's tree above them, and a leaf of the tree over objects.
+// A pair of triangles that touch, a node of each mesh's tree above them, and the object's leaf in the tree over
+// objects.
 struct Touch {
   uint sensor, object;
   uint nodeA, nodeB, slotA, slotB;
   uint objectNode;
-  float limit;  // scaled: how far the sensor moves until they do, rounded up
+  float limit;  // scaled distance that the sensor moves until they touch, rounded up
 };
 
-struct Told {
+// The search's bounds for such a pair.
+struct PairBounds {
   Point anchorA;
   float errorA;
   Point cornersA[3];
@@ -32,7 +34,7 @@ struct Told {
 };
 
 INTEROP_SLOT(kSlotTouches, 20, Touch);
-INTEROP_SLOT(kSlotTold, 21, Told);
+INTEROP_SLOT(kSlotPairBounds, 21, PairBounds);
 
 #ifdef __cplusplus
 }  // namespace radar::test

@@ -1,5 +1,5 @@
-// The search's bounds hold for pairs that touch by construction: a vertex of the sensor meets a vertex of an object, at
-// sizes, distances and places of a wide range.
+// The search's bounds admit pairs that touch by construction: a vertex of the sensor meets a vertex of an object.
+// Sizes, distances and positions vary widely.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace {
 
 using namespace radar;
-using test::Told;
+using test::PairBounds;
 using test::Touch;
 
 using Real = long double;
@@ -38,7 +38,7 @@ double magnitude(tools::Random& random, double mostExponent) {
   return std::exp2(random.uniform(-mostExponent, mostExponent));
 }
 
-/// Turned in its own coordinates, which float rounds.
+/// Rotates the mesh's own coordinates, which are rounded to floats.
 tools::MeshData turned(tools::MeshData mesh, tools::Random& random) {
   const Transform pose = tools::makePose(random.rotation(), {1, 0.3, 1.7}, {0.1, 5, -30});
   for (size_t v = 0; v < mesh.positions.size(); v += 3) {
@@ -48,7 +48,7 @@ tools::MeshData turned(tools::MeshData mesh, tools::Random& random) {
   return mesh;
 }
 
-/// As flat as that along its own z axis, and so are its triangles' normals long where they are seen from others.
+/// Scales the mesh by `by` along its own z axis.
 tools::MeshData flattened(tools::MeshData mesh, float by) {
   for (size_t k = 2; k < mesh.positions.size(); k += 3) mesh.positions[k] *= by;
   return mesh;
@@ -58,13 +58,13 @@ MeshId add(Scene& scene, const tools::MeshData& mesh) {
   return scene.addMesh(mesh.positions, mesh.indices);
 }
 
-/// A pair that touches, as the test knows it.
+/// A pair of triangles that touch.
 struct Case {
   Query query;
   ObjectId object;
   uint32_t triangleA, triangleB;
-  Real contact;  ///< distance at which it touches, give or take
-  Real doubt;    ///< this: what placing in double precision may lose
+  Real contact;  ///< distance at which they touch, within `doubt`
+  Real doubt;    ///< error of placing them in double precision
 };
 
 class Margins {
@@ -79,7 +79,7 @@ class Margins {
     for (int i = 0; i < 400; ++i) addCase(meshes[random_.below(static_cast<uint32_t>(meshes.size()))]);
   }
 
-  /// All bounds, for every case and several pairs of nodes above it.
+  /// Checks all bounds for every case and every pair of nodes above its triangles.
   void check();
 
  private:
@@ -97,7 +97,7 @@ class Margins {
     return meshes;
   }
 
-  /// `size` large, and so many times that from the origin.
+  /// A random pose of size `size`, up to `far` times its size from the origin.
   Transform poseOf(double size, double far) {
     Transform pose = tools::makePose(random_.rotation(), {1, 1, 1}, {});
     if (random_.oneIn(2)) pose = tools::randomAffine(random_, {});
@@ -161,7 +161,7 @@ class Margins {
   std::vector<Case> cases_;
 };
 
-/// An orthonormal frame along the motion, next to the sensor's own of floats.
+/// The orthonormal frame along the motion that is closest to the sensor's frame of floats.
 std::array<Place, 3> frameOf(const gpu::Sensor& sensor, const std::array<double, 3>& direction) {
   const auto dot = [](const Place& p, const Place& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
   const auto unit = [&](Place p) {
@@ -177,7 +177,7 @@ std::array<Place, 3> frameOf(const gpu::Sensor& sensor, const std::array<double,
   return {x, Place{z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]}, z};
 }
 
-/// How far a triangle's corners are off what they are in the world, on any axis; scaled.
+/// The largest error of a triangle's placed corners on any axis, scaled.
 Real offBy(const float (&corners)[3][3], const Mesh& mesh, uint32_t triangle, const Transform& pose,
            const Place& anchor, const std::array<Place, 3>& frame, Real scale) {
   Real most = 0;
@@ -192,7 +192,7 @@ Real offBy(const float (&corners)[3][3], const Mesh& mesh, uint32_t triangle, co
   return most;
 }
 
-/// The nodes from the root to the leaf that holds a triangle.
+/// The nodes from the root to the leaf of a triangle.
 std::vector<uint32_t> pathTo(const MeshTree& tree, uint32_t triangle) {
   std::vector<uint32_t> path{0};
   const auto holds = [&](uint32_t node) {
@@ -253,8 +253,8 @@ void Margins::check() {
   const auto sensors = upload(
       batch.sensors,
       gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
-  const auto asked = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
-  gpu::Array<Told> answers(test::impl(), "told", gpu::BufferDomain::readback);
+  const auto touchBuffer = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
+  gpu::Array<PairBounds> answers(test::impl(), "pair bounds", gpu::BufferDomain::readback);
   answers.reserve(touches.size());
   const gpu::Kernel kernel(test::impl(), k_contact_margins_comp, "margins");
   gpu::KernelArguments arguments(kernel);
@@ -265,43 +265,43 @@ void Margins::check() {
                  {gpu::kSlotTriangles, scene.triangles},
                  {gpu::kSlotPlacements, scene.placements},
                  {gpu::kSlotSensors, sensors},
-                 {test::kSlotTouches, asked},
-                 {test::kSlotTold, answers}});
+                 {test::kSlotTouches, touchBuffer},
+                 {test::kSlotPairBounds, answers}});
   const auto count = static_cast<uint32_t>(touches.size());
   test::run([&](const gpu::Commands& commands) { arguments.dispatch(commands, gpu::groupsFor(count, 64), count); });
 
   uint32_t inRange = 0, tight = 0;
-  Real closest = 0;  // of what is allowed
+  Real closest = 0;  // the largest error, as a fraction of its bound
   for (uint32_t i = 0; i < count; ++i) {
-    const Told& told = answers.mapped()[i];
+    const PairBounds& found = answers.mapped()[i];
     const Case& c = *of[i];
     const gpu::Sensor& sensor = batch.sensors[touches[i].sensor];
     const Real scale = sensor.scale, contact = (c.contact + c.doubt) * scale;
-    CAPTURE(i, c.query.mesh, c.object, double(c.contact), double(contact), told.gap, told.boxGap, told.boxEnd);
-    if (told.inRange == 0) continue;
+    CAPTURE(i, c.query.mesh, c.object, double(c.contact), double(contact), found.gap, found.boxGap, found.boxEnd);
+    if (found.inRange == 0) continue;
     ++inRange;
     // In the tree over objects.
-    CHECK(told.boxGap <= c.contact + c.doubt);
-    CHECK(told.boxEnd >= c.contact - c.doubt);
+    CHECK(found.boxGap <= c.contact + c.doubt);
+    CHECK(found.boxEnd >= c.contact - c.doubt);
     // Nodes.
-    CHECK(told.gap <= contact);
-    tight += told.gap > 0.99L * contact;
+    CHECK(found.gap <= contact);
+    tight += found.gap > 0.99L * contact;
     // Triangles.
-    CHECK(told.mayMeet == 1);
-    CHECK(told.pairGap <= contact);
+    CHECK(found.mayMeet == 1);
+    CHECK(found.pairGap <= contact);
     const Mesh &a = impl.meshes[c.query.mesh], &b = impl.meshes[impl.objects[c.object].object.mesh];
     const std::array<Place, 3> frame = frameOf(sensor, c.query.direction);
     const Place anchor =
-        placed(c.query.worldFromMesh, {told.anchorA[0] * a.unit + a.origin[0], told.anchorA[1] * a.unit + a.origin[1],
-                                       told.anchorA[2] * a.unit + a.origin[2]});
-    const Real offA = offBy(told.cornersA, a, c.triangleA, c.query.worldFromMesh, anchor, frame, scale);
+        placed(c.query.worldFromMesh, {found.anchorA[0] * a.unit + a.origin[0], found.anchorA[1] * a.unit + a.origin[1],
+                                       found.anchorA[2] * a.unit + a.origin[2]});
+    const Real offA = offBy(found.cornersA, a, c.triangleA, c.query.worldFromMesh, anchor, frame, scale);
     const Real offB =
-        offBy(told.cornersB, b, c.triangleB, impl.objects[c.object].object.worldFromMesh, anchor, frame, scale);
-    CAPTURE(double(offA), told.errorA, double(offB), told.errorB);
-    CHECK(offA <= told.errorA + c.doubt * scale);
-    // Both are relative to A's anchor, whose own error is A's.
-    CHECK(offB <= told.errorA + told.errorB + c.doubt * scale);
-    closest = std::max({closest, offA / told.errorA, offB / (told.errorA + told.errorB)});
+        offBy(found.cornersB, b, c.triangleB, impl.objects[c.object].object.worldFromMesh, anchor, frame, scale);
+    CAPTURE(double(offA), found.errorA, double(offB), found.errorB);
+    CHECK(offA <= found.errorA + c.doubt * scale);
+    // B's corners are relative to A's anchor, whose error is part of errorA.
+    CHECK(offB <= found.errorA + found.errorB + c.doubt * scale);
+    closest = std::max({closest, offA / found.errorA, offB / (found.errorA + found.errorB)});
   }
   CHECK(inRange > count / 2);
   CHECK(tight > count / 50);
@@ -310,7 +310,7 @@ void Margins::check() {
 
 }  // namespace
 
-TEST_CASE("no bound of the search excludes a pair that touches, whatever its size, distance and place") {
+TEST_CASE("no bound of the search excludes a pair that touches, at any size, distance and position") {
   const uint64_t seed = GENERATE(range(1, 6));
   CAPTURE(seed);
   Margins(seed).check();

@@ -1,4 +1,4 @@
-// The contact tier's search with the least room, in the shortest rounds, and over long lists: nothing is lost.
+// The contact search loses nothing with the smallest lists, in the shortest rounds and over very long lists.
 #include <catch2/catch.hpp>
 
 #include <cstring>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace radar;
 
-/// Made once for each shape: compiling them takes a second.
+/// Cached for each shape, since compiling takes a second.
 std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
   const Device& device = test::device();  // outlives the kernels
   static std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>> all;
@@ -32,10 +32,10 @@ std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
   return kernels;
 }
 
-/// On the device, whatever the batch's size.
-class Searching {
+/// Searches on the device, whatever the size of the batch.
+class DeviceSearch {
  public:
-  explicit Searching(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
+  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
       : sweeper_(test::device(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
                  kernelsOf(shape)) {}
 
@@ -64,7 +64,7 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
   }
 }
 
-/// A family's queries, every fourth of which only asks for a decision.
+/// A family's queries, every fourth of which has `anyHit` set.
 struct FamilyQueries {
   FamilyQueries(tools::Family family, uint32_t count, uint64_t seed)
       : workload(tools::makeWorkload(tools::FamilyScene{.family = family, .queries = count, .seed = seed})),
@@ -86,35 +86,34 @@ Transform at(double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE("with the least room, and in the shortest rounds, the answers have the same bits") {
+TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds") {
   const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice, tools::Family::touching,
                                         tools::Family::floor, tools::Family::soup);
-  const FamilyQueries asked(family, 96, 1);
-  const std::vector<Result> roomy = Searching(asked.player.scene()).run(asked.queries);
+  const FamilyQueries batch(family, 96, 1);
+  const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries);
   const SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
                                    SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
                                    SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
                                    SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
   const SearchShape shape = GENERATE(SearchShape{}, SearchShape{.queue = 1, .stack = 4}, SearchShape{.stack = 7});
   CAPTURE(tools::nameOf(family), room, shape.queue, shape.stack);
-  Searching narrow(asked.player.scene(), room, shape);
-  checkSame(narrow.run(asked.queries), roomy);
-  // What a list has no room for goes to the processor, and nothing else does; rounds that are cut short go on in
-  // others.
+  DeviceSearch narrow(batch.player.scene(), room, shape);
+  checkSame(narrow.run(batch.queries), roomy);
+  // Only queries that overflow a list go to the CPU. Rounds that exceed their budget continue in further rounds.
   if (room.candidates == 1) CHECK(narrow.stats().cpuQueries > 0);
   if (room.budget == 1 && family == tools::Family::interlocking) CHECK(narrow.stats().submissions > 1);
   if (room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);
 }
 
-TEST_CASE("a search that overflowed once has room the next time") {
-  const FamilyQueries asked(tools::Family::touching, 400, 2);
-  Searching searching(asked.player.scene());
-  const std::vector<Result> first = searching.run(asked.queries);
-  checkSame(searching.run(asked.queries), first);
-  CHECK(searching.stats().cpuQueries == 0);
+TEST_CASE("a batch that is searched again fits on the device") {
+  const FamilyQueries batch(tools::Family::touching, 400, 2);
+  DeviceSearch search(batch.player.scene());
+  const std::vector<Result> first = search.run(batch.queries);
+  checkSame(search.run(batch.queries), first);
+  CHECK(search.stats().cpuQueries == 0);
 }
 
-TEST_CASE("70,000 pairs that all may be first, more than a loop may be long on lavapipe, are searched to their end") {
+TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations, are all searched") {
   Scene scene;
   const std::vector<float> small{0, 0, 0, 0.5f, 0, 0, 0, 0.5f, 0}, large{-1, -1, 0, 601, -1, 0, -1, 601, 0};
   const std::vector<uint32_t> corners{0, 1, 2};
@@ -127,19 +126,19 @@ TEST_CASE("70,000 pairs that all may be first, more than a loop may be long on l
     const double height = level ? 4 : random.uniform(5, 9);
     scene.addObject({triangle, at(i % kSide, double(i / kSide), height), ~0u});
   }
-  // The last is the nearest, if not all are alike.
+  // Unless all are level, the last object is the nearest.
   if (!level) scene.setTransform(kCount - 1, at(1, 2, 4.5));
   const Query query{.mesh = wing, .worldFromMesh = at(0, 0, 0), .direction = {0, 0, 2}, .distance = 20};
-  Searching searching(scene, {.candidates = 100'000});
-  const Result result = searching.run({&query, 1})[0];
-  if (level) CHECK(searching.stats().solves == kCount);
+  DeviceSearch search(scene, {.candidates = 100'000});
+  const Result result = search.run({&query, 1})[0];
+  if (level) CHECK(search.stats().solves == kCount);
   CHECK(result.status == Status::hit);
   CHECK(result.t == (level ? 4 : 4.5));
   CHECK(result.object == (level ? 0 : kCount - 1));
-  checkSame(Searching(scene).run({&query, 1})[0], result);
+  checkSame(DeviceSearch(scene).run({&query, 1})[0], result);
 }
 
-TEST_CASE("what floats cannot hold is answered on the processor: as on the device, where both can") {
+TEST_CASE("queries that floats cannot represent are answered on the CPU") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
@@ -148,9 +147,9 @@ TEST_CASE("what floats cannot hold is answered on the processor: as on the devic
   const auto placed = [&](double x) { return Transform{{size, 0, 0, x * size, 0, size, 0, 0, 0, 0, size, 0}}; };
   scene.addObject({mesh, placed(3), ~0u});
   const Query query{.mesh = mesh, .worldFromMesh = placed(0), .direction = {1, 0, 0}, .distance = 5 * size};
-  Searching searching(scene);
-  const Result result = searching.run({&query, 1})[0];
+  DeviceSearch search(scene);
+  const Result result = search.run({&query, 1})[0];
   CHECK(result.status == Status::hit);
   CHECK(result.t == Approx(2 * size));
-  CHECK(searching.stats().cpuQueries == (size == 1 ? 0 : 1));
+  CHECK(search.stats().cpuQueries == (size == 1 ? 0 : 1));
 }

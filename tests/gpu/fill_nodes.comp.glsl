@@ -1,4 +1,4 @@
-// Writes nodes, as storage, that other shaders read as texels: the words of all nodes count on from `first`.
+// Writes nodes as storage that other shaders read as texels. The words of all nodes count up from `first`.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

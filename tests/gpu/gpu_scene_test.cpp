@@ -1,4 +1,4 @@
-// A scene's copy on the device is what the scene is, after any change, and only what changed is brought there.
+// A scene's copy on the device equals the scene after every change, and only changed data is uploaded.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ void checkObject(const Scene::Impl& scene, ObjectId id, const GpuScene& copy) {
   CHECK(std::equal(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), record.pose));
 }
 
-// The device has all that the scene has.
+// Checks that the copy has everything that the scene has.
 void checkCopy(const GpuScene& copy, const Scene& scene) {
   const Scene::Impl& inner = scene.impl();
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
@@ -88,8 +88,8 @@ MeshId addSoup(Scene& scene, tools::Random& random, uint32_t triangles) {
   return scene.addMesh(soup.positions, soup.indices);
 }
 
-struct Filled {
-  explicit Filled(uint64_t seed) : random(seed), copy(test::device().impl()) {
+struct FilledScene {
+  explicit FilledScene(uint64_t seed) : random(seed), copy(test::device().impl()) {
     for (uint32_t i = 0; i < 3; ++i) meshes.push_back(addSoup(scene, random, 20 + 30 * i));
     for (uint32_t i = 0; i < 12; ++i) objects.push_back(scene.addObject({meshes[i % 3], randomPose(random), i + 1}));
   }
@@ -104,7 +104,7 @@ struct Filled {
 }  // namespace
 
 TEST_CASE("the device's copy follows every change of a scene") {
-  Filled filled(3);
+  FilledScene filled(3);
   for (int round = 0; round < 24; ++round) {
     tools::Random& random = filled.random;
     const auto any = [&] { return filled.objects[random.below(uint32_t(filled.objects.size()))]; };
@@ -125,7 +125,7 @@ TEST_CASE("the device's copy follows every change of a scene") {
         filled.objects.back() = filled.scene.addObject({filled.meshes[1], randomPose(random), ~0u});
         break;
       }
-      case 3:  // what comes later moves in the buffers, and so do the nodes that placements name
+      case 3:  // later meshes move in the buffers, and so do the nodes that placements name
         addSoup(filled.scene, random, 100);
         filled.meshes.push_back(addSoup(filled.scene, random, 7));
         filled.objects.push_back(filled.scene.addObject({filled.meshes.back(), randomPose(random), ~0u}));
@@ -133,7 +133,7 @@ TEST_CASE("the device's copy follows every change of a scene") {
       case 4:
         filled.scene.setBounds(any(), {{-9, -9, -9}, {30, 30, 30}});
         break;
-      default:  // a mesh without objects goes, and another takes its id
+      default:  // a mesh without objects is removed, and another takes its id
         for (MeshId id = 0; id < filled.scene.meshLimit(); ++id) {
           if (filled.scene.hasMesh(id) && std::count(filled.meshes.begin(), filled.meshes.end(), id) == 0) {
             filled.scene.removeMesh(id);
@@ -148,8 +148,8 @@ TEST_CASE("the device's copy follows every change of a scene") {
   }
 }
 
-TEST_CASE("only what changed is staged") {
-  Filled filled(4);
+TEST_CASE("only changed data is staged") {
+  FilledScene filled(4);
   const VkDeviceSize all = filled.staged();
   CHECK(all > 10'000);
   filled.copy.sync(filled.scene.impl());
@@ -160,36 +160,36 @@ TEST_CASE("only what changed is staged") {
   CHECK(filled.staged() == objectBytes + treeBytes);
   filled.copy.sync(filled.scene.impl());
   CHECK(filled.staged() == 0);
-  // All of a mesh more is all meshes, and all objects, whose placements name nodes.
+  // A new mesh stages all meshes again, and all objects, since their placements name nodes.
   addSoup(filled.scene, filled.random, 1);
   CHECK(filled.staged() > all - treeBytes);
 }
 
-TEST_CASE("what has not arrived is staged again") {
-  Filled filled(5);
+TEST_CASE("data that has not been uploaded is staged again") {
+  FilledScene filled(5);
   const VkDeviceSize all = filled.staged();
   CHECK(filled.staged() == all);
   filled.copy.sync(filled.scene.impl());
   filled.scene.setTransform(2, randomPose(filled.random));
   const VkDeviceSize one = filled.staged();
   CHECK(one > 0);
-  CHECK(filled.staged() == one);  // as after a submission that failed
+  CHECK(filled.staged() == one);  // as after a failed submission
   filled.copy.forget();
   CHECK(filled.staged() == all);
   filled.copy.sync(filled.scene.impl());
   checkCopy(filled.copy, filled.scene);
 }
 
-TEST_CASE("a scene that is moved into another's place is brought to the device whole") {
-  Filled filled(6), other(7);
+TEST_CASE("a scene that is move-assigned to another is uploaded completely") {
+  FilledScene filled(6), other(7);
   filled.copy.sync(filled.scene.impl());
   filled.scene = std::move(other.scene);
   filled.copy.sync(filled.scene.impl());
   checkCopy(filled.copy, filled.scene);
 }
 
-TEST_CASE("what a host has overwritten is staged once it no longer does") {
-  Filled filled(8);
+TEST_CASE("data that a host has overwritten is staged again when the host stops overwriting it") {
+  FilledScene filled(8);
   const auto sync = [&](const GpuScene::Overwritten& next) {
     filled.copy.willOverwrite(next);
     const VkDeviceSize bytes = filled.staged();
@@ -207,8 +207,8 @@ TEST_CASE("what a host has overwritten is staged once it no longer does") {
   CHECK(sync({}) == 0);
 }
 
-TEST_CASE("indices for drawing are there where they are needed, in the order of the triangles") {
-  Filled filled(9);
+TEST_CASE("after needIndices, indices for drawing are uploaded in the order of the triangles") {
+  FilledScene filled(9);
   filled.copy.sync(filled.scene.impl());
   filled.copy.needIndices();
   for (int round = 0; round < 2; ++round) {
@@ -228,7 +228,7 @@ TEST_CASE("indices for drawing are there where they are needed, in the order of 
   }
 }
 
-TEST_CASE("a scene without objects, or without meshes, has a copy") {
+TEST_CASE("a scene without objects or without meshes can be copied") {
   GpuScene copy(test::device().impl());
   Scene scene;
   copy.sync(scene.impl());

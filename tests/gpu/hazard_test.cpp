@@ -1,4 +1,4 @@
-// The validation layer must see what it is there for: a missing barrier between an upload and a dispatch.
+// The validation layer reports a missing barrier between an upload and a dispatch.
 #include <catch2/catch.hpp>
 
 #include <cstring>
@@ -24,7 +24,7 @@ Array<T> zeros(const char* name) {
   return array;
 }
 
-// An upload, then a dispatch that reads what was uploaded (and, where all counts are zero, finds nothing to do).
+// Messages about an upload and a dispatch that reads it. All counts are zero, so the shader has nothing to do.
 std::vector<std::string> messagesOf(bool withBarrier) {
   const Device::Impl& device = test::device().impl();
   const gpu::Kernel collect(device, k_contact_collect_comp, "collect");
@@ -49,7 +49,7 @@ std::vector<std::string> messagesOf(bool withBarrier) {
 
 }  // namespace
 
-TEST_CASE("a missing barrier is reported as a hazard, and the barrier silences it") {
+TEST_CASE("a missing barrier is reported as a hazard, and with the barrier nothing is reported") {
   const std::vector<std::string> missing = messagesOf(false);
   REQUIRE_FALSE(missing.empty());
   CHECK(missing[0].find("SYNC-HAZARD") != std::string::npos);

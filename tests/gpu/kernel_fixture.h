@@ -1,4 +1,4 @@
-// The kernels of the tests, shared as the engine's are, and a way to run them.
+// The tests' kernels, shared per device like the engine's, and a function that runs them.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@ inline const Kernels& kernels() {
 /// Submits what `record` records, and waits; the host may then read what compute shaders wrote.
 void run(const std::function<void(const gpu::Commands&)>& record);
 
-/// `count` numbers that the host and the device see: 0, 1, 2, ...
+/// The first `count` of the numbers 0, 1, 2, ... in memory that the host can access.
 gpu::Array<uint32_t> numbers(const char* name, uint32_t count);
 
 }  // namespace radar::test

@@ -1,4 +1,4 @@
-// What kernel_test and its shaders agree on.
+// Shared by kernel_test and its shaders.
 #ifndef RADAR_KERNEL_INTEROP_H
 #define RADAR_KERNEL_INTEROP_H
 

@@ -1,4 +1,4 @@
-// A wrong argument does not compile, or is an error that names the kernel and the binding.
+// A wrong argument does not compile, or throws an error that names the kernel and the binding.
 #include <catch2/catch.hpp>
 
 #include "gpu/kernel_fixture.h"
@@ -25,7 +25,7 @@ static_assert(!std::is_constructible_v<Argument, Slot<Node>, const gpu::Buffer&>
 static_assert(!std::is_constructible_v<Argument, Slot<Node>, VkImageView, VkSampler>);
 static_assert(!std::is_constructible_v<Argument, uint32_t, const Array<Node>&>);
 
-// The number of a slot, with another type than the shader's.
+// Slots with the numbers of others, but not with the shader's types.
 constexpr Slot<Node> kValuesAsNodes{kSlotValues.number};
 constexpr Slot<uint32_t> kGroupsAsNumber{kSlotGroups.number};
 constexpr Slot<gpu::SampledImage> kValuesAsImage{kSlotValues.number};
@@ -51,7 +51,7 @@ std::string messageOf(const gpu::Kernel& kernel, std::initializer_list<Argument>
 
 }  // namespace
 
-TEST_CASE("setting the arguments of a kernel is refused by kernel and binding") {
+TEST_CASE("setting wrong arguments throws an error that names the kernel and the binding") {
   const Buffers b;
   const gpu::Kernel& scale = kernels().scale;
   CHECK(messageOf(scale, {{kSlotValues, b.values}}) == "kernel \"scale\", binding 7 (Results) is missing");
@@ -72,7 +72,7 @@ TEST_CASE("setting the arguments of a kernel is refused by kernel and binding") 
         "kernel \"read depth\", binding 5 (depth) is an image, not a buffer");
 }
 
-TEST_CASE("arguments that were refused leave those of before") {
+TEST_CASE("refused arguments leave the previous ones in place") {
   const uint32_t count = 10;
   Buffers b;
   KernelArguments arguments(kernels().scale);
@@ -84,7 +84,7 @@ TEST_CASE("arguments that were refused leave those of before") {
   CHECK(other.mapped()[9] == 9);
 }
 
-TEST_CASE("a dispatch is refused before the arguments are set, and with push constants of another size") {
+TEST_CASE("a dispatch is refused before the arguments are set and with push constants of the wrong size") {
   const Buffers b;
   KernelArguments scale(kernels().scale), countGroups(kernels().countGroups);
   const Commands none;
@@ -102,7 +102,7 @@ TEST_CASE("a dispatch is refused before the arguments are set, and with push con
         "kernel \"scale\" has push constants of 8 bytes, but was given 0");
 }
 
-TEST_CASE("a shader without descriptors, or with more push constants than every device supports, is refused") {
+TEST_CASE("a shader without descriptors or with more push constants than every device supports is refused") {
   CHECK(messageOf([] { const gpu::Kernel kernel(impl(), k_refused_comp_BINDS_NOTHING, "idle"); }) ==
         "kernel \"idle\" has no descriptors");
   CHECK(messageOf([] { const gpu::Kernel kernel(impl(), k_refused_comp_PUSHES_132_BYTES, "long"); }) ==

@@ -1,4 +1,4 @@
-// Kernels do what their arguments and push constants say, for any number of workgroups and of users.
+// Kernels apply their arguments and push constants for any number of workgroups and users.
 #include <catch2/catch.hpp>
 
 #include "gpu/depth_array.h"
@@ -15,7 +15,7 @@ using gpu::KernelArguments;
 
 constexpr uint32_t kUntouched = 0xdeadbeef;
 
-// A number more than `count`, so that one too many is seen.
+// One element more than `count`, which shows a write beyond the end.
 Array<uint32_t> untouched(uint32_t count) {
   Array<uint32_t> array(impl(), "results", BufferDomain::readback);
   array.reserve(count + 1);
@@ -23,7 +23,8 @@ Array<uint32_t> untouched(uint32_t count) {
   return array;
 }
 
-// results[i] = factor * i + offset for i < count, and nothing beyond; the first that is wrong, or `count`.
+// Expects results[i] = factor * i + offset for i < count and nothing beyond. Returns the first wrong index, or else
+// `count`.
 uint32_t firstWrong(const Array<uint32_t>& results, uint32_t count, uint32_t factor, uint32_t offset) {
   for (uint32_t i = 0; i < count; ++i) {
     if (results.mapped()[i] != factor * i + offset) return i;
@@ -33,7 +34,7 @@ uint32_t firstWrong(const Array<uint32_t>& results, uint32_t count, uint32_t fac
 
 }  // namespace
 
-TEST_CASE("a kernel reaches every element and none beyond, for sizes around that of a workgroup") {
+TEST_CASE("a kernel writes every element and none beyond, for sizes around that of a workgroup") {
   KernelArguments arguments(kernels().scale);
   for (const uint32_t count : {0u, 1u, 63u, 64u, 65u, 1234u}) {
     CAPTURE(count);
@@ -46,7 +47,7 @@ TEST_CASE("a kernel reaches every element and none beyond, for sizes around that
   }
 }
 
-TEST_CASE("more workgroups than one axis takes are laid out in rows") {
+TEST_CASE("more workgroups than one axis allows are laid out in rows") {
   KernelArguments arguments(kernels().scaleAndAdd5);
   for (const uint32_t count : {65535u, 65536u, 65537u, 200001u}) {
     CAPTURE(count);
@@ -57,8 +58,7 @@ TEST_CASE("more workgroups than one axis takes are laid out in rows") {
   }
 }
 
-TEST_CASE(
-    "an indirect dispatch runs as many workgroups as a kernel before it wrote, and the count may be written again") {
+TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wrote, and the count can be overwritten") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   KernelArguments count(kernels().countGroups), scale(kernels().scaleAndAdd5);
   const uint32_t most = 70000;
@@ -66,7 +66,8 @@ TEST_CASE(
   count.set({{kSlotGroups, command}});
   scale.set({{kSlotValues, values}, {kSlotResults, results}});
   run([&](const Commands& commands) {
-    // The factor tells who wrote last: 0 workgroups write nothing, then 70000 write all, then 10 the first again.
+    // The factor shows which dispatch wrote last: 0 workgroups write nothing, then 70,000 write all, then 10 rewrite
+    // the first 10.
     for (const auto& [groups, factor] : {std::pair{0u, 1u}, {most, 2u}, {10u, 3u}}) {
       count.dispatch(commands, 1, groups);
       gpu::computeWriteToIndirect(commands);
@@ -80,14 +81,14 @@ TEST_CASE(
   CHECK(results.mapped()[most] == kUntouched);
 }
 
-TEST_CASE("without its barrier an indirect dispatch is reported as a hazard") {
+TEST_CASE("an indirect dispatch without its barrier is reported as a hazard") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   KernelArguments count(kernels().countGroups), scale(kernels().scale);
   const Array<uint32_t> values = numbers("values", 1), results = untouched(1);
   count.set({{kSlotGroups, command}});
   scale.set({{kSlotValues, values}, {kSlotResults, results}});
   {
-    gpu::Submission submission(impl(), false);  // recorded, and never submitted
+    gpu::Submission submission(impl(), false);  // recorded but never submitted
     const Commands commands = submission.begin();
     count.dispatch(commands, 1, 1u);
     scale.dispatchIndirect(commands, command, 0, ScalePush{1, 1});
@@ -138,7 +139,7 @@ VKAPI_ATTR void VKAPI_CALL countUpdates(VkDevice device, uint32_t writes, const 
   updateDescriptorSets(device, writes, write, copies, copy);
 }
 
-// Descriptors that `f` writes.
+// The number of descriptors that `f` writes.
 template <class F>
 uint32_t updatesOf(F&& f) {
   gpu::Api& vk = device().impl().vk;
@@ -151,7 +152,7 @@ uint32_t updatesOf(F&& f) {
 
 }  // namespace
 
-TEST_CASE("setting arguments writes the descriptors whose buffers changed, and no other") {
+TEST_CASE("setting arguments writes only the descriptors whose buffers have changed") {
   KernelArguments arguments(kernels().scale);
   Array<uint32_t> values = numbers("values", 10);
   const Array<uint32_t> results = untouched(10);
@@ -162,7 +163,7 @@ TEST_CASE("setting arguments writes the descriptors whose buffers changed, and n
   CHECK(updatesOf(set) == 1);
   REQUIRE_FALSE(values.reserve(10));
   CHECK(updatesOf(set) == 0);
-  // A buffer in the place of another may have its handle, too.
+  // A buffer that replaces another may have the same handle.
   for (int i = 0; i < 8; ++i) {
     values = Array<uint32_t>(impl(), "none", BufferDomain::device);
     values = Array<uint32_t>(impl(), "values", BufferDomain::device);

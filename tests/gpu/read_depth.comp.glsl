@@ -1,4 +1,4 @@
-// The depth of pixel 0 of the layer that the workgroup is for, in thousandths.
+// Writes the depth of pixel 0 in the workgroup's layer, in thousandths.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// Shaders that a kernel refuses, selected by what is defined.
+// Shaders that a kernel refuses, selected by macros.
 #version 460
 
 layout(local_size_x = 1) in;

@@ -1,4 +1,4 @@
-// The scopes against a raster on the CPU in double precision, pixel for pixel.
+// Compares the scopes with a raster on the CPU in double precision, pixel by pixel.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -16,13 +16,13 @@ double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The window of a Scopes, and what a pixel may be off by.
+// The window of a Scopes and the error of snapping to subpixels.
 struct Window {
   explicit Window(const Scopes& s) : scopes(s) {
     const uint32_t bits = test::device().impl().properties.limits.subPixelPrecisionBits;
     snap = std::ldexp(1.0, 1 - static_cast<int>(bits));
   }
-  // Pixels across, world units along.
+  // Window coordinates: pixels across the motion, world units along it.
   Vector operator()(const Vector& world) const {
     const Vector offset{world[0] - scopes.origin[0], world[1] - scopes.origin[1], world[2] - scopes.origin[2]};
     return {dot(offset, scopes.right) / scopes.pixel, dot(offset, scopes.up) / scopes.pixel,
@@ -32,8 +32,8 @@ struct Window {
   double snap;
 };
 
-// Placement error of a mesh where floats are rounded to nearest, half of what docs/method.md allows for any rounding: 8
-// u times the greatest coordinate of its turned box about the sensor.
+// Placement error of a mesh if floats are rounded to nearest: 8 u times the greatest coordinate of its rotated box
+// relative to the sensor. docs/method.md allows twice that, for any rounding.
 double placementError(const MeshView& mesh, const Transform& pose, const Scopes& scopes, const Vector& about) {
   std::array<float, 3> lo{3e38f, 3e38f, 3e38f}, hi{-3e38f, -3e38f, -3e38f};
   for (uint32_t vertex : mesh.indices) {
@@ -53,8 +53,8 @@ double placementError(const MeshView& mesh, const Transform& pose, const Scopes&
   return 8 * 0x1p-24 * worst;
 }
 
-// What one surface does to a pixel picture: the nearest (sign 1) or farthest (-1) depth per centre, how far that depth
-// may be off, and which centres lie too near a projected edge to tell.
+// The nearest (sign 1) or farthest (sign -1) depth at each pixel centre, its tolerance, and whether the centre is too
+// close to a projected edge to compare.
 struct Raster {
   Raster(uint32_t w, uint32_t h)
       : width(w), height(h), depth(size_t{w} * h, NAN), tolerance(depth.size()), unsure(depth.size()) {}
@@ -94,7 +94,7 @@ struct Raster {
     const double w = p[0][2] + gx * (centre[0] - p[0][0]) + gy * (centre[1] - p[0][1]);
     const double slope = std::abs(gx) + std::abs(gy);
     const double slack = slope * (snap + error / pixel) + error;
-    if (sign > 0 && std::abs(w) <= slack) unsure[at] = 1;  // may be cut at the back plane, or not
+    if (sign > 0 && std::abs(w) <= slack) unsure[at] = 1;  // the back plane may or may not clip it
     if (sign > 0 && w < 0) return;
     if (!(sign * w >= sign * depth[at])) {
       // Another surface within its tolerance could win instead; keep the larger tolerance of the two.
@@ -122,18 +122,19 @@ void addMesh(Raster& raster, const Window& window, const MeshView& mesh, const T
   }
 }
 
-struct Compared {
+struct ComparedPixels {
   size_t pixels = 0, covered = 0;
 };
 
-void checkPicture(const Raster& raster, const std::vector<float>& picture, double d, bool fromFarEnd, Compared& count) {
+void checkPicture(const Raster& raster, const std::vector<float>& picture, double d, bool fromFarEnd,
+                  ComparedPixels& count) {
   const double ulps = 4 * d * 0x1p-23;
   size_t wrongCoverage = 0, wrongDepth = 0;
   double worst = 0;
   for (size_t i = 0; i < picture.size(); ++i) {
     if (raster.unsure[i]) continue;
     double truth = fromFarEnd ? d - raster.depth[i] : raster.depth[i];
-    // A surface at or beyond the far end reads empty, or d.
+    // A surface at or beyond the far end reads as empty or as d.
     if (!fromFarEnd && truth > d - raster.tolerance[i] - ulps) continue;
     ++count.pixels;
     const bool covered = !std::isnan(truth);
@@ -149,13 +150,13 @@ void checkPicture(const Raster& raster, const std::vector<float>& picture, doubl
   CHECK(wrongDepth == 0);
 }
 
-void checkScopes(const Scene& scene, const Query& query, const Scopes& scopes, Compared& count) {
+void checkScopes(const Scene& scene, const Query& query, const Scopes& scopes, ComparedPixels& count) {
   REQUIRE(scopes.R.size() == size_t{scopes.width} * scopes.height);
   const Window window(scopes);
   const MeshView sensor = scene.mesh(query.mesh);
   Vector about{};
   for (int k = 0; k < 3; ++k) {
-    // The middle of the window, at the back plane: near enough to the sensor's centre for an error bound.
+    // The centre of the window is close enough to the sensor's centre for an error bound.
     about[k] = scopes.origin[k] + 0.5 * scopes.pixel * (scopes.width * scopes.right[k] + scopes.height * scopes.up[k]) +
                0.5 * scopes.length * scopes.forward[k];
   }
@@ -177,8 +178,8 @@ void checkScopes(const Scene& scene, const Query& query, const Scopes& scopes, C
   }
 }
 
-Compared checkWorkload(const tools::Workload& workload, uint32_t resolution) {
-  Compared count;
+ComparedPixels checkWorkload(const tools::Workload& workload, uint32_t resolution) {
+  ComparedPixels count;
   tools::ScenePlayer player(workload);
   Sweeper sweeper(test::device(), player.scene());
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
@@ -192,7 +193,7 @@ Compared checkWorkload(const tools::Workload& workload, uint32_t resolution) {
   return count;
 }
 
-// A unit square across z, two triangles, as a mesh of its own.
+// Adds a mesh of one square across z, made of two triangles.
 MeshId addSquare(Scene& scene, float side) {
   const float h = side / 2;
   const std::vector<float> positions{-h, -h, 0, h, -h, 0, h, h, 0, -h, h, 0};
@@ -212,19 +213,19 @@ TEST_CASE("the scopes equal a double-precision raster on soups of every kind") {
   const uint32_t resolution = GENERATE(17, 64, 256);
   const tools::Workload workload =
       tools::makeWorkload(tools::Soups{.objects = 20, .sensors = 18, .origin = origin, .seed = seed});
-  const Compared count = checkWorkload(workload, resolution);
+  const ComparedPixels count = checkWorkload(workload, resolution);
   CHECK(count.pixels > 1000);
   CHECK(count.covered > 100);
 }
 
 TEST_CASE("the scopes equal a double-precision raster on teapots among boxes") {
   const uint32_t resolution = GENERATE(64, 200);
-  const Compared count =
+  const ComparedPixels count =
       checkWorkload(tools::makeWorkload(tools::Figure7{.teapots = 5, .boxes = 500, .steps = 1}), resolution);
   CHECK(count.covered > 1000);
 }
 
-TEST_CASE("R, M and L of two squares are the paper's: R + M - d is the free distance, and M is mirrored") {
+TEST_CASE("R, M and L of two squares are the paper's: L = R + M - d, and M is measured from the far end") {
   Scene scene;
   const MeshId square = addSquare(scene, 2), small = addSquare(scene, 1);
   scene.addObject({small, at(0.45, 0.5, 5), ~0u});
@@ -262,7 +263,7 @@ TEST_CASE("R, M and L of two squares are the paper's: R + M - d is the free dist
   CHECK(scopes.result.t == Approx(4.525).epsilon(1e-6));
 }
 
-TEST_CASE("nothing at any pixel centre ends a sensor's work: not detected, undecided") {
+TEST_CASE("an object that covers no pixel centre is not detected, and the answer is undecided") {
   Scene scene;
   const MeshId square = addSquare(scene, 2), speck = addSquare(scene, 1e-4f);
   scene.addObject({speck, at(0.3, 0.3, 5), ~0u});
@@ -276,7 +277,7 @@ TEST_CASE("nothing at any pixel centre ends a sensor's work: not detected, undec
   CHECK(result.lo == 0);
 }
 
-TEST_CASE("what lies beside the sensor in its window is detected, and has no L") {
+TEST_CASE("an object beside the sensor but inside its window is detected and has no L") {
   // A triangle sensor leaves half of its window empty; the object stands there.
   Scene scene;
   const std::vector<float> positions{-1, -1, 0, 1, -1, 0, -1, 1, 0};
@@ -290,8 +291,8 @@ TEST_CASE("what lies beside the sensor in its window is detected, and has no L")
   CHECK(std::isnan(result.paperMinL));
 }
 
-TEST_CASE("a negative L is the paper's minimum but never a witness") {
-  // The sensor is a frame of two plates; the object sits between them: one layer cannot tell.
+TEST_CASE("a negative L counts for the paper's minimum but never as a contact") {
+  // The sensor is a frame of two plates with the object between them, which one depth layer cannot represent.
   Scene scene;
   const MeshId plate = addSquare(scene, 2), small = addSquare(scene, 0.5f);
   std::vector<float> positions;
@@ -312,7 +313,7 @@ TEST_CASE("a negative L is the paper's minimum but never a witness") {
   CHECK(result.hi == Approx(5).epsilon(1e-6));
 }
 
-TEST_CASE("contact at the start and at exactly D is not cut off by the planes") {
+TEST_CASE("the clipping planes keep contact at the start and at exactly D") {
   Scene scene;
   const MeshId square = addSquare(scene, 2), small = addSquare(scene, 1);
   scene.addObject({small, at(0.1, 0.05, 3), ~0u});

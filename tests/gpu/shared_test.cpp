@@ -1,4 +1,4 @@
-// What is shared per device: one of a type, made once, whoever asks.
+// Objects shared per device: one of each type, created once for all callers.
 #include <catch2/catch.hpp>
 
 #include <array>
@@ -32,12 +32,7 @@ struct FailsAtFirst {
 
 }  // namespace
 
-TEST_CASE("a device gives everybody the same kernels") {
-  CHECK(&test::kernels() == &test::kernels());
-  CHECK(&test::kernels() == &test::impl().shared<test::Kernels>());
-}
-
-TEST_CASE("what is shared is made once, for each device, and destroyed with it") {
+TEST_CASE("a shared object is created once per device, for all callers and threads, and destroyed with the device") {
   {
     const Device own = Device::open({.onValidation = test::onValidation});
     std::array<const Counted*, 8> found{};
@@ -47,7 +42,8 @@ TEST_CASE("what is shared is made once, for each device, and destroyed with it")
     CHECK(Counted::made == 1);
     for (const Counted* one : found) CHECK(one == found[0]);
     CHECK(own.impl().shared<AsksForAnother>().other == found[0]);
-    own.impl().shared<test::Kernels>();  // which the layers miss if they outlive the device
+    CHECK(&test::kernels() == &test::impl().shared<test::Kernels>());
+    own.impl().shared<test::Kernels>();  // the layers report these if they outlive the device
     CHECK(&test::impl().shared<Counted>() != found[0]);
     CHECK(Counted::made == 2);
     CHECK(Counted::destroyed == 0);
@@ -55,7 +51,7 @@ TEST_CASE("what is shared is made once, for each device, and destroyed with it")
   CHECK(Counted::destroyed == 1);
 }
 
-TEST_CASE("what could not be made is made when it is asked for again") {
+TEST_CASE("a shared object whose constructor threw is created on the next request") {
   CHECK_THROWS_WITH(test::impl().shared<FailsAtFirst>(), "the first attempt");
   CHECK(&test::impl().shared<FailsAtFirst>() == &test::impl().shared<FailsAtFirst>());
   CHECK(FailsAtFirst::attempts == 2);

@@ -1,4 +1,4 @@
-// What a batch must not change.
+// Mode sampled: batches do not change answers, edits are followed, and bad queries are refused.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 
 using namespace radar;
 
-struct Loaded {
-  explicit Loaded(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
+struct LoadedWorkload {
+  explicit LoadedWorkload(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries)
       queries.push_back(tools::toQuery(spec, Mode::sampled, resolution));
@@ -35,8 +35,8 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
 
 }  // namespace
 
-TEST_CASE("a batch of any size gives the same bits as one query at a time") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}), 32);
+TEST_CASE("in mode sampled a batch of any size gives the same bits as one query at a time") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}), 32);
   Sweeper sweeper(test::device(), loaded.player.scene());
   std::vector<Result> single;
   for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
@@ -49,9 +49,9 @@ TEST_CASE("a batch of any size gives the same bits as one query at a time") {
   }
 }
 
-TEST_CASE("more sensors than the device has layers are split, not refused, and keep their bits") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 512, .shape = tools::SensorShape::box}),
-                16);
+TEST_CASE("a batch of more sensors than the device has layers is split and keeps its bits") {
+  LoadedWorkload loaded(
+      tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 512, .shape = tools::SensorShape::box}), 16);
   Sweeper sweeper(test::device(), loaded.player.scene());
   const std::vector<Result> once = sweeper.run(loaded.queries);
   std::vector<Query> many;
@@ -66,7 +66,7 @@ TEST_CASE("more sensors than the device has layers are split, not refused, and k
 }
 
 TEST_CASE("a small budget of picture memory splits a batch and keeps its bits") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 64}), 64);
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 64}), 64);
   Sweeper roomy(test::device(), loaded.player.scene());
   Sweeper narrow(test::device(), loaded.player.scene(), {.pictureBytes = 7 * 2 * 64 * 64 * 4});
   const std::vector<Result> expected = roomy.run(loaded.queries);
@@ -75,8 +75,8 @@ TEST_CASE("a small budget of picture memory splits a batch and keeps its bits") 
   CHECK(narrow.stats().submissions > 5);
 }
 
-TEST_CASE("drawing every object gives the same bits as drawing those in reach") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 16}), 64);
+TEST_CASE("drawing every object gives the same bits as drawing only those in reach") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 16}), 64);
   Sweeper culled(test::device(), loaded.player.scene());
   Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
   const std::vector<Result> expected = culled.run(loaded.queries);
@@ -86,7 +86,7 @@ TEST_CASE("drawing every object gives the same bits as drawing those in reach") 
 
 TEST_CASE("drawing only the clusters in reach of one large mesh gives the same bits as drawing it whole") {
   for (const tools::SensorShape shape : {tools::SensorShape::box, tools::SensorShape::teapot}) {
-    Loaded loaded(tools::makeWorkload(tools::OneMesh{.triangles = 50'000, .sensors = 24, .shape = shape}), 0);
+    LoadedWorkload loaded(tools::makeWorkload(tools::OneMesh{.triangles = 50'000, .sensors = 24, .shape = shape}), 0);
     for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(17 + i * 37 % 150);
     Sweeper culled(test::device(), loaded.player.scene());
     Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
@@ -98,8 +98,8 @@ TEST_CASE("drawing only the clusters in reach of one large mesh gives the same b
   }
 }
 
-TEST_CASE("the order of a batch and mixed resolutions do not matter") {
-  Loaded loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 65}), 0);
+TEST_CASE("the order of a batch of mixed resolutions does not change the answers") {
+  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 65}), 0);
   for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(i * 37 % 150);
   Sweeper sweeper(test::device(), loaded.player.scene());
   const std::vector<Result> forward = sweeper.run(loaded.queries);
@@ -109,7 +109,7 @@ TEST_CASE("the order of a batch and mixed resolutions do not matter") {
   checkSame(forward, backward);
 }
 
-TEST_CASE("edits of the scene are followed: objects move, come and go, and ids of others stay") {
+TEST_CASE("answers follow objects that are moved, removed and added, and other ids stay valid") {
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
@@ -141,7 +141,7 @@ TEST_CASE("edits of the scene are followed: objects move, come and go, and ids o
   CHECK(answer().t == Approx(1).epsilon(0.05));
 }
 
-TEST_CASE("the empty scene, the empty batch and nothing in reach are answered") {
+TEST_CASE("an empty batch and a query over an empty scene are answered") {
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
@@ -156,7 +156,7 @@ TEST_CASE("the empty scene, the empty batch and nothing in reach are answered") 
   CHECK(scopes.M[scopes.M.size() / 2] == Approx(5));
 }
 
-TEST_CASE("a query that breaks its contract is refused by number before anything is drawn") {
+TEST_CASE("run throws for a query that breaks its contract and names its number") {
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
@@ -173,7 +173,7 @@ TEST_CASE("a query that breaks its contract is refused by number before anything
   CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 0") && Catch::Contains("singular"));
 }
 
-TEST_CASE("a mesh of more triangles than a shader invocation has loop iterations is seen whole") {
+TEST_CASE("a mesh of more triangles than a shader's loop may have iterations is drawn completely") {
   // 160,000 triangles: item lists and vertex loops run past 65,535.
   const tools::MeshData ball = tools::makeUvSphere(200, 400), box = tools::makeBox({0.5, 0.5, 0.5});
   REQUIRE(ball.triangleCount() > 2 * 65'535);

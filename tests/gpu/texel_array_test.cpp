@@ -1,4 +1,4 @@
-// Texel arrays hold what was uploaded or written as storage, also after they grew.
+// Texel arrays hold what was uploaded or written as storage, also after they have grown.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -20,7 +20,7 @@ TexelArray<Node> makeNodes() {
   return {impl(), "nodes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_FORMAT_R32G32B32A32_UINT};
 }
 
-// Of a node whose words count on from `first`.
+// The sum of a node's words, which count up from `first`.
 uint32_t sumFrom(uint32_t first) {
   return 8 * first + 28;
 }
@@ -34,7 +34,7 @@ bool sumsAre(const Array<uint32_t>& sums, uint32_t count, uint32_t first) {
 
 }  // namespace
 
-TEST_CASE("texels are what was uploaded, also after the array has grown") {
+TEST_CASE("texels have the uploaded values, also after the array has grown") {
   TexelArray<Node> nodes = makeNodes();
   KernelArguments arguments(kernels().sumTexels);
   gpu::Upload upload(impl());
@@ -57,7 +57,7 @@ TEST_CASE("texels are what was uploaded, also after the array has grown") {
   }
 }
 
-TEST_CASE("texels are what a kernel wrote as storage, and without its barrier that is a hazard") {
+TEST_CASE("texels have the values that a kernel wrote as storage, and a missing barrier is reported as a hazard") {
   constexpr uint32_t kCount = 100;
   TexelArray<Node> nodes = makeNodes();
   nodes.reserve(kCount);
@@ -76,7 +76,7 @@ TEST_CASE("texels are what a kernel wrote as storage, and without its barrier th
   CHECK(sumsAre(sums, kCount, 17));
   CHECK(takeValidationMessages().empty());
   {
-    gpu::Submission submission(impl(), false);  // recorded, and never submitted
+    gpu::Submission submission(impl(), false);  // recorded but never submitted
     const Commands commands = submission.begin();
     fill.dispatch(commands, kCount, 1u);
     sum.dispatch(commands, kCount);
@@ -86,7 +86,7 @@ TEST_CASE("texels are what a kernel wrote as storage, and without its barrier th
   CHECK_THAT(messages[0], Catch::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
 }
 
-TEST_CASE("a texel array larger than the device can see is refused with both numbers, and stays as it was") {
+TEST_CASE("reserve refuses more texels than the device allows, names both numbers and leaves the array as it was") {
   TexelArray<uint32_t> words(impl(), "words", BufferDomain::device, 0, VK_FORMAT_R32_UINT);
   const VkBufferView view = words.view();
   const uint64_t most = std::min<uint64_t>(impl().properties.limits.maxTexelBufferElements, INT32_MAX);
@@ -98,7 +98,7 @@ TEST_CASE("a texel array larger than the device can see is refused with both num
   CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), Catch::StartsWith("nodes: " + std::to_string(2 * (most / 2 + 1))));
 }
 
-TEST_CASE("an element is made of whole texels, of a format that every device reads") {
+TEST_CASE("elements that are not whole texels, and formats that not every device reads, are refused") {
   using Triple = uint32_t[3];
   CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32_UINT),
                     "triples: elements of 12 bytes are not whole texels of 8");

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Holds the order of the floors: cmake -DROOT=... -P floors.cmake. From low to high; each folder may include itself and what
-# is listed. No floor names one that comes later.
+# Checks the order of the floors: cmake -DROOT=... -P floors.cmake. `floors` lists them from low to high. A floor may include
+# itself and the folders in FLOOR_may, which names no higher floor.
 set(floors math exact gpu scene contact cpu sampled sweep embed pool)
 set(math_may radar)
 set(exact_may radar math)
@@ -25,7 +25,7 @@ foreach(floor ${floors})
   list(APPEND lower ${floor})
   file(GLOB sources ${ROOT}/engine/${floor}/*.cpp ${ROOT}/engine/${floor}/*.h)
   foreach(source ${sources})
-    # A name with a folder, or a quoted one without.
+    # Includes with a folder, and quoted includes without one.
     file(STRINGS ${source} lines REGEX "^#include ([<\"][A-Za-z0-9_.]+/|\")")
     foreach(line ${lines})
       string(REGEX REPLACE "^#include [<\"]([^/>\"]+).*" "\\1" folder "${line}")
@@ -43,11 +43,11 @@ endforeach()
 file(GLOB folders RELATIVE ${ROOT}/engine LIST_DIRECTORIES true ${ROOT}/engine/*)
 foreach(folder ${folders})
   if(IS_DIRECTORY ${ROOT}/engine/${folder} AND NOT folder IN_LIST floors AND NOT folder MATCHES "^(include|package)$")
-    string(APPEND wrong "  engine/${folder} is no floor\n")
+    string(APPEND wrong "  engine/${folder} is not a floor\n")
   endif()
 endforeach()
 
-# No floor knows the tools.
+# No floor includes the tools.
 file(GLOB_RECURSE sources ${ROOT}/engine/*.cpp ${ROOT}/engine/*.h)
 foreach(source ${sources})
   file(STRINGS ${source} lines REGEX "#include \"(tools|workloads|import|batch)/")
@@ -55,7 +55,7 @@ foreach(source ${sources})
     string(APPEND wrong "  ${source}: ${lines}\n")
   endif()
 endforeach()
-# ... nor does the library link them.
+# The library does not link the tools.
 execute_process(COMMAND ${NM} -C ${LIBRARY} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
 if(symbols MATCHES "radar::tools")
   string(APPEND wrong "  ${LIBRARY} contains radar::tools\n")
@@ -65,5 +65,5 @@ if(NOT symbols MATCHES "radar::Sweeper::run")
 endif()
 
 if(wrong)
-  message(FATAL_ERROR "floors are mixed up:\n${wrong}")
+  message(FATAL_ERROR "the order of the floors is violated:\n${wrong}")
 endif()

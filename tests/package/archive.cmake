@@ -1,4 +1,5 @@
-# Makes the archive, looks at it, unpacks it and runs it: cmake -DBUILD=... -DNAME=... -DFOLDER=... -P archive.cmake.
+# Builds the archive, checks its contents, unpacks it and runs its program:
+# cmake -DBUILD=... -DNAME=... -DFOLDER=... -P archive.cmake.
 cmake_minimum_required(VERSION 3.25)
 
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD} --target archive COMMAND_ERROR_IS_FATAL ANY)
@@ -25,7 +26,7 @@ if(NOT files STREQUAL sums)
   message(FATAL_ERROR "expected the files of SHA256SUMS:\n${sums}\ngot\n${files}")
 endif()
 
-# Every library that is needed is there, and none is looked for where it was built.
+# The archive contains every needed library, and no binary has a search path of its own.
 file(GLOB_RECURSE binaries ${root}/lib/* ${root}/bin/*)
 list(REMOVE_ITEM binaries ${root}/lib/replaceable/needed)
 set(names "")
@@ -58,12 +59,12 @@ execute_process(COMMAND ${program} query ${root}/meshes/queries.json OUTPUT_VARI
 execute_process(COMMAND ${BUILD}/bin/cyber-radar query ${root}/meshes/queries.json OUTPUT_VARIABLE expected
   COMMAND_ERROR_IS_FATAL ANY)
 if(NOT answers STREQUAL expected)
-  message(FATAL_ERROR "expected the answers of the program that was not packed:\n${expected}\ngot\n${answers}")
+  message(FATAL_ERROR "expected the answers of the built program:\n${expected}\ngot\n${answers}")
 endif()
-# Through a link, and from another folder.
+# The program also works through a symbolic link and from another folder.
 file(CREATE_LINK ${program} ${FOLDER}/linked SYMBOLIC)
 execute_process(COMMAND ./linked sweep ${NAME}/meshes/box.ply ${NAME}/meshes/teapot.ply --at 0 0 -20 --direction 0 0 1
-  --distance 30 --mode reference WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
-if(NOT said MATCHES "first contact after 16.35")
-  message(FATAL_ERROR "expected contact after 16.35, got:\n${said}")
+  --distance 30 --mode reference WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+if(NOT output MATCHES "first contact after 16.35")
+  message(FATAL_ERROR "expected contact after 16.35, got:\n${output}")
 endif()

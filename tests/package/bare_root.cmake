@@ -1,5 +1,5 @@
-# Runs the archive where there is little else: in a root with lavapipe and what it needs, no shell, no fonts, no /proc; then
-# without the C library and the others that the archive brings, too. cmake -DARCHIVE=... -DDRIVER=... -P bare_root.cmake.
+# Runs the archive in a root that contains only lavapipe and its libraries: no shell, no fonts, no /proc. Then runs it again
+# without the libraries that the archive contains, too. cmake -DARCHIVE=... -DDRIVER=... -P bare_root.cmake.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${FOLDER})
@@ -25,15 +25,15 @@ if(NOT user EQUAL 0)
 endif()
 execute_process(COMMAND ${chroot} / true RESULT_VARIABLE refused ERROR_VARIABLE why)
 if(refused)
-  message("skipped: ${chroot} is refused here: ${why}")
+  message("skipped: ${chroot} is not permitted here: ${why}")
   return()
 endif()
 
 function(check expected)
   execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${chroot} ${FOLDER} /archive/bin/cyber-radar ${ARGN}
-    OUTPUT_VARIABLE said ERROR_VARIABLE complained RESULT_VARIABLE status)
-  if(NOT status EQUAL 0 OR NOT said MATCHES "${expected}")
-    message(FATAL_ERROR "cyber-radar ${ARGN}: expected \"${expected}\", got status ${status} and\n${said}${complained}")
+    OUTPUT_VARIABLE output ERROR_VARIABLE errors RESULT_VARIABLE status)
+  if(NOT status EQUAL 0 OR NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "cyber-radar ${ARGN}: expected \"${expected}\", got status ${status} and\n${output}${errors}")
   endif()
 endfunction()
 set(sweep /archive/meshes/box.ply /archive/meshes/teapot.ply --at 0 0 -20 --direction 0 0 1 --distance 30)
@@ -50,7 +50,7 @@ endforeach()
 file(REMOVE ${FOLDER}/lib64/ld-linux-x86-64.so.2)
 check_all()
 
-# There is text in the pictures: without the archive's font they are others.
+# The pictures contain text in the archive's font, so without the font they differ.
 file(SHA256 ${FOLDER}/pictures/scopes.png with_font)
 file(REMOVE ${FOLDER}/archive/share/fonts/DejaVuSans.ttf)
 check("pictures: " scopes ${sweep} --out /pictures)

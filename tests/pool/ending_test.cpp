@@ -29,8 +29,8 @@ bool isReady(const std::future<PoolAnswers>& future) {
   return future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// Every answer is right or refused for `reason`; returns how many are refused.
-size_t refused(const PoolAnswers& answers, std::span<const Result> expected, const std::string& reason) {
+/// Checks that every answer is correct or invalid for `reason`; returns the number of invalid ones.
+size_t countInvalid(const PoolAnswers& answers, std::span<const Result> expected, const std::string& reason) {
   REQUIRE(answers.results.size() == expected.size());
   size_t count = 0;
   for (size_t i = 0; i < expected.size(); ++i) {
@@ -57,7 +57,7 @@ size_t threadCount() {
 
 }  // namespace
 
-TEST_CASE("cancelling answers what no device has taken, and leaves other batches alone") {
+TEST_CASE("cancelling a batch invalidates the queries that no device has taken and leaves other batches alone") {
   const Boxes boxes(300);
   const std::vector<Result> expected = boxes.answers();
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
@@ -71,14 +71,14 @@ TEST_CASE("cancelling answers what no device has taken, and leaves other batches
   stopBegun.request_stop();
   stopQueued.request_stop();
   release();
-  const size_t left = refused(begun.get(), expected, "cancelled");
+  const size_t left = countInvalid(begun.get(), expected, "cancelled");
   CHECK(left > 0);
   CHECK(left < 300);
-  CHECK(refused(queued.get(), expected, "cancelled") == 300);
-  CHECK(refused(other.get(), expected, "") == 0);
+  CHECK(countInvalid(queued.get(), expected, "cancelled") == 300);
+  CHECK(countInvalid(other.get(), expected, "") == 0);
 }
 
-TEST_CASE("after drain every future submitted before is ready") {
+TEST_CASE("after drain, the futures of all earlier batches are ready") {
   const Boxes boxes(100);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::vector<std::future<PoolAnswers>> futures;
@@ -88,11 +88,11 @@ TEST_CASE("after drain every future submitted before is ready") {
   pool.drain();
 }
 
-TEST_CASE("a pool that ends with work queued answers every future: finished, or refused") {
+TEST_CASE("a pool that is destroyed with work queued fulfils every future, with answers or as invalid") {
   const Boxes boxes(300);
   const std::vector<Result> expected = boxes.answers();
   std::vector<std::future<PoolAnswers>> futures;
-  std::jthread releasing;  // outlives the pool, whose end waits for it
+  std::jthread releasing;  // declared before the pool, whose destructor waits for release()
   {
     Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
     hold();
@@ -103,15 +103,15 @@ TEST_CASE("a pool that ends with work queued answers every future: finished, or 
       release();
     });
   }
-  const size_t first = refused(futures[0].get(), expected, "the pool was closed");
+  const size_t first = countInvalid(futures[0].get(), expected, "the pool was closed");
   CHECK(first > 0);
   CHECK(first < 300);
-  for (int i = 1; i < 4; ++i) CHECK(refused(futures[i].get(), expected, "the pool was closed") == 300);
+  for (int i = 1; i < 4; ++i) CHECK(countInvalid(futures[i].get(), expected, "the pool was closed") == 300);
 }
 
-TEST_CASE("a thousand pools come, take a query and go, and leave no thread and no memory behind") {
+TEST_CASE("creating, using and destroying a thousand pools leaks no thread and no memory") {
   const Boxes boxes(64);
-  // Without the validation layers, which keep memory of their own.
+  // Without the validation layers, which allocate memory of their own.
   const char* layers = std::getenv("VK_INSTANCE_LAYERS");
   const std::string restored = layers == nullptr ? "" : layers;
   unsetenv("VK_INSTANCE_LAYERS");
@@ -121,10 +121,10 @@ TEST_CASE("a thousand pools come, take a query and go, and leave no thread and n
     for (int i = 0; i < count; ++i) {
       Pool pool(devices, boxes.player.scene(), test::kOnDevice);
       std::future<PoolAnswers> answers = pool.submit({boxes.queries[1 + i % 2]});
-      if (i % 100 == 0) answers.wait();  // the other pools end with it queued, or just begun
+      if (i % 100 == 0) answers.wait();  // the other pools are destroyed with the query queued or in flight
     }
   };
-  // A driver keeps what it made for its first pipelines: both have had theirs before the count.
+  // A driver keeps allocations for its first pipelines, so both devices answer queries before the count.
   for (bool both = false; !both;) {
     Pool pool(devices, boxes.player.scene(), test::kOnDevice);
     pool.submit(boxes.queries).wait();
@@ -134,6 +134,6 @@ TEST_CASE("a thousand pools come, take a query and go, and leave no thread and n
   const size_t threads = threadCount(), before = allocatedBytes();
   cycle(1000);
   CHECK(threadCount() == threads);
-  // 2 KiB a pool; a single leaked buffer object and its memory are more.
+  // 2 kB per pool; a single leaked buffer with its memory is larger.
   CHECK(allocatedBytes() < before + 2'000'000);
 }

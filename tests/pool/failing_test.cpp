@@ -1,4 +1,5 @@
-// Devices that are lost or have no memory. Failures are made where the engine calls the queue and the allocator.
+// Devices that are lost or out of memory. The tests inject failures into the engine's calls of the queue and the
+// allocator.
 #include <catch2/catch.hpp>
 
 #include "pool/fixture.h"
@@ -12,27 +13,27 @@ using test::twoDevices;
 
 namespace {
 
-struct Mended {
-  ~Mended() {
-    for (size_t i : {0, 1}) faults(i).mend();
+struct FaultReset {
+  ~FaultReset() {
+    for (size_t i : {0, 1}) faults(i).clear();
   }
 };
 
 }  // namespace
 
-TEST_CASE("a device lost in the middle loses no query: the other does its chunks, and the answer says so") {
+TEST_CASE("if a device is lost, the other takes over its chunks, and the answers name the lost device") {
   const Boxes boxes(400);
   const std::vector<Result> expected = boxes.answers();
   for (const char* call : {"vkQueueSubmit2", "vkWaitForFences"}) {
     for (const int after : {0, 3}) {
       CAPTURE(call, after);
-      const Mended mended;
+      const FaultReset reset;
       Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
       faults(1).failFrom(call, after, VK_ERROR_DEVICE_LOST);
       const PoolAnswers answers = pool.submit(boxes.queries).get();
       CHECK(differences(answers.results, expected) == 0);
       CHECK(answers.reasons.empty());
-      // The first device may have done all before the second gets so far.
+      // The first device may have finished everything before the second reaches the failing call.
       const std::string retired = pool.devices()[1].retired;
       if (after == 0 || !retired.empty()) {
         CHECK_THAT(retired, Contains(call) && Contains("VK_ERROR_DEVICE_LOST"));
@@ -44,10 +45,10 @@ TEST_CASE("a device lost in the middle loses no query: the other does its chunks
   }
 }
 
-TEST_CASE("a device without memory is retired, and the other answers") {
+TEST_CASE("a device that is out of memory is retired, and the other answers") {
   const Boxes boxes(200);
   const std::vector<Result> expected = boxes.answers();
-  const Mended mended;
+  const FaultReset reset;
   faults(0).failFrom("vkAllocateMemory", 30, VK_ERROR_OUT_OF_DEVICE_MEMORY);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   const PoolAnswers answers = pool.submit(boxes.queries).get();
@@ -55,9 +56,9 @@ TEST_CASE("a device without memory is retired, and the other answers") {
   CHECK_THAT(pool.devices()[0].retired, Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
 }
 
-TEST_CASE("with no device left every query says why, now and later") {
+TEST_CASE("with no device left, every query is invalid with the reasons, also in later batches") {
   const Boxes boxes(100);
-  const Mended mended;
+  const FaultReset reset;
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   for (size_t i : {0, 1}) faults(i).failFrom("vkQueueSubmit2", 3, VK_ERROR_DEVICE_LOST);
   for (int round = 0; round < 100; ++round) {
@@ -74,13 +75,13 @@ TEST_CASE("with no device left every query says why, now and later") {
   pool.drain();
 }
 
-TEST_CASE("queries for which no device has memory are invalid, and the last device stays for others") {
+TEST_CASE("queries for which every device is out of memory are invalid, and one device stays in use") {
   Boxes boxes(30);
-  const Mended mended;
+  const FaultReset reset;
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   const std::vector<Result> expected = boxes.answers();
   CHECK(differences(pool.submit(boxes.queries).get().results, expected) == 0);
-  for (Query& query : boxes.queries) query.resolution = 256;  // needs larger pictures than there are yet
+  for (Query& query : boxes.queries) query.resolution = 256;  // needs larger images than have been allocated so far
   for (size_t i : {0, 1}) faults(i).failFrom("vkAllocateMemory", 0, VK_ERROR_OUT_OF_DEVICE_MEMORY);
   const PoolAnswers answers = pool.submit(boxes.queries).get();
   CHECK_FALSE(answers.reasons.empty());
@@ -88,7 +89,7 @@ TEST_CASE("queries for which no device has memory are invalid, and the last devi
     CHECK(answers.results[i].status == Status::invalid);
     CHECK_THAT(reason, Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
   }
-  for (size_t i : {0, 1}) faults(i).mend();
+  for (size_t i : {0, 1}) faults(i).clear();
   CHECK(pool.submit(boxes.queries).get().reasons.empty());
   CHECK((pool.devices()[0].retired.empty() || pool.devices()[1].retired.empty()));
 }

@@ -9,21 +9,21 @@ namespace radar::test {
 
 namespace {
 
-struct Opened {
+struct FaultyDevices {
   std::vector<Device> devices = openDevices({}, onValidation);
   std::array<Faults, 2> faults;
   std::array<gpu::Api, 2> calls{devices.at(0).impl().vk, devices.at(1).impl().vk};  // the driver's
 };
 
-Opened& opened() {
-  static Opened both;
+FaultyDevices& faultyDevices() {
+  static FaultyDevices both;
   return both;
 }
 
 // The device that has this handle.
 template <class HandleOf>
 size_t deviceWith(const HandleOf& isOf) {
-  return isOf(opened().devices[0].handles()) ? 0 : 1;
+  return isOf(faultyDevices().devices[0].handles()) ? 0 : 1;
 }
 
 // These stand for the driver's functions.
@@ -31,25 +31,25 @@ size_t deviceWith(const HandleOf& isOf) {
 VkResult allocateMemory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
                         VkDeviceMemory* memory) {
   const size_t i = deviceWith([&](const HostDevice& host) { return host.device == device; });
-  const VkResult fault = opened().faults[i].answer("vkAllocateMemory");
-  return fault != VK_SUCCESS ? fault : opened().calls[i].AllocateMemory(device, info, allocator, memory);
+  const VkResult fault = faultyDevices().faults[i].resultOf("vkAllocateMemory");
+  return fault != VK_SUCCESS ? fault : faultyDevices().calls[i].AllocateMemory(device, info, allocator, memory);
 }
 
 VkResult queueSubmit(VkQueue queue, uint32_t count, const VkSubmitInfo2* submits, VkFence fence) {
   const size_t i = deviceWith([&](const HostDevice& host) { return host.queue == queue; });
-  const VkResult fault = opened().faults[i].answer("vkQueueSubmit2");
-  return fault != VK_SUCCESS ? fault : opened().calls[i].QueueSubmit2(queue, count, submits, fence);
+  const VkResult fault = faultyDevices().faults[i].resultOf("vkQueueSubmit2");
+  return fault != VK_SUCCESS ? fault : faultyDevices().calls[i].QueueSubmit2(queue, count, submits, fence);
 }
 
 VkResult waitForFences(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all, uint64_t timeout) {
   const size_t i = deviceWith([&](const HostDevice& host) { return host.device == device; });
-  const VkResult waited = opened().calls[i].WaitForFences(device, count, fences, all, timeout);
-  const VkResult fault = opened().faults[i].answer("vkWaitForFences");
+  const VkResult waited = faultyDevices().calls[i].WaitForFences(device, count, fences, all, timeout);
+  const VkResult fault = faultyDevices().faults[i].resultOf("vkWaitForFences");
   return fault != VK_SUCCESS ? fault : waited;
 }
 
 void replaceCalls() {
-  for (const Device& device : opened().devices) {
+  for (const Device& device : faultyDevices().devices) {
     gpu::Api& vk = device.impl().vk;
     vk.AllocateMemory = allocateMemory;
     vk.QueueSubmit2 = queueSubmit;
@@ -66,7 +66,7 @@ void Faults::failFrom(std::string_view call, int n, VkResult result) {
   result_ = result;
 }
 
-void Faults::mend() {
+void Faults::clear() {
   failFrom("", 0, VK_SUCCESS);
 }
 
@@ -88,7 +88,7 @@ void Faults::awaitHeld() {
   changed_.wait(lock, [&] { return held_ > 0; });
 }
 
-VkResult Faults::answer(std::string_view call) {
+VkResult Faults::resultOf(std::string_view call) {
   std::unique_lock lock(mutex_);
   if (call == "vkWaitForFences" && holding_) {
     ++held_;
@@ -103,11 +103,11 @@ VkResult Faults::answer(std::string_view call) {
 std::span<const Device> twoDevices() {
   static std::once_flag once;
   std::call_once(once, replaceCalls);
-  return opened().devices;
+  return faultyDevices().devices;
 }
 
 Faults& faults(size_t device) {
-  return opened().faults[device];
+  return faultyDevices().faults[device];
 }
 
 Boxes::Boxes(uint32_t sensors, uint32_t boxes)

@@ -1,4 +1,4 @@
-// Two devices, whose queues a test can hold, slow or break; and something to ask them.
+// Two devices whose calls a test can delay or make fail, and queries for them.
 #pragma once
 
 #include <atomic>
@@ -10,18 +10,18 @@
 
 namespace radar::test {
 
-/// What the calls of a device do. May be changed while it works.
+/// Faults in the calls of a device. May be changed while the device works.
 class Faults {
  public:
-  /// The `n`-th of these calls from now (0: the next) and all later ones answer `result`.
+  /// The `n`-th of these calls from now (0: the next) and all later ones return `result`.
   void failFrom(std::string_view call, int n, VkResult result);
-  void mend();
-  /// Devices sleep after vkWaitForFences until release().
+  void clear();
+  /// Blocks the device in vkWaitForFences until release().
   void hold();
   void release();
-  /// Sleeps until a device is held.
+  /// Waits until the device is blocked.
   void awaitHeld();
-  VkResult answer(std::string_view call);
+  VkResult resultOf(std::string_view call);
 
  private:
   std::mutex mutex_;
@@ -33,18 +33,18 @@ class Faults {
   int held_ = 0;
 };
 
-/// So that queries of mode contact go to the devices, too.
+/// Sends queries of mode contact to the devices, however few they are.
 inline constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 
 /// Opened on first use, with the validation layers listening.
 std::span<const Device> twoDevices();
-/// Of those. A test that breaks something mends it.
+/// The faults of one of these devices. A test that sets faults clears them.
 Faults& faults(size_t device);
 
 /// A scene of boxes and the queries of its sensors; every third is of mode sampled.
 struct Boxes {
   explicit Boxes(uint32_t sensors, uint32_t boxes = 2'000);
-  /// What a plain sweeper on the first device says.
+  /// The answers of a plain sweeper on the first device.
   std::vector<Result> answers() const;
 
   tools::Workload workload;
@@ -52,7 +52,7 @@ struct Boxes {
   std::vector<Query> queries;
 };
 
-/// How many differ in some bit.
+/// The number of results that differ in any bit.
 size_t differences(std::span<const Result> a, std::span<const Result> b);
 
 }  // namespace radar::test

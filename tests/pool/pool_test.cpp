@@ -27,7 +27,7 @@ std::multiset<std::string> threadNames() {
 
 }  // namespace
 
-TEST_CASE("one device and two give the bits of a plain sweeper, over 10,000 random queries of both modes") {
+TEST_CASE("a pool of one or two devices gives the bits of a plain sweeper for 10,000 random queries of both modes") {
   const Boxes boxes(10'000);
   const std::vector<Result> expected = boxes.answers();
   CHECK(std::count_if(expected.begin(), expected.end(), [](const Result& r) { return r.status == Status::hit; }) > 500);
@@ -47,7 +47,7 @@ TEST_CASE("one device and two give the bits of a plain sweeper, over 10,000 rand
   }
 }
 
-TEST_CASE("a batch's chunks account for its queries, and their times are in order") {
+TEST_CASE("the chunks of a batch add up to its queries, and their times are in order") {
   const Boxes boxes(200);
   Pool pool(twoDevices(), boxes.player.scene(), {.timestamps = true, .cpuBatch = 0});
   const PoolAnswers answers = pool.submit(boxes.queries).get();
@@ -67,7 +67,7 @@ TEST_CASE("a batch's chunks account for its queries, and their times are in orde
   CHECK(answers.stats.pairs > 0);
 }
 
-TEST_CASE("edits wait for the batches before them and reach every device") {
+TEST_CASE("an edit waits for earlier batches and reaches every device") {
   Boxes boxes(64);
   const Query query = boxes.queries[0];
   Scene scene;
@@ -94,14 +94,14 @@ TEST_CASE("edits wait for the batches before them and reach every device") {
   for (const Result& result : pool.submit(many).get().results) CHECK(result.object == added);
 }
 
-TEST_CASE("an edit that throws passes its exception on, and the pool goes on") {
+TEST_CASE("the exception of an edit reaches the caller, and the pool stays usable") {
   const Boxes boxes(16);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   CHECK_THROWS_AS(pool.edit([] { throw std::runtime_error("no"); }), std::runtime_error);
   CHECK(differences(pool.submit(boxes.queries).get().results, boxes.answers()) == 0);
 }
 
-TEST_CASE("many threads submit and edit at once, and each gets its own answers") {
+TEST_CASE("threads that submit and edit concurrently get their own answers") {
   const Boxes boxes(96);
   const std::vector<Result> expected = boxes.answers();
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
@@ -123,7 +123,7 @@ TEST_CASE("many threads submit and edit at once, and each gets its own answers")
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a query that breaks its contract is refused by name and nothing of its batch is begun") {
+TEST_CASE("submit throws for a query that breaks its contract, names it and starts nothing of its batch") {
   const Boxes boxes(8);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   CHECK(pool.submit({}).get().results.empty());
@@ -134,9 +134,9 @@ TEST_CASE("a query that breaks its contract is refused by name and nothing of it
   CHECK(pool.devices()[0].queries + pool.devices()[1].queries == 0);
 }
 
-TEST_CASE("a pool runs one named thread a device, and none once it is gone") {
+TEST_CASE("a pool runs one named thread per device and ends them when it is destroyed") {
   const Boxes boxes(8);
-  // A driver makes threads of its own at first, which bear the name of the one that made them.
+  // On first use a driver starts threads of its own, which inherit the name of the thread that starts them.
   Pool(twoDevices(), boxes.player.scene()).submit(boxes.queries).wait();
   std::multiset<std::string> expected = threadNames();
   const std::multiset<std::string> before = expected;
@@ -149,7 +149,7 @@ TEST_CASE("a pool runs one named thread a device, and none once it is gone") {
   CHECK(threadNames() == before);
 }
 
-TEST_CASE("devices are opened by number, each once, and a pool takes no queue twice") {
+TEST_CASE("openDevices refuses unknown and repeated numbers, and a pool refuses two devices with one queue") {
   const uint32_t twice[] = {1, 1}, missing[] = {0, 7};
   CHECK_THROWS_WITH(openDevices(twice), Catch::Contains("device 1 is named twice"));
   CHECK_THROWS_WITH(openDevices(missing), Catch::Contains("device 7 does not exist"));

@@ -18,7 +18,7 @@ if(NOT IS_ABSOLUTE "${lavapipe}")
     set(lavapipe ${RADAR_LAVAPIPE})
   endif()
 endif()
-# The same file name, so that a rule about libvulkan_lvp.so (ThreadSanitizer's suppression) holds for both.
+# The copy keeps the file name, so that ThreadSanitizer's suppression of libvulkan_lvp.so applies to both.
 set(second_folder ${CMAKE_CURRENT_BINARY_DIR}/second_lavapipe)
 get_filename_component(library_name "${lavapipe}" NAME)
 file(REAL_PATH "${lavapipe}" lavapipe)

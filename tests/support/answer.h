@@ -1,4 +1,4 @@
-// One query answered alone.
+// Answers a single query on the CPU.
 #pragma once
 
 #include "radar/cpu_sweeper.h"
@@ -9,7 +9,7 @@ inline Result answer(CpuSweeper& sweeper, const Query& query) {
   return sweeper.run({&query, 1})[0];
 }
 
-/// By a sweeper of its own.
+/// With a new sweeper.
 inline Result answer(const Scene& scene, const Query& query) {
   CpuSweeper sweeper(scene, 1);
   return answer(sweeper, query);

@@ -1,4 +1,4 @@
-// A descriptor set as a host makes it: without gpu::Kernel, so that tests also bind a host's own buffers.
+// A descriptor set made without gpu::Kernel, as a host makes it, so that tests can also bind a host's buffers.
 #pragma once
 
 #include "gpu/device.h"

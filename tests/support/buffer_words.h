@@ -1,4 +1,4 @@
-// What is in a buffer on the device.
+// Reads buffers of the device back.
 #pragma once
 
 #include <cstring>
@@ -8,7 +8,7 @@
 
 namespace radar::test {
 
-/// The first words of a storage buffer of the tests' device, which is idle.
+/// The first `count` words of a storage buffer of test::device(), which must be idle.
 std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count);
 
 /// Elements `first` to `first + count - 1`.

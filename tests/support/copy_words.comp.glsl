@@ -1,4 +1,4 @@
-// A buffer's words, into one that the host can read.
+// Copies the words of a buffer to one that the host can read.
 #version 460
 
 layout(local_size_x = 64) in;

@@ -21,15 +21,15 @@ bool isAtMost(const Dyadic& x, double most) {
   return (Dyadic(most) - x).sign() >= 0;
 }
 
-double about(const Dyadic& x) {
+double toDouble(const Dyadic& x) {
   return quotient(x, Dyadic(1.0));
 }
 
-double share(const Dyadic& x, double most) {
-  return most > 0 ? about(x) / most : 0;
+double usedFraction(const Dyadic& x, double most) {
+  return most > 0 ? toDouble(x) / most : 0;
 }
 
-// What the floats say of the normalised vertex on one axis.
+// The coordinate at which the placement's floats put the normalised vertex q.
 Dyadic placedBy(const gpu::Placement& placement, int row, const Corner& q) {
   const float *coarse = &placement.coarse[4 * row], *fine = &placement.fine[4 * row];
   Dyadic sum = Dyadic(coarse[3]) + Dyadic(fine[3]);
@@ -37,8 +37,8 @@ Dyadic placedBy(const gpu::Placement& placement, int row, const Corner& q) {
   return sum;
 }
 
-// matrix * q, where the matrix is the pose's times the mesh's unit.
-Dyadic turned(const Mesh& mesh, const Transform& pose, int row, const Corner& q) {
+// A row of the pose's matrix times q in the units of the mesh's coordinates.
+Dyadic linearPart(const Mesh& mesh, const Transform& pose, int row, const Corner& q) {
   Dyadic sum(0.0);
   for (int k = 0; k < 3; ++k) sum = sum + Dyadic(pose.m[4 * row + k]) * Dyadic(mesh.unit) * Dyadic(q[k]);
   return sum;
@@ -52,18 +52,18 @@ void checkVertices(const Mesh& mesh, const Transform& pose, const gpu::Placement
     for (int row = 0; row < 3; ++row) {
       const Dyadic off = magnitude(placedBy(placement, row, q) - Dyadic(truth[row]));
       if (!isAtMost(off, placement.error)) {
-        FAIL("vertex " << vertex << " is off by " << about(off) << ", not " << placement.error);
+        FAIL("vertex " << vertex << " is off by " << toDouble(off) << ", more than " << placement.error);
       }
-      used.error = std::max(used.error, share(off, placement.error));
-      sum = sum + magnitude(turned(mesh, pose, row, q));
-      if (std::abs(q[row]) > placement.reach[row]) FAIL("vertex " << vertex << " is out of reach");
+      used.error = std::max(used.error, usedFraction(off, placement.error));
+      sum = sum + magnitude(linearPart(mesh, pose, row, q));
+      if (std::abs(q[row]) > placement.reach[row]) FAIL("vertex " << vertex << " exceeds the reach");
     }
     if (!isAtMost(sum, placement.size))
-      FAIL("vertex " << vertex << " is at " << about(sum) << ", not " << placement.size);
+      FAIL("vertex " << vertex << " is at " << toDouble(sum) << ", more than " << placement.size);
   }
 }
 
-// What is farthest within reach is farthest off.
+// The error is largest at a corner of the reach.
 void checkInverse(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used) {
   for (int corner = 0; corner < 8; ++corner) {
     Corner q;
@@ -71,10 +71,10 @@ void checkInverse(const Mesh& mesh, const Transform& pose, const gpu::Placement&
     for (int row = 0; row < 3; ++row) {
       const float* n = &placement.inverse[4 * row];
       Dyadic off = Dyadic(0.0) - Dyadic(q[row]);
-      for (int k = 0; k < 3; ++k) off = off + Dyadic(n[k]) * turned(mesh, pose, k, q);
+      for (int k = 0; k < 3; ++k) off = off + Dyadic(n[k]) * linearPart(mesh, pose, k, q);
       off = magnitude(off);
-      if (!isAtMost(off, n[3])) FAIL("row " << row << " is off by " << about(off) << ", not " << n[3]);
-      used.inverse = std::max(used.inverse, share(off, n[3]));
+      if (!isAtMost(off, n[3])) FAIL("row " << row << " is off by " << toDouble(off) << ", more than " << n[3]);
+      used.inverse = std::max(used.inverse, usedFraction(off, n[3]));
     }
   }
 }

@@ -1,18 +1,18 @@
-// A placement's floats held against exact arithmetic.
+// Checks a placement's floats with exact arithmetic.
 #pragma once
 
 #include "scene/placement.h"
 
 namespace radar::test {
 
-/// How much of its bounds a placement has used, at most.
+/// The largest fraction of its error bounds that a placement has used.
 struct BoundsUsed {
   double error = 0, inverse = 0;
 };
 
-/// Checks that the placement puts every vertex of the mesh where radar.h says that the pose puts it, but for
-/// Placement::error; that none is farther away than Placement::size and Placement::reach say; and that the inverse's
-/// rows give back whatever is within reach, but for what they say.
+/// Checks that the placement puts every vertex of the mesh where the pose puts it, within Placement::error; that no
+/// vertex exceeds Placement::size or Placement::reach; and that the inverse recovers every point within the reach,
+/// within the errors in its rows.
 void checkPlacement(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used);
 
 }  // namespace radar::test

@@ -1,4 +1,4 @@
-// The device that the tests share, and what the validation layers said about it.
+// The device that the tests share, and the messages of the validation layers.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace radar::test {
 
-/// The environment variable RADAR_TEST_DOUBLES, "off" or not set: whether the device shall use doubles.
+/// Whether the device may use doubles: not if the environment variable RADAR_TEST_DOUBLES is "off".
 bool wantsDoubles();
 /// Opened on first use, with the validation layers listening.
 const Device& device();
 
-/// Where other devices' DeviceOptions::onValidation should send their messages too.
+/// Collects a message. Other devices use it as their DeviceOptions::onValidation.
 void onValidation(const std::string& message);
 
-/// Messages since the last call.
+/// The messages since the last call.
 std::vector<std::string> takeValidationMessages();
 
 }  // namespace radar::test

@@ -1,5 +1,5 @@
-// Every type of descriptor that kernels support, and push constants of mixed types. A definition adds one thing that they
-// do not support.
+// Every type of descriptor that kernels support, and push constants of mixed types. Each macro adds one descriptor that
+// they do not support.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require

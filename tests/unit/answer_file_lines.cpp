@@ -28,7 +28,7 @@ Result hit() {
   return result;
 }
 
-QuerySpec ask(const std::string& id) {
+QuerySpec queryWithId(const std::string& id) {
   QuerySpec query;
   query.id = id;
   return query;
@@ -36,24 +36,24 @@ QuerySpec ask(const std::string& id) {
 
 }  // namespace
 
-TEST_CASE("an answer line holds every key in order, with shortest numbers that read back the same") {
-  CHECK(answerLine(ask("ring/0"), hit(), AnswerMode::sampled, "") ==
+TEST_CASE("an answer line has every key in order and the shortest numbers that read back the same") {
+  CHECK(answerLine(queryWithId("ring/0"), hit(), AnswerMode::sampled, "") ==
         R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
         R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
         R"("point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
 }
 
-TEST_CASE("what an answer does not have is null") {
+TEST_CASE("values that an answer does not have are null") {
   Result clear;
   clear.status = Status::clear;
   clear.detected = Detected::no;
-  CHECK(answerLine(ask("a"), clear, AnswerMode::reference, "") ==
+  CHECK(answerLine(queryWithId("a"), clear, AnswerMode::reference, "") ==
         R"({"id": "a", "status": "clear", "t": null, "lo": null, "hi": null, "fraction": null, "detected": false, )"
         R"("object": null, "tri_a": null, "tri_b": null, "point": null, "normal": null, "tier": "select"})");
 }
 
-TEST_CASE("time is there with a speed only, the paper's min(L) in mode sampled only, a reason if invalid only") {
-  QuerySpec query = ask("a");
+TEST_CASE("time appears only with a speed, paper_min_l only in mode sampled, and reason only if invalid") {
+  QuerySpec query = queryWithId("a");
   query.speed = 2;
   const auto timed = nlohmann::json::parse(answerLine(query, hit(), AnswerMode::reference, ""));
   CHECK(timed["time"] == (0.1 + 0.2) / 2);
@@ -67,12 +67,12 @@ TEST_CASE("time is there with a speed only, the paper's min(L) in mode sampled o
   CHECK(invalid["detected"].is_null());
 }
 
-TEST_CASE("any id survives") {
+TEST_CASE("an id of any characters reads back unchanged") {
   const std::string id = "\"quoted\"\n\\ \x01 \xc3\xa4";
-  CHECK(nlohmann::json::parse(answerLine(ask(id), hit(), AnswerMode::sampled, ""))["id"] == id);
+  CHECK(nlohmann::json::parse(answerLine(queryWithId(id), hit(), AnswerMode::sampled, ""))["id"] == id);
 }
 
-TEST_CASE("a file is written whole or not at all") {
+TEST_CASE("writeAtomically writes a whole file or leaves nothing") {
   const radar::test::ScratchFolder folder;
   writeAtomically(folder.path() / "a", "first");
   writeAtomically(folder.path() / "a", "second");

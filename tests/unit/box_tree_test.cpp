@@ -1,5 +1,5 @@
-// The tree over boxes: every box in one leaf, every node's box as large as what is below and no larger, and the same
-// tree on any number of threads.
+// The tree over boxes: every box is in one leaf, every node's box is the smallest around its items, and the number of
+// threads does not change the tree.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -31,10 +31,10 @@ std::vector<FloatBox> randomBoxes(size_t count, uint64_t seed) {
   return boxes;
 }
 
-// What any tree must be, whatever is in it.
-class Checked {
+// Builds a tree and checks what holds for every tree.
+class CheckedTree {
  public:
-  Checked(const std::vector<FloatBox>& boxes, uint32_t leafSize, unsigned threads = 0)
+  CheckedTree(const std::vector<FloatBox>& boxes, uint32_t leafSize, unsigned threads = 0)
       : boxes_(boxes), leafSize_(leafSize), tree_(buildBoxTree(boxes, leafSize, threads)) {
     std::vector<bool> seen(boxes.size());
     REQUIRE(tree_.order.size() == boxes.size());
@@ -52,15 +52,15 @@ class Checked {
   const BoxTree& tree() const { return tree_; }
 
  private:
-  struct Open {
+  struct Pending {
     uint32_t node, depth;
   };
 
   void walk() {
-    std::vector<Open> open{{0, 1}};
-    while (!open.empty()) {
-      const Open next = open.back();
-      open.pop_back();
+    std::vector<Pending> pending{{0, 1}};
+    while (!pending.empty()) {
+      const Pending next = pending.back();
+      pending.pop_back();
       ++visited_;
       depth_ = std::max(depth_, next.depth);
       const BoxTree::Node& node = tree_.nodes[next.node];
@@ -76,8 +76,8 @@ class Checked {
           left.count + right.count != node.count) {
         FAIL("the children of node " << next.node << " do not share its items");
       }
-      open.push_back({node.child, next.depth + 1});
-      open.push_back({node.child + 1, next.depth + 1});
+      pending.push_back({node.child, next.depth + 1});
+      pending.push_back({node.child + 1, next.depth + 1});
     }
   }
 
@@ -106,37 +106,37 @@ bool equal(const BoxTree& p, const BoxTree& q) {
 
 }  // namespace
 
-TEST_CASE("every box is in one leaf, and every node's box is that of what is below") {
+TEST_CASE("every box is in one leaf, and every node's box is the smallest around its items") {
   const uint32_t leafSize = GENERATE(1u, 2u, 5u);
   for (const size_t count : {1u, 2u, 3u, 63u, 64u, 65u, 1234u}) {
     CAPTURE(leafSize, count);
     const std::vector<FloatBox> boxes = randomBoxes(count, count);
-    const Checked checked(boxes, leafSize);
+    const CheckedTree checked(boxes, leafSize);
     CHECK(checked.tree().nodes.size() <= 2 * count - 1);
     CHECK(checked.tree().depth <= 1 + 3 * std::log2(double(count)));
   }
 }
 
-TEST_CASE("without boxes there is no node") {
+TEST_CASE("a tree over no boxes has no nodes") {
   const BoxTree tree = buildBoxTree({}, 2);
   CHECK(tree.nodes.empty());
   CHECK(tree.order.empty());
   CHECK(tree.depth == 0);
 }
 
-TEST_CASE("boxes that no cut tells apart are halved") {
+TEST_CASE("boxes that no plane separates are split in halves") {
   const FloatBox one = boxAt({3, 4, 5}, {1, 1, 1}), point = boxAt({3, 4, 5}, {0, 0, 0});
   for (const FloatBox& box : {one, point}) {
     const std::vector<FloatBox> boxes(1000, box);
-    CHECK(Checked(boxes, 1).tree().depth == 11);
+    CHECK(CheckedTree(boxes, 1).tree().depth == 11);
   }
-  // Middles that coincide, boxes that do not.
+  // Different boxes with the same centre.
   std::vector<FloatBox> nested;
   for (int i = 1; i <= 256; ++i) nested.push_back(boxAt({0, 0, 0}, {double(i), double(i), double(i)}));
-  CHECK(Checked(nested, 1).tree().depth == 9);
+  CHECK(CheckedTree(nested, 1).tree().depth == 9);
 }
 
-TEST_CASE("boxes of every size that floats have, at any distance, make a tree") {
+TEST_CASE("boxes of every size and distance that floats can represent make a valid tree") {
   std::vector<FloatBox> boxes;
   for (int exponent = -149; exponent <= 127; ++exponent) {
     const float at = std::ldexp(1.0f, exponent);
@@ -146,11 +146,11 @@ TEST_CASE("boxes of every size that floats have, at any distance, make a tree") 
   boxes.push_back({{-3e38f, -3e38f, -3e38f}, {3e38f, 3e38f, 3e38f}});
   boxes.push_back({{3e38f, 3e38f, 3e38f}, {3.1e38f, 3.1e38f, 3.1e38f}});
   boxes.push_back({{-3.1e38f, 0, 0}, {-3e38f, 0, 0}});
-  CHECK(Checked(boxes, 1).tree().depth < 300);
+  CHECK(CheckedTree(boxes, 1).tree().depth < 300);
 }
 
-TEST_CASE("what lies apart is cut apart first") {
-  // Two heaps, one of many boxes and one of few, at a distance along each axis in turn.
+TEST_CASE("the root separates clusters that are far apart") {
+  // Two clusters of 90 and 10 boxes, far apart along each axis in turn.
   for (int axis = 0; axis < 3; ++axis) {
     Random random(7);
     std::vector<FloatBox> boxes;
@@ -168,10 +168,10 @@ TEST_CASE("what lies apart is cut apart first") {
 }
 
 TEST_CASE("a tree is the same on any number of threads") {
-  const std::vector<FloatBox> boxes = randomBoxes(200'000, 5);  // several times what is worth a thread
-  const BoxTree alone = Checked(boxes, 2, 1).tree();
+  const std::vector<FloatBox> boxes = randomBoxes(200'000, 5);  // enough boxes for several threads
+  const BoxTree alone = CheckedTree(boxes, 2, 1).tree();
   for (const unsigned threads : {2u, 3u, 8u, 0u}) {
     CAPTURE(threads);
-    CHECK(equal(Checked(boxes, 2, threads).tree(), alone));
+    CHECK(equal(CheckedTree(boxes, 2, threads).tree(), alone));
   }
 }

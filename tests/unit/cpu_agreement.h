@@ -1,5 +1,5 @@
-// The search on the CPU's cores held against itself: on one thread and on several, by a sweeper that has followed the
-// scene and by a new one, with and without `anyHit`. Brute force is its truth elsewhere.
+// Compares the CPU's search with itself: on one thread and on several, by a sweeper that has followed the scene and by
+// a new one, with and without `anyHit`. Other tests compare it with brute force.
 #pragma once
 
 #include <cstring>
@@ -14,10 +14,11 @@ inline bool sameBits(const radar::Result& p, const radar::Result& q) {
   return std::memcmp(&p, &q, sizeof p) == 0;
 }
 
-/// Sweepers of several numbers of threads that follow one scene.
-class Sides {
+/// Sweepers of 1, 2 and 5 threads that follow one scene.
+class ThreadedSweepers {
  public:
-  explicit Sides(const radar::Scene& scene) : scene_(scene), one_(scene, 1), two_(scene, 2), five_(scene, 5) {}
+  explicit ThreadedSweepers(const radar::Scene& scene)
+      : scene_(scene), one_(scene, 1), two_(scene, 2), five_(scene, 5) {}
 
   void check(std::vector<radar::Query> queries) {
     const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries);
@@ -26,7 +27,7 @@ class Sides {
     const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries);
     compare(queries, decided);
     for (size_t i = 0; i < queries.size(); ++i) {
-      INFO("query " << i << " of " << queries.size() << ", decide");
+      INFO("query " << i << " of " << queries.size() << ", anyHit");
       const bool meets = exact[i].status != radar::Status::clear;
       REQUIRE(decided[i].status == (meets ? radar::Status::hit : radar::Status::clear));
       if (!meets) continue;

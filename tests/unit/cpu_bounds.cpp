@@ -1,5 +1,5 @@
-// The bounds of the search on the CPU's cores hold what is exact: for every pair of nodes and of triangles, not only
-// for those that a search comes by.
+// The bounds of the CPU's search contain the exact time of contact, for every pair of nodes and of triangles, not only
+// for those that a search visits.
 #include "cpu/leaf_test.h"
 #include "cpu/swept_box.h"
 #include "cpu_wild_scenes.h"
@@ -22,7 +22,7 @@ bool holds(const MeshTree& tree, size_t node, uint32_t triangle) {
   return std::find(first, first + tree.below[node].count, triangle) != first + tree.below[node].count;
 }
 
-/// A query and one object.
+/// The sensor of a query and one object.
 struct Pair {
   const Mesh &a, &b;
   const Transform &poseA, &poseB;
@@ -44,7 +44,7 @@ struct Pair {
         fromB(MeshAxes(placementB.linear), placementA, pairMotion, 1) {}
 };
 
-/// All nodes that hold the pair, and their test in either precision, admit contact at `time`.
+/// Checks that all pairs of nodes above the triangles admit contact at `time`, in either precision.
 void checkNodes(const Pair& pair, uint32_t triA, uint32_t triB, double time) {
   const NodeTest<float> inFloats(pair.fromA, pair.fromB);
   const NodeTest<double> inDoubles(pair.fromA, pair.fromB);
@@ -122,7 +122,7 @@ void check(const wild::Made& made) {
 
 }  // namespace
 
-TEST_CASE("the bounds on when nodes and triangles meet hold at every scale and in poses that are nearly singular") {
+TEST_CASE("the bounds on when nodes and triangles touch hold at every scale and in nearly singular poses") {
   for (uint64_t seed = 0; seed < 1500; ++seed) {
     INFO("seed " << seed);
     wild::Random random(5000 + seed);

@@ -1,4 +1,4 @@
-// The search on the CPU's cores against brute force over all pairs in exact arithmetic.
+// Compares the CPU's search with brute force over all pairs in exact arithmetic.
 #include "cpu_agreement.h"
 
 using namespace radar;
@@ -6,7 +6,7 @@ using soups::Random;
 
 namespace {
 
-/// A scene of soups of about unit size times `scale`, up to `far` from the origin, and queries through it.
+/// Checks queries through a scene of soups of about the size `scale`, up to `far` from the origin.
 void runSoup(uint64_t seed, double scale, double far) {
   Random random(seed);
   Scene scene;

@@ -1,4 +1,4 @@
-// Cases whose answer is known beforehand.
+// Cases whose answers are known.
 #include "soups.h"
 
 using namespace radar;
@@ -18,7 +18,7 @@ Query sweep(MeshId mesh, const Transform& pose, std::array<double, 3> direction,
 
 }  // namespace
 
-TEST_CASE("a box above a box hits at the gap between them") {
+TEST_CASE("a box that falls on another hits it after the gap between them") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   const ObjectId lower = scene.addObject({box, at(0.25, 0.5, 0)});
@@ -35,7 +35,7 @@ TEST_CASE("a box above a box hits at the gap between them") {
   REQUIRE(result.detected == Detected::yes);
 }
 
-TEST_CASE("contact at exactly D counts and beyond D does not") {
+TEST_CASE("contact at exactly D counts, and contact beyond D does not") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   scene.addObject({box, at(0, 0, 0)});
@@ -89,7 +89,7 @@ TEST_CASE("two plates in one plane meet at their rims") {
   REQUIRE(test::answer(sweeper, sweep(plate, at(1e-9, 0, 0), {0, 1, 0}, 10)).status == Status::clear);
 }
 
-TEST_CASE("a mesh inside another that its way does not reach is clear") {
+TEST_CASE("a mesh that moves inside another without reaching its surface is clear") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   const MeshId hall = add(scene, soups::box(10, 10, 10));
@@ -116,7 +116,7 @@ TEST_CASE("the object behind is found when the one in front is excluded or maske
   REQUIRE(test::answer(sweeper, query).status == Status::clear);
 }
 
-TEST_CASE("of many objects hit at the same time the least is named") {
+TEST_CASE("of many objects hit at the same time the one with the lowest id is reported") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   const MeshId plank = add(scene, soups::box(40, 1, 1));
@@ -144,7 +144,7 @@ TEST_CASE("the CPU follows edits of the scene") {
   REQUIRE(test::answer(sweeper, query).t == 10);
   scene.removeObject(second);
   REQUIRE(test::answer(sweeper, query).status == Status::clear);
-  // A mesh id that now names another mesh.
+  // The id of a removed mesh now names another mesh.
   scene.removeMesh(box);
   const MeshId tall = add(scene, soups::box(1, 1, 3));
   REQUIRE(tall == box);

@@ -1,4 +1,4 @@
-// The search on the CPU's cores follows its scene, and its interface keeps its promises.
+// The CPU's search follows its scene, and CpuSweeper keeps its contract.
 #include "cpu_agreement.h"
 
 using namespace radar;
@@ -30,12 +30,12 @@ MeshId addSoup(Random& random, Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("the CPU's answers follow objects that are moved, added and removed, and meshes that come and go") {
+TEST_CASE("the CPU's answers follow objects that are moved, added and removed, and meshes that are replaced") {
   Random random(11);
   Scene scene;
   std::vector<MeshId> meshes;
   for (int i = 0; i < 4; ++i) meshes.push_back(addSoup(random, scene));
-  agreement::Sides sides(scene);
+  agreement::ThreadedSweepers sides(scene);
   for (int round = 0; round < 120; ++round) {
     INFO("round " << round);
     for (int edits = random.integer(0, 6); edits-- > 0;) {
@@ -49,7 +49,7 @@ TEST_CASE("the CPU's answers follow objects that are moved, added and removed, a
       } else if (what < 8) {
         scene.removeObject(id);
       } else {
-        // A mesh is exchanged for another, which gets its id.
+        // Replaces a mesh by another, which gets its id.
         const MeshId mesh = scene.object(id).mesh;
         for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
           if (scene.hasObject(other) && scene.object(other).mesh == mesh) scene.removeObject(other);
@@ -62,7 +62,7 @@ TEST_CASE("the CPU's answers follow objects that are moved, added and removed, a
   }
 }
 
-TEST_CASE("the CPU's answers follow a scene that is moved into another's place") {
+TEST_CASE("the CPU's answers follow a scene to which another is move-assigned") {
   Random random(12);
   Scene scene;
   std::vector<MeshId> meshes{addSoup(random, scene), addSoup(random, scene)};
@@ -86,12 +86,12 @@ TEST_CASE("the CPU's answers follow a scene that is moved into another's place")
   }
 }
 
-TEST_CASE("the CPU's answers follow an object that leaves the range of the tree over objects, and comes back") {
+TEST_CASE("the CPU's answers follow an object that leaves the range of the tree over objects and returns") {
   Random random(13);
   Scene scene;
   const std::vector<MeshId> meshes{addSoup(random, scene), addSoup(random, scene)};
   for (int i = 0; i < 6; ++i) scene.addObject({meshes[0], somewhere(random)});
-  agreement::Sides sides(scene);
+  agreement::ThreadedSweepers sides(scene);
   for (const double far : {0.0, 1e30, 1e200, 0.0}) {
     INFO("far " << far);
     Transform pose = somewhere(random);
@@ -101,8 +101,8 @@ TEST_CASE("the CPU's answers follow an object that leaves the range of the tree 
   }
 }
 
-TEST_CASE("the CPU finds what it meets among boxes that overflow") {
-  // Each vertex is finite, but the box of the mesh, placed, has corners that are not.
+TEST_CASE("the CPU finds contact when the box of a placed mesh overflows") {
+  // Each placed vertex is finite, but the corners of the placed box are not.
   Scene scene;
   const MeshId mesh =
       scene.addMesh(std::array{0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 1.0f, 1.0f, 1.0f}, std::array<uint32_t, 3>{0, 1, 2});
@@ -120,7 +120,7 @@ TEST_CASE("the CPU finds what it meets among boxes that overflow") {
   soups::check(scene, query, result);
 }
 
-TEST_CASE("the CPU meets meshes that are so small that no float holds the inverse of their size") {
+TEST_CASE("the CPU finds contact of meshes so small that the inverse of their size overflows a float") {
   Scene scene;
   soups::Mesh small = soups::box(1, 1, 1);
   for (float& c : small.positions) c *= 0x1p-140f;
@@ -139,7 +139,7 @@ TEST_CASE("the CPU meets meshes that are so small that no float holds the invers
   REQUIRE(result.t == 3);
 }
 
-TEST_CASE("the CPU answers no query where one breaks its contract, and names it") {
+TEST_CASE("the CPU answers no query of a batch in which one breaks its contract, and names that one") {
   Scene scene;
   const MeshId box = add(scene, soups::box(1, 1, 1));
   std::vector<Query> queries(3);

@@ -1,4 +1,4 @@
-// The CPU's search on the workloads of the tools: its answers have the same bits on any number of threads.
+// The CPU's answers to the tools' workloads have the same bits on any number of threads.
 #include "cpu_agreement.h"
 #include "support/answer.h"
 #include "workloads/families.h"
@@ -13,10 +13,10 @@ namespace {
 void check(const Workload& workload) {
   Scene scene;
   replaceBy(workload, 0, scene);
-  agreement::Sides(scene).check(agreement::queriesOf(workload));
+  agreement::ThreadedSweepers(scene).check(agreement::queriesOf(workload));
 }
 
-/// The same with D at the contact, one rounding less and one more, and with objects left out.
+/// The same with D at the contact or one ulp shorter or longer, and with objects excluded or masked out.
 void checkVariants(const Workload& workload, uint64_t seed) {
   Scene scene;
   replaceBy(workload, 0, scene);
@@ -31,7 +31,7 @@ void checkVariants(const Workload& workload, uint64_t seed) {
     if (which == 3) query.exclude = {exact.object};
     if (which == 4) query.mask = 1u << random.below(32);
   }
-  agreement::Sides(scene).check(queries);
+  agreement::ThreadedSweepers(scene).check(queries);
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ TEST_CASE("the CPU's answers are the same on any number of threads, in all famil
   }
 }
 
-TEST_CASE("the CPU's answers are the same on any number of threads where shapes interlock, and over one large mesh") {
+TEST_CASE("the CPU's answers are the same on any number of threads for interlocking shapes and over one large mesh") {
   for (const Interlocking kind : kInterlocking) {
     INFO(nameOf(kind));
     check(makeWorkload(InterlockingPairs{.kind = kind, .sensors = 4}));

@@ -1,4 +1,4 @@
-// One place beside touching, and what must never change an answer.
+// Configurations one ulp away from touching, and changes of a scene that must not change an answer.
 #include <bit>
 
 #include "soups.h"
@@ -21,8 +21,8 @@ Query sweep(MeshId mesh, const Transform& pose, const Vector& direction, double 
   return query;
 }
 
-Result alone(const soups::Mesh& a, const Transform& poseA, const soups::Mesh& b, const Transform& poseB,
-             const Vector& direction, double distance) {
+Result sweepPair(const soups::Mesh& a, const Transform& poseA, const soups::Mesh& b, const Transform& poseB,
+                 const Vector& direction, double distance) {
   Scene scene;
   const MeshId sensor = add(scene, a);
   scene.addObject({add(scene, b), poseB});
@@ -38,7 +38,7 @@ void requireSameBits(const Result& p, const Result& q) {
 
 /// Calls body(sign, order) for the eight octants and the six orders of the axes.
 template <class Body>
-void everyWay(const Body& body) {
+void forEachSymmetry(const Body& body) {
   for (int octant = 0; octant < 8; ++octant) {
     std::array<int, 3> order{0, 1, 2};
     do {
@@ -47,7 +47,7 @@ void everyWay(const Body& body) {
   }
 }
 
-Vector turned(const Vector& v, const Vector& sign, const std::array<int, 3>& order) {
+Vector mapped(const Vector& v, const Vector& sign, const std::array<int, 3>& order) {
   Vector out;
   for (size_t k = 0; k < 3; ++k) out[static_cast<size_t>(order[k])] = v[k] * sign[k];
   return out;
@@ -59,29 +59,29 @@ Transform at(const Vector& v) {
 
 }  // namespace
 
-TEST_CASE("boxes that slide past each other touch at gap zero and not one place apart") {
+TEST_CASE("boxes that slide past each other touch at gap zero and do not touch one ulp apart") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
-  everyWay([&](const Vector& sign, const std::array<int, 3>& order) {
-    const Vector ahead = turned({0, 0, 1}, sign, order);
+  forEachSymmetry([&](const Vector& sign, const std::array<int, 3>& order) {
+    const Vector ahead = mapped({0, 0, 1}, sign, order);
     for (double side : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
-      // 1 - ulp / 2 is placed on -1/2 + 1: the boxes have sides one place apart exactly where it exceeds 1.
-      const Result result = alone(box, Transform{}, box, at(turned({side, 0.25, 4}, sign, order)), ahead, 10);
+      // The boxes are apart, by one ulp, exactly if `side` exceeds 1.
+      const Result result = sweepPair(box, Transform{}, box, at(mapped({side, 0.25, 4}, sign, order)), ahead, 10);
       REQUIRE(result.status == (side > 1 ? Status::clear : Status::hit));
       if (side <= 1) REQUIRE(result.t == 3);
     }
   });
 }
 
-TEST_CASE("edges and vertices that graze touch at gap zero and not one place apart") {
+TEST_CASE("edges and vertices that graze touch at gap zero and do not touch one ulp apart") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
   const Vector direction{1, 2, 4};
-  // Box b at w is met while w_k - 1 <= s d_k <= w_k + 1 for each k. Contact begins in x and ends in y at s = 3: edge on
-  // edge. With z it begins or ends there too: vertex on vertex.
+  // Box b at w touches while w_k - 1 <= s d_k <= w_k + 1 for each k. At s = 3 contact begins in x and ends in y: edge
+  // on edge. If it also begins (z = 13) or ends (z = 11) in z: vertex on vertex.
   for (double z : {12.0, 13.0, 11.0}) {
     const Vector graze{4, 5, z};
-    everyWay([&](const Vector& sign, const std::array<int, 3>& order) {
-      const Vector d = turned(direction, sign, order);
-      const Result touch = alone(box, Transform{}, box, at(turned(graze, sign, order)), d, 100);
+    forEachSymmetry([&](const Vector& sign, const std::array<int, 3>& order) {
+      const Vector d = mapped(direction, sign, order);
+      const Result touch = sweepPair(box, Transform{}, box, at(mapped(graze, sign, order)), d, 100);
       REQUIRE(touch.status == Status::hit);
       REQUIRE(touch.lo <= 3 * std::sqrt(21.0));
       REQUIRE(touch.hi >= 3 * std::sqrt(21.0));
@@ -92,7 +92,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
           // Apart if contact begins later in x (or z = 13), or ends earlier in y (or z = 11).
           const bool apart = (k == 0 && way > 0) || (k == 1 && way < 0) || (k == 2 && z == 13 && way > 0) ||
                              (k == 2 && z == 11 && way < 0);
-          const Result result = alone(box, Transform{}, box, at(turned(w, sign, order)), d, 100);
+          const Result result = sweepPair(box, Transform{}, box, at(mapped(w, sign, order)), d, 100);
           REQUIRE(result.status == (apart ? Status::clear : Status::hit));
         }
       }
@@ -100,25 +100,25 @@ TEST_CASE("edges and vertices that graze touch at gap zero and not one place apa
   }
 }
 
-TEST_CASE("contact at D and one place before D are told apart where |direction| is rational") {
+TEST_CASE("contact at exactly D counts, and one ulp before contact is clear, if |direction| is rational") {
   const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
   for (const auto& [direction, length] :
        {std::pair{Vector{2, 3, 6}, 7.0}, {Vector{1, 4, 8}, 9.0}, {Vector{0, 3, -4}, 5.0}}) {
-    // b begins to be met at s = 3 in the largest component, and well inside in the others.
+    // Contact begins at s = 3 in the largest component and earlier in the others.
     Vector w;
     for (size_t k = 0; k < 3; ++k) w[k] = 3 * direction[k];
     const size_t largest = 2;
     w[largest] += direction[largest] > 0 ? 1 : -1;
     const double t = 3 * length;
-    const Result touch = alone(box, Transform{}, box, at(w), direction, t);
+    const Result touch = sweepPair(box, Transform{}, box, at(w), direction, t);
     REQUIRE(touch.status == Status::hit);
     REQUIRE(touch.t == t);
     REQUIRE(touch.hi == t);
-    REQUIRE(alone(box, Transform{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
+    REQUIRE(sweepPair(box, Transform{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
   }
 }
 
-TEST_CASE("lattice soups moved by single places equal brute force") {
+TEST_CASE("the CPU's answers equal brute force on lattice soups moved by single ulps") {
   for (uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     Scene scene;
@@ -139,7 +139,7 @@ TEST_CASE("lattice soups moved by single places equal brute force") {
   }
 }
 
-TEST_CASE("swapping the roles and reversing the direction keeps every bit of t") {
+TEST_CASE("swapping sensor and object and reversing the direction changes no bit of t") {
   for (uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     INFO("seed " << seed);
@@ -152,7 +152,7 @@ TEST_CASE("swapping the roles and reversing the direction keeps every bit of t")
     const Transform poseA = pose(0), poseB = pose(random.integer(0, 6));
     const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
                           : Vector{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
-    requireSameBits(alone(a, poseA, b, poseB, d, 20), alone(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
+    requireSameBits(sweepPair(a, poseA, b, poseB, d, 20), sweepPair(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
   }
 }
 
@@ -181,7 +181,8 @@ TEST_CASE("the order of triangles and vertices changes no bit of t") {
     const soups::Mesh a = mesh(), b = mesh();
     const Transform poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
     const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, 0, 2} : Vector{random.uniform(-0.2, 0.2), 0.1, 1};
-    requireSameBits(alone(a, Transform{}, b, poseB, d, 20), alone(shuffled(a), Transform{}, shuffled(b), poseB, d, 20));
+    requireSameBits(sweepPair(a, Transform{}, b, poseB, d, 20),
+                    sweepPair(shuffled(a), Transform{}, shuffled(b), poseB, d, 20));
   }
 }
 
@@ -199,7 +200,7 @@ TEST_CASE("a shift that keeps every coordinate exact changes no bit of t") {
     const Vector d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
     const double z = random.integer(0, 3), size = std::ldexp(1, random.integer(0, 39));
     const Vector shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
-    requireSameBits(alone(a, Transform{}, b, soups::at(0, 0, z), d, 20),
-                    alone(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
+    requireSameBits(sweepPair(a, Transform{}, b, soups::at(0, 0, z), d, 20),
+                    sweepPair(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
   }
 }

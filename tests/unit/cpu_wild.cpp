@@ -1,4 +1,4 @@
-// The search on the CPU's cores at the ends of what doubles hold.
+// The CPU's search at the limits of the range of doubles.
 #include "cpu_agreement.h"
 #include "cpu_wild_scenes.h"
 
@@ -10,7 +10,7 @@ TEST_CASE("the CPU's answers are the same on any number of threads at every scal
     wild::Random random(seed);
     wild::Made made;
     wild::make(random, seed % 4 == 0 ? 90 : seed % 4 == 1 ? 40 : 3, made);
-    agreement::Sides(made.scene).check(made.queries);
+    agreement::ThreadedSweepers(made.scene).check(made.queries);
   }
 }
 
@@ -29,7 +29,7 @@ TEST_CASE("the CPU's answers equal brute force at every scale, far away and in p
   }
 }
 
-TEST_CASE("the CPU answers for directions whose length no double holds") {
+TEST_CASE("the CPU's answers equal brute force for directions at the limits of the range of doubles") {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     INFO("seed " << seed);
     wild::Random random(2000 + seed);

@@ -1,4 +1,4 @@
-// Scenes at the ends of what doubles hold: sizes from 10^-150 to 10^150, far origins, poses that are nearly singular,
+// Scenes at the limits of the range of doubles: sizes from 10^-150 to 10^150, far origins, nearly singular poses,
 // motions of every length.
 #pragma once
 
@@ -8,13 +8,13 @@ namespace wild {
 
 using soups::Random;
 
-/// 10 to a random power.
+/// 10 to a random power between -most and most.
 inline double power(Random& random, double most) {
   return std::pow(10.0, random.uniform(-most, most));
 }
 
-/// A soup, a lattice or a box; its coordinates times `scale`, within what floats hold; sometimes far from its origin,
-/// flat, a segment or a point.
+/// A soup, a lattice or a box with coordinates times `scale`, within the range of floats; sometimes far from its
+/// origin, flat, a segment or a point.
 inline soups::Mesh mesh(Random& random, double scale) {
   const int kind = random.integer(0, 5);
   soups::Mesh out = kind == 0   ? soups::box(random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1))
@@ -34,7 +34,7 @@ inline std::array<double, 9> linearOf(const radar::Transform& pose) {
   return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
 }
 
-/// A rotation, often scaled differently along its axes, sheared, mirrored, or flattened until hardly invertible.
+/// A rotation, often scaled differently along its axes, sheared, mirrored, or flattened until it is hardly invertible.
 inline radar::Transform pose(Random& random, double scale, const std::array<double, 3>& at) {
   for (;;) {
     const std::array<double, 9> p = linearOf(random.pose(1, {})), q = linearOf(random.pose(1, {}));
@@ -66,10 +66,10 @@ struct Made {
   std::vector<radar::Query> queries;
 };
 
-/// `most`: sizes go up to its power of ten, and down to the inverse.
+/// Sizes range from 10^-most to 10^most.
 inline void make(Random& random, double most, Made& out) {
   const double world = power(random, most);
-  // A pose takes a mesh of 10^-30 to 10^30 to about the size of the world, or to something much smaller or larger.
+  // A pose scales a mesh of size 10^-30 to 10^30 to about the size of the world, or to a much smaller or larger one.
   const auto size = [&] { return random.chance(0.7) ? random.uniform(0.3, 2) : power(random, 4); };
   std::vector<radar::MeshId> meshes;
   std::vector<double> units;
@@ -98,7 +98,7 @@ inline void make(Random& random, double most, Made& out) {
     const auto m = static_cast<size_t>(random.integer(0, 2));
     query.mesh = meshes[m];
     query.worldFromMesh = placed(m, random.chance(0.3) ? 0.5 : 4);
-    // Towards something, most of the time.
+    // Most directions point towards an object.
     const auto& pose = out.scene.object(0).worldFromMesh.m;
     for (size_t k = 0; k < 3; ++k) query.direction[k] = pose[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
     double length = std::hypot(query.direction[0], query.direction[1], query.direction[2]);

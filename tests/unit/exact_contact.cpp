@@ -1,4 +1,4 @@
-// The contact interval of two triangles, against separating axes in exact rationals.
+// Compares the contact interval of two triangles with separating axes in exact rationals.
 #include <catch2/catch.hpp>
 
 #include "exact/contact.h"
@@ -44,7 +44,7 @@ void check(const Triangle& a, const Triangle& b, const Vector& direction) {
     }
   }
   REQUIRE(compare(ours->first, ours->last) == oracle::compare(truth->first, truth->last));
-  // Swapped, reversed: the same to the bit.
+  // Swapping the triangles and reversing the direction changes no bit.
   const auto swapped = contact(b, a, {-direction[0], -direction[1], -direction[2]});
   REQUIRE(swapped.has_value());
   REQUIRE(parameter(swapped->first) == parameter(ours->first));
@@ -67,7 +67,7 @@ Vector latticeDirection(Random& random, int side) {
   return d;
 }
 
-/// Moves one coordinate by one place.
+/// Moves one coordinate by one ulp.
 void nudge(Random& random, Triangle& t) {
   double& c = t[static_cast<size_t>(random.integer(0, 2))][static_cast<size_t>(random.integer(0, 2))];
   c = std::nextafter(c, random.chance(0.5) ? INFINITY : -INFINITY);
@@ -90,7 +90,7 @@ TEST_CASE("the contact interval is exact on integer lattices") {
   }
 }
 
-TEST_CASE("the contact interval is exact one place beside integer lattices") {
+TEST_CASE("the contact interval is exact one ulp beside integer lattices") {
   Random random(2);
   for (int i = 0; i < 8000; ++i) {
     INFO("case " << i);
@@ -130,7 +130,7 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
       }
     }
   }
-  // Sizes as unlike as they can be.
+  // Sizes that differ by factors of up to 2^2000.
   for (int i = 0; i < 300; ++i) {
     INFO("mixed, case " << i);
     Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
@@ -140,8 +140,8 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
   }
 }
 
-TEST_CASE("events that share a parameter compare equal, whatever features they are of") {
-  // A vertex comes down on the corner where four triangles meet: over faces, edges and a vertex at once.
+TEST_CASE("events at the same parameter compare equal, whatever their features") {
+  // A vertex falls on the corner where four triangles meet, over faces, edges and a vertex at once.
   const Triangle a{Vector{0, 0, 5}, Vector{1, 0, 6}, Vector{0, 1, 6}};
   std::vector<Event> events;
   for (const Triangle& b : {Triangle{Vector{0, 0, 0}, Vector{1, 0, 0}, Vector{0, 1, 0}},
@@ -158,7 +158,7 @@ TEST_CASE("events that share a parameter compare equal, whatever features they a
   }
 }
 
-TEST_CASE("two parameters that round to the same double are told apart") {
+TEST_CASE("parameters that round to the same double compare as different") {
   const auto fall = [](double floor) {
     const Triangle ground{Vector{-9, -9, floor}, Vector{9, -9, floor}, Vector{0, 9, floor}};
     const Triangle a{Vector{0, 0, 1}, Vector{1, 0, 9}, Vector{0, 1, 9}};
@@ -193,7 +193,7 @@ TEST_CASE("the length of a direction is rounded to the nearest double") {
   REQUIRE(length({0, 0, -0.1}) == 0.1);
 }
 
-TEST_CASE("contact point and normal lie where the features are") {
+TEST_CASE("contact point and normal are those of the touching features") {
   const Triangle floor{Vector{-9, -9, 0}, Vector{9, -9, 0}, Vector{0, 9, 0}};
   const Triangle tip{Vector{0, 0, 2}, Vector{1, 0, 3}, Vector{0, 1, 3}};
   const auto down = contact(tip, floor, {0, 0, -1})->first;

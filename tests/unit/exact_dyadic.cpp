@@ -1,4 +1,4 @@
-// The integers and double-doubles under engine/exact, against boost's rationals.
+// Compares the integers and double-doubles of engine/exact with Boost's rationals.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -41,13 +41,13 @@ TEST_CASE("sums and products of dyadics are exact for all finite doubles") {
         (Rational(v[0]) - Rational(v[1])) * Rational(v[2]) + (Rational(v[3]) + Rational(v[4])) * Rational(v[5]);
     INFO("case " << i);
     REQUIRE(ours.sign() == truth.sign());
-    // A quotient of 53 bits by its own value tells the rest.
+    // A quotient of 53 bits by itself uses all digits.
     if (truth.sign() != 0) REQUIRE(quotient(ours, ours) == 1);
     REQUIRE((ours - ours).sign() == 0);
   }
 }
 
-TEST_CASE("the largest expression of this floor fits") {
+TEST_CASE("a Dyadic holds the largest expression of engine/exact") {
   const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
   const Dyadic gap = Dyadic(most) - Dyadic(-least), minor = gap * gap - gap * Dyadic(least);
   const Dyadic det = gap * minor + gap * minor + gap * minor, square = gap * gap + gap * gap + gap * gap;
@@ -81,7 +81,7 @@ TEST_CASE("a quotient is rounded to the nearest double, ties to even") {
   REQUIRE(subnormal > 100);
 }
 
-TEST_CASE("twofold sums and products keep their bounds") {
+TEST_CASE("double-double sums and products keep their error bounds") {
   Random random(3);
   const Rational u = Rational(1) / (Rational(2) * (uint64_t{1} << 52)), square = u * u;
   for (int i = 0; i < 20000; ++i) {

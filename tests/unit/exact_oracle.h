@@ -1,7 +1,7 @@
-// The slow truth: whether and when two triangles meet along a direction, in exact integers, by another way than the
-// engine's. The engine finds the ends of the contact interval among vertices over faces and crossings of edges. Here
-// the interval is cut out by the separating axes of the difference set b - a: each axis n asks
-// min(n.b) - max(n.a) <= s n.d <= max(n.b) - min(n.a), and enough axes together are the set itself.
+// The oracle: whether and when two triangles meet along a direction, in exact integers and by another method than the
+// engine's. The engine finds the ends of the contact interval among vertices over faces and crossings of edges. The
+// oracle intersects the intervals that separating axes of the difference set b - a allow: for each axis n, min(n.b) -
+// max(n.a) <= s n.d <= max(n.b) - min(n.a). Enough axes together describe the set exactly.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline int compare(const Fraction& p, const Fraction& q) {
   return Integer(p.num * q.den).compare(Integer(q.num * p.den));
 }
 
-/// A double is mantissa * 2^exponent; these make all of a set integers on one scale.
+/// A double is mantissa * 2^exponent. Relative to the least exponent of a set, all its doubles are integers.
 inline int leastExponent(const double* values, size_t count) {
   int least = 2000;
   for (size_t i = 0; i < count; ++i) {
@@ -85,7 +85,8 @@ inline std::vector<IntVec> axesFor(const std::array<IntVec, 3>& a, const std::ar
   std::erase_if(axes, isZero);
   const bool solid = std::any_of(axes.begin(), axes.end(), [&](const IntVec& n) { return !isZero(cross(n, axes[0])); });
   if (solid) return axes;
-  // The difference set is flat, a segment or a point: its rims within the plane or line, and all that is across it.
+  // The difference set is flat, a segment or a point: add axes for its rims within the plane or line, and axes across
+  // it.
   const std::vector<IntVec> normals = axes;
   const std::array<IntVec, 3> units{IntVec{1, 0, 0}, IntVec{0, 1, 0}, IntVec{0, 0, 1}};
   for (const IntVec& e : edges) {
@@ -187,7 +188,7 @@ inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
         if (!interval || interval->last.sign() < 0) continue;
         Fraction s = interval->first;
         if (s.sign() < 0) s = {};
-        // Ids rise along the loops: the first of equals stays.
+        // The loops visit ids in increasing order, so the first of equals stays.
         if (best.found && compare(s, best.s) >= 0) continue;
         if (compareToDistance(s, query.direction, query.distance) > 0) continue;
         best = {true, s, id, triB, triA};

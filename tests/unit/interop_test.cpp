@@ -1,4 +1,4 @@
-// The structs that C++ and GLSL share have the same layout: offsetof against the SPIR-V's own decorations.
+// Structs that C++ and GLSL share have the same layout: compares offsetof with the SPIR-V's decorations.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 using namespace radar::gpu;
 using radar::test::kEngineShaders;
 
-// struct -> member -> offset, and struct -> stride of the arrays of it.
+// struct -> member -> offset, and struct -> stride of its arrays.
 struct Layouts {
   std::map<std::string, std::map<std::string, uint32_t>> offsets;
   std::map<std::string, uint32_t> strides;
@@ -204,7 +204,7 @@ const std::vector<Expected>& sharedStructs() {
   return all;
 }
 
-// radar/result.glsl has it for hosts, too.
+// radar/result.glsl declares it for hosts.
 const Expected& publicResult() {
   using radar::Result;
   static const Expected result{
@@ -217,7 +217,7 @@ const Expected& publicResult() {
   return result;
 }
 
-// Where the module has the struct. The stride is 0 where it has no array of it.
+// Checks a struct that the module has. The module has no stride for it if it has no array of it.
 void checkLayout(const Layouts& layouts, const Expected& one) {
   const auto& found = layouts.offsets.at(one.structure);
   CHECK(found.size() == one.members.size());
@@ -249,7 +249,7 @@ TEST_CASE("every shared struct has the offsets and the stride that the shaders u
       layoutsOf(doubles ? std::span<const uint32_t>(k_shared_structs_comp) : k_shared_structs_comp_RADAR_NO_DOUBLES);
   for (const Expected& one : sharedStructs()) {
     CAPTURE(doubles, one.structure);
-    // Doubles are not tried without them.
+    // Only shaders with doubles have these structs.
     if (!doubles && (one.structure == "DoubleTrial" || one.structure == "DoubleOutcome")) continue;
     REQUIRE(layouts.strides.count(one.structure) == 1);
     checkLayout(layouts, one);
@@ -266,7 +266,7 @@ TEST_CASE("no shared struct is left out of the comparison") {
   CHECK(declared == compared);
 }
 
-TEST_CASE("the engine's own shaders lay shared structs and results out as C++ does") {
+TEST_CASE("the engine's shaders lay out shared structs and results as C++ does") {
   std::set<std::string> seen;
   for (const auto& [shader, spirv] : kEngineShaders) {
     const Layouts layouts = layoutsOf(spirv);
@@ -286,7 +286,7 @@ TEST_CASE("the engine's own shaders lay shared structs and results out as C++ do
   }
 }
 
-TEST_CASE("what shaders read as texels is made of whole ones, as many as they count") {
+TEST_CASE("structs that shaders read as texels have as many whole texels as the shaders assume") {
   constexpr size_t kTexel = 4 * sizeof(float);
   CHECK(sizeof(Placement) == kPlacementTexels * kTexel);
   CHECK(sizeof(Sensor) == kSensorTexels * kTexel);
@@ -297,7 +297,7 @@ TEST_CASE("what shaders read as texels is made of whole ones, as many as they co
   CHECK(sizeof(Triangle) == kTexel);
 }
 
-TEST_CASE("what uses doubles has a variant without, or is made only where a device has them") {
+TEST_CASE("every shader that uses doubles has a variant without them or is used only on devices with doubles") {
   const std::set<std::string> onlyWithDoubles{"arithmetic/doubles.comp", "contact/refine.comp"};
   const std::string suffix = ":RADAR_NO_DOUBLES";
   std::map<std::string, bool> doubles;

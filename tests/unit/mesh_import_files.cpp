@@ -48,14 +48,14 @@ constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
 
-TEST_CASE("faces of more than three corners are fanned from their first corner, concave ones too") {
+TEST_CASE("faces of more than three corners become a fan from their first corner, concave ones too") {
   const ScratchFolder folder;
   const MeshData mesh = read(folder.write("a.obj", std::string(kSquare) + "v 0.1 0.1 0\nf 2 3 4 5 1\n"));
   CHECK(corners(mesh) ==
         std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, .1f, .1f, 0, 1, 0, 0, .1f, .1f, 0, 0, 0, 0});
 }
 
-TEST_CASE("doubled vertices stay apart and degenerate faces stay in place") {
+TEST_CASE("duplicate vertices are not merged, and degenerate faces stay in place") {
   const ScratchFolder folder;
   const MeshData mesh =
       read(folder.write("a.ply", ply(5, 3, "0 0 0\n1 0 0\n0 1 0\n0 0 0\n9 9 9\n3 0 1 2\n3 0 0 0\n3 3 1 3\n")));
@@ -63,7 +63,7 @@ TEST_CASE("doubled vertices stay apart and degenerate faces stay in place") {
   CHECK(mesh.indices == std::vector<uint32_t>{0, 1, 2, 0, 0, 0, 3, 1, 3});
 }
 
-TEST_CASE("points and lines are dropped and counted") {
+TEST_CASE("lines are dropped with a warning that counts them") {
   const ScratchFolder folder;
   const std::string file = folder.write("a.obj", std::string(kSquare) + "f 1 2 3\nl 1 2\nl 2 3\n");
   std::vector<std::string> warnings;
@@ -72,7 +72,7 @@ TEST_CASE("points and lines are dropped and counted") {
   CHECK_THAT(warnings[0], Contains(file) && Contains("2 lines"));
 }
 
-TEST_CASE("nodes are walked depth-first, their transforms multiplied, each placement a copy") {
+TEST_CASE("nodes are visited depth-first, their transforms are multiplied, and each use of a mesh is a copy") {
   const ScratchFolder folder;
   const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   folder.write("a.bin", std::string(reinterpret_cast<const char*>(positions), sizeof positions));
@@ -90,7 +90,7 @@ TEST_CASE("nodes are walked depth-first, their transforms multiplied, each place
                                                   0,  0, 0, 1,  0, 0, 0,  1, 0});
 }
 
-TEST_CASE("a broken mesh file is refused with the file, the place and what was expected") {
+TEST_CASE("the message about a broken mesh file names the file, the place and what was expected") {
   const ScratchFolder folder;
   const std::string three = "0 0 0\n1 0 0\n0 1 0\n", off = "OFF\n3 1 0\n";
   const std::string square = kSquare;
@@ -129,7 +129,7 @@ TEST_CASE("a binary PLY file that ends early is refused") {
   }
 }
 
-TEST_CASE("real files of many formats are read") {
+TEST_CASE("files of many formats are read") {
   const std::string models = "/usr/share/assimp/models/";
   for (const auto& [name, triangles] :
        {std::pair{"OBJ/spider.obj", 1368u}, std::pair{"PLY/Wuson.ply", 3732u}, std::pair{"PLY/cube_binary.ply", 12u},

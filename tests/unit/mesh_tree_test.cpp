@@ -1,5 +1,5 @@
-// The tree over a mesh's triangles: every triangle in one leaf, and boxes and slabs that hold, exactly, all that is
-// below.
+// The tree over a mesh's triangles: every triangle is in one leaf, and boxes and slabs contain all triangles below
+// them, in exact arithmetic.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -40,8 +40,8 @@ bool hasSlab(const gpu::MeshNode& node) {
   return node.normal[0] != 0 || node.normal[1] != 0 || node.normal[2] != 0;
 }
 
-struct Placed {
-  explicit Placed(const tools::MeshData& data)
+struct MeshInScene {
+  explicit MeshInScene(const tools::MeshData& data)
       : mesh(scene.impl().meshes[scene.addMesh(data.positions, data.indices)]) {}
   Scene scene;
   const Mesh& mesh;
@@ -52,14 +52,14 @@ std::array<float, 3> corner(const Mesh& mesh, uint32_t triangle, int i) {
   return {mesh.normalised(vertex, 0), mesh.normalised(vertex, 1), mesh.normalised(vertex, 2)};
 }
 
-// Whether every node above `triangle` holds it, from the root down to the leaf that has it at `place`.
+// Walks a tree and checks that every node contains the triangles below it.
 struct Walk {
   const Mesh& mesh;
   std::vector<uint32_t> places = std::vector<uint32_t>(mesh.triangleCount());  // how often a leaf holds each place
   uint32_t depth = 0;
   size_t nodes = 0;
 
-  // Returns the least triangle below.
+  // Returns the lowest id of a triangle below.
   uint32_t walk(uint32_t at, uint32_t level) {
     ++nodes;
     depth = std::max(depth, level);
@@ -128,7 +128,7 @@ tools::MeshData soupOf(std::initializer_list<float> corners, size_t times) {
 
 }  // namespace
 
-TEST_CASE("a mesh's tree holds every triangle once, and each node all that is below") {
+TEST_CASE("a mesh's tree has every triangle in one leaf, and every node contains the triangles below it") {
   std::vector<tools::MeshData> meshes{tools::makeBox({1, 2, 3}), tools::makeTorus(3, 1, 20, 12),
                                       tools::makeHook(3, 1, 0.5, 0.2), tools::makeUvSphere(20, 31)};
   tools::Random random(9);
@@ -139,36 +139,36 @@ TEST_CASE("a mesh's tree holds every triangle once, and each node all that is be
   }
   for (size_t i = 0; i < meshes.size(); ++i) {
     CAPTURE(i, meshes[i].triangleCount());
-    checkTree(Placed(meshes[i]).mesh);
+    checkTree(MeshInScene(meshes[i]).mesh);
   }
 }
 
-TEST_CASE("triangles that are equal, or points, make a tree like any other") {
+TEST_CASE("equal triangles and triangles that are points make a balanced tree") {
   for (const size_t times : {1u, 2u, 3u, 257u}) {
     for (const tools::MeshData& mesh :
          {soupOf({0, 0, 0, 1, 0, 0, 0, 1, 0}, times), soupOf({5, 5, 5, 5, 5, 5, 5, 5, 5}, times),
           soupOf({0, 0, 0, 0, 0, 0, 0, 0, 0}, times), soupOf({1e-44f, 0, 0, 0, 1e-44f, 0, 0, 0, 1e-44f}, times),
           soupOf({3e38f, 0, 0, -3e38f, 1, 0, 0, 3e38f, 1e-38f}, times)}) {
       CAPTURE(times, mesh.positions[0], mesh.positions[1]);
-      const Placed placed(mesh);
+      const MeshInScene placed(mesh);
       checkTree(placed.mesh);
       CHECK(placed.mesh.tree.depth == 1 + static_cast<uint32_t>(std::ceil(std::log2((times + 1) / 2))));
     }
   }
 }
 
-TEST_CASE("triangles of every size, each beside the next, make a tree that holds them") {
+TEST_CASE("neighbouring triangles of every size make a valid tree") {
   tools::MeshData mesh;
   for (int exponent = -140; exponent <= 120; ++exponent) {
     const float at = std::ldexp(1.0f, exponent);
     mesh.positions.insert(mesh.positions.end(), {at, 0, 0, 1.5f * at, at, 0, at, 0, 0.25f * at});
   }
   for (uint32_t i = 0; i < mesh.positions.size() / 3; ++i) mesh.indices.push_back(i);
-  checkTree(Placed(mesh).mesh);
+  checkTree(MeshInScene(mesh).mesh);
 }
 
-TEST_CASE("what is flat has a thin slab across it, however it is turned, up to nodes of 1024 triangles") {
-  // A plane of 40 x 40 cells, tilted.
+TEST_CASE("nodes of up to 1024 coplanar triangles have a thin slab, also in a tilted plane") {
+  // A tilted plane of 40 x 40 cells.
   tools::MeshData plane;
   for (int y = 0; y <= 40; ++y) {
     for (int x = 0; x <= 40; ++x) {
@@ -182,7 +182,7 @@ TEST_CASE("what is flat has a thin slab across it, however it is turned, up to n
       plane.indices.insert(plane.indices.end(), {i, i + 1, i + 42, i, i + 42, i + 41});
     }
   }
-  const Placed placed(plane);
+  const MeshInScene placed(plane);
   checkTree(placed.mesh);
   size_t slabs = 0;
   for (size_t i = 0; i < placed.mesh.tree.nodes.size(); ++i) {
@@ -196,8 +196,8 @@ TEST_CASE("what is flat has a thin slab across it, however it is turned, up to n
   CHECK(slabs > 1000);
 }
 
-TEST_CASE("boxes are as small as what is below, but for a rounding") {
-  const Placed placed(tools::makeTorus(3, 1, 40, 20));
+TEST_CASE("a node's box is the smallest around its triangles, up to rounding") {
+  const MeshInScene placed(tools::makeTorus(3, 1, 40, 20));
   const Mesh& mesh = placed.mesh;
   for (size_t i = 0; i < mesh.tree.nodes.size(); ++i) {
     const MeshTree::Below& below = mesh.tree.below[i];
@@ -218,9 +218,9 @@ TEST_CASE("boxes are as small as what is below, but for a rounding") {
   }
 }
 
-TEST_CASE("equal meshes have equal trees, also where they are built on several threads") {
+TEST_CASE("equal meshes have equal trees, also if these are built on several threads") {
   const tools::MeshData sphere = tools::makeUvSphere(200, 200);
-  const Placed first(sphere), second(sphere);
+  const MeshInScene first(sphere), second(sphere);
   const MeshTree &p = first.mesh.tree, &q = second.mesh.tree;
   REQUIRE(p.nodes.size() == q.nodes.size());
   CHECK(std::memcmp(p.nodes.data(), q.nodes.data(), p.nodes.size() * sizeof(gpu::MeshNode)) == 0);
@@ -228,7 +228,7 @@ TEST_CASE("equal meshes have equal trees, also where they are built on several t
   CHECK(std::memcmp(p.below.data(), q.below.data(), p.below.size() * sizeof(MeshTree::Below)) == 0);
 }
 
-TEST_CASE("a box of half extents holds both of its ends, whatever the rounding") {
+TEST_CASE("a box of centre and half extent contains both of its ends despite rounding") {
   tools::Random random(23);
   for (int i = 0; i < 100'000; ++i) {
     std::array<float, 3> lo, hi;

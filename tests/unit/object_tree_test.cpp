@@ -1,4 +1,4 @@
-// The tree over a scene's objects holds all of them, wherever they are and whatever has changed.
+// The tree over a scene's objects contains all of them, wherever they are and however the scene has changed.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ Transform at(double x, double y, double z) {
   return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 
-// Exactly.
+// Whether the node contains p, in exact arithmetic.
 bool holds(const gpu::ObjectNode& node, const std::array<double, 3>& anchor, const std::array<double, 3>& p) {
   for (int k = 0; k < 3; ++k) {
     const Dyadic offset = Dyadic(p[k]) - Dyadic(anchor[k]) - Dyadic(node.centre[k]), half(node.halfExtent[k]);
@@ -27,14 +27,14 @@ bool holds(const gpu::ObjectNode& node, const std::array<double, 3>& anchor, con
   return true;
 }
 
-struct Walked {
-  std::vector<uint32_t> leaves;  // how often each object is in one
+struct WalkResult {
+  std::vector<uint32_t> leaves;  // the number of leaves of each object
   uint32_t depth = 0;
   size_t nodes = 0;
 };
 
-// Returns the objects below.
-std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, Walked& walked) {
+// Checks the nodes below and returns their objects.
+std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, WalkResult& walked) {
   const gpu::ObjectNode& node = tree.nodes().at(at);
   ++walked.nodes;
   walked.depth = std::max(walked.depth, level);
@@ -56,10 +56,10 @@ std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, 
   return below;
 }
 
-// Each object of the scene in one leaf, in a box that holds its placed vertices.
+// Checks that each object of the scene is in one leaf, in a box that contains its placed vertices.
 void checkTree(const Scene& scene) {
   const ObjectTree& tree = scene.impl().objectTree();
-  Walked walked{std::vector<uint32_t>(scene.objectLimit())};
+  WalkResult walked{std::vector<uint32_t>(scene.objectLimit())};
   if (!tree.nodes().empty()) walk(tree, 0, 1, walked);
   CHECK(walked.depth == tree.depth());
   CHECK(walked.nodes == tree.nodes().size());
@@ -81,7 +81,7 @@ void checkTree(const Scene& scene) {
   }
 }
 
-// Sum of the nodes' half areas, which is what walking the tree costs.
+// The sum of the nodes' surface areas, up to a factor, which measures the cost of walking the tree.
 double costOf(const ObjectTree& tree) {
   double sum = 0;
   for (const gpu::ObjectNode& node : tree.nodes()) {
@@ -107,7 +107,7 @@ struct Boxes {
 
 }  // namespace
 
-TEST_CASE("the tree holds all objects as they come, move and go") {
+TEST_CASE("the tree contains all objects while they are added, moved and removed") {
   Boxes boxes(3);
   const double away = GENERATE(0.0, 1e6, 1e12);
   std::vector<ObjectId> objects;
@@ -136,7 +136,7 @@ TEST_CASE("the tree holds all objects as they come, move and go") {
   CHECK(boxes.scene.impl().objectTree().nodes().size() == 1);
 }
 
-TEST_CASE("a small move changes boxes and not the tree, and its version says so") {
+TEST_CASE("a small move changes the boxes and the version but not the structure of the tree") {
   Boxes boxes(4);
   for (int i = 0; i < 100; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(50), ~0u});
   const ObjectTree& tree = boxes.scene.impl().objectTree();
@@ -152,7 +152,7 @@ TEST_CASE("a small move changes boxes and not the tree, and its version says so"
   for (size_t i = 0; i < before.size(); ++i) CHECK(tree.nodes()[i].link == before[i].link);
 }
 
-TEST_CASE("objects that a host may move are held wherever they may be") {
+TEST_CASE("the tree contains the bounds of objects that a host may move") {
   Boxes boxes(5);
   for (int i = 0; i < 20; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
   const Bounds bounds{{-70, -3, -3}, {-60, 3, 90}};
@@ -164,14 +164,14 @@ TEST_CASE("objects that a host may move are held wherever they may be") {
     CHECK(tree.boxOf(11).hi[k] >= bounds.hi[k]);
     CHECK(tree.worldBox().lo[k] <= bounds.lo[k]);
   }
-  // They end with the object.
+  // The bounds end with the object.
   boxes.scene.removeObject(11);
   CHECK(boxes.scene.addObject({boxes.mesh, at(0, 0, 0), ~0u}) == 11);
   checkTree(boxes.scene);
   CHECK(tree.boxOf(11).lo[0] > -2);
 }
 
-TEST_CASE("far from the origin, boxes are hardly larger than objects") {
+TEST_CASE("far from the origin, boxes are hardly larger than their objects") {
   Boxes boxes(6);
   const double away = 1e12;
   for (int i = 0; i < 50; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u});
@@ -185,17 +185,17 @@ TEST_CASE("far from the origin, boxes are hardly larger than objects") {
     }
   };
   checkSizes();
-  // All of them travel on together.
+  // All objects move far away together.
   for (ObjectId id = 0; id < 50; ++id) boxes.scene.setTransform(id, boxes.anywhere(20, -3 * away));
   checkTree(boxes.scene);
   checkSizes();
 }
 
-TEST_CASE("a tree that moves have made bad is built anew") {
+TEST_CASE("a tree that moves have degraded is rebuilt") {
   Boxes boxes(7), fresh(8);
   std::vector<Transform> poses;
   for (int i = 0; i < 300; ++i) {
-    // In a row, so that a tree of neighbours is much better than any other.
+    // For objects in a row, a tree of neighbours is much better than any other.
     boxes.scene.addObject({boxes.mesh, at(10 * i, 0, 0), ~0u});
     poses.push_back(at(10 * ((7 * i) % 300), 0, 0));
   }
@@ -209,7 +209,7 @@ TEST_CASE("a tree that moves have made bad is built anew") {
   CHECK(costOf(boxes.scene.impl().objectTree()) < 1.5 * before);
 }
 
-TEST_CASE("what floats cannot hold is out of range, until it is back") {
+TEST_CASE("the tree is out of range while floats cannot represent an object or its bounds") {
   Boxes boxes(9);
   for (int i = 0; i < 5; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
   const ObjectTree& tree = boxes.scene.impl().objectTree();
@@ -223,7 +223,7 @@ TEST_CASE("what floats cannot hold is out of range, until it is back") {
     boxes.scene.setTransform(2, at(0, 0x1p79, 0));
     checkTree(boxes.scene);
   }
-  // A step that hardly changes the tree's boxes.
+  // Steps that hardly change the tree's boxes.
   boxes.scene.setTransform(2, at(0, 0.99 * 0x1p80, 0));
   CHECK(inRange());
   boxes.scene.setTransform(2, at(0, 1.01 * 0x1p80, 0));
@@ -234,7 +234,7 @@ TEST_CASE("what floats cannot hold is out of range, until it is back") {
   CHECK_FALSE(inRange());
   boxes.scene.removeObject(2);
   checkTree(boxes.scene);
-  // Also from one that has never been in range.
+  // The same for a tree that has never been in range.
   Boxes other(10);
   const ObjectId far = other.scene.addObject({other.mesh, at(1e200, 0, 0), ~0u});
   other.scene.addObject({other.mesh, at(1, 0, 0), ~0u});
@@ -243,8 +243,8 @@ TEST_CASE("what floats cannot hold is out of range, until it is back") {
   checkTree(other.scene);
 }
 
-TEST_CASE("an object whose coordinates overflow puts the scene out of range, and nothing else") {
-  // Vertices of 10^30 and a pose of 10^300: sums of infinities that are no numbers.
+TEST_CASE("an object whose coordinates overflow puts the tree out of range until it is removed") {
+  // Vertices of 10^30 and a pose of 10^300: sums of infinities, which are NaN.
   Scene scene;
   std::vector<float> corners;
   for (const float x : {1e30f, 2e30f, 1.5e30f}) corners.insert(corners.end(), {x, x, 0});

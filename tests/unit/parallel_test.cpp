@@ -1,4 +1,4 @@
-// Loops on all cores: each index once, no worker twice at a time, errors in the caller's hands.
+// Parallel loops: each index once, no worker twice at a time, exceptions for the caller.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using radar::parallelFor;
 using radar::threadCount;
 
-// Gives up after some seconds, so that a loop on one thread is a failure and no test without end.
+// Gives up after some seconds, so that a loop that runs on one thread fails and does not hang.
 template <class Condition>
 void waitFor(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
@@ -26,7 +26,7 @@ void waitFor(const Condition& condition) {
 
 }  // namespace
 
-TEST_CASE("a parallel loop visits each index once, in chunks of the size asked for") {
+TEST_CASE("a parallel loop visits each index once, in chunks of the given size") {
   const unsigned threads = GENERATE(0u, 1u, 2u, 5u);
   for (const size_t count : {0u, 1u, 63u, 64u, 65u, 1234u}) {
     for (const size_t chunk : {1u, 7u, 64u, 5000u}) {
@@ -44,7 +44,7 @@ TEST_CASE("a parallel loop visits each index once, in chunks of the size asked f
   }
 }
 
-TEST_CASE("a worker's number is below that of the threads, and no two calls with one run at a time") {
+TEST_CASE("a worker's number is below the number of threads, and calls with the same number do not overlap") {
   for (const unsigned threads : {1u, 2u, 4u, 0u}) {
     std::vector<std::atomic<bool>> busy(threadCount(threads));
     std::atomic<int> wrong = 0;
@@ -61,7 +61,7 @@ TEST_CASE("a worker's number is below that of the threads, and no two calls with
   }
 }
 
-TEST_CASE("one thread is the caller's own, and takes the chunks in their order") {
+TEST_CASE("a loop on one thread runs on the caller's and takes the chunks in order") {
   std::vector<size_t> firsts;
   const auto caller = std::this_thread::get_id();
   parallelFor(100, 10, 1, [&](unsigned worker, size_t first, size_t) {
@@ -72,8 +72,8 @@ TEST_CASE("one thread is the caller's own, and takes the chunks in their order")
   CHECK(firsts == std::vector<size_t>{0, 10, 20, 30, 40, 50, 60, 70, 80, 90});
 }
 
-TEST_CASE("several threads work at the same time, the caller's among them") {
-  // Each of four calls waits until all four are there.
+TEST_CASE("several threads, the caller's among them, work at the same time") {
+  // Each of four calls waits until all four have started.
   std::mutex mutex;
   std::set<std::thread::id> threads;
   std::atomic<size_t> there = 0;
@@ -89,7 +89,7 @@ TEST_CASE("several threads work at the same time, the caller's among them") {
   CHECK(threads.count(std::this_thread::get_id()) == 1);
 }
 
-TEST_CASE("what a call throws is thrown to the caller, when no call runs any more") {
+TEST_CASE("an exception reaches the caller after all calls have ended") {
   const bool inCaller = GENERATE(true, false);
   std::atomic<int> running = 0;
   std::atomic<bool> othersAreThere = false;
@@ -111,7 +111,7 @@ TEST_CASE("what a call throws is thrown to the caller, when no call runs any mor
   CHECK(running == 0);
 }
 
-TEST_CASE("no number of threads stands for one for each core") {
+TEST_CASE("a thread count of 0 means one thread per core") {
   CHECK(threadCount(0) >= 1);
   CHECK(threadCount(0) == std::max(1u, std::thread::hardware_concurrency()));
   CHECK(threadCount(3) == 3);

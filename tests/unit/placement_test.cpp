@@ -1,4 +1,5 @@
-// What the device's search knows of a placed mesh: floats, and how far these may be off. Held against exact arithmetic.
+// Checks placements with exact arithmetic: the floats by which the device's search knows a placed mesh, and their
+// errors.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -13,7 +14,7 @@ using test::BoundsUsed;
 using test::checkPlacement;
 using tools::Random;
 
-// A few triangles about `middle`, up to `size` from it.
+// A few triangles around `middle`, up to `size` from it.
 MeshId addSoup(Scene& scene, Random& random, double size, const std::array<double, 3>& middle) {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
@@ -28,7 +29,7 @@ double powerOfTwo(Random& random, int lowest, int highest) {
   return std::ldexp(random.uniform(1, 2), lowest + int(random.below(uint32_t(highest - lowest + 1))));
 }
 
-// Turned, scaled unevenly and sheared; now and then nearly flat.
+// Rotated, scaled unevenly and sheared; sometimes nearly flat.
 Transform randomPose(Random& random, double scale, double away) {
   Transform pose = tools::randomAffine(random, random.inBox({-away, -away, -away}, {away, away, away}));
   const bool flat = random.oneIn(4);
@@ -41,7 +42,7 @@ Transform randomPose(Random& random, double scale, double away) {
 
 }  // namespace
 
-TEST_CASE("a placement's floats put every vertex where it is, but for what it says they are off") {
+TEST_CASE("a placement's floats place every vertex within the error that it states") {
   Random random(41);
   BoundsUsed used;
   size_t inRange = 0;
@@ -60,13 +61,13 @@ TEST_CASE("a placement's floats put every vertex where it is, but for what it sa
     checkPlacement(mesh, pose, placement, used);
   }
   CHECK(inRange > 3500);
-  // Neither bound is idle.
+  // Neither bound is far too large.
   CHECK(used.error > 0.01);
   CHECK(used.inverse > 0.1);
 }
 
-TEST_CASE("a vertex far from the origin that a pose brings back is placed within the bound") {
-  // What is baked in by the vertices is taken back by the pose: nearly all digits cancel.
+TEST_CASE("vertices far from the origin that the pose brings back are placed within the stated error") {
+  // The pose takes back the offset of the vertices, so nearly all digits cancel.
   Random random(43);
   BoundsUsed used;
   for (int i = 0; i < 500; ++i) {
@@ -86,7 +87,7 @@ TEST_CASE("a vertex far from the origin that a pose brings back is placed within
   }
 }
 
-TEST_CASE("the coarse part's products with anchors of 8 bits are exact, and the fine part says the rest") {
+TEST_CASE("products of the coarse part with anchors of 8 bits are exact, and the fine part adds the rest") {
   Random random(47);
   for (int i = 0; i < 2000; ++i) {
     Scene scene;
@@ -106,7 +107,7 @@ TEST_CASE("the coarse part's products with anchors of 8 bits are exact, and the 
   }
 }
 
-TEST_CASE("what floats cannot hold has no placement") {
+TEST_CASE("meshes and poses that floats cannot represent have placements out of range") {
   Scene scene;
   Random random(53);
   const Mesh& mesh = scene.impl().meshes[addSoup(scene, random, 1, {})];
@@ -126,7 +127,7 @@ TEST_CASE("what floats cannot hold has no placement") {
   }
   // One column is too small beside the others.
   CHECK_FALSE(isInRange(placementOf(mesh, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1e-80, 0}})));
-  // A mesh whose own coordinates are beyond, whatever brings them back.
+  // A mesh whose own coordinates are too large, although the pose scales them back.
   const Mesh& huge = scene.impl().meshes[addSoup(scene, random, 0x1p100, {})];
   CHECK_FALSE(isInRange(placementOf(huge, {{0x1p-100, 0, 0, 0, 0, 0x1p-100, 0, 0, 0, 0, 0x1p-100, 0}})));
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A small file that is right in every way.
+/// A small file without errors.
 nlohmann::json goodFile() {
   return nlohmann::json::parse(R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
     "scenes": [{"id": "a", "instances": [[0], [0, 1,0,0,5, 0,1,0,0, 0,0,1,0]]},
@@ -36,7 +36,7 @@ struct Files {
     CHECK(warnings.empty());
     return workload;
   }
-  /// What a reader says after the file's name, which must come first.
+  /// The reader's message after the file's name, which must come first.
   std::string refusal(const std::string& text) {
     std::vector<std::string> warnings;
     const std::string file = folder.write("q.json", text);
@@ -58,7 +58,7 @@ struct Files {
 
 }  // namespace
 
-TEST_CASE("a query file is read as it says") {
+TEST_CASE("all values of a query file are read") {
   Files files;
   const Workload workload = files.read(goodFile().dump());
   REQUIRE(workload.meshes.size() == 1);
@@ -139,7 +139,7 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
   }
 }
 
-TEST_CASE("a query's mode is one of three") {
+TEST_CASE("a query's mode may be sampled, contact or reference") {
   Files files;
   for (const auto& [name, mode] : {std::pair{"sampled", AnswerMode::sampled}, std::pair{"contact", AnswerMode::contact},
                                    std::pair{"reference", AnswerMode::reference}}) {
@@ -149,7 +149,7 @@ TEST_CASE("a query's mode is one of three") {
   }
 }
 
-TEST_CASE("unknown keys are refused everywhere, keys kept for later by name") {
+TEST_CASE("unknown keys are refused everywhere, and reserved keys with a message of their own") {
   Files files;
   CHECK_THAT(files.refusalWith("/extra", "1"), StartsWith("extra: ") && Contains("got \"extra\""));
   CHECK_THAT(files.refusalWith("/scenes/0/Instances", "[]"), StartsWith("scenes[0].Instances: "));
@@ -166,7 +166,7 @@ TEST_CASE("unknown keys are refused everywhere, keys kept for later by name") {
   }
 }
 
-TEST_CASE("a missing key is named") {
+TEST_CASE("the message about a missing key names it") {
   Files files;
   for (const char* pointer : {"/format", "/meshes", "/scenes", "/queries"}) {
     nlohmann::json file = goodFile();
@@ -200,7 +200,7 @@ TEST_CASE("text that is not JSON is refused with line, column and path") {
   CHECK_THAT(files.refusal("{\"format\": \"\xff\"}"), StartsWith("line 1"));
 }
 
-TEST_CASE("an instance file is read line by line and refused by line") {
+TEST_CASE("an instance file is read line by line, and the message about a bad line gives its number") {
   Files files;
   nlohmann::json file = goodFile();
   file["scenes"][0] = {{"id", "a"}, {"instances_file", "a.inst"}};
@@ -223,7 +223,7 @@ TEST_CASE("an instance file is read line by line and refused by line") {
   CHECK_THAT(files.refusal(text), StartsWith("scenes[0].instances_file: ") && Contains("a.inst"));
 }
 
-TEST_CASE("a workload survives writing and reading to the bit") {
+TEST_CASE("a workload that is written and read back has the same bits") {
   const ScratchFolder folder;
   Workload workload = makeWorkload(Figure7{3, 100, 2});
   workload.meshes.push_back(makeWorkload(Soups{}).meshes[4]);

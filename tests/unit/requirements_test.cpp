@@ -1,4 +1,4 @@
-// Why a device is refused, over made-up devices.
+// The reasons why made-up devices are unsupported.
 #include <catch2/catch.hpp>
 
 #include "engine_shaders.h"
@@ -12,7 +12,7 @@ using namespace radar;
 
 constexpr gpu::SubgroupFacts kSubgroups{.size = 32, .canChoose = true, .isFixed = true, .ballots = true};
 
-// The least that Vulkan 1.3 allows, but for storage buffers.
+// The least limits that Vulkan 1.3 allows, except for storage buffers.
 VkPhysicalDeviceLimits leastLimits() {
   VkPhysicalDeviceLimits limits{};
   limits.maxComputeWorkGroupInvocations = 128;
@@ -44,7 +44,7 @@ bool isOfSampled(const std::string& shader) {
   return shader.starts_with("reduce") || shader.starts_with("identify") || shader.starts_with("solve");
 }
 
-// The most descriptors of a type that a shader of the mode binds.
+// The largest number of descriptors of these types that a shader of the mode binds.
 uint64_t mostOf(std::initializer_list<VkDescriptorType> types, Mode mode) {
   size_t most = 0;
   for (const auto& [shader, spirv] : test::kEngineShaders) {
@@ -67,12 +67,12 @@ uint64_t neededOf(const std::string& name, Mode mode) {
 
 }  // namespace
 
-TEST_CASE("a device with everything is not refused") {
+TEST_CASE("a device with everything supports both modes") {
   CHECK(gpu::unsupportedReasons(goodDevice(), Mode::sampled).empty());
   CHECK(gpu::unsupportedReasons(goodDevice(), Mode::contact).empty());
 }
 
-TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
+TEST_CASE("each thing that a device lacks is a separate reason in words") {
   gpu::DeviceFacts facts = goodDevice();
   facts.apiVersion = VK_API_VERSION_1_1;
   CHECK(gpu::unsupportedReasons(facts, Mode::contact) == std::vector<std::string>{"needs Vulkan 1.3, has 1.1.0"});
@@ -94,7 +94,7 @@ TEST_CASE("each thing that a device lacks is a reason of its own, in words") {
   CHECK(reasons[5] == "the limit maxPerStageDescriptorStorageBuffers is 4, must be at least 8");
 }
 
-TEST_CASE("what only mode sampled needs does not keep a device from mode contact") {
+TEST_CASE("a device without what only mode sampled needs supports mode contact") {
   gpu::DeviceFacts facts = goodDevice();
   facts.graphicsAndComputeQueue = false;
   facts.missingFeatures = {{"shaderOutputLayer (each sensor is a layer)", Mode::sampled}};
@@ -110,7 +110,7 @@ TEST_CASE("what only mode sampled needs does not keep a device from mode contact
   CHECK(reasons[2] == "the limit maxComputeWorkGroupInvocations is 128, must be at least 256");
 }
 
-TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, but for storage buffers") {
+TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, except for storage buffers") {
   for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) {
     gpu::DeviceFacts facts = goodDevice();
     facts.subgroups.size = lanes;
@@ -119,7 +119,7 @@ TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, but f
   }
 }
 
-TEST_CASE("a limit that is just enough will do, and one less is a reason") {
+TEST_CASE("a limit that equals the requirement suffices, and one less is a reason") {
   for (const Mode mode : {Mode::contact, Mode::sampled}) {
     gpu::DeviceFacts facts = goodDevice();
     for (size_t i = 0; i < facts.limits.size(); ++i) {
@@ -133,24 +133,24 @@ TEST_CASE("a limit that is just enough will do, and one less is a reason") {
   }
 }
 
-TEST_CASE("as many buffers in a stage are required as the most that a shader binds, and no more") {
+TEST_CASE("the required descriptors per stage are the most that a shader binds, and no more") {
   constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                              kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                              kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   CHECK(neededOf("maxPerStageDescriptorStorageBuffers", Mode::contact) == mostOf({kStorage}, Mode::contact));
   CHECK(neededOf("maxPerStageDescriptorSampledImages", Mode::contact) == mostOf({kTexels, kImage}, Mode::contact));
-  // What mode sampled binds is no more.
+  // Mode sampled binds no more.
   CHECK(mostOf({kStorage}, Mode::sampled) <= mostOf({kStorage}, Mode::contact));
   CHECK(mostOf({kTexels, kImage}, Mode::sampled) <= mostOf({kTexels, kImage}, Mode::contact));
 }
 
-TEST_CASE("the search fits the shared memory that every device has, up to subgroups of 64") {
+TEST_CASE("the search fits into the shared memory that every device has, for subgroups of up to 64") {
   constexpr uint32_t kEveryDevice = 16384;  // the least maxComputeSharedMemorySize
   for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) CHECK(gpu::searchSharedBytes(lanes) <= kEveryDevice);
   CHECK(gpu::searchSharedBytes(32, 256) > gpu::searchSharedBytes(32));
 }
 
-TEST_CASE("every feature that a mode requires is switched on for a device that is opened, and no other") {
+TEST_CASE("requirements() lists the features of a mode, and doubles only on request") {
   for (const Mode mode : {Mode::contact, Mode::sampled}) {
     const Requirements needed = requirements(mode, false);
     CHECK(needed.core.features.shaderFloat64 == VK_FALSE);
@@ -164,7 +164,7 @@ TEST_CASE("every feature that a mode requires is switched on for a device that i
   }
 }
 
-TEST_CASE("the requirements chain in front of what a host asks for itself") {
+TEST_CASE("the requirements are chained in front of a host's own features") {
   VkPhysicalDeviceRobustness2FeaturesEXT own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ROBUSTNESS_2_FEATURES_EXT};
   Requirements needed = requirements(Mode::contact, false);
   CHECK(needed.chain(&own) == &needed.core);

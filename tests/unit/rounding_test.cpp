@@ -1,4 +1,4 @@
-// Doubles to floats in a known direction.
+// Rounding of doubles to floats in a given direction.
 #include <catch2/catch.hpp>
 
 #include <bit>
@@ -14,7 +14,7 @@ using radar::roundUp;
 
 constexpr float kMost = std::numeric_limits<float>::max(), kLeast = std::numeric_limits<float>::denorm_min();
 
-// Of any exponent where `wide`, else of those that floats have, and a few more on both sides.
+// Has any exponent if `wide`, otherwise one within or slightly beyond the range of floats.
 double randomDouble(std::mt19937_64& random, bool wide) {
   const uint64_t bits = random();
   if (wide) return std::bit_cast<double>(bits);
@@ -24,7 +24,7 @@ double randomDouble(std::mt19937_64& random, bool wide) {
 
 }  // namespace
 
-TEST_CASE("a double is rounded to the float next to it in the direction asked for") {
+TEST_CASE("a double is rounded to the next float in the given direction") {
   std::mt19937_64 random(3);
   for (int i = 0; i < 400'000; ++i) {
     const double x = randomDouble(random, i % 2 == 0);
@@ -35,7 +35,7 @@ TEST_CASE("a double is rounded to the float next to it in the direction asked fo
   }
 }
 
-TEST_CASE("what is a float stays what it is") {
+TEST_CASE("a double that is a float stays as it is") {
   std::mt19937 random(5);
   for (int i = 0; i < 100'000; ++i) {
     const auto x = std::bit_cast<float>(static_cast<uint32_t>(random()));
@@ -48,7 +48,7 @@ TEST_CASE("what is a float stays what it is") {
   }
 }
 
-TEST_CASE("beyond the greatest float, and below the least, rounding goes on in the direction asked for") {
+TEST_CASE("doubles beyond the greatest float and below the least are rounded in the given direction, too") {
   CHECK(roundUp(1e300) == INFINITY);
   CHECK(roundDown(1e300) == kMost);
   CHECK(roundUp(-1e300) == -kMost);

@@ -25,7 +25,7 @@ Box placedBox(const Mesh& mesh, const Transform& pose) {
 
 }  // namespace
 
-TEST_CASE("ids survive the removal of others, and the least free one is given next") {
+TEST_CASE("ids stay valid when others are removed, and the lowest free id is given next") {
   Scene scene;
   const MeshId mesh = addBox(scene);
   CHECK(scene.addObject({mesh, {}, 1u}) == 0);
@@ -41,7 +41,7 @@ TEST_CASE("ids survive the removal of others, and the least free one is given ne
   CHECK(scene.addObject({mesh, {}, 32u}) == 3);
 }
 
-TEST_CASE("a mesh in use cannot be removed, and a version tells every change") {
+TEST_CASE("a mesh in use cannot be removed, and every change changes the version") {
   Scene scene;
   const MeshId mesh = addBox(scene);
   uint64_t version = scene.version();
@@ -59,7 +59,7 @@ TEST_CASE("a mesh in use cannot be removed, and a version tells every change") {
   CHECK(addBox(scene) == mesh);
 }
 
-TEST_CASE("what breaks a contract is refused in words") {
+TEST_CASE("a call that breaks its contract throws and describes the error") {
   Scene scene;
   const MeshId mesh = addBox(scene);
   const std::vector<float> corner{0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -79,7 +79,7 @@ TEST_CASE("what breaks a contract is refused in words") {
   CHECK(validate(Transform{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
 }
 
-TEST_CASE("a mesh's box holds every placed vertex, near and far from the origin") {
+TEST_CASE("the box of a placed mesh contains every vertex, near and far from the origin") {
   tools::Random random(5);
   Scene scene;
   for (const tools::Soup soup : tools::kSoups) {
@@ -99,7 +99,7 @@ TEST_CASE("a mesh's box holds every placed vertex, near and far from the origin"
   }
 }
 
-TEST_CASE("axes along a direction are orthonormal, right-handed, and exact along the world's") {
+TEST_CASE("axes along a direction are orthonormal, and exact for directions along the world's axes") {
   tools::Random random(3);
   for (int i = 0; i < 1000; ++i) {
     Vector direction = random.direction();

@@ -1,4 +1,4 @@
-// The objects in a swept prism, as the scene changes.
+// Selects the objects in a swept prism while the scene changes.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::vector<ObjectId> selected(const Scene& scene, const Prism& prism) {
 
 }  // namespace
 
-TEST_CASE("every object whose placed vertices reach into a prism is selected once, as the scene changes") {
+TEST_CASE("every object with a vertex in the prism is selected once, while the scene changes") {
   tools::Random random(11);
   const double away = GENERATE(0.0, 1e9);
   Scene scene;
@@ -47,7 +47,7 @@ TEST_CASE("every object whose placed vertices reach into a prism is selected onc
   const auto randomPose = [&] { return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, anywhere()); };
   size_t named = 0, inside = 0;
   for (int round = 0; round < 60; ++round) {
-    // Grow, move some, remove some.
+    // Adds some objects, moves some and removes some.
     for (int i = 0; i < 10; ++i) objects.push_back(scene.addObject({mesh, randomPose(), ~0u}));
     for (int i = 0; i < 5; ++i) scene.setTransform(objects[random.below(uint32_t(objects.size()))], randomPose());
     if (round % 3 == 2) {
@@ -69,7 +69,7 @@ TEST_CASE("every object whose placed vertices reach into a prism is selected onc
   CHECK(named < 4 * inside);
 }
 
-TEST_CASE("objects are selected, too, where one of them is too far away for the tree") {
+TEST_CASE("objects are also selected if one of them is too far away for the tree") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   const MeshId mesh = scene.addMesh(box.positions, box.indices);

@@ -1,5 +1,5 @@
-// Every struct that C++ and GLSL share, as a buffer's elements, so that all have a layout: some are only ever read as
-// texels, or pushed.
+// Every struct that C++ and GLSL share, as the element of a buffer, so that each has a layout: some are otherwise only
+// read as texels or pushed.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require

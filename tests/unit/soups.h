@@ -146,7 +146,8 @@ inline double distance(const std::array<double, 3>& p, const oracle::Corners& t)
   return inside ? std::min(best, std::abs(dot(n, minus(p, t[0])))) : best;
 }
 
-/// The point lies on both triangles at the moment of contact, the normal is a unit vector against the motion.
+/// Checks that the point lies on both triangles at the moment of contact and the normal is a unit vector against the
+/// motion.
 inline void checkContact(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
   const radar::Object& object = scene.object(result.object);
   const oracle::Corners b = oracle::corners(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
@@ -175,7 +176,7 @@ inline void checkContact(const radar::Scene& scene, const radar::Query& query, c
   REQUIRE(n[0] * d[0] + n[1] * d[1] + n[2] * d[2] <= 1e-15 * length);
 }
 
-/// The status, the pair and the bracket of an answer are the truth.
+/// Checks the status, the pair and the bracket of an answer against the oracle.
 inline void checkTruth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
   const oracle::Answer truth = oracle::answer(scene, query);
   if (!truth.found) {

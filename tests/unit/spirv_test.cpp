@@ -1,4 +1,4 @@
-// What a shader expects to be bound and pushed is read from its SPIR-V.
+// The descriptors and push constants of a shader are read from its SPIR-V.
 #include <catch2/catch.hpp>
 
 #include <vector>
@@ -51,7 +51,7 @@ const Descriptor& descriptorAt(const ShaderInterface& found, uint32_t binding) {
   throw std::runtime_error("no binding " + std::to_string(binding));
 }
 
-// The SPIR-V with word `word` of the first instruction `op` whose word `keyWord` is `key` set to `value`.
+// A copy of the SPIR-V: in the first instruction `op` whose word `keyWord` is `key`, word `word` is `value`.
 std::vector<uint32_t> changed(std::span<const uint32_t> spirv, uint32_t op, size_t keyWord, uint32_t key, size_t word,
                               uint32_t value) {
   std::vector<uint32_t> copy(spirv.begin(), spirv.end());
@@ -74,7 +74,7 @@ TEST_CASE("every kind of descriptor is found, in the order of bindings") {
                                       {9, "texels", kTexels}});
 }
 
-TEST_CASE("the size of push constants is that of the same struct in C++") {
+TEST_CASE("the size of push constants equals that of the same struct in C++") {
   struct Pair {
     float weight;
     double value;
@@ -90,7 +90,7 @@ TEST_CASE("the size of push constants is that of the same struct in C++") {
   CHECK(reflectShader(k_arithmetic_doubles_comp, "double arithmetic").pushBytes == 0);
 }
 
-TEST_CASE("the engine's own shaders take what the shared structs say") {
+TEST_CASE("the descriptors of the engine's shaders match the shared structs") {
   checkDescriptors(k_arithmetic_doubles_comp,
                    {{kSlotDoubleTrials.number, "Trials", kStorage, sizeof(DoubleTrial)},
                     {kSlotDoubleOutcomes.number, "Outcomes", kStorage, sizeof(DoubleOutcome)}});
@@ -109,13 +109,13 @@ TEST_CASE("the engine's own shaders take what the shared structs say") {
   CHECK(descriptorAt(reduce, kSlotMask.number).type == kImage);
 }
 
-TEST_CASE("a texel buffer is one in SPIR-V before 1.6, too, where it is a sampled image") {
+TEST_CASE("a texel buffer is also recognised in SPIR-V before 1.6, where it is a sampled image") {
   // The image with a sampler becomes one whose dimension is Buffer (5, from 2D: 1).
   const std::vector<uint32_t> older = changed(k_all_kinds_comp, 25, 3, 1, 3, 5);
   CHECK(descriptorAt(reflectShader(older, "older"), 5).type == kTexels);
 }
 
-TEST_CASE("what is not understood is named") {
+TEST_CASE("the message about an unsupported descriptor names it") {
   const auto reflect = [](std::span<const uint32_t> spirv) { reflectShader(spirv, "x"); };
   CHECK_THROWS_WITH(reflect(k_all_kinds_comp_UNIFORM_BUFFER),
                     "shader \"x\": binding 6 (Refused) is a uniform buffer, or a storage buffer of SPIR-V before 1.3");
@@ -133,12 +133,12 @@ TEST_CASE("what is not understood is named") {
                     "shader \"x\": expected one entry point, a compute shader's \"main\"");
 }
 
-TEST_CASE("what is not a module is refused, wherever it ends") {
+TEST_CASE("words that are not SPIR-V are refused, and a truncated module is not read beyond its end") {
   const auto reflect = [](std::span<const uint32_t> spirv) { reflectShader(spirv, "x"); };
   const std::span<const uint32_t> whole = k_all_kinds_comp;
   CHECK_THROWS_WITH(reflect({}), "shader \"x\": not SPIR-V");
   CHECK_THROWS_WITH(reflect(whole.subspan(1)), "shader \"x\": not SPIR-V");
-  // From a copy of its own, so that a sanitizer sees a read beyond it.
+  // A separate copy, so that a sanitizer sees a read beyond its end.
   for (size_t words = 0; words < whole.size(); ++words) {
     const std::vector<uint32_t> part(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(words));
     try {

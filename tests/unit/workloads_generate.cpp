@@ -12,7 +12,7 @@ using namespace radar::tools;
 
 namespace {
 
-/// FNV-1a over the bits of everything that is geometry.
+/// FNV-1a over the bits of all geometry.
 class Fingerprint {
  public:
   template <class Value>
@@ -62,7 +62,7 @@ bool hasDegenerateTriangle(const MeshData& mesh) {
 }
 
 bool isClosed(const MeshData& mesh) {
-  std::map<std::pair<uint32_t, uint32_t>, int> edges;  // one way up, the other way down
+  std::map<std::pair<uint32_t, uint32_t>, int> edges;  // forward uses minus backward uses
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
     for (int k = 0; k < 3; ++k) {
       const uint32_t from = mesh.indices[i + k], to = mesh.indices[i + (k + 1) % 3];
@@ -86,7 +86,7 @@ TEST_CASE("the teapot has 6,320 triangles, none of them degenerate") {
   CHECK(extent.middle[1] == 0);
 }
 
-TEST_CASE("turned shapes and boxes are closed and have no degenerate triangle") {
+TEST_CASE("generated shapes are closed and have no degenerate triangle") {
   for (const MeshData& mesh :
        {makeBox({1, 2, 3}), makeUvSphere(9, 16), makeTorus(3, 1, 20, 11), makeRod(1, 5, 13), makeCup(2, 3, 0.2, 17),
         makePlate(4, 5, 0.1), makeComb(5, 1, 2, 0.3), makeHook(4, 2, 1, 0.3), makeKey(), makeKeyhole()}) {
@@ -96,7 +96,7 @@ TEST_CASE("turned shapes and boxes are closed and have no degenerate triangle") 
   }
 }
 
-TEST_CASE("points of a circle are on it, and symmetric to the bit") {
+TEST_CASE("circlePoint gives points on the circle that are symmetric to the bit") {
   for (uint32_t n : {3u, 7u, 8u, 12u, 100u}) {
     for (uint32_t k = 0; k < n; ++k) {
       const auto [c, s] = circlePoint(k, n);
@@ -109,7 +109,7 @@ TEST_CASE("points of a circle are on it, and symmetric to the bit") {
   }
 }
 
-TEST_CASE("a workload is the same to the bit, always and everywhere") {
+TEST_CASE("a workload has the same bits always and everywhere") {
   const RandomPoses poses{{makeTorus(2, 0.5, 12, 8), makeCup(1, 2, 0.1, 12)}, 20, 8, 17};
   // Recorded once; a change here changes every benchmark and every recorded answer.
   CHECK(fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::teapot, 1})) == 0x54cac98db512626eull);
@@ -121,7 +121,7 @@ TEST_CASE("a workload is the same to the bit, always and everywhere") {
   CHECK(fingerprintOf(makeWorkload(poses)) == 0x64d72d9557e3e7c6ull);
 }
 
-TEST_CASE("every family keeps the contracts of Scene and Query, and is the same to the bit, always and everywhere") {
+TEST_CASE("every family keeps the contracts of Scene and Query and has the same bits always and everywhere") {
   Fingerprint all;
   for (const Family family : kFamilies) {
     CAPTURE(nameOf(family));
@@ -140,7 +140,7 @@ TEST_CASE("every family keeps the contracts of Scene and Query, and is the same 
   CHECK(all.value() == 0x82c7908bfb10e2c9ull);
 }
 
-TEST_CASE("other seeds give other workloads") {
+TEST_CASE("another seed gives another workload") {
   CHECK(fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::box, 1})) !=
         fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::box, 2})));
 }
@@ -151,7 +151,7 @@ TEST_CASE("a larger Table 1 scene begins with the smaller one") {
   CHECK(std::equal(small.scenes[0].instances.begin(), small.scenes[0].instances.end(), boxes.begin()));
 }
 
-TEST_CASE("sensors over one mesh begin above everything below them") {
+TEST_CASE("sensors over one mesh begin above all geometry below them") {
   const Workload workload = makeWorkload(OneMesh{.triangles = 20'000, .sensors = 64, .shape = SensorShape::box});
   const MeshData& city = workload.meshes[2];
   CHECK(city.triangleCount() == 20'000);
@@ -167,7 +167,8 @@ TEST_CASE("sensors over one mesh begin above everything below them") {
   }
 }
 
-TEST_CASE("each step of Figure 7 is a scene on the boxes in which every teapot asks and excludes itself") {
+TEST_CASE(
+    "each step of Figure 7 is a scene based on the boxes in which every teapot is a sensor that excludes itself") {
   const Workload workload = makeWorkload(Figure7{4, 50, 3});
   REQUIRE(workload.scenes.size() == 4);
   REQUIRE(workload.queries.size() == 12);
@@ -198,7 +199,7 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
   }
 }
 
-TEST_CASE("every stability family keeps the contracts of Scene and Query, and is the same to the bit everywhere") {
+TEST_CASE("every stability family keeps the contracts of Scene and Query and has the same bits everywhere") {
   Fingerprint all;
   for (const StabilityFamily& family : stabilityFamilies()) {
     CAPTURE(family.name);

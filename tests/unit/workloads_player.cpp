@@ -25,7 +25,7 @@ void requireShows(const Scene& scene, const std::vector<Instance>& instances, co
 
 }  // namespace
 
-TEST_CASE("a player shows each scene with object ids that are positions, in whatever order") {
+TEST_CASE("a player shows scenes in any order, with object ids that equal the instances' positions") {
   Workload workload;
   workload.meshes = {makeBox({1, 1, 1}), makePlate(2, 2, 0.1)};
   workload.scenes = {
@@ -48,7 +48,7 @@ TEST_CASE("a player shows each scene with object ids that are positions, in what
   }
 }
 
-TEST_CASE("queries of one scene and one batch number belong together, wherever they stand") {
+TEST_CASE("queries with the same scene and batch number form one batch, wherever they are in the list") {
   Workload workload;
   workload.scenes.resize(2);
   workload.queries.resize(5);

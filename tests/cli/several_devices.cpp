@@ -56,7 +56,7 @@ TEST_CASE("scale prints a report and writes it with a table, a chart and a trace
   CHECK_THAT(folder.read("s/scale.svg"),
              Contains("mode sampled") && Contains("<text>0+1</text>") && Contains("</svg>"));
   const std::string csv = folder.read("s/scale.csv");
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * 4);  // one device, the other, and both: four lines a point
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * 4);  // one device, the other, and both: four lines each
   const auto trace = nlohmann::json::parse(folder.read("s/trace.json"));
   size_t chunks = 0;
   for (const auto& event : trace["traceEvents"]) {

@@ -108,7 +108,7 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
   CHECK(locked == test::counts().submissions);
 }
 
-TEST_CASE("several sweepers share one device and one scene") {
+TEST_CASE("two sweepers on one device follow the same scene") {
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);

@@ -24,7 +24,7 @@ class Host {
 
 /// What engines have done through countingLoader() and countingAllocator() since resetCounts().
 struct Counts {
-  std::set<std::string> lookedUp;          ///< functions
+  std::set<std::string> lookedUp;          ///< names of functions
   int64_t allocations = 0, live = 0;       ///< of host memory through the callbacks
   uint64_t submissions = 0, waits = 0;     ///< vkQueueSubmit2, vkWaitForFences
   VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline created

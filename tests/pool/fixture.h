@@ -36,12 +36,12 @@ class Faults {
 /// Sends queries of mode contact to the devices, however few they are.
 inline constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 
-/// Opened on first use, with the validation layers listening.
+/// Opened on first use. Messages of the validation layers go to onValidation().
 std::span<const Device> twoDevices();
 /// The faults of one of these devices. A test that sets faults clears them.
 Faults& faults(size_t device);
 
-/// A scene of boxes and the queries of its sensors; every third is of mode sampled.
+/// A scene of boxes and the queries of its sensors; every third one uses mode sampled.
 struct Boxes {
   explicit Boxes(uint32_t sensors, uint32_t boxes = 2'000);
   /// The answers of a plain sweeper on the first device.

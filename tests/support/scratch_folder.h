@@ -32,7 +32,7 @@ class ScratchFolder {
     std::ifstream stream(path_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-  /// Names of the files in it, sorted, separated by blanks.
+  /// The names of the files in it, sorted and separated by spaces.
   std::string list() const {
     std::string names;
     std::set<std::string> sorted;

@@ -10,7 +10,7 @@ namespace radar::test {
 
 /// Whether the device may use doubles: not if the environment variable RADAR_TEST_DOUBLES is "off".
 bool wantsDoubles();
-/// Opened on first use, with the validation layers listening.
+/// Opened on first use. Messages of the validation layers go to onValidation().
 const Device& device();
 
 /// Collects a message. Other devices use it as their DeviceOptions::onValidation.

@@ -4,16 +4,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "stability/promises.h"
 #include "support/answer.h"
 #include "support/test_device.h"
-#include "workloads/workload.h"
 
 namespace radar::test {
 
 namespace {
 
-// First contact of one triangle pair alone: NaN where there is none.
+/// First contact of the two triangles of an answer alone: NaN where there is none.
 double pairContact(const Scene& scene, const Query& query, const Result& result) {
   const auto triangleOf = [&](MeshId mesh, uint32_t triangle) {
     const MeshView view = scene.mesh(mesh);
@@ -36,61 +34,64 @@ double pairContact(const Scene& scene, const Query& query, const Result& result)
   return test::answer(pair, alone).t;
 }
 
-// Every promise that a single sampled answer makes.
-void checkAnswer(const Scene& scene, const Query& query, const Result& sampled, const Result& exact, Tally& tally) {
-  ++tally.queries;
-  const bool contact = exact.status == Status::hit || exact.status == Status::overlap;
-  tally.contacts += contact;
-  CHECK(sampled.status != Status::invalid);
-  if (sampled.status == Status::clear) {
-    ++tally.clear;
-    CHECK_FALSE(contact);
-    CHECK(sampled.tier == Tier::select);
-    CHECK(sampled.detected == Detected::no);
-    return;
-  }
-  CHECK(sampled.tier == Tier::sampled);
-  CHECK(sampled.lo == 0);
-  if (sampled.status == Status::undecided) {
-    CHECK(std::isnan(sampled.hi));
-    CHECK(sampled.object == kNone);
-    return;
-  }
-  ++tally.found;
-  REQUIRE(contact);
-  CHECK(sampled.hi <= query.distance);
-  CHECK(sampled.t == sampled.hi);
+/// What mode sampled promises of the pair that it names.
+void checkPair(const Scene& scene, const Query& query, const Result& result, const Result& exact) {
+  const double size = tools::sensorSize(scene, query);
   // The exact t is rounded; `hi` adds its error bound to its own rounding.
-  const double rounding = 0x1p-50 * (exact.t + tools::sensorSize(scene, query));
-  CHECK(sampled.hi >= exact.t - rounding);
-  if (sampled.status == Status::overlap) CHECK(exact.status == Status::overlap);
-  const double own = pairContact(scene, query, sampled);
-  CHECK(sampled.hi <= own + 1e-6 * std::max(tools::sensorSize(scene, query), own));
-  CHECK(sampled.hi >= own - rounding);
-  if (sampled.resolution != 0) {
-    tally.excessInPixels.push_back((sampled.hi - exact.t) * sampled.resolution / tools::sensorSize(scene, query));
+  const double rounding = 0x1p-50 * (exact.t + size);
+  CHECK(result.hi >= exact.t - rounding);
+  const double own = pairContact(scene, query, result);
+  CHECK(result.hi <= own + 1e-6 * std::max(size, own));
+  CHECK(result.hi >= own - rounding);
+}
+
+void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const std::vector<Query>& queries,
+                  Compared& compared) {
+  std::vector<Query> whole = queries;
+  for (Query& query : whole) query.anyHit = false;
+  const std::vector<Result> results = sweeper.run(queries), exact = cpu.run(whole);
+  REQUIRE(results.size() == queries.size());
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Query& query = queries[i];
+    const Result& result = results[i];
+    CAPTURE(i, query.distance, query.anyHit, query.resolution, exact[i].t, exact[i].object, exact[i].triB,
+            exact[i].triA);
+    const tools::Verdict verdict = tools::judge(scene, query, result, exact[i]);
+    compared.tally.add(verdict, exact[i]);
+    CHECK(verdict.words() == "");
+    const bool sampled = query.mode == Mode::sampled;
+    const bool selected = result.tier == Tier::select && result.status == Status::clear;
+    CHECK((selected || result.tier == (sampled ? Tier::sampled : Tier::contact)));
+    if (!sampled) CHECK(std::abs(verdict.error) <= 1e-12);
+    if (!sampled || !verdict.found || query.anyHit) continue;
+    checkPair(scene, query, result, exact[i]);
+    if (result.resolution == 0) continue;
+    compared.excessInPixels.push_back((result.hi - exact[i].t) * result.resolution / tools::sensorSize(scene, query));
   }
 }
 
 }  // namespace
 
-Tally compareWithReference(const tools::Workload& workload, uint32_t resolution) {
-  Tally tally;
+Compared compare(const Scene& scene, const std::vector<Query>& queries) {
+  Sweeper sweeper(device(), scene, {.cpuBatch = 0});
+  CpuSweeper cpu(scene);
+  Compared compared;
+  compareBatch(scene, sweeper, cpu, queries, compared);
+  return compared;
+}
+
+Compared compare(const tools::Workload& workload, const tools::Approach& asked) {
   tools::ScenePlayer player(workload);
-  Sweeper sweeper(device(), player.scene());
-  CpuSweeper exact(player.scene());
+  Sweeper sweeper(device(), player.scene(), {.cpuBatch = 0});
+  CpuSweeper cpu(player.scene());
+  Compared compared;
   for (const tools::Batch& batch : tools::batchesOf(workload)) {
     player.show(batch.scene);
     std::vector<Query> queries;
-    for (uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::sampled, resolution));
-    const std::vector<Result> sampled = sweeper.run(queries);
-    const std::vector<Result> truth = exact.run(queries);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      INFO("query " << workload.queries[batch.queries[i]].id << " at " << resolution);
-      checkAnswer(player.scene(), queries[i], sampled[i], truth[i], tally);
-    }
+    for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
+    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, std::move(queries)), compared);
   }
-  return tally;
+  return compared;
 }
 
 }  // namespace radar::test

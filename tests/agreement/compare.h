@@ -1,29 +1,24 @@
-// Modes sampled and contact held against the CPU's exact search, answer by answer.
+// The device's answers held against those of the CPU's exact search.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "stability/judge.h"
+#include "stability/method.h"
 #include "workloads/workload.h"
 
 namespace radar::test {
 
-struct Tally {
-  uint32_t queries = 0, contacts = 0, found = 0, clear = 0;
-  std::vector<double> excessInPixels;  ///< hi - t* of each contact that was found
+struct Compared {
+  tools::Tally tally;
+  std::vector<double> excessInPixels;  ///< hi - t* of each contact that mode sampled found
+
+  uint64_t found() const { return tally.contacts() - tally.unseen; }
 };
 
-/// Answers every query of the workload both ways and CHECKs every promise that a single sampled answer makes.
-Tally compareWithReference(const tools::Workload& workload, uint32_t resolution);
-
-struct ContactTally {
-  uint32_t queries = 0, hits = 0, overlaps = 0, clear = 0;
-};
-
-/// Answers the queries in mode contact, in one batch, and on the CPU, and CHECKs that they agree in every
-/// promise.
-ContactTally compareContact(const Scene& scene, std::vector<Query> queries);
+/// Asks the device for all queries in one batch, and CHECKs every promise of every answer.
+Compared compare(const Scene& scene, const std::vector<Query>& queries);
 /// Likewise every batch of the workload.
-ContactTally compareContact(const tools::Workload& workload);
+Compared compare(const tools::Workload& workload, const tools::Approach& asked = {});
 
 }  // namespace radar::test

@@ -1,6 +1,7 @@
 // The run of seeded random queries by command: the search on the device against the CPU's, a table per family. Exit
 // status 1 if anything is wrong.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "agreement/real_meshes.h"
@@ -9,22 +10,23 @@
 
 namespace {
 
-using radar::tools::RandomQueries;
-using radar::tools::RandomTally;
+using radar::tools::Approach;
+using radar::tools::Fault;
+using radar::tools::Tally;
 
 void printHeader() {
-  std::printf("%-13s %7s %6s %6s %6s | %6s %5s %5s %6s %5s %7s %4s %5s %6s | %8s | %11s %9s %8s | %7s %7s\n", "family",
-              "queries", "hit", "clear", "overl.", "missed", "false", "none", "status", "pair", "bracket", "late",
-              "point", "normal", "error", "pairs", "cpu_pairs", "share", "s", "CPU s");
+  std::printf("%-13s %7s %6s %6s %6s |", "family", "queries", "hit", "clear", "overl.");
+  for (size_t i = 0; i < radar::tools::kFaults; ++i) std::printf(" %12s", nameOf(static_cast<Fault>(i)));
+  std::printf(" | %6s %8s | %11s %9s %8s | %7s %7s\n", "wrong", "error", "pairs", "cpu_pairs", "share", "s", "CPU s");
 }
 
-void print(const std::string& family, const RandomTally& t) {
+void print(const std::string& family, const Tally& t) {
   const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("%-13s %7llu %6llu %6llu %6llu | %6llu %5llu %5llu %6llu %5llu %7llu %4llu %5llu %6llu | %8.1e | ",
-              family.c_str(), number(t.queries), number(t.hits), number(t.clear), number(t.overlaps), number(t.missed),
-              number(t.falseHits), number(t.unanswered), number(t.wrongStatus), number(t.wrongPair), number(t.brackets),
-              number(t.late), number(t.points), number(t.normals), t.worstError);
-  std::printf("%11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.pairs), number(t.cpuPairs),
+  std::printf("%-13s %7llu %6llu %6llu %6llu |", family.c_str(), number(t.queries), number(t.hits), number(t.clear),
+              number(t.overlaps));
+  for (const uint64_t count : t.faults) std::printf(" %12llu", number(count));
+  std::printf(" | %6llu %8.1e | %11llu %9llu %7.3f%% | %7.2f %7.2f\n", number(t.wrong), std::max(t.late, t.early),
+              number(t.pairs), number(t.cpuPairs),
               t.pairs == 0 ? 0.0 : 100.0 * static_cast<double>(t.cpuPairs) / static_cast<double>(t.pairs),
               t.deviceSeconds, t.cpuSeconds);
   std::fflush(stdout);
@@ -38,7 +40,7 @@ int main(int argc, char** argv) {
   uint32_t index = radar::kNone;
   bool withoutDoubles = false, composedDivision = false;
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
-  const std::vector<std::string> known = radar::tools::randomFamilies(meshes);
+  const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
   app.add_option("--queries", queries, "In all, over the families alike")->capture_default_str();
   app.add_option("--seed", seed, "Another seed, other queries")->capture_default_str();
@@ -56,19 +58,21 @@ int main(int argc, char** argv) {
               device.driver().c_str(), radar::tools::commit(), static_cast<unsigned long long>(seed),
               device.doubles() ? "with" : "without", composedDivision ? ", division composed" : "");
   printHeader();
-  RandomQueries asking(device, meshes);
-  RandomTally all;
+  radar::tools::CaseRun run(device, meshes);
+  Tally all;
   const uint64_t each = (queries + families.size() - 1) / families.size();
   for (const std::string& family : families) {
-    const auto onWrong = [&](uint64_t query, const std::string& words) {
-      std::printf("WRONG: %s; --family %s --seed %llu --first %llu --queries 1\n", words.c_str(), family.c_str(),
+    const auto onWrong = [&](uint64_t query, const Approach&, const std::string& words) {
+      std::printf("WRONG: %s; --family \"%s\" --seed %llu --first %llu --queries 1\n", words.c_str(), family.c_str(),
                   static_cast<unsigned long long>(seed), static_cast<unsigned long long>(query));
     };
-    const auto onProgress = [&](uint64_t done) {
+    uint64_t done = 0;
+    const auto onProgress = [&](uint64_t more) {
+      done += more;
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),
                    static_cast<unsigned long long>(each));
     };
-    const RandomTally tally = asking.run({family, seed, first, each}, onWrong, onProgress);
+    const Tally tally = run.run({family, seed, first, each}, onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);
     all.add(tally);

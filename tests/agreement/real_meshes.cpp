@@ -19,19 +19,13 @@ std::vector<tools::MeshData> readAll(const std::string& folder, std::initializer
 
 }  // namespace
 
-std::vector<tools::MeshData> assimpModels() {
-  return readAll(RADAR_ASSIMP_MODELS,
-                 {"OBJ/spider.obj", "OBJ/WusonOBJ.obj", "PLY/Wuson.ply", "PLY/cube.ply", "STL/sphereWithHole.stl",
-                  "STL/Spider_ascii.stl", "Collada/duck.dae", "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"});
-}
-
-std::vector<tools::MeshData> cgalMeshes() {
-  return readAll(RADAR_CGAL_MESHES, {"elephant.off", "elephant-with-holes.off", "knot1.off", "eight.off", "camel.off",
-                                     "hand.off", "anchor.off", "pig.stl"});
-}
-
 tools::MeshFamilies realMeshes() {
-  return {{"assimp", assimpModels()}, {"cgal", cgalMeshes()}};
+  return {
+      {"assimp", readAll(RADAR_ASSIMP_MODELS, {"OBJ/spider.obj", "OBJ/WusonOBJ.obj", "PLY/Wuson.ply", "PLY/cube.ply",
+                                               "STL/sphereWithHole.stl", "STL/Spider_ascii.stl", "Collada/duck.dae",
+                                               "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"})},
+      {"cgal", readAll(RADAR_CGAL_MESHES, {"elephant.off", "elephant-with-holes.off", "knot1.off", "eight.off",
+                                           "camel.off", "hand.off", "anchor.off", "pig.stl"})}};
 }
 
 }  // namespace radar::test

@@ -1,18 +1,11 @@
 // Meshes that people made, from assimp's test models and CGAL's data.
 #pragma once
 
-#include <vector>
-
-#include "selftest/random_queries.h"
-#include "workloads/workload.h"
+#include "stability/case_run.h"
 
 namespace radar::test {
 
-/// In OBJ, PLY, STL, Collada and glTF.
-std::vector<tools::MeshData> assimpModels();
-/// Closed and with holes, knotted and convoluted.
-std::vector<tools::MeshData> cgalMeshes();
-/// Both.
+/// By name: assimp's are in OBJ, PLY, STL, Collada and glTF; CGAL's are closed and with holes, knotted and convoluted.
 tools::MeshFamilies realMeshes();
 
 }  // namespace radar::test

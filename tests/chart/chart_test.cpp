@@ -8,8 +8,8 @@
 #include "chart/run.h"
 #include "support/scratch_folder.h"
 #include "support/test_device.h"
-#include "workloads/families.h"
 #include "workloads/generate.h"
+#include "workloads/hard_cases.h"
 
 using namespace radar;
 using namespace radar::tools;
@@ -50,8 +50,8 @@ Result truthAt(double t) {
 RunSettings smallRun() {
   RunSettings settings;
   settings.extent = Extent::least;
-  settings.cases.push_back(
-      {"front", "locked", "Interlocking shapes", 0, makeWorkload(FamilyScene{Family::interlocking, 12, 1})});
+  settings.cases.push_back({"front", "locked", "Interlocking shapes", 0,
+                            hardScene(hardFamily("interlocking"), 1, 0, 12, Company::isolated)});
   settings.cases.push_back(
       {"front", "flight", "Teapots in flight", 0, makeWorkload(Figure7{.teapots = 4, .boxes = 2000, .steps = 2})});
   return settings;

@@ -53,12 +53,11 @@ Outcomes checkAnswers(std::span<const Query> queries, const std::vector<Result>&
 }
 
 // Families in which many pairs may touch first as far as floats can tell.
-constexpr tools::Family kDense[] = {tools::Family::nonConvex, tools::Family::interlocking, tools::Family::lattice,
-                                    tools::Family::soup};
+constexpr const char* kDense[] = {"non-convex", "interlocking", "lattice", "soup"};
 
 struct FamilyQueries {
-  explicit FamilyQueries(tools::Family family, uint32_t count = 48) {
-    const tools::Workload workload = tools::makeWorkload({.family = family, .queries = count, .seed = 6});
+  explicit FamilyQueries(const tools::HardFamily& family, uint32_t count = 48) {
+    const tools::Workload workload = tools::hardScene(family, 6, 0, count, tools::Company::mixed);
     tools::replaceBy(workload, 0, scene);
     queries = test::queriesOf(workload);
     for (size_t i = 0; i < queries.size(); i += 5) queries[i].anyHit = true;
@@ -100,10 +99,10 @@ struct HeavyAndLight {
 TEST_CASE("a query that exceeds Capacity::candidates gets kFlagCandidates, and the others keep their bits",
           "[subgroups]") {
   size_t refused = 0, answered = 0;
-  for (const tools::Family family : kDense) {
-    const FamilyQueries batch(family);
+  for (const char* family : kDense) {
+    const FamilyQueries batch(tools::hardFamily(family));
     for (const uint32_t candidates : {1u, 200u, 1000u, 1u << 17}) {
-      CAPTURE(tools::nameOf(family), candidates);
+      CAPTURE(family, candidates);
       const Outcomes outcomes = batch.outcomes(
           {.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17}, kFlagCandidates);
       refused += outcomes.refused;
@@ -132,7 +131,7 @@ TEST_CASE("a query that exceeds Capacity::rounds gets kFlagRounds, and a short o
 TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets kFlagUnresolved and a valid lower bound",
           "[subgroups]") {
   // The boxes touch at whole numbers, where only exact arithmetic can decide.
-  const FamilyQueries batch(tools::Family::lattice);
+  const FamilyQueries batch(tools::hardFamily("lattice"));
   size_t unresolved = 0, answered = 0;
   for (const uint32_t unresolvedPairs : {1u, 20u, 100u}) {
     CAPTURE(unresolvedPairs);
@@ -149,8 +148,8 @@ TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets kFlagUnresolved a
 }
 
 TEST_CASE("no answer is wrong when all capacities are too small", "[subgroups]") {
-  for (const tools::Family family : tools::kFamilies) {
-    CAPTURE(tools::nameOf(family));
+  for (const tools::HardFamily& family : test::recordableFamilies()) {
+    CAPTURE(family.name);
     const FamilyQueries batch(family, 24);
     batch.outcomes({.queries = 24, .candidates = 100, .rounds = 2, .unresolvedPairs = 10},
                    kFlagUnresolved | kFlagCandidates | kFlagRounds);

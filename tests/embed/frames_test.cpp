@@ -27,8 +27,8 @@ std::vector<FrameScene> makeFrameScenes(const Device& device, uint32_t queries) 
   Scene scene;
   Sweeper sweeper(device, scene);
   std::vector<FrameScene> all;
-  for (const tools::Family family : tools::kFamilies) {
-    FrameScene content{tools::makeWorkload({.family = family, .queries = queries, .seed = 8}), {}, {}};
+  for (const tools::HardFamily& family : test::recordableFamilies()) {
+    FrameScene content{tools::hardScene(family, 8, 0, queries, tools::Company::mixed), {}, {}};
     tools::replaceBy(content.workload, 0, scene);
     content.queries = test::queriesOf(content.workload);
     content.expected = sweeper.run(content.queries);

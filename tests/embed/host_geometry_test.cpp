@@ -15,7 +15,7 @@
 #include "radar/recorder.h"
 #include "support/buffer_words.h"
 #include "support/exact_placement.h"
-#include "workloads/families.h"
+#include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -226,17 +226,18 @@ void compareFamilies(uint32_t rounds) {
   Sweeper sweeper(test::device(), truth);
   Recorder recorder(test::device(), scene, kRoom);
   size_t hits = 0, answers = 0, refused = 0;
-  for (uint32_t i = 0; i < rounds * tools::kFamilies.size(); ++i) {
-    const tools::Family family = tools::kFamilies[i % tools::kFamilies.size()];
+  const std::vector<tools::HardFamily> families = test::recordableFamilies();
+  for (uint32_t i = 0; i < rounds * families.size(); ++i) {
+    const tools::HardFamily& family = families[i % families.size()];
     const uint32_t seed = 31 + i;
-    tools::Workload workload = tools::makeWorkload({.family = family, .queries = kRoom.queries, .seed = seed});
+    tools::Workload workload = tools::hardScene(family, seed, 0, kRoom.queries, tools::Company::mixed);
     const HostWorkload host(workload, seed, scene);
     tools::replaceBy(workload, 0, truth);
     std::vector<Query> queries = test::queriesOf(workload);
     for (size_t q = 0; q < queries.size(); q += 7) queries[q].anyHit = true;
     const std::vector<Result> expected = sweeper.run(queries), got = execute(recorder, queries, host.geometry());
     for (size_t q = 0; q < queries.size(); ++q) {
-      CAPTURE(tools::nameOf(family), seed, q, got[q].flags, got[q].t, expected[q].t);
+      CAPTURE(family.name, seed, q, got[q].flags, got[q].t, expected[q].t);
       ++answers;
       if (got[q].flags != 0) {
         // With random rest poses every node is as large as the mesh, so capacities may be exceeded; nothing else may go

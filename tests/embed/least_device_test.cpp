@@ -11,8 +11,8 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/recorder.h"
 #include "support/test_device.h"
-#include "workloads/families.h"
 #include "workloads/generate.h"
+#include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -89,21 +89,21 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
   CHECK(device.supports(Mode::contact));
   CHECK_FALSE(device.supports(Mode::sampled));
   CHECK_FALSE(device.doubles());
-  for (const tools::Family family : tools::kFamilies) {
-    CAPTURE(tools::nameOf(family));
-    const tools::Workload workload =
-        tools::makeWorkload(tools::FamilyScene{.family = family, .queries = 48, .seed = 17});
-    tools::ScenePlayer player(workload);
+  // Some scenes have more triangles than such a device holds, and the CPU answers.
+  size_t onDevice = 0;
+  for (const tools::HardFamily& family : tools::hardFamilies()) {
+    CAPTURE(family.name);
+    const tools::Workload workload = tools::hardScene(family, 17, 0, 24, tools::Company::mixed);
+    Scene scene;
+    tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries;
-    for (const tools::QuerySpec& spec : workload.queries) {
-      if (spec.scene == workload.queries[0].scene) queries.push_back(tools::toQuery(spec, Mode::contact));
-    }
-    player.show(workload.queries[0].scene);
-    Sweeper sweeper(device, player.scene(), {.cpuBatch = 0});
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
+    Sweeper sweeper(device, scene, {.cpuBatch = 0});
     const std::vector<Result> found = sweeper.run(queries);
-    checkSame(found, CpuSweeper(player.scene()).run(queries));
-    CHECK(sweeper.stats().submissions > 0);
+    checkSame(found, CpuSweeper(scene).run(queries));
+    onDevice += sweeper.stats().submissions > 0;
   }
+  CHECK(onDevice >= 20);
 }
 
 TEST_CASE("too many sensors for one submission are split, and a scene beyond the device's limits is left to the CPU") {

@@ -9,9 +9,16 @@
 #include "gpu/submission.h"
 #include "radar/recorder.h"
 #include "support/bindings.h"
-#include "workloads/families.h"
+#include "workloads/hard_cases.h"
 
 namespace radar::test {
+
+/// The families of hard cases whose numbers floats can hold, as a Recorder needs it: all but `distance`.
+inline std::vector<tools::HardFamily> recordableFamilies() {
+  std::vector<tools::HardFamily> families = tools::hardFamilies();
+  std::erase_if(families, [](const tools::HardFamily& family) { return family.name == "distance"; });
+  return families;
+}
 
 class Renderer {
  public:

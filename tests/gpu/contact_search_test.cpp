@@ -7,7 +7,7 @@
 
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
-#include "workloads/families.h"
+#include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
 
 namespace radar {
@@ -66,9 +66,8 @@ void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
 
 /// A family's queries, every fourth of which has `anyHit` set.
 struct FamilyQueries {
-  FamilyQueries(tools::Family family, uint32_t count, uint64_t seed)
-      : workload(tools::makeWorkload(tools::FamilyScene{.family = family, .queries = count, .seed = seed})),
-        player(workload) {
+  FamilyQueries(const char* family, uint32_t count, uint64_t seed, tools::Company company)
+      : workload(tools::hardScene(tools::hardFamily(family), seed, 0, count, company)), player(workload) {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries) {
       queries.push_back(tools::toQuery(spec, Mode::contact));
@@ -87,26 +86,27 @@ Transform at(double x, double y, double z) {
 }  // namespace
 
 TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds") {
-  const tools::Family family = GENERATE(tools::Family::interlocking, tools::Family::lattice, tools::Family::touching,
-                                        tools::Family::floor, tools::Family::soup);
-  const FamilyQueries batch(family, 96, 1);
+  const std::string family = GENERATE("interlocking", "lattice", "touching", "floor", "soup");
+  const FamilyQueries batch(family.c_str(), tools::kIsolatedCases, 1, tools::Company::isolated);
   const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries);
   const SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
                                    SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
                                    SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
                                    SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
   const SearchShape shape = GENERATE(SearchShape{}, SearchShape{.queue = 1, .stack = 4}, SearchShape{.stack = 7});
-  CAPTURE(tools::nameOf(family), room, shape.queue, shape.stack);
+  CAPTURE(family, room, shape.queue, shape.stack);
   DeviceSearch narrow(batch.player.scene(), room, shape);
   checkSame(narrow.run(batch.queries), roomy);
-  // Only queries that overflow a list go to the CPU. Rounds that exceed their budget continue in further rounds.
+  // Only queries that overflow a list go to the CPU, and in some families those with very many unresolved pairs. Rounds
+  // that exceed their budget continue in further rounds.
   if (room.candidates == 1) CHECK(narrow.stats().cpuQueries > 0);
-  if (room.budget == 1 && family == tools::Family::interlocking) CHECK(narrow.stats().submissions > 1);
-  if (room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);
+  if (room.budget == 1 && family == "interlocking") CHECK(narrow.stats().submissions > 1);
+  const bool few = family == "lattice" || family == "touching";
+  if (few && room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);
 }
 
 TEST_CASE("a batch that is searched again fits on the device") {
-  const FamilyQueries batch(tools::Family::touching, 400, 2);
+  const FamilyQueries batch("touching", 400, 2, tools::Company::mixed);
   DeviceSearch search(batch.player.scene());
   const std::vector<Result> first = search.run(batch.queries);
   checkSame(search.run(batch.queries), first);

@@ -3,14 +3,14 @@
 #include <catch2/catch.hpp>
 
 #include "support/test_device.h"
-#include "workloads/stability.h"
+#include "workloads/hard_cases.h"
 
 using namespace radar;
 using namespace radar::tools;
 
 TEST_CASE("in steps of a millionth the answers of mode contact move with the geometry") {
   const std::vector<StepRow> rows = measureSteps(test::device(), {.cases = 16, .steps = 4, .seed = 3}, [](uint64_t) {});
-  CHECK(rows.size() == stabilityFamilies().size() * kMethods);
+  CHECK(rows.size() == hardFamilies().size() * kMethods);
   for (const StepRow& row : rows) {
     CAPTURE(row.family, nameOf(row.method));
     CHECK(row.steps >= 8);

@@ -1,8 +1,8 @@
 // The CPU's answers to the tools' workloads have the same bits on any number of threads.
 #include "cpu_agreement.h"
 #include "support/answer.h"
-#include "workloads/families.h"
 #include "workloads/generate.h"
+#include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
 
 using namespace radar;
@@ -37,10 +37,10 @@ void checkVariants(const Workload& workload, uint64_t seed) {
 }  // namespace
 
 TEST_CASE("the CPU's answers are the same on any number of threads, in all families") {
-  for (const Family family : kFamilies) {
+  for (const HardFamily& family : hardFamilies()) {
     for (uint64_t seed = 1; seed <= 2; ++seed) {
-      INFO("family " << nameOf(family) << ", seed " << seed);
-      const Workload workload = makeWorkload(FamilyScene{.family = family, .queries = 64, .seed = 100 + seed});
+      INFO("family " << family.name << ", seed " << seed);
+      const Workload workload = hardScene(family, 100 + seed, 0, 32, Company::mixed);
       check(workload);
       checkVariants(workload, seed);
     }

@@ -3,9 +3,8 @@
 #include <cstring>
 #include <map>
 
-#include "workloads/families.h"
 #include "workloads/generate.h"
-#include "workloads/stability.h"
+#include "workloads/hard_cases.h"
 
 using namespace radar;
 using namespace radar::tools;
@@ -121,25 +120,6 @@ TEST_CASE("a workload has the same bits always and everywhere") {
   CHECK(fingerprintOf(makeWorkload(poses)) == 0x64d72d9557e3e7c6ull);
 }
 
-TEST_CASE("every family keeps the contracts of Scene and Query and has the same bits always and everywhere") {
-  Fingerprint all;
-  for (const Family family : kFamilies) {
-    CAPTURE(nameOf(family));
-    for (const uint64_t seed : {1, 2, 3}) {
-      const Workload workload = makeWorkload(FamilyScene{family, 65, seed});
-      all.add(fingerprintOf(workload));
-      CHECK(workload.queries.size() == 65);
-      CHECK(fingerprintOf(workload) != fingerprintOf(makeWorkload(FamilyScene{family, 65, seed + 1})));
-      ScenePlayer player(workload);
-      player.show(0);
-      for (const QuerySpec& query : workload.queries) {
-        CHECK(validate(toQuery(query, radar::Mode::contact), player.scene()).empty());
-      }
-    }
-  }
-  CHECK(all.value() == 0x82c7908bfb10e2c9ull);
-}
-
 TEST_CASE("another seed gives another workload") {
   CHECK(fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::box, 1})) !=
         fingerprintOf(makeWorkload(Table1{500, 16, SensorShape::box, 2})));
@@ -199,19 +179,37 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
   }
 }
 
-TEST_CASE("every stability family keeps the contracts of Scene and Query and has the same bits everywhere") {
+TEST_CASE("hard cases keep the contracts of Scene and Query and have the same bits everywhere") {
   Fingerprint all;
-  for (const StabilityFamily& family : stabilityFamilies()) {
+  for (const HardFamily& family : hardFamilies()) {
     CAPTURE(family.name);
-    std::vector<StabilityCase> cases;
-    for (uint64_t i = 0; i < kCasesPerScene; ++i) cases.push_back(stabilityCase(family, i, 1));
-    const Workload workload = workloadOf(cases);
-    all.add(fingerprintOf(workload));
-    Scene scene;
-    replaceBy(workload, 0, scene);
-    CHECK(workload.queries.size() == kCasesPerScene);
-    for (const QuerySpec& query : workload.queries) CHECK(validate(toQuery(query, Mode::contact), scene) == "");
+    for (const Company company : {Company::isolated, Company::mixed}) {
+      const Workload workload = hardScene(family, 1, 0, kIsolatedCases, company);
+      all.add(fingerprintOf(workload));
+      CHECK(fingerprintOf(workload) != fingerprintOf(hardScene(family, 2, 0, kIsolatedCases, company)));
+      CHECK(workload.queries.size() == kIsolatedCases);
+      Scene scene;
+      replaceBy(workload, 0, scene);
+      for (const QuerySpec& query : workload.queries) {
+        CHECK(validate(toQuery(query, radar::Mode::contact), scene).empty());
+      }
+    }
   }
   // Recorded once, as above.
-  CHECK(all.value() == 0xb13c466fda645794ull);
+  CHECK(all.value() == 0x250db878ff552f95ull);
+}
+
+TEST_CASE("isolated cases meet their own objects only") {
+  const HardFamily& family = hardFamily("ties");
+  const Workload workload = hardScene(family, 1, 0, kIsolatedCases, Company::isolated);
+  REQUIRE(workload.scenes[0].masks.size() == workload.scenes[0].instances.size());
+  size_t object = 0;
+  for (uint32_t i = 0; i < kIsolatedCases; ++i) {
+    CHECK(workload.queries[i].mask == 1u << i);
+    for (size_t own = hardCase(family, 1, i).objects.size(); own > 0; --own, ++object) {
+      CHECK(workload.scenes[0].masks[object] == ObjectMask{object, 1u << i});
+    }
+  }
+  CHECK(object == workload.scenes[0].instances.size());
+  CHECK(hardScene(family, 1, 0, 40, Company::mixed).scenes[0].masks.empty());
 }

@@ -4,23 +4,9 @@
 #include <span>
 
 #include "chart/cell.h"
-#include "radar/radar.h"
+#include "stability/judge.h"
 
 namespace radar::tools {
-
-/// What a method says of one query.
-struct Told {
-  enum class Kind {
-    contact,  ///< at t
-    none,     ///< not within D
-    unseen    ///< nothing was seen, and nothing is promised
-  };
-  Kind kind = Kind::none;
-  double t = NAN, lo = NAN, hi = NAN;  ///< bounds that it vouches for; NaN: it does not
-};
-
-/// The engine's word.
-Told toldBy(const Result& result);
 
 /// Fills the accuracy columns of a cell whose `certified` is set, but for the shares by tier. `truth` is the
 /// reference's.

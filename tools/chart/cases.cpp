@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "workloads/families.h"
 #include "workloads/generate.h"
-#include "workloads/stability.h"
+#include "workloads/hard_cases.h"
 
 namespace radar::tools {
 
@@ -31,25 +30,13 @@ uint32_t of(Extent extent, uint32_t full, uint32_t quick, uint32_t least) {
   return extent == Extent::full ? full : extent == Extent::quick ? quick : least;
 }
 
-// Several scenes of each family, one after the other.
-Workload familyScenes(std::initializer_list<Family> families, Extent extent) {
+// As many scenes of each family, one after the other.
+Workload familyScenes(std::initializer_list<const char*> families, Extent extent, Company company) {
   Workload workload;
-  const uint32_t scenes = of(extent, 6, 3, 1), queries = of(extent, 32, 16, 6);
-  for (const Family family : families) {
-    for (uint64_t seed = 1; seed <= scenes; ++seed) append(workload, makeWorkload(FamilyScene{family, queries, seed}));
-  }
-  return workload;
-}
-
-// Cases of the stability families in which little is to be seen, or little is missed: a scene of each family, the
-// values of its parameter in turn.
-Workload grazingScenes(Extent extent) {
-  Workload workload;
-  for (const StabilityFamily& family : stabilityFamilies()) {
-    if (family.name != "thin" && family.name != "edge-on" && family.name != "slope" && family.name != "near") continue;
-    std::vector<StabilityCase> cases;
-    for (uint32_t i = 0; i < of(extent, kCasesPerScene, 16, 4); ++i) cases.push_back(stabilityCase(family, i, 1));
-    append(workload, workloadOf(cases));
+  const auto count = static_cast<uint32_t>(families.size());
+  const uint32_t scenes = (of(extent, 6, 3, 1) + count - 1) / count, cases = of(extent, kIsolatedCases, 16, 6);
+  for (const char* family : families) {
+    for (uint32_t i = 0; i < scenes; ++i) append(workload, hardScene(hardFamily(family), 1, i * cases, cases, company));
   }
   return workload;
 }
@@ -75,15 +62,15 @@ std::vector<Case> frontCases(Extent extent) {
       makeWorkload(Table1{.boxes = boxes, .sensors = sensors, .shape = SensorShape::box}));
   add("figure7", std::to_string(teapots) + " teapots fly among 2,000 boxes (the paper's Figure 7)",
       makeWorkload(Figure7{.teapots = teapots, .steps = of(extent, 4, 2, 1)}));
-  add("convex", "Convex shapes: boxes, balls, rods and plates", familyScenes({Family::convex}, extent));
+  add("convex", "Convex shapes: boxes, balls, rods and plates", familyScenes({"convex"}, extent, Company::mixed));
   add("non-convex", "Non-convex shapes: teapots, rings, hooks, combs and cups",
-      familyScenes({Family::nonConvex}, extent));
+      familyScenes({"non-convex"}, extent, Company::mixed));
   add("interlocking", "Interlocking shapes: ring on peg, hook behind bar, key in keyhole",
-      familyScenes({Family::interlocking}, extent));
+      familyScenes({"interlocking"}, extent, Company::isolated));
   add("thin", "Thin and open shapes: sheets, open cylinders, plates and rods along and just off the axes",
-      familyScenes({Family::open, Family::directions}, extent));
+      familyScenes({"open", "direction"}, extent, Company::mixed));
   add("grazing", "Grazing: needles, plates edge-on, faces along the motion, near misses and near hits",
-      grazingScenes(extent));
+      familyScenes({"thin", "edge-on", "slope", "near"}, extent, Company::isolated));
   return cases;
 }
 

@@ -1,15 +1,13 @@
-// Pictures of how the sampled method fails.
+// Pictures of how the sampled method fails: those of docs/stability.md.
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
-#include "stability/page.h"
+#include "radar/radar.h"
 
 namespace radar::tools {
 
-/// One for each kind of failure that the run met at kTellingResolution, written into `folder`/stability.
-std::vector<StabilityPicture> drawFailures(const Device& device, const StabilityReport& report, uint64_t seed,
-                                           const std::filesystem::path& folder);
+/// Draws a case of each kind of failure into `folder`, whatever else was asked.
+void drawFailures(const Device& device, const std::filesystem::path& folder);
 
 }  // namespace radar::tools

@@ -6,10 +6,8 @@
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/failure_pictures.h"
-#include "cyber_radar/origin.h"
 #include "cyber_radar/progress.h"
 #include "import/input_error.h"
-#include "stability/page.h"
 #include "stability/table.h"
 
 namespace radar::tools {
@@ -18,12 +16,12 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   cyber-radar stability --cases 2000 --resolution 16,64     under a minute
-  cyber-radar stability --out docs                          docs/stability.md; tables and pictures in docs/stability
+  cyber-radar stability --out docs/stability                tables of every family, and pictures of how sampling fails
   cyber-radar stability --family thin --first 17 --cases 1  one case again
 
 Needles and plates edge-on, steep faces, exact touching, gaps of one rounding, 10^7 units from the origin, rings on
-pegs and the like: each tier is asked, and held against the exact answer. Then answers are followed in tiny steps of the
-pose, and through changes that leave the contact where it is. Exit status 1 if a promise is broken.)";
+pegs and the like: every tier is asked, and each answer is compared with the exact one. Then the answers are followed in
+tiny steps of the pose, and through changes that leave the contact where it is. Exit status 1 if a promise is broken.)";
 
 struct Options {
   StabilitySettings settings;
@@ -35,18 +33,26 @@ struct Options {
 /// The rounding of t is far below this; a step or change beyond it is a broken promise.
 constexpr double kRounding = 1e-12;
 
-bool right(const StabilityFindings& findings) {
-  const bool steps = std::all_of(findings.steps.begin(), findings.steps.end(), [](const StepRow& row) {
-    return row.method != Method::contact || (row.flips == 0 && row.excess <= kRounding);
-  });
-  const bool changes = std::all_of(findings.changes.begin(), findings.changes.end(),
-                                   [](const ChangeRow& row) { return row.broken == 0; });
-  return steps && changes && findings.report.right();
+struct Findings {
+  std::vector<StabilityRow> rows;
+  std::vector<StepRow> steps;
+  std::vector<ChangeRow> changes;
+};
+
+bool isRight(const StepRow& row) {
+  return row.method != Method::contact || (row.flips == 0 && row.excess <= kRounding);
 }
 
-StabilityFindings measureAll(const Device& device, const Options& options) {
+bool isRight(const Findings& findings) {
+  const auto all = [](const auto& rows, const auto& test) { return std::all_of(rows.begin(), rows.end(), test); };
+  return all(findings.rows, [](const StabilityRow& row) { return row.right(); }) &&
+         all(findings.steps, [](const StepRow& row) { return isRight(row); }) &&
+         all(findings.changes, [](const ChangeRow& row) { return row.broken == 0; });
+}
+
+Findings measureAll(const Device& device, const Options& options) {
   const StabilitySettings& settings = options.settings;
-  const uint64_t families = settings.families.empty() ? stabilityFamilies().size() : settings.families.size();
+  const uint64_t families = settings.families.empty() ? hardFamilies().size() : settings.families.size();
   const uint64_t each = (settings.cases + families - 1) / families;
   StepSettings steps{.seed = settings.seed};
   steps.cases = static_cast<uint32_t>(std::min<uint64_t>(steps.cases, each));
@@ -55,54 +61,54 @@ StabilityFindings measureAll(const Device& device, const Options& options) {
   const auto onWrong = [](const std::string& words) { std::cout << "WRONG: " << words << "\n"; };
   Progress progress("cases", families * each + (options.partly() ? 0 : families * steps.cases + changes.cases));
   const auto onProgress = [&](uint64_t done) { progress.add(done); };
-  StabilityFindings findings;
-  findings.report = measureStability(device, settings, onWrong, onProgress);
+  Findings findings;
+  findings.rows = measureStability(device, settings, onWrong, onProgress);
   if (options.partly()) return findings;
   findings.steps = measureSteps(device, steps, onProgress);
   findings.changes = measureChanges(device, changes, onWrong, onProgress);
   return findings;
 }
 
-void writeFiles(const Options& options, const Device& device, StabilityFindings& findings) {
-  const std::filesystem::path folder = options.out;
-  std::string command = "cyber-radar stability --cases " + std::to_string(options.settings.cases) + " --seed " +
-                        std::to_string(options.settings.seed) + " --resolution ";
-  for (size_t i = 0; i < options.settings.resolutions.size(); ++i) {
-    command += (i == 0 ? "" : ",") + std::to_string(options.settings.resolutions[i]);
-  }
-  findings.pictures = drawFailures(device, findings.report, options.settings.seed, folder);
-  const std::filesystem::path tables = folder / "stability";
-  writeAtomically(tables / "table.csv", csvOf(findings.report.rows));
-  writeAtomically(tables / "steps.csv", csvOf(findings.steps));
-  writeAtomically(tables / "changes.csv", csvOf(findings.changes));
-  writeAtomically(tables / "families.csv", csvOf(stabilityFamilies()));
-  writeAtomically(folder / "stability.md",
-                  pageOf(findings, {command + " --out DIR", commit(), today(), device.name(), device.driver()}));
-  std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": stability.md, stability/\n";
+void writeFiles(const std::filesystem::path& folder, const Device& device, const Findings& findings) {
+  writeAtomically(folder / "table.csv", csvOf(findings.rows));
+  writeAtomically(folder / "steps.csv", csvOf(findings.steps));
+  writeAtomically(folder / "changes.csv", csvOf(findings.changes));
+  writeAtomically(folder / "families.csv", csvOf(hardFamilies()));
+  drawFailures(device, folder);
+  std::cout << "\nTables and pictures in " << std::filesystem::absolute(folder).string() << "\n";
 }
 
 int stability(const Options& options) {
   if (!options.out.empty()) {
     std::error_code error;
-    std::filesystem::create_directories(std::filesystem::path(options.out) / "stability", error);
+    std::filesystem::create_directories(options.out, error);
     if (error) throw InputError("--out", options.out, "expected a folder, or a place for one");
   }
   const Device device = Device::open({.index = options.device});
-  std::cout << "device " << device.name() << ", driver " << device.driver() << "\n";
-  StabilityFindings findings = measureAll(device, options);
-  std::cout << tableOf(overFamilies(findings.report.rows));
-  for (const StepRow& row : findings.steps) {
-    if (row.method == Method::contact && (row.flips != 0 || row.excess > kRounding)) {
-      std::cout << "WRONG: steps of " << row.family << ": " << row.flips << " flips, excess " << row.excess << "\n";
-    }
+  std::cout << "device " << device.name() << ", driver " << device.driver() << ", commit " << commit() << "\n";
+  const Findings findings = measureAll(device, options);
+  std::cout << tableOf(overFamilies(findings.rows));
+  for (const StepRow& row : overFamilies(findings.steps)) {
+    std::cout << "steps, " << nameOf(row.method) << ": " << row.steps << ", " << row.flips << " flips, excess "
+              << row.excess << "\n";
   }
-  if (!options.out.empty()) writeFiles(options, device, findings);
-  return right(findings) ? 0 : 1;
+  for (const StepRow& row : findings.steps) {
+    if (isRight(row)) continue;
+    std::cout << "WRONG: steps of " << row.family << ": " << row.flips << " flips, excess " << row.excess << "\n";
+  }
+  uint64_t pairs = 0, broken = 0;
+  for (const ChangeRow& row : findings.changes) {
+    pairs += row.cases;
+    broken += row.broken;
+  }
+  if (pairs != 0) std::cout << "changes: " << pairs << " pairs of answers, " << broken << " contradictory\n";
+  if (!options.out.empty()) writeFiles(options.out, device, findings);
+  return isRight(findings) ? 0 : 1;
 }
 
 std::vector<std::string> familyNames() {
   std::vector<std::string> names;
-  for (const StabilityFamily& family : stabilityFamilies()) names.push_back(family.name);
+  for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
   return names;
 }
 
@@ -123,7 +129,8 @@ void addStabilityCommand(CLI::App& app, int& status) {
       ->check(CLI::Range(1u, kMaxResolution))
       ->type_name("N,...")
       ->capture_default_str();
-  CLI::Option* out = command->add_option("--out", options->out, "Folder for stability.md and what it shows");
+  CLI::Option* out =
+      command->add_option("--out", options->out, "Folder for tables of every family and pictures of failures");
   out->type_name("DIR");
   command->add_option("--family", settings.families, "Only these")->check(CLI::IsMember(familyNames()))->excludes(out);
   command->add_option("--first", settings.first, "Number of each family's first case")->excludes(out);

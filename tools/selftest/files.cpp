@@ -71,7 +71,7 @@ Json jsonOf(const DeviceTest& device) {
   }
   json["exactness"] = Json::array();
   for (const ExactnessRow& row : device.exactness) {
-    const RandomTally& t = row.tally;
+    const Tally& t = row.tally;
     json["exactness"].push_back({{"family", row.family},
                                  {"doubles", row.doubles},
                                  {"queries", t.queries},

@@ -173,25 +173,26 @@ bool measureExactness(const Device& device, const Deadline& deadline, DeviceTest
   struct Variant {
     bool doubles;
     std::optional<Device> own;
-    std::unique_ptr<RandomQueries> asking;
+    std::unique_ptr<CaseRun> cases;
   };
   std::vector<Variant> variants(device.doubles() ? 2 : 1);
   variants[0].doubles = device.doubles();
-  variants[0].asking = std::make_unique<RandomQueries>(device);
-  const std::vector<std::string> families = randomFamilies();
+  variants[0].cases = std::make_unique<CaseRun>(device);
+  const std::vector<std::string> families = runFamilies();
   for (uint64_t round = 0;; ++round) {
     for (size_t v = 0; v < variants.size(); ++v) {
       Variant& variant = variants[v];
-      if (!variant.asking) {
+      if (!variant.cases) {
         variant.doubles = false;
         variant.own.emplace(Device::open({.index = test.number, .doubles = false}));
-        variant.asking = std::make_unique<RandomQueries>(*variant.own);
+        variant.cases = std::make_unique<CaseRun>(*variant.own);
       }
       for (size_t f = 0; f < families.size(); ++f) {
         if (deadline.isOver() && !rows.empty()) return round > 0;
         if (round == 0) rows.push_back({families[f], variant.doubles, {}});
-        rows[v * families.size() + f].tally.add(variant.asking->run(
-            {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const std::string&) {}, [](uint64_t) {}));
+        rows[v * families.size() + f].tally.add(variant.cases->run(
+            {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const Approach&, const std::string&) {},
+            [](uint64_t) {}));
       }
     }
   }

@@ -102,7 +102,7 @@ std::string deviceSection(const DeviceTest& device) {
   section(Part::exactness, "Random queries of every family, compared with the CPU's answers",
           table("family|doubles|queries|hit|clear|overlap|wrong|pairs solved|of these by the CPU", device.exactness,
                 [](const ExactnessRow& row) {
-                  const RandomTally& t = row.tally;
+                  const Tally& t = row.tally;
                   return cell(row.family) + cell(row.doubles ? "with" : "without") + cell(t.queries) + cell(t.hits) +
                          cell(t.clear) + cell(t.overlaps) + cell(t.wrong) + cell(t.pairs) + cell(t.cpuPairs);
                 }));

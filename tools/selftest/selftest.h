@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "radar/arithmetic.h"
-#include "selftest/random_queries.h"
+#include "stability/case_run.h"
 
 namespace radar::tools {
 
@@ -34,11 +34,11 @@ struct PartReport {
   double seconds = 0;
 };
 
-/// Random queries of one family, held against the CPU's exact answers.
+/// Hard cases of one family, held against the CPU's exact answers.
 struct ExactnessRow {
   std::string family;
   bool doubles = false;  ///< the device used them
-  RandomTally tally;
+  Tally tally;
 };
 
 /// Batches of one size: microseconds a query, medians.

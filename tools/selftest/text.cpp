@@ -40,7 +40,7 @@ std::string exactnessText(const DeviceTest& device) {
   text += print("    %-14s %-8s %9s %9s %9s %9s %6s %12s %12s\n", "family", "doubles", "queries", "hit", "clear",
                 "overlap", "wrong", "pairs", "by the CPU");
   for (const ExactnessRow& row : device.exactness) {
-    const RandomTally& t = row.tally;
+    const Tally& t = row.tally;
     text += print("    %-14s %-8s %9llu %9llu %9llu %9llu %6llu %12llu %12llu\n", row.family.c_str(),
                   row.doubles ? "with" : "without", number(t.queries), number(t.hits), number(t.clear),
                   number(t.overlaps), number(t.wrong), number(t.pairs), number(t.cpuPairs));

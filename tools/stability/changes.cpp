@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "stability/judge.h"
 #include "workloads/same_contact.h"
-#include "workloads/stability.h"
 
 namespace radar::tools {
 
@@ -40,27 +40,26 @@ class Comparing {
 
   /// By method, by case.
   using Answers = std::array<std::vector<Result>, kAsked.size()>;
-  Answers answer(const std::vector<StabilityCase>& cases) {
-    const Workload workload = workloadOf(cases);
+  Answers answer(const std::vector<HardCase>& cases) {
+    const Workload workload = sceneOf(cases, Company::isolated);
     replaceBy(workload, 0, scene_);
     std::vector<Query> queries;
     for (const QuerySpec& spec : workload.queries) queries.push_back(toQuery(spec, Mode::contact));
     Answers answers;
-    for (size_t m = 0; m < kAsked.size(); ++m) {
-      answers[m] = answersBy(kAsked[m], sweeper_, queries, settings_.resolution);
-    }
+    answers[0] = answersBy({Method::sampled, settings_.resolution}, sweeper_, queries);
+    answers[1] = answersBy({Method::contact, 0}, sweeper_, queries);
     return answers;
   }
 
-  Answers answerChanged(Change change, const std::vector<StabilityCase>& cases, Random& random) {
-    std::vector<StabilityCase> changed, rest;
-    for (const StabilityCase& made : cases) {
-      if (change == Change::moved) changed.push_back(movedTogether(made, random));
-      if (change == Change::swapped) changed.push_back(changedPlaces(made));
-      if (change == Change::cut) changed.push_back(cutInTwo(made, random));
-      if (change == Change::farObjects) changed.push_back(withFarObjects(made, random));
+  Answers answerChanged(Change change, const std::vector<HardCase>& cases, Random& random) {
+    std::vector<HardCase> changed, rest;
+    for (const HardCase& hard : cases) {
+      if (change == Change::moved) changed.push_back(movedTogether(hard, random));
+      if (change == Change::swapped) changed.push_back(changedPlaces(hard));
+      if (change == Change::cut) changed.push_back(cutInTwo(hard, random));
+      if (change == Change::farObjects) changed.push_back(withFarObjects(hard, random));
       if (change != Change::split) continue;
-      const std::array<StabilityCase, 2> parts = splitWay(made, random);
+      const std::array<HardCase, 2> parts = splitWay(hard, random);
       changed.push_back(parts[0]);
       rest.push_back(parts[1]);
     }
@@ -107,9 +106,9 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
   for (size_t c = 0; c < kChanges; ++c) {
     for (const Method method : kAsked) rows.push_back({static_cast<Change>(c), method, 0, 0, 0});
   }
-  for (uint32_t next = 0; next < settings.cases; next += kCasesPerScene) {
-    std::vector<StabilityCase> cases;
-    const uint32_t end = std::min(settings.cases, next + kCasesPerScene);
+  for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
+    std::vector<HardCase> cases;
+    const uint32_t end = std::min(settings.cases, next + kIsolatedCases);
     for (uint32_t i = next; i < end; ++i) {
       Random random(settings.seed * 1'000'003 + i);
       cases.push_back(dyadicCase(random));

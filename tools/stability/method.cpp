@@ -11,12 +11,8 @@ const char* nameOf(Method method) {
   return kNames[static_cast<size_t>(method)];
 }
 
-std::vector<Query> asked(std::vector<Query> queries, Method method, uint32_t resolution) {
-  for (Query& query : queries) {
-    query.mode = method == Method::contact ? Mode::contact : Mode::sampled;
-    query.resolution = method == Method::contact ? 0 : resolution;
-  }
-  return queries;
+std::string Approach::name() const {
+  return method == Method::contact ? nameOf(method) : nameOf(method) + (" " + std::to_string(resolution));
 }
 
 Result paperAnswer(const Query& query, const Result& sampled) {
@@ -24,18 +20,23 @@ Result paperAnswer(const Query& query, const Result& sampled) {
   const bool hit = sampled.paperMinL <= query.distance;
   paper.status = hit ? Status::hit : Status::clear;
   paper.t = hit ? std::max(sampled.paperMinL, 0.0) : NAN;
+  paper.lo = paper.hi = NAN;
   return paper;
 }
 
-std::vector<Result> answersBy(Method method, Sweeper& sweeper, const std::vector<Query>& queries, uint32_t resolution) {
-  std::vector<Result> results = sweeper.run(asked(queries, method, resolution));
-  if (method != Method::paper) return results;
-  for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
-  return results;
+std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
+  for (Query& query : queries) {
+    query.mode = asked.method == Method::contact ? Mode::contact : Mode::sampled;
+    query.resolution = asked.resolution;
+  }
+  return queries;
 }
 
-bool meets(const Result& result) {
-  return result.status == Status::hit || result.status == Status::overlap;
+std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
+  std::vector<Result> results = sweeper.run(queriesFor(asked, queries));
+  if (asked.method != Method::paper) return results;
+  for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
+  return results;
 }
 
 }  // namespace radar::tools

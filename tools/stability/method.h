@@ -1,7 +1,6 @@
-// Who answers in the stability suite.
+// Who answers hard cases.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -9,21 +8,25 @@
 
 namespace radar::tools {
 
-/// `paper` is the paper's literal min(L), which mode sampled tells beside its own answer.
+/// `paper` is the paper's literal min(L), which mode sampled reports beside its own answer.
 enum class Method { paper, sampled, contact };
 inline constexpr size_t kMethods = 3;
 const char* nameOf(Method method);
 
-/// The queries in the method's mode; `resolution` is 0 in mode contact.
-std::vector<Query> asked(std::vector<Query> queries, Method method, uint32_t resolution);
+/// A method and its resolution; 0 in mode contact.
+struct Approach {
+  Method method = Method::contact;
+  uint32_t resolution = 0;
+  /// "sampled 64", "contact".
+  std::string name() const;
+};
 
 /// The paper's own reading of an answer in mode sampled: contact after min(L) if that is within D, now if it is
-/// negative.
+/// negative. It vouches for no bounds.
 Result paperAnswer(const Query& query, const Result& sampled);
 
-std::vector<Result> answersBy(Method method, Sweeper& sweeper, const std::vector<Query>& queries, uint32_t resolution);
-
-/// hit or overlap.
-bool meets(const Result& result);
+/// The queries in the mode and at the resolution that are asked.
+std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
+std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);
 
 }  // namespace radar::tools

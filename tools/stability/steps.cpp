@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "radar/cpu_sweeper.h"
-#include "stability/promises.h"
-#include "workloads/stability.h"
-#include "workloads/workload.h"
+#include "stability/judge.h"
+#include "workloads/hard_cases.h"
 
 namespace radar::tools {
 
@@ -39,14 +38,12 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
   Sweeper sweeper(device, scene, {.cpuBatch = 0});
   CpuSweeper cpu(scene);
   std::vector<StepRow> rows;
-  for (const StabilityFamily& family : stabilityFamilies()) {
+  for (const HardFamily& family : hardFamilies()) {
     const size_t firstRow = rows.size();
     for (size_t m = 0; m < kMethods; ++m) rows.push_back({family.name, static_cast<Method>(m), 0, 0, 0});
-    for (uint64_t next = 0; next < settings.cases; next += kCasesPerScene) {
-      std::vector<StabilityCase> cases;
-      const uint64_t end = std::min<uint64_t>(settings.cases, next + kCasesPerScene);
-      for (uint64_t i = next; i < end; ++i) cases.push_back(stabilityCase(family, i, settings.seed));
-      const Workload workload = workloadOf(cases);
+    for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
+      const uint32_t cases = std::min(settings.cases - next, kIsolatedCases);
+      const Workload workload = hardScene(family, settings.seed, next, cases, Company::isolated);
       replaceBy(workload, 0, scene);
       Random random(settings.seed * 7'919 + next);
       std::vector<Query> queries;
@@ -57,13 +54,15 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       }
       const std::vector<Result> exact = cpu.run(queries);
       for (size_t m = 0; m < kMethods; ++m) {
-        const std::vector<Result> results = answersBy(static_cast<Method>(m), sweeper, queries, settings.resolution);
+        const auto method = static_cast<Method>(m);
+        const uint32_t resolution = method == Method::contact ? 0 : settings.resolution;
+        const std::vector<Result> results = answersBy({method, resolution}, sweeper, queries);
         for (size_t i = 1; i < queries.size(); ++i) {
           if (i % (settings.steps + 1) == 0) continue;
           count(rows[firstRow + m], results[i - 1], results[i], exact[i - 1], exact[i], sensorSize(scene, queries[i]));
         }
       }
-      onProgress(end - next);
+      onProgress(cases);
     }
   }
   return rows;

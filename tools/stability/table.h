@@ -1,4 +1,4 @@
-// Rows of the stability suite as tables.
+// What the stability suite found, as tables.
 #pragma once
 
 #include <string>
@@ -10,12 +10,9 @@
 
 namespace radar::tools {
 
-/// "sampled 64", "contact".
-std::string tierOf(const StabilityRow& row);
-
-/// Each method and resolution over all families: counts added up, the worst of the worst, medians of medians.
+/// The sums over all families of each way of asking, as rows of the family `all`: counts added up, the worst of the
+/// worst.
 std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows);
-/// Each method over all families.
 std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows);
 
 /// A header, then a line for each row.
@@ -23,7 +20,7 @@ std::string csvOf(const std::vector<StabilityRow>& rows);
 std::string csvOf(const std::vector<StepRow>& rows);
 std::string csvOf(const std::vector<ChangeRow>& rows);
 /// What each family varies: its parameter and the values.
-std::string csvOf(const std::vector<StabilityFamily>& families);
+std::string csvOf(const std::vector<HardFamily>& families);
 
 /// For the terminal.
 std::string tableOf(const std::vector<StabilityRow>& rows);

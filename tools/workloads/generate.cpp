@@ -101,19 +101,6 @@ Workload boxesAndSensors(uint32_t boxes, uint32_t sensors, SensorShape shape, do
   return workload;
 }
 
-/// A soup's own size and place do not matter to the scene: back to a cube of edge 2 around the origin.
-Transform normalised(Soup soup, const Transform& pose) {
-  Transform result = pose;
-  for (int row = 0; row < 3; ++row) {
-    double* r = &result.m[4 * row];
-    if (soup == Soup::tiny) {
-      for (int k = 0; k < 3; ++k) r[k] *= 1e6;
-    }
-    if (soup == Soup::far) r[3] -= 2000 * (r[0] + r[1] + r[2]);
-  }
-  return result;
-}
-
 /// Where a Figure 7 teapot is and where it is heading.
 struct Flight {
   std::array<double, 9> rotation;
@@ -150,6 +137,18 @@ void fly(std::vector<Flight>& flights, size_t self, double radius, const Clearan
 }
 
 }  // namespace
+
+Transform normalised(Soup soup, const Transform& pose) {
+  Transform result = pose;
+  for (int row = 0; row < 3; ++row) {
+    double* r = &result.m[4 * row];
+    if (soup == Soup::tiny) {
+      for (int k = 0; k < 3; ++k) r[k] *= 1e6;
+    }
+    if (soup == Soup::far) r[3] -= 2000 * (r[0] + r[1] + r[2]);
+  }
+  return result;
+}
 
 Workload makeWorkload(const Table1& options) {
   return boxesAndSensors(options.boxes, options.sensors, options.shape, kCubeSide, options.seed);

@@ -1,9 +1,7 @@
 // What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
 #include "workloads/interlocking.h"
 
-#include <cmath>
-
-#include "workloads/random.h"
+#include "workloads/random_shapes.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -35,39 +33,18 @@ MeshData makeRoundComb(uint32_t teeth) {
   return mesh;
 }
 
-Vec3 turned(const std::array<double, 9>& rotation, const Vec3& v) {
-  Vec3 out{};
-  for (size_t i = 0; i < 9; ++i) out[i / 3] += rotation[i] * v[i % 3];
-  return out;
-}
-
-std::array<double, 9> product(const std::array<double, 9>& p, const std::array<double, 9>& q) {
-  std::array<double, 9> out{};
-  for (size_t i = 0; i < 9; ++i) {
-    for (size_t k = 0; k < 3; ++k) out[i] += p[i / 3 * 3 + k] * q[3 * k + i % 3];
-  }
-  return out;
-}
-
-struct Shapes {
-  MeshData sensor, scene;
-  Vec3 offset;  // of the scene's, in the sensor's axes
-  std::array<double, 9> turn;
-  Vec3 free;  // where the sensor can move far
-};
-
-Shapes shapesOf(Interlocking kind) {
-  constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1}, kReversed{1, 0, 0, 0, -1, 0, 0, 0, -1};
-  constexpr std::array<double, 9> kTurned{0.28, -0.96, 0, 0.96, 0.28, 0, 0, 0, 1};
-  constexpr std::array<double, 9> kSlightly{0.9998, 0, 0.02, 0, 1, 0, -0.02, 0, 0.9998};
-  constexpr std::array<double, 9> kTilted{0.9968, 0, 0.08, 0, 1, 0, -0.08, 0, 0.9968};
+/// Two meshes, where the second is while the first is at the origin, and the way the first is mostly free to move: +z.
+Interlocked shapesOf(Interlocking kind) {
+  constexpr Rotation kReversed{1, 0, 0, 0, -1, 0, 0, 0, -1}, kTurned{0.28, -0.96, 0, 0.96, 0.28, 0, 0, 0, 1};
+  constexpr Rotation kSlightly{0.9998, 0, 0.02, 0, 1, 0, -0.02, 0, 0.9998};
+  constexpr Rotation kTilted{0.9968, 0, 0.08, 0, 1, 0, -0.08, 0, 0.9968};
   switch (kind) {
     case Interlocking::ringOnPeg:
-      return {makeTorus(1, 0.25, 96, 32), makeRod(0.65, 8, 256), {0, 0, 0.3}, kUpright, {0, 0, 1}};
+      return {makeTorus(1, 0.25, 96, 32), makeRod(0.65, 8, 256), kUpright, {0, 0, 0.3}};
     case Interlocking::combInComb:
-      return {makeRoundComb(8), makeRoundComb(8), {0.25, 0.02, 4.4}, product(kSlightly, kReversed), {0, 0, 1}};
+      return {makeRoundComb(8), makeRoundComb(8), product(kSlightly, kReversed), {0.25, 0.02, 4.4}};
     default:
-      return {makeGrating(256, 8, 0.03), makeGrating(256, 8, 0.03), {0, 0, 0.6}, product(kTilted, kTurned), {0, 0, 1}};
+      return {makeGrating(256, 8, 0.03), makeGrating(256, 8, 0.03), product(kTilted, kTurned), {0, 0, 0.6}};
   }
 }
 
@@ -80,7 +57,7 @@ const char* nameOf(Interlocking kind) {
 
 Workload makeWorkload(const InterlockingPairs& options) {
   Random random(options.seed);
-  Shapes shapes = shapesOf(options.kind);
+  Interlocked shapes = shapesOf(options.kind);
   Workload workload;
   workload.scenes.push_back({nameOf(options.kind), {}, {}, {}});
   for (uint32_t i = 0; i < options.sensors; ++i) {
@@ -88,17 +65,17 @@ Workload makeWorkload(const InterlockingPairs& options) {
     const auto frame = random.rotation();
     Vec3 second = turned(frame, shapes.offset);
     for (size_t k = 0; k < 3; ++k) second[k] += home[k];
-    workload.scenes[0].instances.push_back({1, makePose(product(frame, shapes.turn), {1, 1, 1}, second)});
+    workload.scenes[0].instances.push_back({1, makePose(product(frame, shapes.rotation), kFull, second)});
     Vec3 towards = random.inBox({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3});
-    for (size_t k = 0; k < 3; ++k) towards[k] += shapes.free[k];
+    towards[2] += 1;
     QuerySpec query;
     query.id = std::to_string(i);
-    query.sensor = {0, makePose(frame, {1, 1, 1}, home)};
+    query.sensor = {0, makePose(frame, kFull, home)};
     query.direction = turned(frame, towards);
     query.distance = random.uniform(1, 8);
     workload.queries.push_back(std::move(query));
   }
-  workload.meshes = {std::move(shapes.sensor), std::move(shapes.scene)};
+  workload.meshes = {std::move(shapes.first), std::move(shapes.second)};
   return workload;
 }
 

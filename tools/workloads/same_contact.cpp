@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "workloads/family_shapes.h"
+#include "workloads/random_shapes.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -27,12 +27,6 @@ double lengthOf(const Vec3& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-void bake(PlacedMesh& placed, const Vec3& offset) {
-  MeshData moved{placed.mesh.name, {}, {}};
-  append(moved, placed.mesh, offset);
-  placed.mesh = std::move(moved);
-}
-
 MeshData cut(const MeshData& mesh, Random& random) {
   MeshData out{mesh.name, mesh.positions, {}};
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -53,27 +47,27 @@ MeshData cut(const MeshData& mesh, Random& random) {
 
 }  // namespace
 
-StabilityCase dyadicCase(Random& random) {
-  StabilityCase made;
+HardCase dyadicCase(Random& random) {
+  HardCase hard;
   const auto placed = [&](const Vec3& where) {
     MeshData mesh = onGrid(anyShape(random));
     const double size = random.oneIn(3) ? 2 : random.oneIn(2) ? 0.5 : 1;
     const Rotation rotation = quarterTurns(random);
     return PlacedMesh{std::move(mesh), makePose(rotation, {size, size, size}, where)};
   };
-  made.direction = wholeLength(random);
+  hard.direction = wholeLength(random);
   const double steps = random.below(96);
   const Vec3 aside = scaled(wholeVector(random, 6), 0.25);
-  Vec3 where = scaled(made.direction, 0.0625 * steps);
+  Vec3 where = scaled(hard.direction, 0.0625 * steps);
   for (size_t k = 0; k < 3; ++k) where[k] += aside[k];
-  made.sensor = placed({});
-  made.objects.push_back(placed(where));
-  made.distance = 0.0625 * lengthOf(made.direction) * (steps + random.below(48));
-  return made;
+  hard.sensor = placed({});
+  hard.objects.push_back(placed(where));
+  hard.distance = 0.0625 * lengthOf(hard.direction) * (steps + random.below(48));
+  return hard;
 }
 
-StabilityCase movedTogether(const StabilityCase& made, Random& random) {
-  StabilityCase out = made;
+HardCase movedTogether(const HardCase& hard, Random& random) {
+  HardCase out = hard;
   const Vec3 offset = scaled(wholeVector(random, 1000), 0.25);
   if (random.oneIn(2)) {
     place(out, quarterTurns(random), offset);
@@ -81,7 +75,7 @@ StabilityCase movedTogether(const StabilityCase& made, Random& random) {
   }
   // In the vertices: each pose turns the offset back before, so that the world moves alike.
   const auto bakeBack = [&](PlacedMesh& placed) {
-    bake(placed, offset);
+    moveVertices(placed, offset);
     for (size_t row = 0; row < 3; ++row) {
       double* r = &placed.worldFromMesh.m[4 * row];
       r[3] += offset[row] - (r[0] * offset[0] + r[1] * offset[1] + r[2] * offset[2]);
@@ -92,23 +86,23 @@ StabilityCase movedTogether(const StabilityCase& made, Random& random) {
   return out;
 }
 
-StabilityCase changedPlaces(const StabilityCase& made) {
-  StabilityCase out = made;
+HardCase changedPlaces(const HardCase& hard) {
+  HardCase out = hard;
   std::swap(out.sensor, out.objects.at(0));
   out.direction = scaled(out.direction, -1);
   return out;
 }
 
-StabilityCase cutInTwo(const StabilityCase& made, Random& random) {
-  StabilityCase out = made;
-  out.sensor.mesh = cut(made.sensor.mesh, random);
+HardCase cutInTwo(const HardCase& hard, Random& random) {
+  HardCase out = hard;
+  out.sensor.mesh = cut(hard.sensor.mesh, random);
   for (PlacedMesh& object : out.objects) object.mesh = cut(object.mesh, random);
   return out;
 }
 
-StabilityCase withFarObjects(const StabilityCase& made, Random& random) {
-  StabilityCase out = made;
-  const double beyond = 1000 + 2 * made.distance;
+HardCase withFarObjects(const HardCase& hard, Random& random) {
+  HardCase out = hard;
+  const double beyond = 1000 + 2 * hard.distance;
   for (uint32_t i = 1 + random.below(5); i > 0; --i) {
     const Vec3 where = scaled(random.direction(), beyond);
     MeshData mesh = anyShape(random);
@@ -117,14 +111,14 @@ StabilityCase withFarObjects(const StabilityCase& made, Random& random) {
   return out;
 }
 
-std::array<StabilityCase, 2> splitWay(const StabilityCase& made, Random& random) {
-  const double length = lengthOf(made.direction);
-  const auto steps = static_cast<uint32_t>(made.distance / (0.0625 * length));
+std::array<HardCase, 2> splitWay(const HardCase& hard, Random& random) {
+  const double length = lengthOf(hard.direction);
+  const auto steps = static_cast<uint32_t>(hard.distance / (0.0625 * length));
   const double part = 0.0625 * random.below(steps + 1);
-  std::array<StabilityCase, 2> parts{made, made};
+  std::array<HardCase, 2> parts{hard, hard};
   parts[0].distance = part * length;
-  parts[1].distance = made.distance - parts[0].distance;
-  for (size_t k = 0; k < 3; ++k) parts[1].sensor.worldFromMesh.m[4 * k + 3] += part * made.direction[k];
+  parts[1].distance = hard.distance - parts[0].distance;
+  for (size_t k = 0; k < 3; ++k) parts[1].sensor.worldFromMesh.m[4 * k + 3] += part * hard.direction[k];
   return parts;
 }
 

@@ -1,4 +1,4 @@
-// Random shapes of a kind, for the families: about 2 wide, around the origin.
+// Random shapes of a kind, about 2 wide, around the origin.
 #pragma once
 
 #include <vector>
@@ -18,6 +18,8 @@ MeshData soupShape(Random& random);
 /// One of the kinds above.
 MeshData anyShape(Random& random);
 
+/// Boxes, plates, a sheet and triangles with whole and half corners.
+MeshData latticeShape(Random& random);
 MeshData triangleShape(Random& random);
 /// 1 to 6 triangles that are, by `kind` 0 to 5, points, segments, of a doubled corner, spikes, slivers, held three
 /// times.
@@ -32,7 +34,6 @@ Block block(Random& random);
 
 /// Two meshes, and where the second is when they interlock and the first is at the origin.
 struct Interlocked {
-  const char* name;
   MeshData first, second;
   Rotation rotation;
   Vec3 offset;

@@ -1,5 +1,5 @@
 // What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
-#include "workloads/family_shapes.h"
+#include "workloads/random_shapes.h"
 
 #include "workloads/generate.h"
 #include "workloads/shapes.h"
@@ -107,6 +107,25 @@ MeshData anyShape(Random& random) {
   }
 }
 
+MeshData latticeShape(Random& random) {
+  switch (random.below(5)) {
+    case 0:
+      return makeBox({1, 1, 1});
+    case 1:
+      return makeBox({2, 1, 1});
+    case 2:
+      return makePlate(2, 2, 1);
+    case 3:
+      return makeSheet(2, 0, random);
+  }
+  MeshData mesh{"triangles", {}, {}};
+  for (uint32_t corner = 0, corners = 3 * (1 + random.below(6)); corner < corners; ++corner) {
+    for (double value : wholeVector(random, 2)) mesh.positions.push_back(static_cast<float>(value));
+    mesh.indices.push_back(corner);
+  }
+  return mesh;
+}
+
 MeshData triangleShape(Random& random) {
   MeshData mesh{"triangle", {}, {0, 1, 2}};
   for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
@@ -153,13 +172,13 @@ Block block(Random& random) {
 }
 
 std::vector<Interlocked> interlockedShapes() {
-  return {{"ring on peg", makeTorus(1, 0.2, 24, 12), makeRod(0.4, 6, 20), kUpright, {0, 0, 0.1}},
-          {"ring through ring", makeTorus(1, 0.15, 24, 10), makeTorus(1, 0.15, 24, 10), kOnEdge, {1, 0, 0}},
-          {"hook behind bar", makeHook(4, 1.5, 1, 0.3), makeBox({0.3, 3, 0.3}), kUpright, {0.6, 0, -1.3}},
-          {"ball in cup", makeCup(1, 2, 0.2, 24), smallBall(), kUpright, {0, 0, 1}},
-          {"comb in comb", makeComb(4, 1, 1.5, 0.3), looseComb(), kUpright, {0, 0, 1.9}},
-          {"ball in teapot", makeTeapot(), smallBall(), kUpright, {0, 0, 1.2}},
-          {"key in keyhole", makeKeyhole(), makeKey(), kUpright, {0, 0, 0.5}}};
+  return {{makeTorus(1, 0.2, 24, 12), makeRod(0.4, 6, 20), kUpright, {0, 0, 0.1}},
+          {makeTorus(1, 0.15, 24, 10), makeTorus(1, 0.15, 24, 10), kOnEdge, {1, 0, 0}},
+          {makeHook(4, 1.5, 1, 0.3), makeBox({0.3, 3, 0.3}), kUpright, {0.6, 0, -1.3}},
+          {makeCup(1, 2, 0.2, 24), smallBall(), kUpright, {0, 0, 1}},
+          {makeComb(4, 1, 1.5, 0.3), looseComb(), kUpright, {0, 0, 1.9}},
+          {makeTeapot(), smallBall(), kUpright, {0, 0, 1.2}},
+          {makeKeyhole(), makeKey(), kUpright, {0, 0, 0.5}}};
 }
 
 }  // namespace radar::tools

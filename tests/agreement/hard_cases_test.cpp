@@ -1,0 +1,96 @@
+// A small share of what radar_random_queries and `cyber-radar stability` ask by the ten thousand.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "agreement/compare.h"
+#include "agreement/real_meshes.h"
+#include "radar/cpu_sweeper.h"
+#include "stability/measure.h"
+#include "support/test_device.h"
+
+namespace {
+
+using namespace radar;
+using tools::Approach;
+using tools::Company;
+
+std::vector<Query> withDistances(const Scene& scene, const tools::Workload& workload) {
+  CpuSweeper cpu(scene);
+  std::vector<Query> first, queries;
+  for (const tools::QuerySpec& spec : workload.queries) first.push_back(tools::toQuery(spec, Mode::contact));
+  const std::vector<Result> exact = cpu.run(first);
+  for (size_t i = 0; i < first.size(); ++i) {
+    queries.push_back(first[i]);
+    if (exact[i].status != Status::hit) continue;
+    for (const double distance : {std::nextafter(exact[i].t, 0), exact[i].t, std::nextafter(exact[i].t, INFINITY)}) {
+      queries.push_back(first[i]);
+      queries.back().distance = distance;
+    }
+  }
+  return queries;
+}
+
+}  // namespace
+
+TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU's answer on the device") {
+  const tools::MeshFamilies meshes = test::realMeshes();
+  tools::CaseRun run(test::device(), meshes);
+  for (const std::string& family : tools::runFamilies(meshes)) {
+    CAPTURE(family);
+    const uint64_t cases = 130;  // three scenes
+    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
+      UNSCOPED_INFO("case " << number << ": " << words);
+    };
+    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong, [](uint64_t) {});
+    CHECK(tally.queries == cases);
+    CHECK(tally.wrong == 0);
+    CHECK(std::max(tally.late, tally.early) <= 1e-12);
+    CHECK(tally.hits >= 5);
+  }
+}
+
+TEST_CASE("hard cases of every family, each alone, keep every promise of modes sampled and contact") {
+  const auto onWrong = [](const std::string& words) { UNSCOPED_INFO(words); };
+  const size_t families = tools::hardFamilies().size();
+  const tools::StabilitySettings settings{
+      .cases = tools::kIsolatedCases * families, .seed = 7, .resolutions = {16, 64}};
+  const std::vector<tools::StabilityRow> rows =
+      tools::measureStability(test::device(), settings, onWrong, [](uint64_t) {});
+  CHECK(rows.size() == families * 5);
+  for (const tools::StabilityRow& row : rows) {
+    CAPTURE(row.family, row.asked.name());
+    CHECK(row.right());
+    CHECK(row.tally.queries == tools::kIsolatedCases);
+    CHECK(row.tally.contacts() >= 5);
+  }
+}
+
+TEST_CASE("with D at the contact and a rounding beside it, answers and decisions keep every promise") {
+  for (const tools::HardFamily& family : tools::hardFamilies()) {
+    const tools::Workload workload = tools::hardScene(family, 17, 0, tools::kIsolatedCases, Company::isolated);
+    Scene scene;
+    tools::replaceBy(workload, 0, scene);
+    std::vector<Query> queries = withDistances(scene, workload);
+    CAPTURE(family.name);
+    CHECK(queries.size() > workload.queries.size());
+    for (const bool decide : {false, true}) {
+      for (Query& query : queries) query.anyHit = decide;
+      test::compare(scene, queries);
+      test::compare(scene, tools::queriesFor({tools::Method::sampled, 32}, queries));
+    }
+  }
+}
+
+TEST_CASE("a case is the same whichever cases are asked before it") {
+  tools::CaseRun run(test::device());
+  const auto ask = [&](uint64_t first, uint64_t cases) {
+    return run.run(
+        {"touching", 5, first, cases}, [](uint64_t, const Approach&, const std::string&) {}, [](uint64_t) {});
+  };
+  const tools::Tally whole = ask(60, 10);
+  tools::Tally parts;
+  for (uint64_t i = 60; i < 70; ++i) parts.add(ask(i, 1));
+  CHECK(parts.queries == 10);
+  CHECK(parts.hits == whole.hits);
+  CHECK(parts.overlaps == whole.overlaps);
+}

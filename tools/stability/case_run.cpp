@@ -1,0 +1,123 @@
+#include "stability/case_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/clock.h"
+#include "radar/cpu_sweeper.h"
+#include "workloads/generate.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr uint32_t kMixedCases = 64;
+constexpr const char* kAtDistance = "at-distance";
+
+Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
+  if (method != Method::paper) return judge(scene, query, result, exact);
+  return judge(toldBy(paperAnswer(query, result)), exact, unitOf(scene, query, exact));
+}
+
+}  // namespace
+
+std::vector<std::string> runFamilies(const MeshFamilies& meshes) {
+  std::vector<std::string> names;
+  for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
+  names.push_back(kAtDistance);
+  for (const auto& [name, own] : meshes) names.push_back(name);
+  return names;
+}
+
+uint32_t strideOf(uint32_t resolution) {
+  return std::max(1u, (resolution / 128) * (resolution / 128));
+}
+
+/// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.
+struct CaseRun::Stage {
+  Stage(const Device& device, MeshFamilies more)
+      : meshes(std::move(more)), sweeper(device, scene, {.cpuBatch = 0}), cpu(scene) {}
+
+  Workload sceneOf(const CaseRange& range, uint64_t number, uint32_t size) const {
+    if (const auto found = meshes.find(range.family); found != meshes.end()) {
+      return makeWorkload(RandomPoses{
+          .meshes = found->second, .objects = 100, .sensors = size, .seed = range.seed * 1'000'003 + number});
+    }
+    const bool atDistance = range.family == kAtDistance;
+    const HardFamily& family = atDistance ? hardFamilies()[number % hardFamilies().size()] : hardFamily(range.family);
+    return hardScene(family, range.seed, number * size, size, range.company);
+  }
+
+  /// D becomes where the CPU finds the contact, or a rounding beside it.
+  void moveDistances(std::vector<Query>& queries, uint64_t number) {
+    const std::vector<Result> exact = cpu.run(queries);
+    for (size_t i = 0; i < queries.size(); ++i, ++number) {
+      if (exact[i].status != Status::hit) continue;
+      const double beside = number % 3 == 1 ? 0 : INFINITY;
+      queries[i].distance = number % 3 == 0 ? exact[i].t : std::nextafter(exact[i].t, beside);
+    }
+  }
+
+  /// The cases of the range from number `next` on that are in one scene with it.
+  std::vector<Query> show(const CaseRange& range, uint64_t next, uint32_t size) {
+    const Workload workload = sceneOf(range, next / size, size);
+    replaceBy(workload, 0, scene);
+    sweeper.sync();
+    cpu.sync();
+    const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
+    std::vector<Query> queries;
+    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size], Mode::contact));
+    if (range.family == kAtDistance) moveDistances(queries, next);
+    return queries;
+  }
+
+  MeshFamilies meshes;
+  Scene scene;
+  Sweeper sweeper;
+  CpuSweeper cpu;
+};
+
+CaseRun::CaseRun(const Device& device, MeshFamilies meshes)
+    : stage_(std::make_unique<Stage>(device, std::move(meshes))) {}
+CaseRun::~CaseRun() = default;
+
+std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach> asked, const OnWrong& onWrong,
+                                const std::function<void(uint64_t)>& onProgress) {
+  std::vector<Tally> tallies(asked.size());
+  const uint32_t size = range.company == Company::mixed ? kMixedCases : kIsolatedCases;
+  for (uint64_t next = range.first; next < range.first + range.cases;) {
+    const std::vector<Query> queries = stage_->show(range, next, size);
+    std::vector<Result> exact, results;
+    const double cpuSeconds = bench::lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
+    double seconds = 0;
+    for (size_t a = 0; a < asked.size(); ++a) {
+      if (next / size % strideOf(asked[a].resolution) != 0) continue;
+      const std::vector<Query> put = queriesFor(asked[a], queries);
+      // The paper's min(L) stands beside mode sampled's own answer.
+      if (a == 0 || asked[a].resolution != asked[a - 1].resolution) {
+        seconds = bench::lapOf([&] { results = stage_->sweeper.run(put); }).wall;
+      }
+      Tally& tally = tallies[a];
+      tally.deviceSeconds += seconds;
+      tally.cpuSeconds += cpuSeconds;
+      tally.pairs += stage_->sweeper.stats().pairs;
+      tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
+      for (size_t i = 0; i < put.size(); ++i) {
+        const Verdict verdict = judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
+        tally.add(verdict, exact[i]);
+        if (asked[a].method == Method::paper || verdict.right()) continue;
+        onWrong(next + i, asked[a], verdict.words() + " " + stage_->sweeper.reason(i));
+      }
+    }
+    next += queries.size();
+    onProgress(queries.size());
+  }
+  return tallies;
+}
+
+Tally CaseRun::run(const CaseRange& range, const OnWrong& onWrong, const std::function<void(uint64_t)>& onProgress) {
+  const Approach contact;
+  return run(range, {&contact, 1}, onWrong, onProgress)[0];
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,228 @@
+#include "stability/judge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+using Corners = std::array<Vector, 3>;
+
+Vector plus(const Vector& x, const Vector& y, double scale) {
+  return {x[0] + scale * y[0], x[1] + scale * y[1], x[2] + scale * y[2]};
+}
+
+Vector minus(const Vector& x, const Vector& y) {
+  return plus(x, y, -1);
+}
+
+double dot(const Vector& x, const Vector& y) {
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
+
+double lengthOf(const Vector& x) {
+  return std::hypot(x[0], x[1], x[2]);
+}
+
+Vector cross(const Vector& x, const Vector& y) {
+  return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+}
+
+Corners cornersOf(const MeshView& mesh, const Transform& pose, uint32_t triangle) {
+  Corners corners;
+  for (size_t i = 0; i < 3; ++i) {
+    corners[i] = transformPoint(pose, &mesh.positions[3 * size_t{mesh.indices[3 * size_t{triangle} + i]}]);
+  }
+  return corners;
+}
+
+double distanceToEdge(const Vector& p, const Vector& from, const Vector& to) {
+  const Vector edge = minus(to, from), way = minus(p, from);
+  const double square = dot(edge, edge);
+  const double at = square > 0 ? std::clamp(dot(edge, way) / square, 0.0, 1.0) : 0;
+  return lengthOf(plus(way, edge, -at));
+}
+
+/// The triangle may be degenerate.
+double distanceTo(const Vector& p, const Corners& t) {
+  double best = INFINITY;
+  for (size_t i = 0; i < 3; ++i) best = std::min(best, distanceToEdge(p, t[i], t[(i + 1) % 3]));
+  const Vector n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  if (lengthOf(n) == 0) return best;
+  for (size_t i = 0; i < 3; ++i) {
+    if (dot(n, cross(minus(t[(i + 1) % 3], t[i]), minus(p, t[i]))) < 0) return best;
+  }
+  return std::min(best, std::abs(dot(n, minus(p, t[0]))) / lengthOf(n));
+}
+
+double largest(const Corners& corners) {
+  double size = 0;
+  for (const Vector& corner : corners) {
+    for (double c : corner) size = std::max(size, std::abs(c));
+  }
+  return size;
+}
+
+void judgePoint(const Scene& scene, const Query& query, const Result& result, Verdict& verdict) {
+  if (std::isnan(result.point[0])) {
+    // Where surfaces pierce each other at the start only the exact search may name a point of the crossing.
+    verdict.set(Fault::point, result.status == Status::hit);
+    return;
+  }
+  const Object& object = scene.object(result.object);
+  Corners a = cornersOf(scene.mesh(query.mesh), query.worldFromMesh, result.triA);
+  const Corners b = cornersOf(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
+  const double rounding = 1e-13 * std::max({largest(a), largest(b), result.t});
+  for (Vector& corner : a) corner = plus(corner, query.direction, result.t / lengthOf(query.direction));
+  verdict.set(Fault::point, !(distanceTo(result.point, a) <= rounding && distanceTo(result.point, b) <= rounding));
+}
+
+void judgeNormal(const Query& query, const Result& result, const Result& exact, Verdict& verdict) {
+  verdict.set(Fault::normal, std::isnan(result.normal[0]) != std::isnan(exact.normal[0]));
+  if (std::isnan(result.normal[0])) return;
+  const bool isUnit = std::abs(lengthOf(result.normal) - 1) <= 1e-14;
+  const bool isAgainst = dot(result.normal, query.direction) <= 1e-15 * lengthOf(query.direction);
+  verdict.set(Fault::normal, !isUnit || !isAgainst);
+}
+
+/// An answer that tells of a contact, in mode contact.
+void judgeWhole(const Scene& scene, const Query& query, const Result& result, const Result& exact, double unit,
+                Verdict& verdict) {
+  verdict.set(Fault::wrongStatus, result.status != exact.status);
+  verdict.set(Fault::wrongPair, result.object != exact.object || result.triB != exact.triB ||
+                                    result.triA != exact.triA || result.resolution != 0);
+  // The exact answer's own bracket is a few roundings wide.
+  verdict.set(Fault::bracket,
+              !(result.lo <= result.t && result.t <= result.hi && result.hi - result.lo <= 1e-9 * unit));
+  const bool atStart = result.t == 0 && result.lo == 0 && result.hi == 0;
+  verdict.set(Fault::bracket, result.status == Status::overlap && !atStart);
+  const double fraction = query.distance > 0 ? exact.t / query.distance : 0;
+  verdict.set(Fault::late, !(std::abs(verdict.error) <= 1e-9 && std::abs(result.fraction - fraction) <= 1e-9));
+  if (verdict[Fault::wrongPair]) return;
+  judgePoint(scene, query, result, verdict);
+  judgeNormal(query, result, exact, verdict);
+}
+
+/// An answer that tells whether there is a contact, and nothing else of it.
+void judgeDecision(const Result& result, Verdict& verdict) {
+  verdict.set(Fault::wrongStatus, result.status == Status::overlap);
+  verdict.set(Fault::late, !std::isnan(result.t) || !std::isnan(result.fraction));
+  verdict.set(Fault::wrongPair, result.object != kNone || result.triA != kNone || result.triB != kNone);
+  verdict.set(Fault::point, !std::isnan(result.point[0]));
+  verdict.set(Fault::normal, !std::isnan(result.normal[0]));
+}
+
+void judgeSampled(const Query& query, const Result& result, const Result& exact, Verdict& verdict) {
+  if (result.status == Status::clear) return;
+  verdict.set(Fault::bracket, result.lo != 0);
+  if (!meets(result)) return verdict.set(Fault::bracket, !std::isnan(result.hi));
+  verdict.set(Fault::wrongStatus, result.status == Status::overlap && exact.status != Status::overlap);
+  verdict.set(Fault::bracket, !query.anyHit && result.t != result.hi);
+}
+
+}  // namespace
+
+bool meets(const Result& result) {
+  return result.status == Status::hit || result.status == Status::overlap;
+}
+
+const char* nameOf(Fault fault) {
+  constexpr std::array<const char*, kFaults> kNames{
+      "missed", "false hit", "not answered", "wrong status", "wrong pair", "bracket", "late", "point", "normal"};
+  return kNames[static_cast<size_t>(fault)];
+}
+
+std::string Verdict::words() const {
+  std::string list;
+  for (size_t i = 0; i < kFaults; ++i) {
+    if (faults_[i]) list.append(list.empty() ? "" : ", ").append(nameOf(static_cast<Fault>(i)));
+  }
+  return list;
+}
+
+Told toldBy(const Result& result) {
+  switch (result.status) {
+    case Status::hit:
+    case Status::overlap:
+      return {Told::Kind::contact, result.t, result.lo, result.hi};
+    case Status::clear:
+      return {Told::Kind::none, NAN, NAN, NAN};
+    case Status::undecided:
+      return {Told::Kind::unseen, NAN, NAN, NAN};
+    case Status::invalid:
+      break;
+  }
+  throw Error("a query was not answered");
+}
+
+Verdict judge(const Told& told, const Result& exact, double unit) {
+  Verdict verdict;
+  const bool contact = meets(exact);
+  verdict.set(Fault::missed, contact && told.kind == Told::Kind::none);
+  verdict.set(Fault::falseHit, !contact && told.kind == Told::Kind::contact);
+  verdict.unseen = contact && told.kind == Told::Kind::unseen;
+  verdict.found = contact && told.kind == Told::Kind::contact;
+  if (!verdict.found) return verdict;
+  verdict.set(Fault::bracket, told.lo > exact.hi || told.hi < exact.lo);
+  if (told.t != exact.t && !std::isnan(told.t)) verdict.error = (told.t - exact.t) / unit;
+  return verdict;
+}
+
+double unitOf(const Scene& scene, const Query& query, const Result& exact) {
+  return std::max(sensorSize(scene, query), meets(exact) ? exact.t : 0);
+}
+
+Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact) {
+  Verdict verdict;
+  if (result.status == Status::invalid) {
+    verdict.set(Fault::unanswered);
+    return verdict;
+  }
+  const double unit = unitOf(scene, query, exact);
+  verdict = judge(toldBy(result), exact, unit);
+  const bool sampled = query.mode == Mode::sampled;
+  if (result.status == Status::clear) {
+    verdict.set(Fault::bracket, !sampled && !(std::isnan(result.t) && std::isnan(result.lo) && std::isnan(result.hi)));
+  }
+  if (!sampled) verdict.set(Fault::unanswered, result.status == Status::undecided);
+  if (verdict.found) {
+    // No bound may be absent or beyond D.
+    verdict.set(Fault::bracket, !(result.lo <= exact.hi && exact.lo <= result.hi && result.hi <= query.distance));
+    verdict.set(Fault::wrongStatus, result.detected != Detected::yes);
+    if (query.anyHit) judgeDecision(result, verdict);
+    if (!sampled && !query.anyHit) judgeWhole(scene, query, result, exact, unit, verdict);
+  }
+  if (sampled) judgeSampled(query, result, exact, verdict);
+  return verdict;
+}
+
+void Tally::add(const Verdict& verdict, const Result& exact) {
+  ++queries;
+  hits += exact.status == Status::hit;
+  clear += exact.status == Status::clear;
+  overlaps += exact.status == Status::overlap;
+  unseen += verdict.unseen;
+  wrong += !verdict.right();
+  for (size_t i = 0; i < kFaults; ++i) faults[i] += verdict[static_cast<Fault>(i)];
+  late = std::max(late, verdict.error);
+  early = std::max(early, -verdict.error);
+}
+
+void Tally::add(const Tally& other) {
+  for (uint64_t Tally::*number : {&Tally::queries, &Tally::hits, &Tally::clear, &Tally::overlaps, &Tally::unseen,
+                                  &Tally::wrong, &Tally::pairs, &Tally::cpuPairs}) {
+    this->*number += other.*number;
+  }
+  for (size_t i = 0; i < kFaults; ++i) faults[i] += other.faults[i];
+  late = std::max(late, other.late);
+  early = std::max(early, other.early);
+  deviceSeconds += other.deviceSeconds;
+  cpuSeconds += other.cpuSeconds;
+}
+
+}  // namespace radar::tools

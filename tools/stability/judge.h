@@ -1,0 +1,91 @@
+// Answers held against the exact answer, that of the CPU's search.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "radar/radar.h"
+
+namespace radar::tools {
+
+/// hit or overlap.
+bool meets(const Result& result);
+
+/// What can be wrong with an answer.
+enum class Fault {
+  missed,       ///< no contact, where there is one within D
+  falseHit,     ///< a contact, where there is none within D
+  unanswered,   ///< invalid; undecided in mode contact
+  wrongStatus,  ///< hit for overlap or the other way, or not detected
+  wrongPair,    ///< the object or a triangle
+  bracket,      ///< t* is not in [lo, hi], t is not, or hi is beyond D; in mode contact, wider than 1e-9 units
+  late,         ///< in mode contact: t is off by more than 1e-9 units, or the fraction by 1e-9
+  point,        ///< not on both surfaces at the moment of contact, or missing
+  normal        ///< not a unit vector against the motion, or present where the exact answer has none
+};
+inline constexpr size_t kFaults = 9;
+const char* nameOf(Fault fault);
+
+class Verdict {
+ public:
+  bool unseen = false;  ///< undecided, where there is a contact: a fault in mode contact only
+  bool found = false;   ///< a contact, where there is one
+  double error = 0;     ///< t - t* of a contact that was found, in units
+
+  /// A fault that was found stays.
+  void set(Fault fault, bool is = true) {
+    faults_[static_cast<size_t>(fault)] = faults_[static_cast<size_t>(fault)] || is;
+  }
+  bool operator[](Fault fault) const { return faults_[static_cast<size_t>(fault)]; }
+  bool right() const { return faults_.none(); }
+  /// What is wrong, in words; empty if nothing is.
+  std::string words() const;
+
+ private:
+  std::bitset<kFaults> faults_;
+};
+
+/// What any method says of one query.
+struct Told {
+  enum class Kind {
+    contact,  ///< at t
+    none,     ///< not within D
+    unseen    ///< nothing was seen, and nothing is promised
+  };
+  Kind kind = Kind::none;
+  double t = NAN, lo = NAN, hi = NAN;  ///< bounds that it vouches for; NaN: it does not
+};
+
+/// The engine's word. Throws Error if the query is invalid.
+Told toldBy(const Result& result);
+
+/// Missed, false hit and bracket are judged. Errors are in units of `unit`.
+Verdict judge(const Told& told, const Result& exact, double unit);
+
+/// What errors are relative to: max(size of the sensor, t*).
+double unitOf(const Scene& scene, const Query& query, const Result& exact);
+
+/// All that an answer promises, in the query's mode and with its `decide`. In mode sampled `lo` must be 0, and pair, t,
+/// point and normal are not judged.
+Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact);
+
+/// Verdicts added up, and what the answers cost.
+struct Tally {
+  uint64_t queries = 0, hits = 0, clear = 0, overlaps = 0;  ///< by the exact answers
+  uint64_t unseen = 0;
+  uint64_t wrong = 0;  ///< answers with any fault
+  std::array<uint64_t, kFaults> faults{};
+  double late = 0, early = 0;  ///< the largest errors, in units
+  uint64_t pairs = 0, cpuPairs = 0;
+  double deviceSeconds = 0, cpuSeconds = 0;
+
+  uint64_t operator[](Fault fault) const { return faults[static_cast<size_t>(fault)]; }
+  uint64_t contacts() const { return hits + overlaps; }
+  void add(const Verdict& verdict, const Result& exact);
+  void add(const Tally& other);
+};
+
+}  // namespace radar::tools

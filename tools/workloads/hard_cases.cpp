@@ -1,0 +1,106 @@
+#include "workloads/hard_cases.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+namespace {
+
+/// By quarter turns and whole steps half of the time, otherwise at random.
+void placeAnywhere(HardCase& hard, Random& random) {
+  if (random.oneIn(2)) {
+    const Rotation frame = quarterTurns(random);
+    const Vec3 origin = wholeVector(random, 8);
+    place(hard, frame, origin);
+  } else {
+    const Rotation frame = random.rotation();
+    const Vec3 origin = random.inBox({-10, -10, -10}, {10, 10, 10});
+    place(hard, frame, origin);
+  }
+}
+
+uint32_t meshIn(Workload& workload, const MeshData& mesh) {
+  const auto found = std::find_if(workload.meshes.begin(), workload.meshes.end(), [&](const MeshData& known) {
+    return known.indices == mesh.indices && known.positions == mesh.positions;
+  });
+  const auto number = static_cast<uint32_t>(found - workload.meshes.begin());
+  if (found == workload.meshes.end()) workload.meshes.push_back(mesh);
+  return number;
+}
+
+}  // namespace
+
+void place(HardCase& hard, const Rotation& frame, const Vec3& origin) {
+  const auto move = [&](Transform& pose) {
+    const Transform old = pose;
+    for (size_t row = 0; row < 3; ++row) {
+      for (size_t column = 0; column < 4; ++column) {
+        double sum = column == 3 ? origin[row] : 0;
+        for (size_t k = 0; k < 3; ++k) sum += frame[3 * row + k] * old.m[4 * k + column];
+        pose.m[4 * row + column] = sum;
+      }
+    }
+  };
+  move(hard.sensor.worldFromMesh);
+  for (PlacedMesh& object : hard.objects) move(object.worldFromMesh);
+  hard.direction = turned(frame, hard.direction);
+}
+
+void moveVertices(PlacedMesh& placed, const Vec3& offset) {
+  MeshData moved{placed.mesh.name, {}, {}};
+  append(moved, placed.mesh, offset);
+  placed.mesh = std::move(moved);
+}
+
+const HardFamily& hardFamily(std::string_view name) {
+  for (const HardFamily& family : hardFamilies()) {
+    if (family.name == name) return family;
+  }
+  throw Error("no family of hard cases is called \"" + std::string(name) + "\"");
+}
+
+HardCase hardCase(const HardFamily& family, uint64_t seed, uint64_t number) {
+  Random random(seed * 1'000'003 + number);
+  HardCase hard = family.make(family.values[number % family.values.size()], random);
+  if (!family.placesItself) placeAnywhere(hard, random);
+  if (hard.objects.size() == 1 && random.oneIn(2)) {
+    std::swap(hard.sensor, hard.objects[0]);
+    hard.direction = scaled(hard.direction, -1);
+  }
+  return hard;
+}
+
+Workload sceneOf(const std::vector<HardCase>& cases, Company company) {
+  assert(company == Company::mixed || cases.size() <= kIsolatedCases);
+  Workload workload;
+  SceneSpec scene{"cases", {}, {}, {}};
+  for (size_t i = 0; i < cases.size(); ++i) {
+    const HardCase& hard = cases[i];
+    const uint32_t mask = company == Company::mixed ? ~0u : 1u << i;
+    for (const PlacedMesh& object : hard.objects) {
+      if (mask != ~0u) scene.masks.emplace_back(static_cast<uint32_t>(scene.instances.size()), mask);
+      scene.instances.push_back({meshIn(workload, object.mesh), object.worldFromMesh});
+    }
+    QuerySpec query;
+    query.id = std::to_string(i);
+    query.sensor = {meshIn(workload, hard.sensor.mesh), hard.sensor.worldFromMesh};
+    query.direction = hard.direction;
+    query.distance = hard.distance;
+    query.mask = mask;
+    workload.queries.push_back(std::move(query));
+  }
+  workload.scenes.push_back(std::move(scene));
+  return workload;
+}
+
+Workload hardScene(const HardFamily& family, uint64_t seed, uint64_t first, uint32_t count, Company company) {
+  std::vector<HardCase> cases;
+  for (uint64_t i = first; i < first + count; ++i) cases.push_back(hardCase(family, seed, i));
+  return sceneOf(cases, company);
+}
+
+}  // namespace radar::tools

@@ -54,11 +54,11 @@ bool repeats(std::vector<uint32_t> ids) {
 std::string validate(const HostGeometry& geometry, const Scene& scene) {
   std::vector<MeshId> meshes;
   for (const DeformedMesh& deformed : geometry.meshes) {
-    const std::string name = "mesh " + std::to_string(deformed.mesh);
+    std::string name = "mesh " + std::to_string(deformed.mesh);
     if (!scene.hasMesh(deformed.mesh)) return name + " does not exist";
     if (!scene.impl().meshes[deformed.mesh].deforms) return name + " was added without bounds";
     if (deformed.positions.buffer == VK_NULL_HANDLE) return name + ": expected a buffer of positions";
-    if (std::string wrong = validate(deformed.positions); !wrong.empty()) return name + ": " + wrong;
+    if (std::string wrong = validate(deformed.positions); !wrong.empty()) return name.append(": ").append(wrong);
     meshes.push_back(deformed.mesh);
   }
   if (repeats(std::move(meshes))) return "meshes: expected each at most once";

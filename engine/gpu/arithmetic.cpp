@@ -150,7 +150,8 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint
 
 template <class Real>
 bool sameBits(Real p, Real q) {
-  return std::memcmp(&p, &q, sizeof(Real)) == 0;
+  using Bits = std::array<std::byte, sizeof(Real)>;
+  return std::bit_cast<Bits>(p) == std::bit_cast<Bits>(q);
 }
 
 // A unit in the last place of x.

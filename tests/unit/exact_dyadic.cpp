@@ -41,6 +41,13 @@ TEST_CASE("sums and products of dyadics are exact for all finite doubles") {
         (Rational(v[0]) - Rational(v[1])) * Rational(v[2]) + (Rational(v[3]) + Rational(v[4])) * Rational(v[5]);
     INFO("case " << i);
     REQUIRE(ours.sign() == truth.sign());
+    // The quotient is rounded to nearest, so it is off by at most half a unit in its last place.
+    const Dyadic one(1);
+    const double nearest = quotient(ours, one);
+    if (std::abs(nearest) > 0x1p-1000 && std::abs(nearest) < 0x1p1000) {
+      const Rational off = abs(Rational(truth - Rational(nearest)));
+      REQUIRE(off * Rational(0x1p53) <= abs(truth));
+    }
     // A quotient of 53 bits by itself uses all digits.
     if (truth.sign() != 0) REQUIRE(quotient(ours, ours) == 1);
     REQUIRE((ours - ours).sign() == 0);

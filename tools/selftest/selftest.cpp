@@ -151,6 +151,7 @@ void runSelftest(SelftestReport& report, const std::function<void()>& onChange) 
       report.togetherState,
       [&] {
         std::vector<uint32_t> numbers;
+        numbers.reserve(usable.size());
         for (const DeviceTest* device : usable) numbers.push_back(device->number);
         return measureTogether(openDevices(numbers), numbers, end, report.together);
       },

@@ -27,9 +27,10 @@ std::string arithmeticText(const DeviceTest& device) {
   for (const ArithmeticCheck& check : device.arithmetic) {
     text +=
         print("    %-48s %s %s\n", check.operation.c_str(), check.passed() ? "right:" : "WRONG:", check.found.c_str());
-    const std::string worst = std::isnan(check.worst) ? "" : print("worst %.3g ulp; ", check.worst);
-    const std::string needed = check.needed.empty() ? "" : "needed: " + check.needed + "; so ";
-    text += "      " + worst + needed + check.consequence + "\n";
+    text += "      ";
+    if (!std::isnan(check.worst)) text += print("worst %.3g ulp; ", check.worst);
+    if (!check.needed.empty()) text.append("needed: ").append(check.needed).append("; so ");
+    text.append(check.consequence).append("\n");
   }
   return text;
 }

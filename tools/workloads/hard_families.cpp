@@ -381,7 +381,8 @@ HardCase tiesCase(double objects, Random& random) {
   const MeshData object = random.oneIn(2) ? resized(makeUvSphere(2, 4), 0.25) : makeBox({0.5, 0.5, 0.5});
   const double height = (flat ? 0 : 0.25) + gap + 0.25;
   for (uint32_t i = 0; i < count; ++i) {
-    hard.objects.push_back({object, at({i % side + 0.5 * (1.0 - side), i / side + 0.5 * (1.0 - side), height})});
+    const uint32_t column = i % side, row = i / side;
+    hard.objects.push_back({object, at({column + 0.5 * (1.0 - side), row + 0.5 * (1.0 - side), height})});
   }
   hard.distance = random.oneIn(3) ? gap : gap + 1;
   return hard;

@@ -75,7 +75,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sensor.scale = static_cast<float>(scale);
   sensor.unscale = static_cast<float>(1 / scale);
   sensor.distance = roundUp(distance);
-  sensor.enough = query.anyHit ? roundDown(distance) : -1.0f;
+  sensor.stopBefore = query.anyHit ? roundDown(distance) : -1.0f;
   setBox(sensor, box, tree.anchor(), farthest);
   sensor.mask = query.mask;
   sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());

@@ -87,14 +87,14 @@ Lanes<Real> rounded(const Lanes<double>& x) {
 }  // namespace
 
 template <class Real>
-LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const Sight& sight)
-    : meshA_(meshA), meshB_(meshB), matrix_(sight.matrix), offset_(sight.offset), travel_(sight.travel) {
+LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePlacement& relative)
+    : meshA_(meshA), meshB_(meshB), matrix_(relative.matrix), offset_(relative.offset), travel_(relative.travel) {
   double position = 0, edge = 0, travelSize = 0;
   for (int k = 0; k < 3; ++k) {
     travelSize += std::abs(travel_[k]);
-    edge = std::max(edge, 2 * sight.slack[k]);
-    position = std::max(position, 2 * sight.slack[k] + 16 * kUnit * sight.magnitude[k]);
-    usable_ = usable_ && sight.magnitude[k] + sight.slack[k] < kMostMagnitude<Real>;
+    edge = std::max(edge, 2 * relative.slack[k]);
+    position = std::max(position, 2 * relative.slack[k] + 16 * kUnit * relative.magnitude[k]);
+    usable_ = usable_ && relative.magnitude[k] + relative.slack[k] < kMostMagnitude<Real>;
   }
   if (!usable_) return;  // the numbers may not fit a float
   travelSize_ = static_cast<Real>(travelSize);

@@ -23,8 +23,8 @@ struct LeafTimes {
 template <class Real>
 class LeafTest {
  public:
-  /// `sight`: how B sees A. The meshes outlive the test.
-  LeafTest(const Mesh& meshA, const Mesh& meshB, const Sight& sight);
+  /// `relative`: how B sees A. The meshes outlive the test.
+  LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePlacement& relative);
 
   /// Tests which pairs may meet from `begin` to `end`. The caller knows that none meets before `begin`.
   LeafTimes<Real> operator()(const gpu::MeshNode& a, const gpu::MeshNode& b, Real begin, Real end);

@@ -26,7 +26,7 @@ struct MeshPair {
   PlacedMesh sensor, other;
   ObjectId object;
   const PairMotion& motion;
-  const Sight &fromSensor, &fromOther;
+  const RelativePlacement &fromSensor, &fromOther;
 };
 
 /// Reuses its memory between searches. For one thread at a time.

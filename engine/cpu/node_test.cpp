@@ -40,22 +40,23 @@ void load(const FourNodes& nodes, int place, FourFloats (&out)[4]) {
 }  // namespace
 
 template <class Real>
-NodeTest<Real>::Axes::Axes(const Sight& sight) {
+NodeTest<Real>::Axes::Axes(const RelativePlacement& relative) {
   for (int k = 0; k < 3; ++k) {
     // A speed near 0 is raised; the slack covers the difference.
-    const double used = std::copysign(std::max(std::abs(sight.travel[k]), double{kLeastSpeed<Real>}), sight.travel[k]);
-    const double wide = sight.slack[k] + std::abs(used - sight.travel[k]);
-    const double magnitude = sight.magnitude[k] + kLeastSpeed<Real>, inverse = 1 / used;
+    const double used =
+        std::copysign(std::max(std::abs(relative.travel[k]), double{kLeastSpeed<Real>}), relative.travel[k]);
+    const double wide = relative.slack[k] + std::abs(used - relative.travel[k]);
+    const double magnitude = relative.magnitude[k] + kLeastSpeed<Real>, inverse = 1 / used;
     const bool usable = magnitude + wide < kMostMagnitude<Real>;
     for (int j = 0; j < 3; ++j) {
-      const auto entry = usable ? static_cast<Real>(inverse * sight.matrix[k][j]) : Real(0);
+      const auto entry = usable ? static_cast<Real>(inverse * relative.matrix[k][j]) : Real(0);
       matrix[k][j] = entry;
       matrixSize[k][j] = std::abs(entry);
     }
     speed[k] = usable ? static_cast<Real>(used) : Real(0);
     rate[k] = usable ? static_cast<Real>(inverse) : Real(0);
     rateSize[k] = usable ? static_cast<Real>(std::abs(inverse)) : Real(0);
-    offset[k] = usable ? static_cast<Real>(inverse * sight.offset[k]) : Real(0);
+    offset[k] = usable ? static_cast<Real>(inverse * relative.offset[k]) : Real(0);
     const auto inTime = [&](double width) {
       return usable ? roundedUp<Real>(std::abs(inverse) * width) : Real(INFINITY);
     };

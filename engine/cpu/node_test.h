@@ -32,21 +32,21 @@ template <class Real>
 class NodeTest {
  public:
   /// `fromA`: B in A's frame; `fromB`: A in B's frame.
-  NodeTest(const Sight& fromA, const Sight& fromB) : alongA_(fromA), alongB_(fromB) {}
+  NodeTest(const RelativePlacement& fromA, const RelativePlacement& fromB) : alongA_(fromA), alongB_(fromB) {}
 
   /// In the pair's unit of time; `from` may be before the start.
   Times<Real> operator()(const FourNodes& a, const FourNodes& b) const;
 
  private:
-  /// A Sight, divided by the speed along each axis: a vertex q of the frame's own mesh and p of the other are level at
-  /// time rate q - matrix p - offset, up to slack.
+  /// A RelativePlacement, divided by the speed along each axis: a vertex q of the frame's own mesh and p of the other
+  /// are level at time rate q - matrix p - offset, up to slack.
   struct Axes {
     LaneVec<Real> matrix[3], matrixSize[3];
     LaneVec<Real> speed, rate, rateSize, offset;
     LaneVec<Real> slack, normalSlack;
     bool complete = true;  ///< no axis was left out
 
-    explicit Axes(const Sight& sight);
+    explicit Axes(const RelativePlacement& relative);
   };
   struct Nodes;
 

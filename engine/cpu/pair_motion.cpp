@@ -36,7 +36,7 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
   }
 }
 
-Sight::Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side) {
+RelativePlacement::RelativePlacement(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side) {
   for (int k = 0; k < 3; ++k) {
     const Vector& n = own.rows[k];
     offset[k] = side * dot(n, motion.gap);
@@ -50,16 +50,16 @@ Sight::Sight(const MeshAxes& own, const Placement& other, const PairMotion& moti
   }
 }
 
-void narrow(TimeSpan& times, const Sight& sight, const gpu::MeshNode& own, const gpu::MeshNode& other) {
+void narrow(TimeSpan& times, const RelativePlacement& relative, const gpu::MeshNode& own, const gpu::MeshNode& other) {
   for (int k = 0; k < 3; ++k) {
-    if (!(sight.magnitude[k] < 0x1p900)) continue;
-    double middle = own.centre[k] - sight.offset[k];
-    double half = own.halfExtent[k] + sight.slack[k] + 32 * kUnit * sight.magnitude[k];
+    if (!(relative.magnitude[k] < 0x1p900)) continue;
+    double middle = own.centre[k] - relative.offset[k];
+    double half = own.halfExtent[k] + relative.slack[k] + 32 * kUnit * relative.magnitude[k];
     for (int j = 0; j < 3; ++j) {
-      middle -= sight.matrix[k][j] * other.centre[j];
-      half += std::abs(sight.matrix[k][j]) * other.halfExtent[j];
+      middle -= relative.matrix[k][j] * other.centre[j];
+      half += std::abs(relative.matrix[k][j]) * other.halfExtent[j];
     }
-    const double speed = std::abs(sight.travel[k]), way = sight.travel[k] < 0 ? -middle : middle;
+    const double speed = std::abs(relative.travel[k]), way = relative.travel[k] < 0 ? -middle : middle;
     if (way - half > speed * times.to || way + half < speed * times.from) {
       times = {1, 0};
       return;

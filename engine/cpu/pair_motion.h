@@ -21,13 +21,13 @@ struct PairMotion {
 
 /// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error
 /// of at most `slack` along each axis.
-struct Sight {
+struct RelativePlacement {
   Matrix matrix;
   Vector offset, travel, slack;
   Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on the terms summed to place it
 
   /// `side`: 1 if the other mesh is the one in motion, else -1.
-  Sight(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side);
+  RelativePlacement(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side);
 };
 
 /// A time interval.
@@ -37,6 +37,6 @@ struct TimeSpan {
 };
 
 /// Narrows `times` to those at which the boxes of `own` and `other` can meet.
-void narrow(TimeSpan& times, const Sight& sight, const gpu::MeshNode& own, const gpu::MeshNode& other);
+void narrow(TimeSpan& times, const RelativePlacement& relative, const gpu::MeshNode& own, const gpu::MeshNode& other);
 
 }  // namespace radar::cpu

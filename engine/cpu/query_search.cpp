@@ -108,10 +108,10 @@ void QuerySearch::searchObject(Task& task, ObjectId id) {
   const PairMotion motion(task.placement, placement, task.motion, task.first.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
-  const Sight fromSensor(task.axes, placement, motion, -1);
+  const RelativePlacement fromSensor(task.axes, placement, motion, -1);
   narrow(times, fromSensor, rootA, rootB);
   if (times.empty()) return;
-  const Sight fromObject(MeshAxes(placement.linear), task.placement, motion, 1);
+  const RelativePlacement fromObject(MeshAxes(placement.linear), task.placement, motion, 1);
   narrow(times, fromObject, rootB, rootA);
   if (times.empty()) return;
   const MeshPair pair{

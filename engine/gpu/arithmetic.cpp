@@ -415,17 +415,17 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
 
 }  // namespace
 
-Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t spoiled) {
+Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t falsified) {
   Arithmetic arithmetic;
   Findings findings(arithmetic.checks);
   const std::vector<FloatTrial> floats = floatTrials();
   arithmetic.floats = checkFloats(findings, floats,
-                                  outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic", std::array{spoiled},
-                                             floats, kSlotFloatTrials, kSlotFloatOutcomes));
+                                  outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic",
+                                             std::array{falsified}, floats, kSlotFloatTrials, kSlotFloatOutcomes));
   if (!hasDoubles) return arithmetic;
   const std::vector<DoubleTrial> doubles = doubleTrials();
   checkDoubles(arithmetic, findings, doubles,
-               outcomesOf(device, k_arithmetic_doubles_comp, "double arithmetic", std::array{0u, spoiled}, doubles,
+               outcomesOf(device, k_arithmetic_doubles_comp, "double arithmetic", std::array{0u, falsified}, doubles,
                           kSlotDoubleTrials, kSlotDoubleOutcomes));
   return arithmetic;
 }

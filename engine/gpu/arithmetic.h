@@ -14,8 +14,8 @@ struct Arithmetic {
   bool dividesRight = false;  ///< quotients of doubles do, too; else shaders correct them
 };
 
-/// Runs the checks, those of doubles only if shaderFloat64 is enabled. `spoiled`, an operation of
+/// Runs the checks, those of doubles only if shaderFloat64 is enabled. `falsified`, an operation of
 /// shaders/arithmetic/interop.h: the shader falsifies its results, to show that the check finds it. Submits and waits.
-Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t spoiled = kNoOperation);
+Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t falsified = kNoOperation);
 
 }  // namespace radar::gpu

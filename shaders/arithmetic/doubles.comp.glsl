@@ -7,7 +7,7 @@
 #include "shared/widen.glsl"
 
 layout(local_size_x = kTrialGroup) in;
-layout(constant_id = 1) const uint kSpoiled = kNoOperation;
+layout(constant_id = 1) const uint kFalsified = kNoOperation;
 
 layout(scalar, binding = kSlotDoubleTrials) readonly restrict buffer Trials { DoubleTrial trials[]; };
 layout(scalar, binding = kSlotDoubleOutcomes) writeonly restrict buffer Outcomes { DoubleOutcome outcomes[]; };
@@ -15,7 +15,7 @@ layout(scalar, binding = kSlotDoubleOutcomes) writeonly restrict buffer Outcomes
 // The result, falsified if the check asks for that.
 double reported(uint operation, double result) {
   const uvec2 bits = unpackDouble2x32(result);
-  return kSpoiled == operation ? packDouble2x32(uvec2(bits.x ^ 1, bits.y)) : result;
+  return kFalsified == operation ? packDouble2x32(uvec2(bits.x ^ 1, bits.y)) : result;
 }
 
 void main() {
@@ -26,9 +26,9 @@ void main() {
   const dvec4 row = dvec4(trials[i].row[0], trials[i].row[1], trials[i].row[2], trials[i].row[3]);
   precise double placed = ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
   uint order = (x < y ? 1 : 0) | (min(x, y) == x ? 2 : 0) | (max(x, y) == x ? 4 : 0);
-  if (kSpoiled == kDoubleOrder) order ^= 1;
+  if (kFalsified == kDoubleOrder) order ^= 1;
   float ofDouble = float(x);
-  if (kSpoiled == kFloatOfDouble) ofDouble = uintBitsToFloat(floatBitsToUint(ofDouble) + 4);
+  if (kFalsified == kFloatOfDouble) ofDouble = uintBitsToFloat(floatBitsToUint(ofDouble) + 4);
   outcomes[i] =
       DoubleOutcome(reported(kDoubleSum, sum), reported(kDoubleProduct, product), reported(kDoubleQuotient, ratio),
                     reported(kDoubleCorrected, correctedQuotient(x, y)), reported(kDoublePlaced, placed),

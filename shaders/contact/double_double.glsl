@@ -143,14 +143,14 @@ Event eventOf(uint feature, dvec3 a[3], dvec3 b[3]) {
 }
 
 // An event's numbers.
-struct Told {
+struct EventDetails {
   double s;     // its parameter
   double turn;  // sign of the normal; -1: the denominator is positive
   dvec3 point;
   bool known;   // false where double-doubles are not precise enough for s
 };
 
-Told tellEvent(uint feature, Event e, dvec3 direction) {
+EventDetails describeEvent(uint feature, Event e, dvec3 direction) {
   // The parameter's numerator and denominator, and the sides of the moving edge on which the ends of the resting edge lie.
   const dvec3 zero = dvec3(0.0LF);
   Differences what = Differences(e.from, e.to, e.x0, e.x1, e.y0, e.y1);
@@ -173,22 +173,22 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
     den = side1;
   }
 
-  Told told;
+  EventDetails details;
   const double first = soundQuotient(num.value.high, den.value.high);
   const DoubleDouble rest = minus(num.value, times(DoubleDouble(first, 0.0LF), den.value));
   const double second = soundQuotient(rest.high, den.value.high);
   const DoubleDouble parameter = quickSum(first, second);
   const double sure = abs(den.value.high) * (1.0LF - 4.5e-16LF) - den.error, size = abs(parameter.high);
   const double error = soundQuotient(num.error + size * den.error, sure) * (1.0LF + 1e-15LF) + 8.0e-31LF * size + 1e-300LF;
-  told.s = parameter.high;
-  told.turn = den.value.high > 0.0LF ? -1.0LF : 1.0LF;
+  details.s = parameter.high;
+  details.turn = den.value.high > 0.0LF ? -1.0LF : 1.0LF;
   // Below the CPU's limit of 2^-60, since the CPU rounds the error differently.
-  told.known = sure > 0.0LF && error < 2.0e-19LF * size;
+  details.known = sure > 0.0LF && error < 2.0e-19LF * size;
 
   // The contact point: along the motion from the moving vertex, at the resting vertex, or on the resting edge.
   precise dvec3 edge = e.y1 - e.y0;
   dvec3 origin = e.from, way = direction;
-  double share = told.s;
+  double share = details.s;
   if (feature >= kFeatureEdges) {
     const double both = minus(side0.value, side1.value).high;
     share = both == 0.0LF ? 0.0LF : clamp(soundQuotient(side0.value.high, both), 0.0LF, 1.0LF);
@@ -196,8 +196,8 @@ Told tellEvent(uint feature, Event e, dvec3 direction) {
     way = edge;
   }
   precise dvec3 point = origin + share * way;
-  told.point = feature < 3 || feature >= kFeatureEdges ? point : e.to;
-  return told;
+  details.point = feature < 3 || feature >= kFeatureEdges ? point : e.to;
+  return details;
 }
 
 // Exponent of x; below -1000 or above 1000 where scaling by it could under- or overflow.

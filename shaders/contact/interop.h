@@ -24,7 +24,7 @@ struct Sensor {
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
   float distance;  // D, scaled, rounded up
   Point halfExtent;
-  float enough;    // scaled: a certain contact before this ends the search; negative unless the query has `anyHit`
+  float stopBefore;  // scaled: a certain contact before this ends the search; negative unless the query has `anyHit`
   uint mask;
   uint firstExcluded;  // in the list of excluded objects
   uint endExcluded;

@@ -142,8 +142,8 @@ bool sameParts(uint featureP, Corners cornersP, uint featureQ, Corners cornersQ)
 bool setHit(uint feature, Corners corners, inout RadarResult r) {
   const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
   const Event e = eventOf(feature, corners.a, corners.b);
-  const Told told = tellEvent(feature, e, direction);
-  precise double t = told.s * sweeps[s].directionLength;
+  const EventDetails details = describeEvent(feature, e, direction);
+  precise double t = details.s * sweeps[s].directionLength;
   precise double slack = kRounded * t;
   const double distance = sweeps[s].distance;
   const double first = min(t, distance);
@@ -154,10 +154,10 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   r.hi = bitsOf(min(above, distance));
   r.fraction = bitsOf(soundQuotient(first, distance));
   dvec3 normal;
-  const bool unit = normalOf(e, told.turn, normal);
-  r.point = bitsOf(told.point);
+  const bool unit = normalOf(e, details.turn, normal);
+  r.point = bitsOf(details.point);
   r.normal = bitsOf(normal);
-  return sound && told.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
+  return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
 void setOverlap(Corners corners, inout RadarResult r) {

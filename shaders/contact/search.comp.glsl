@@ -64,7 +64,7 @@ MeshPair meshes;
 uint nodePairs, trianglePairs, solves;
 // Of its sensor.
 SensorBox box;
-float scale, unscale, enough;
+float scale, unscale, stopBefore;
 
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
 uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
@@ -113,7 +113,7 @@ void loadSensor() {
   box = sensorBoxOf(sensor);
   scale = sensorTexel(sensor, kTexelDirection).w;
   unscale = sensorTexel(sensor, kTexelMask).w;
-  enough = sensorTexel(sensor, kTexelHalfExtent).w;
+  stopBefore = sensorTexel(sensor, kTexelHalfExtent).w;
 }
 
 // Begins a task; returns its object, or kNobody if it is a node of the tree over objects or no longer counts.
@@ -121,7 +121,7 @@ uint begin(SearchTask task) {
   sensor = task.sensor;
   loadSensor();
   const SearchState state = states[sensor];
-  if (task.gap > limitOf(state, enough) || (task.object != kNobody && task.object > state.least)) return kNobody;
+  if (task.gap > limitOf(state, stopBefore) || (task.object != kNobody && task.object > state.least)) return kNobody;
   if (task.object == kNobody) {
     stack[0] = uvec3(kNobody, task.b, floatBitsToUint(task.gap));
     depth = objectDepth = 1;
@@ -419,7 +419,7 @@ void main() {
   tasksLeft = true;
   sensor = object = depth = objectDepth = 0;
   current = uvec3(kNobody, 0, 0);
-  limit = scale = unscale = enough = 0.0;
+  limit = scale = unscale = stopBefore = 0.0;
   least = kNobody;
   nodePairs = trianglePairs = solves = 0;
   bool last = false;
@@ -429,7 +429,7 @@ void main() {
       ++work;
       uint named = takeTasks();
       named = shareTasks(named);
-      limit = limitOf(states[sensor], enough);
+      limit = limitOf(states[sensor], stopBefore);
       least = states[sensor].least;
       named = findObjects(named);
       enterObjects(named);

@@ -101,7 +101,7 @@ TEST_CASE("two balls of many triangles meet as the CPU says, however often they 
   for (int repeat = 0; repeat < 3; ++repeat) CHECK(compare(scene, queries).tally.hits == queries.size());
 }
 
-TEST_CASE("two poles of many triangles each meet in every pair at once, and the least is told") {
+TEST_CASE("two poles of many triangles each meet in every pair at once, and the least is reported") {
   Scene scene;
   const MeshId ball = add(scene, tools::makeUvSphere(6, 40));
   scene.addObject({ball, {}, ~0u});

@@ -40,23 +40,23 @@ TEST_CASE(
   REQUIRE(peerRows().size() == 6);
   for (const BaselineRow& row : peerRows()) {
     CAPTURE(row.family);
-    const std::unique_ptr<Baseline> peer = row.make(workload, row.sizes.back());
-    peer->show({});
-    CHECK_FALSE(peer->cast(sweepOf(0, turned, 10)).has_value());
-    peer->show(objects);
-    const std::optional<double> t = peer->cast(sweepOf(0, turned, 10));
+    const std::unique_ptr<Baseline> baseline = row.make(workload, row.sizes.back());
+    baseline->show({});
+    CHECK_FALSE(baseline->cast(sweepOf(0, turned, 10)).has_value());
+    baseline->show(objects);
+    const std::optional<double> t = baseline->cast(sweepOf(0, turned, 10));
     REQUIRE(t.has_value());
     CHECK(*t == Approx(3).margin(1e-5));
-    CHECK_FALSE(peer->cast(sweepOf(0, turned, 2.9)).has_value());
+    CHECK_FALSE(baseline->cast(sweepOf(0, turned, 2.9)).has_value());
     Query without = sweepOf(0, turned, 10);
     without.exclude = {0};
-    CHECK_FALSE(peer->cast(without).has_value());
+    CHECK_FALSE(baseline->cast(without).has_value());
     std::vector<Instance> moved = objects;
     moved[0].worldFromMesh.m[11] = 6;
-    peer->show(moved);
-    CHECK(peer->cast(sweepOf(0, turned, 10)).value_or(-1) == Approx(4).margin(1e-5));
-    peer->show(std::vector<Instance>{objects[1]});
-    CHECK_FALSE(peer->cast(sweepOf(0, turned, 10)).has_value());
+    baseline->show(moved);
+    CHECK(baseline->cast(sweepOf(0, turned, 10)).value_or(-1) == Approx(4).margin(1e-5));
+    baseline->show(std::vector<Instance>{objects[1]});
+    CHECK_FALSE(baseline->cast(sweepOf(0, turned, 10)).has_value());
   }
 }
 
@@ -70,9 +70,9 @@ TEST_CASE("a hull closes a cup, triangles do not") {
   down.direction = {0, 0, -1};
   for (const BaselineRow& row : peerRows()) {
     CAPTURE(row.family);
-    const std::unique_ptr<Baseline> peer = row.make(workload, row.sizes.back());
-    peer->show(objects);
-    const std::optional<double> t = peer->cast(down);
+    const std::unique_ptr<Baseline> baseline = row.make(workload, row.sizes.back());
+    baseline->show(objects);
+    const std::optional<double> t = baseline->cast(down);
     REQUIRE(t.has_value());
     CHECK(*t == Approx(row.family == "Bullet hull" ? 1.5 : 4.4).margin(1e-3));
   }

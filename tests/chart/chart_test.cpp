@@ -124,15 +124,15 @@ TEST_CASE("slopes are those of power laws") {
 }
 
 TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
-  using Kind = Told::Kind;
+  using Kind = Claim::Kind;
   const std::vector<Result> truth{truthAt(2), truthAt(2), truthAt(NAN), truthAt(4), truthAt(4), truthAt(2)};
   const std::vector<double> sizes(6, 2);
-  const std::vector<Told> told{{Kind::contact, 2.5, 1.5, 2.5}, {Kind::none},   {Kind::contact, 1, 0, 1},
-                               {Kind::contact, 3, 3, 4},       {Kind::unseen}, {Kind::contact, 2.5, 2.25, 2.75}};
+  const std::vector<Claim> claims{{Kind::contact, 2.5, 1.5, 2.5}, {Kind::none},   {Kind::contact, 1, 0, 1},
+                                  {Kind::contact, 3, 3, 4},       {Kind::unseen}, {Kind::contact, 2.5, 2.25, 2.75}};
   Cell cell;
   cell.certified = true;
   cell.queries = 6;
-  judge(cell, told, truth, sizes);
+  judge(cell, claims, truth, sizes);
   CHECK(cell.contacts == 5);
   CHECK(cell.found == 3);
   CHECK(cell.misses == 2);

@@ -1,4 +1,4 @@
-// The checks of a device's arithmetic pass, and they detect an operation that is spoiled on purpose.
+// The checks of a device's arithmetic pass, and they detect an operation that is falsified on purpose.
 #include <catch2/catch.hpp>
 
 #include "gpu/arithmetic.h"
@@ -53,17 +53,17 @@ TEST_CASE("a device's arithmetic passes every check, and its doubles are used un
   CHECK(test::device().impl().dividesRight == test::wantsDoubles());
 }
 
-TEST_CASE("a spoiled operation fails its check, and the engine no longer relies on it") {
+TEST_CASE("a falsified operation fails its check, and the engine no longer relies on it") {
   const bool hasDoubles = test::wantsDoubles();
   const uint32_t operations = hasDoubles ? gpu::kOperations : gpu::kDoubleSum;
-  for (uint32_t spoiled = 1; spoiled < operations; ++spoiled) {
-    const gpu::Arithmetic found = gpu::tryArithmetic(test::device().impl(), hasDoubles, spoiled);
+  for (uint32_t falsified = 1; falsified < operations; ++falsified) {
+    const gpu::Arithmetic found = gpu::tryArithmetic(test::device().impl(), hasDoubles, falsified);
     const std::vector<std::string> names = failed(found);
-    CAPTURE(kNames[spoiled], names);
-    CHECK(std::count(names.begin(), names.end(), kNames[spoiled]) == 1);
-    const bool isFloat = spoiled < gpu::kDoubleSum;
+    CAPTURE(kNames[falsified], names);
+    CHECK(std::count(names.begin(), names.end(), kNames[falsified]) == 1);
+    const bool isFloat = falsified < gpu::kDoubleSum;
     CHECK(found.floats == !isFloat);
-    CHECK(found.doubles == (hasDoubles && (isFloat || spoiled == gpu::kDoubleQuotient)));
-    CHECK(found.dividesRight == (hasDoubles && spoiled != gpu::kDoubleQuotient));
+    CHECK(found.doubles == (hasDoubles && (isFloat || falsified == gpu::kDoubleQuotient)));
+    CHECK(found.dividesRight == (hasDoubles && falsified != gpu::kDoubleQuotient));
   }
 }

@@ -49,7 +49,7 @@ TEST_CASE("speed-up is against the first device, efficiency against the speeds o
   CHECK(report.efficiency(report.alone(0, 1)) == Approx(1));
 }
 
-TEST_CASE("the parts of the devices' time add up, and the greatest loss is told first") {
+TEST_CASE("the parts of the devices' time add up, and the findings begin with the greatest loss") {
   ScaleReport report = madeUp();
   const Losses losses = lossesOf(report, report.run(0, 2));
   CHECK(losses.useful == Approx(0.8));

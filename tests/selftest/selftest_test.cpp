@@ -1,4 +1,4 @@
-// The selftest of devices: what it finds is told, whenever it ends.
+// The selftest of devices: its report is complete whenever it ends.
 #include "selftest/selftest.h"
 
 #include <catch2/catch.hpp>

@@ -101,11 +101,11 @@ TEST_CASE("a tally adds up verdicts and keeps the largest errors") {
   exact.status = Status::hit;
   exact.t = exact.lo = exact.hi = 2;
   Tally tally, other;
-  tally.add(judge({Told::Kind::contact, 3, NAN, NAN}, exact, 2), exact);
-  tally.add(judge({Told::Kind::contact, 1.5, 1, 1.75}, exact, 2), exact);
-  other.add(judge({Told::Kind::none, NAN, NAN, NAN}, exact, 2), exact);
-  other.add(judge({Told::Kind::unseen, NAN, NAN, NAN}, exact, 2), exact);
-  other.add(judge({Told::Kind::contact, 1, NAN, NAN}, clear, 2), clear);
+  tally.add(judge({Claim::Kind::contact, 3, NAN, NAN}, exact, 2), exact);
+  tally.add(judge({Claim::Kind::contact, 1.5, 1, 1.75}, exact, 2), exact);
+  other.add(judge({Claim::Kind::none, NAN, NAN, NAN}, exact, 2), exact);
+  other.add(judge({Claim::Kind::unseen, NAN, NAN, NAN}, exact, 2), exact);
+  other.add(judge({Claim::Kind::contact, 1, NAN, NAN}, clear, 2), clear);
   tally.add(other);
   CHECK(tally.queries == 5);
   CHECK(tally.contacts() == 4);

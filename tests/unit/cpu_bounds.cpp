@@ -29,7 +29,7 @@ struct Pair {
   Motion motion;
   Placement placementA, placementB;
   PairMotion pairMotion;
-  Sight fromA, fromB;
+  RelativePlacement fromA, fromB;
 
   Pair(const Scene::Impl& scene, const Query& query, const Object& object)
       : a(scene.meshes[query.mesh]),

@@ -146,7 +146,7 @@ const std::vector<Expected>& sharedStructs() {
       {"Sensor",
        sizeof(Sensor),
        {MEMBER(Sensor, placement), MEMBER(Sensor, frame), MEMBER(Sensor, direction), MEMBER(Sensor, scale),
-        MEMBER(Sensor, centre), MEMBER(Sensor, distance), MEMBER(Sensor, halfExtent), MEMBER(Sensor, enough),
+        MEMBER(Sensor, centre), MEMBER(Sensor, distance), MEMBER(Sensor, halfExtent), MEMBER(Sensor, stopBefore),
         MEMBER(Sensor, mask), MEMBER(Sensor, firstExcluded), MEMBER(Sensor, endExcluded), MEMBER(Sensor, unscale)}},
       {"Sweep",
        sizeof(Sweep),

@@ -17,11 +17,11 @@ double finite(double length) {
 
 }  // namespace
 
-void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth, std::span<const double> sizes) {
+void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> truth, std::span<const double> sizes) {
   std::vector<double> errors, widths;
-  for (size_t i = 0; i < told.size(); ++i) {
-    const Verdict verdict = judge(told[i], truth[i], sizes[i]);
-    const bool isBounded = !std::isnan(told[i].hi);
+  for (size_t i = 0; i < claims.size(); ++i) {
+    const Verdict verdict = judge(claims[i], truth[i], sizes[i]);
+    const bool isBounded = !std::isnan(claims[i].hi);
     cell.contacts += meets(truth[i]);
     cell.found += verdict.found;
     cell.misses += verdict[Fault::missed] || verdict.unseen;
@@ -30,7 +30,7 @@ void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth
                        (verdict[Fault::missed] && cell.certified);
     if (!verdict.found) continue;
     errors.push_back(finite(verdict.error));
-    if (cell.certified) widths.push_back(finite((told[i].hi - told[i].lo) / sizes[i]));
+    if (cell.certified) widths.push_back(finite((claims[i].hi - claims[i].lo) / sizes[i]));
   }
   cell.errorMedian = quantile(errors, 0.5);
   cell.error99 = quantile(errors, 0.99);

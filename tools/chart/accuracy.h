@@ -10,7 +10,7 @@ namespace radar::tools {
 
 /// Fills the accuracy columns of a cell whose `certified` is set, but for the shares by tier. `truth` is the
 /// reference's.
-void judge(Cell& cell, std::span<const Told> told, std::span<const Result> truth, std::span<const double> sizes);
+void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> truth, std::span<const double> sizes);
 
 /// Fills the shares by tier.
 void countTiers(Cell& cell, std::span<const Result> results);

@@ -32,14 +32,14 @@ std::vector<Case> growthCases(Extent extent);
 inline constexpr uint32_t kGrowthSize = 64;
 
 struct Method {
-  std::string family;    ///< sampled, contact, reference, "drawing all", or a peer's row
+  std::string family;    ///< sampled, contact, reference, "drawing all", or a baseline's row
   uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
   uint32_t threads = 0;  ///< 0: as many as the device takes
 
   std::string name() const { return size == 0 ? family : family + " " + std::to_string(size); }
 };
 
-/// What a section measures, peers not included. `threads`: of the processor.
+/// What a section measures, baselines not included. `threads`: of the processor.
 std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32_t threads);
 
 }  // namespace radar::tools

@@ -28,9 +28,9 @@ struct Cell {
   // How right. Held against the exact answers; lengths in sizes of the sensor (the greatest extent of its box), of a
   // point in the unit of its coordinates.
   uint32_t contacts = 0;    ///< queries with a contact within D, in truth
-  uint32_t found = 0;       ///< contacts for which a distance was told
-  uint32_t misses = 0;      ///< contacts told as none, or not seen
-  uint32_t falseHits = 0;   ///< no contact in truth, one told
+  uint32_t found = 0;       ///< contacts for which a distance was reported
+  uint32_t misses = 0;      ///< contacts denied or not seen
+  uint32_t falseHits = 0;   ///< no contact in truth, but one reported
   uint32_t violations = 0;  ///< bounds, and certain "none"s, that do not hold
   bool certified = false;   ///< the method tells a bracket, and "none" only where that is certain
   double errorMedian = NAN, error99 = NAN, errorWorst = NAN;  ///< of what was found

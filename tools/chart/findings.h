@@ -20,7 +20,7 @@ bool isOurs(const std::string& family);
 /// The worst error, at least kErrorFloor.
 double flooredError(const Cell& cell);
 
-/// Share of answers that are wrong: a contact missed, or told where there is none.
+/// Share of answers that are wrong: a contact missed, or reported where there is none.
 double wrongShare(const Cell& cell);
 
 /// The cells of a workload that have numbers, each method once: in the number of threads in which it was fastest.

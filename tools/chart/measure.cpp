@@ -14,7 +14,7 @@ namespace radar::tools {
 
 namespace {
 
-// Of processor time, for a peer to prepare itself and answer: a hull of many triangles takes minutes.
+// Of processor time, for a baseline to prepare itself and answer: a hull of many triangles takes minutes.
 constexpr unsigned kMostSeconds = 25;
 
 // A slow method gets so much more time, then fewer passes than it should.
@@ -56,7 +56,7 @@ void unmask(std::vector<bench::Batch>& batches, const Workload& workload) {
   }
 }
 
-// What a peer tells: no bounds.
+// What a baseline tells: no bounds.
 Result resultOf(double t) {
   Result result;
   result.status = std::isnan(t) ? Status::clear : Status::hit;
@@ -122,22 +122,23 @@ std::vector<Result> cast(Cell& cell, const Workload& workload, const BaselineRow
   std::vector<bench::Batch> batches = batchesOf(workload, Mode::contact, 0);
   unmask(batches, workload);
   const bench::Stopwatch stopwatch;
-  std::vector<std::unique_ptr<Baseline>> peers;
-  peers.push_back(row.make(workload, cell.size));
-  peers[0]->show(objectsOf(workload, 0));
+  std::vector<std::unique_ptr<Baseline>> baselines;
+  baselines.push_back(row.make(workload, cell.size));
+  baselines[0]->show(objectsOf(workload, 0));
   cell.prepareMs = 1e3 * stopwatch.lap().wall;
-  while (peers.size() < cell.threads) peers.push_back(row.make(workload, cell.size));
+  while (baselines.size() < cell.threads) baselines.push_back(row.make(workload, cell.size));
   const auto answer = [&](std::span<const Query> queries) {
     std::vector<Result> results(queries.size());
-    inThreads(cell.threads, queries.size(),
-              [&](uint32_t thread, size_t i) { results[i] = resultOf(peers[thread]->cast(queries[i]).value_or(NAN)); });
+    inThreads(cell.threads, queries.size(), [&](uint32_t thread, size_t i) {
+      results[i] = resultOf(baselines[thread]->cast(queries[i]).value_or(NAN));
+    });
     return results;
   };
   std::optional<uint32_t> shown;
   const auto show = [&](uint32_t scene) {
     if (shown == scene) return;
     const std::vector<Instance> objects = objectsOf(workload, scene);
-    for (const std::unique_ptr<Baseline>& peer : peers) peer->show(objects);
+    for (const std::unique_ptr<Baseline>& baseline : baselines) baseline->show(objects);
     shown = scene;
   };
   return timePasses(cell, {cell.method, answer, show}, batches, repetition);
@@ -211,9 +212,9 @@ Cell Bench::measure(const Method& method, const BaselineRow* row) {
                                       : method.family == "reference" ? searchOnCpu(cell, which_.workload, repetition_)
                                                                      : sweep(cell);
   if (!cell.failed.empty()) return cell;
-  std::vector<Told> told(results.size());
-  std::transform(results.begin(), results.end(), told.begin(), toldBy);
-  judge(cell, told, truth_, sizes_);
+  std::vector<Claim> claims(results.size());
+  std::transform(results.begin(), results.end(), claims.begin(), claimOf);
+  judge(cell, claims, truth_, sizes_);
   if (row == nullptr) countTiers(cell, results);
   return cell;
 }

@@ -19,7 +19,7 @@ class Bench {
   ~Bench();
 
   const Case& which() const { return which_; }
-  /// `row` is the peer's whose method it is, null for ours.
+  /// `row` is the baseline's whose method it is, null for ours.
   Cell measure(const Method& method, const BaselineRow* row);
 
  private:

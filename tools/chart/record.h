@@ -19,7 +19,7 @@ struct Record {
   std::string command, machine, device, commit, date;
   std::string run;                      ///< fingerprint of all that the cells depend on
   std::vector<WorkloadNote> workloads;  ///< of section front, in order
-  std::vector<std::string> notes;       ///< what each peer cannot do: "name: text"
+  std::vector<std::string> notes;       ///< what each baseline cannot do: "name: text"
   std::vector<Cell> cells;
 };
 

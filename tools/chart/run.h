@@ -19,7 +19,7 @@ struct RunSettings {
 struct Planned {
   const Case* which = nullptr;
   Method method;
-  const BaselineRow* row = nullptr;  ///< of a peer
+  const BaselineRow* row = nullptr;  ///< of a baseline
 };
 
 /// Every cell of the run, in the order of the file. `rows` and `settings` must outlive the plan.

@@ -16,7 +16,7 @@ constexpr const char* kAtDistance = "at-distance";
 
 Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
   if (method != Method::paper) return judge(scene, query, result, exact);
-  return judge(toldBy(paperAnswer(query, result)), exact, unitOf(scene, query, exact));
+  return judge(claimOf(paperAnswer(query, result)), exact, unitOf(scene, query, exact));
 }
 
 }  // namespace

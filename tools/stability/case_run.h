@@ -33,12 +33,12 @@ class CaseRun {
   explicit CaseRun(const Device& device, MeshFamilies meshes = {});
   ~CaseRun();
 
-  /// Is told the case's number, who was asked and what is wrong. The paper's min(L) promises nothing, so its errors are
-  /// counted only.
+  /// Receives the case's number, who was asked and what is wrong. The paper's min(L) guarantees nothing, so its errors
+  /// are only counted.
   using OnWrong = std::function<void(uint64_t, const Approach&, const std::string&)>;
 
-  /// A tally of each of `asked`. Query i of a family and a seed is the same in any range that has it. `onProgress` is
-  /// told how many cases were just done.
+  /// A tally of each of `asked`. Query i of a family and a seed is the same in any range that has it. `onProgress`
+  /// receives the number of cases just done.
   std::vector<Tally> run(const CaseRange& range, std::span<const Approach> asked, const OnWrong& onWrong,
                          const std::function<void(uint64_t)>& onProgress);
   /// Mode contact alone.

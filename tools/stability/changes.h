@@ -32,7 +32,7 @@ struct ChangeSettings {
 /// lo.
 bool agree(const Result& one, const Result& other);
 
-/// `onBroken` is told the change, the method and the case's number; `onProgress` how many cases were just done.
+/// `onBroken` receives the change, the method and the case's number; `onProgress` the number of cases just done.
 std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings& settings,
                                       const std::function<void(const std::string&)>& onBroken,
                                       const std::function<void(uint64_t)>& onProgress);

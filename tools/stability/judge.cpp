@@ -145,31 +145,31 @@ std::string Verdict::words() const {
   return list;
 }
 
-Told toldBy(const Result& result) {
+Claim claimOf(const Result& result) {
   switch (result.status) {
     case Status::hit:
     case Status::overlap:
-      return {Told::Kind::contact, result.t, result.lo, result.hi};
+      return {Claim::Kind::contact, result.t, result.lo, result.hi};
     case Status::clear:
-      return {Told::Kind::none, NAN, NAN, NAN};
+      return {Claim::Kind::none, NAN, NAN, NAN};
     case Status::undecided:
-      return {Told::Kind::unseen, NAN, NAN, NAN};
+      return {Claim::Kind::unseen, NAN, NAN, NAN};
     case Status::invalid:
       break;
   }
   throw Error("a query was not answered");
 }
 
-Verdict judge(const Told& told, const Result& exact, double unit) {
+Verdict judge(const Claim& claim, const Result& exact, double unit) {
   Verdict verdict;
   const bool contact = meets(exact);
-  verdict.set(Fault::missed, contact && told.kind == Told::Kind::none);
-  verdict.set(Fault::falseHit, !contact && told.kind == Told::Kind::contact);
-  verdict.unseen = contact && told.kind == Told::Kind::unseen;
-  verdict.found = contact && told.kind == Told::Kind::contact;
+  verdict.set(Fault::missed, contact && claim.kind == Claim::Kind::none);
+  verdict.set(Fault::falseHit, !contact && claim.kind == Claim::Kind::contact);
+  verdict.unseen = contact && claim.kind == Claim::Kind::unseen;
+  verdict.found = contact && claim.kind == Claim::Kind::contact;
   if (!verdict.found) return verdict;
-  verdict.set(Fault::bracket, told.lo > exact.hi || told.hi < exact.lo);
-  if (told.t != exact.t && !std::isnan(told.t)) verdict.error = (told.t - exact.t) / unit;
+  verdict.set(Fault::bracket, claim.lo > exact.hi || claim.hi < exact.lo);
+  if (claim.t != exact.t && !std::isnan(claim.t)) verdict.error = (claim.t - exact.t) / unit;
   return verdict;
 }
 
@@ -184,7 +184,7 @@ Verdict judge(const Scene& scene, const Query& query, const Result& result, cons
     return verdict;
   }
   const double unit = unitOf(scene, query, exact);
-  verdict = judge(toldBy(result), exact, unit);
+  verdict = judge(claimOf(result), exact, unit);
   const bool sampled = query.mode == Mode::sampled;
   if (result.status == Status::clear) {
     verdict.set(Fault::bracket, !sampled && !(std::isnan(result.t) && std::isnan(result.lo) && std::isnan(result.hi)));

@@ -49,7 +49,7 @@ class Verdict {
 };
 
 /// What any method says of one query.
-struct Told {
+struct Claim {
   enum class Kind {
     contact,  ///< at t
     none,     ///< not within D
@@ -60,10 +60,10 @@ struct Told {
 };
 
 /// The engine's word. Throws Error if the query is invalid.
-Told toldBy(const Result& result);
+Claim claimOf(const Result& result);
 
 /// Missed, false hit and bracket are judged. Errors are in units of `unit`.
-Verdict judge(const Told& told, const Result& exact, double unit);
+Verdict judge(const Claim& claim, const Result& exact, double unit);
 
 /// What errors are relative to: max(size of the sensor, t*).
 double unitOf(const Scene& scene, const Query& query, const Result& exact);

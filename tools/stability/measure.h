@@ -29,7 +29,8 @@ struct StabilitySettings {
   std::vector<uint32_t> resolutions{16, 32, 64, 128, 256, 512, 1024};
 };
 
-/// `onWrong` is told every broken promise, and how to ask again; `onProgress` how many cases were just done.
+/// `onWrong` receives every broken guarantee and the options that repeat the case; `onProgress` the number of cases
+/// just done.
 std::vector<StabilityRow> measureStability(const Device& device, const StabilitySettings& settings,
                                            const std::function<void(const std::string&)>& onWrong,
                                            const std::function<void(uint64_t)>& onProgress);

@@ -27,7 +27,7 @@ struct StepSettings {
   uint32_t resolution = 64;  ///< of all modes but contact
 };
 
-/// `onProgress` is told how many cases were just done.
+/// `onProgress` receives the number of cases just done.
 std::vector<StepRow> measureSteps(const Device& device, const StepSettings& settings,
                                   const std::function<void(uint64_t)>& onProgress);
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
 #include "radar/cpu_sweeper.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 #include "unit/cpu_wild_scenes.h"
 
@@ -27,7 +27,7 @@ void make(uint64_t seed, double most, wild::Made& made) {
 void checkSame(Result found, const Result& exact) {
   found.tier = exact.tier;
   CHECK(found.status == exact.status);
-  CHECK(std::memcmp(&found, &exact, sizeof exact) == 0);
+  CHECK(test::sameBits(found, exact));
 }
 
 }  // namespace

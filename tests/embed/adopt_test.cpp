@@ -94,6 +94,7 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
   test::resetCounts();
   std::vector<std::jthread> threads;
   std::array<double, 2> t{};
+  threads.reserve(t.size());
   for (double& answer : t) {
     threads.emplace_back([&] {
       Boxes boxes;

@@ -167,7 +167,7 @@ Host::~Host() {
   vkDestroyInstance(handles.instance, nullptr);
 }
 
-const Counts& counts() {
+Counts counts() {
   counted.allocations = allocations;
   counted.live = live;
   return counted;

@@ -29,7 +29,7 @@ struct Counts {
   uint64_t submissions = 0, waits = 0;     ///< vkQueueSubmit2, vkWaitForFences
   VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline created
 };
-const Counts& counts();
+Counts counts();
 void resetCounts();
 PFN_vkGetInstanceProcAddr countingLoader();
 const VkAllocationCallbacks* countingAllocator();

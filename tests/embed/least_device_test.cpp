@@ -118,6 +118,7 @@ TEST_CASE("too many sensors for one submission are split, and a scene beyond the
   addRow(100, 0);
   // More sensors than a texel buffer of 65,536 elements holds.
   std::vector<Query> queries;
+  queries.reserve(5000);
   for (int i = 0; i < 5000; ++i) {
     queries.push_back({.mesh = mesh,
                        .worldFromMesh = {{1, 0, 0, 0.06 * i, 0, 1, 0, 0.3, 0, 0, 1, 0}},

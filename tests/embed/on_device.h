@@ -8,6 +8,7 @@
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 
 namespace radar::test {
@@ -50,10 +51,6 @@ inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> qu
   recorder.record(submission.begin(), queries, geometry);
   submission.submitAndWait();
   return recorder.read();
-}
-
-inline bool sameBits(const Result& p, const Result& q) {
-  return std::memcmp(&p, &q, sizeof(Result)) == 0;
 }
 
 }  // namespace radar::test

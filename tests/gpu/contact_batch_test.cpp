@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
+#include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 
@@ -24,10 +24,10 @@ struct LoadedWorkload {
 void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
   REQUIRE(a.size() == b.size());
   for (size_t i = 0; i < a.size(); ++i) {
-    if (std::memcmp(&a[i], &b[i], sizeof(Result)) == 0) continue;
+    if (test::sameBits(a[i], b[i])) continue;
     CAPTURE(i, a[i].t, b[i].t, a[i].lo, b[i].lo, a[i].hi, b[i].hi, a[i].object, b[i].object, a[i].triB, b[i].triB,
             a[i].triA, b[i].triA, uint32_t(a[i].tier), uint32_t(b[i].tier));
-    CHECK(std::memcmp(&a[i], &b[i], sizeof(Result)) == 0);
+    CHECK(test::sameBits(a[i], b[i]));
   }
 }
 

@@ -1,8 +1,7 @@
 #include "pool/fixture.h"
 
-#include <cstring>
-
 #include "gpu/device.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 
 namespace radar::test {
@@ -128,7 +127,7 @@ std::vector<Result> Boxes::answers() const {
 size_t differences(std::span<const Result> a, std::span<const Result> b) {
   if (a.size() != b.size()) return std::max(a.size(), b.size());
   size_t count = 0;
-  for (size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(Result)) != 0;
+  for (size_t i = 0; i < a.size(); ++i) count += !sameBits(a[i], b[i]);
   return count;
 }
 

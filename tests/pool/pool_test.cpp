@@ -157,6 +157,7 @@ TEST_CASE("openDevices refuses unknown and repeated numbers, and a pool refuses 
   const Scene scene;
   CHECK_THROWS_WITH(Pool({}, scene), Catch::Contains("at least one device"));
   std::vector<Device> same;
+  same.reserve(2);
   for (int i = 0; i < 2; ++i) same.push_back(Device::adopt(twoDevices()[0].handles()));
   CHECK_THROWS_WITH(Pool(same, scene), Catch::Contains("devices 0 and 1 share a queue"));
 }

@@ -37,7 +37,7 @@ TEST_CASE("the exact answer keeps every promise, and whatever is changed in it b
     return judge(boxes.scene, boxes.query, result, boxes.exact).words();
   };
   REQUIRE(boxes.exact.t == 2);
-  CHECK(judged([](Result&) {}) == "");
+  CHECK(judged([](Result&) {}).empty());
   CHECK(judged([](Result& r) {
           r.status = Status::clear;
           r.t = r.lo = r.hi = NAN;
@@ -58,7 +58,7 @@ TEST_CASE("a decision says nothing but whether there is a contact") {
   query.anyHit = true;
   Result decision = test::answer(boxes.scene, query);
   decision.tier = Tier::contact;
-  CHECK(judge(boxes.scene, query, decision, boxes.exact).words() == "");
+  CHECK(judge(boxes.scene, query, decision, boxes.exact).words().empty());
   decision.object = 0;
   CHECK(judge(boxes.scene, query, decision, boxes.exact)[Fault::wrongPair]);
   decision.status = Status::overlap;
@@ -75,7 +75,7 @@ TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a cl
   Result result = boxes.exact;
   result.lo = 0;
   result.t = result.hi = 2.1;
-  CHECK(judged(result, boxes.exact).words() == "");
+  CHECK(judged(result, boxes.exact).words().empty());
   CHECK(judged(result, boxes.exact).error == Approx(0.05));
   result.lo = 1.9;
   CHECK(judged(result, boxes.exact)[Fault::bracket]);
@@ -89,7 +89,7 @@ TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a cl
   Result undecided;
   undecided.status = Status::undecided;
   undecided.lo = 0;
-  CHECK(judged(undecided, boxes.exact).words() == "");
+  CHECK(judged(undecided, boxes.exact).words().empty());
   CHECK(judged(undecided, boxes.exact).unseen);
   undecided.lo = 1.5;
   CHECK(judged(undecided, boxes.exact)[Fault::bracket]);

@@ -80,6 +80,7 @@ TEST_CASE("meshes in units so small or large that float cannot hold their poses 
   };
   for (int i = 0; i < 8; ++i) scene.addObject({mesh, pose(), ~0u});
   std::vector<Query> queries;
+  queries.reserve(48);
   for (int i = 0; i < 48; ++i) {
     queries.push_back({.mesh = mesh, .worldFromMesh = pose(), .direction = random.direction(), .distance = 12 * world});
   }

@@ -34,7 +34,7 @@ void print(const std::string& family, const Tally& t) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
@@ -79,4 +79,7 @@ int main(int argc, char** argv) {
   }
   print("all", all);
   return all.wrong == 0 ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "radar_random_queries: %s\n", error.what());
+  return 2;
 }

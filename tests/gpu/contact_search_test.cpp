@@ -5,6 +5,7 @@
 #include <map>
 #include <ostream>
 
+#include "support/same_bits.h"
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
 #include "workloads/hard_cases.h"
@@ -53,7 +54,7 @@ class DeviceSearch {
 
 void checkSame(const Result& a, const Result& b) {
   CAPTURE(a.t, b.t, a.lo, b.lo, a.hi, b.hi, a.object, b.object, a.triB, b.triB, a.triA, b.triA);
-  CHECK(std::memcmp(&a, &b, sizeof a) == 0);
+  CHECK(test::sameBits(a, b));
 }
 
 void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
@@ -109,8 +110,8 @@ namespace {
 
 constexpr uint32_t kTriangles = 70'000;
 
-// A large triangle below many small ones, all of which it meets at the same time if they are level; else the last one is
-// the nearest.
+// A large triangle below many small ones, all of which it meets at the same time if they are level; else the last one
+// is the nearest.
 struct TrianglesOverhead {
   explicit TrianglesOverhead(bool level) {
     const std::vector<float> small{0, 0, 0, 0.5f, 0, 0, 0, 0.5f, 0}, large{-1, -1, 0, 601, -1, 0, -1, 601, 0};
@@ -120,7 +121,8 @@ struct TrianglesOverhead {
     tools::Random random(6);
     for (uint32_t i = 0; i < kTriangles; ++i) {
       const double height = level ? 4 : random.uniform(5, 9);
-      scene.addObject({triangle, at(i % kSide, double(i / kSide), height), ~0u});
+      const uint32_t column = i % kSide, row = i / kSide;
+      scene.addObject({triangle, at(column, row, height), ~0u});
     }
     if (!level) scene.setTransform(kTriangles - 1, at(1, 2, 4.5));
     query = {.mesh = wing, .worldFromMesh = at(0, 0, 0), .direction = {0, 0, 2}, .distance = 20};

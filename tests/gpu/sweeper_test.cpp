@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <cstring>
 
+#include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 
@@ -22,14 +22,10 @@ struct LoadedWorkload {
   std::vector<Query> queries;
 };
 
-bool sameBits(const Result& a, const Result& b) {
-  return std::memcmp(&a, &b, sizeof(Result)) == 0;
-}
-
 void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
   REQUIRE(a.size() == b.size());
   size_t different = 0;
-  for (size_t i = 0; i < a.size(); ++i) different += !sameBits(a[i], b[i]);
+  for (size_t i = 0; i < a.size(); ++i) different += !test::sameBits(a[i], b[i]);
   CHECK(different == 0);
 }
 

@@ -6,9 +6,6 @@
 
 #ifdef __cplusplus
 namespace radar::gpu {
-#define INTEROP_CONST inline constexpr uint
-#else
-#define INTEROP_CONST const uint
 #endif
 
 INTEROP_CONST kTrials = 1024;
@@ -68,5 +65,4 @@ INTEROP_SLOT(kSlotDoubleOutcomes, 1, DoubleOutcome);
 #ifdef __cplusplus
 }  // namespace radar::gpu
 #endif
-#undef INTEROP_CONST
 #endif

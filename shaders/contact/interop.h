@@ -10,9 +10,6 @@
 namespace radar {
 struct Result;
 namespace gpu {
-#define INTEROP_CONST inline constexpr uint
-#else
-#define INTEROP_CONST const uint
 #endif
 
 // The input of a search.
@@ -165,5 +162,4 @@ INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first RefinedPair, l
 }  // namespace gpu
 }  // namespace radar
 #endif
-#undef INTEROP_CONST
 #endif

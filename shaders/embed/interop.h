@@ -6,9 +6,6 @@
 
 #ifdef __cplusplus
 namespace radar::gpu {
-#define INTEROP_CONST inline constexpr uint
-#else
-#define INTEROP_CONST const uint
 #endif
 
 // Component type of a vertex position.
@@ -62,5 +59,4 @@ INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest fi
 #ifdef __cplusplus
 }  // namespace radar::gpu
 #endif
-#undef INTEROP_CONST
 #endif

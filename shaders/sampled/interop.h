@@ -6,9 +6,6 @@
 
 #ifdef __cplusplus
 namespace radar::gpu {
-#define INTEROP_CONST inline constexpr uint
-#else
-#define INTEROP_CONST const uint
 #endif
 
 // The window has 16 x 16 cells; each proposes its pixel of least L. One workgroup reduces one sensor, one invocation
@@ -115,5 +112,4 @@ INTEROP_SLOT(kSlotSampledUnresolved, 14, SampledUnresolved);   // kUnresolvedPer
 #ifdef __cplusplus
 }  // namespace radar::gpu
 #endif
-#undef INTEROP_CONST
 #endif

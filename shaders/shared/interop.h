@@ -13,7 +13,6 @@ using uint = uint32_t;
 using Rows = float[12];
 using PreciseRows = double[12];
 using Point = float[3];
-#define INTEROP_CONST inline constexpr uint
 #else
 // Vectors, because lavapipe loads a vector as fast as a scalar.
 #define Rows vec4[3]
@@ -24,7 +23,6 @@ using Point = float[3];
 #else
 #define PreciseRows dvec4[3]
 #endif
-#define INTEROP_CONST const uint
 #endif
 
 INTEROP_CONST kNobody = 0xffffffffu;
@@ -112,5 +110,4 @@ INTEROP_CONST kFeatureEdges = 6;
 #ifdef __cplusplus
 }  // namespace radar::gpu
 #endif
-#undef INTEROP_CONST
 #endif

@@ -1,4 +1,4 @@
-// Typed binding numbers, shared by C++ and GLSL.
+// How headers that C++ and GLSL share declare constants and typed binding numbers.
 #ifndef RADAR_SLOT_H
 #define RADAR_SLOT_H
 
@@ -16,10 +16,12 @@ struct Slot {
 struct SampledImage;
 
 }  // namespace radar::gpu
+#define INTEROP_CONST inline constexpr uint32_t
 // A Slot<type> in C++, a number in GLSL for `layout(binding = name)`.
 #define INTEROP_SLOT(name, number, type) \
   inline constexpr ::radar::gpu::Slot<type> name { number }
 #else
+#define INTEROP_CONST const uint
 #define INTEROP_SLOT(name, number, type) const uint name = number
 #endif
 

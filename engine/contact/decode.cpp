@@ -50,12 +50,10 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
     if (query.anyHit && earliest.found()) break;
   }
   if (!earliest.found() && found.detected == Detected::yes) {
-    throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+    throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
   }
-  if (!earliest.found()) return clearAnswer();
-  Result result = query.anyHit ? exact::anyHitAnswer(query) : Result();
+  Result result = earliest.answer(query.anyHit);
   result.tier = Tier::contact;
-  if (!query.anyHit) earliest.write(result);
   return result;
 }
 

@@ -7,8 +7,8 @@
 
 namespace radar::cpu {
 
-FirstContact::FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size)
-    : query_(query), motion_(motion), view_(sensor, size, motion.unit), earliest_(motion), latest_(motion.distance) {}
+FirstContact::FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size)
+    : motion_(motion), anyHit_(anyHit), view_(sensor, size, motion.unit), earliest_(motion), latest_(motion.distance) {}
 
 // Returns whether the pair is the earliest so far.
 bool FirstContact::considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) {
@@ -32,14 +32,6 @@ void FirstContact::consider(const exact::PairName& name, const exact::PlacedPair
     latest = s * motion_.length * (1 + 8 * kUnit);
   }
   latest_ = std::min(motion_.distance, latest);
-}
-
-Result FirstContact::result() const {
-  if (query_.anyHit && earliest_.found()) return exact::anyHitAnswer(query_);
-  Result result;
-  result.status = Status::clear;
-  if (earliest_.found()) earliest_.write(result);
-  return result;
 }
 
 }  // namespace radar::cpu

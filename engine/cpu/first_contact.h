@@ -9,11 +9,12 @@ namespace radar::cpu {
 
 class FirstContact {
  public:
-  /// `sensor`, `size`: the sensor's approximate position and size. `query` and `motion` must outlive this.
-  FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size);
+  /// `anyHit`: any contact suffices. `sensor`, `size`: the sensor's approximate position and size. `motion` must
+  /// outlive this.
+  FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size);
 
   /// Whether no further pair matters.
-  bool isDecided() const { return query_.anyHit && earliest_.found(); }
+  bool isDecided() const { return anyHit_ && earliest_.found(); }
   /// No contact later than this, world units, can be the first.
   double latest() const { return latest_; }
   /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
@@ -23,13 +24,13 @@ class FirstContact {
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
 
   /// The answer, without the tier.
-  Result result() const;
+  Result result() const { return earliest_.answer(anyHit_); }
 
  private:
   bool considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
 
-  const Query& query_;
   const Motion& motion_;
+  bool anyHit_;
   View view_;
   exact::EarliestContact earliest_;
   double latest_;

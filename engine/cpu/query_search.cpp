@@ -44,7 +44,7 @@ struct QuerySearch::Task {
         motion(q),
         placement(sensor, q.worldFromMesh),
         axes(placement.linear),
-        first(q, motion, middleOf(sensor, placement),
+        first(motion, q.anyHit, middleOf(sensor, placement),
               std::max({placement.extent[0], placement.extent[1], placement.extent[2]})) {}
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;

@@ -36,8 +36,22 @@ bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const E
   return true;
 }
 
-void EarliestContact::write(Result& result) const {
+Result EarliestContact::answer(bool anyHit) const {
+  Result result;
+  result.status = Status::clear;
+  if (!found_) return result;
   result.detected = Detected::yes;
+  if (anyHit) {
+    result.status = Status::hit;
+    result.lo = 0;
+    result.hi = motion_.distance;
+  } else {
+    describe(result);
+  }
+  return result;
+}
+
+void EarliestContact::describe(Result& result) const {
   result.status = overlap_ ? Status::overlap : Status::hit;
   result.object = name_.object;
   result.triB = name_.triB;
@@ -66,15 +80,6 @@ void EarliestContact::setBracket(Result& result, double t) const {
   result.lo = atEnd ? distance : std::min(std::max(t - slack, 0.0), result.t);
   result.hi = atEnd ? distance : std::min(t + slack, distance);
   result.fraction = result.t / distance;
-}
-
-Result anyHitAnswer(const Query& query) {
-  Result result;
-  result.status = Status::hit;
-  result.detected = Detected::yes;
-  result.lo = 0;
-  result.hi = query.distance;
-  return result;
 }
 
 }  // namespace radar::exact

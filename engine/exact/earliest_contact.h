@@ -37,12 +37,13 @@ class EarliestContact {
   const PairName& name() const { return name_; }
   /// Where contact of the pair begins; before the start if overlaps().
   const Event& event() const { return event_; }
-  /// Sets everything but the tier. Needs found().
-  void write(Result& result) const;
+  /// The answer to a query for the first contact, or with `anyHit` for any, without the tier; clear if none was found.
+  Result answer(bool anyHit) const;
 
  private:
   bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap);
   int compareToEnd(const Event& event) const;
+  void describe(Result& result) const;
   void setBracket(Result& result, double t) const;
 
   const Motion& motion_;
@@ -52,8 +53,5 @@ class EarliestContact {
   PlacedPair pair_{};
   Event event_{};
 };
-
-/// The answer to a query with `anyHit` that has a contact, without the tier.
-Result anyHitAnswer(const Query& query);
 
 }  // namespace radar::exact

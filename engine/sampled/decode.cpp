@@ -72,8 +72,7 @@ Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnre
                        sortedTriangle(scene.meshes[object.mesh], object.worldFromMesh, pair.triB)});
     ++cpuPairs;
   }
-  Result decided;
-  if (earliest.found()) earliest.write(decided);
+  Result decided = earliest.answer(false);
   if (earliest.found() && (answer.object == kNone || decided.hi < answer.hi)) {
     decided.tier = Tier::sampled;
     decided.resolution = resolution;

@@ -153,7 +153,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
     if (result.flags == 0 && result.status != Status::invalid) {
       batch_.answers[queries[i]] = result;
     } else if (result.flags == 0) {
-      throw Error("the contact search lost what it met", VK_ERROR_UNKNOWN);
+      throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
     } else if (found.roomier && result.flags == kFlagCandidates) {

@@ -1,5 +1,6 @@
 #include "cpu/certificate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "exact/determinant.h"
@@ -73,6 +74,46 @@ exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Tri
   if (feature < 6) return exact::faceVertex(d, a, b[feature - 3]);
   const int i = (feature - 6) / 3, k = (feature - 6) % 3;
   return exact::edgeEdge(d, a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]);
+}
+
+namespace {
+
+double largest(const Vector& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
+/// -1 or 1: the side of the plane through the origin with the normal x cross y on which w is, if w is certainly
+/// farther from it than `slack` in the sense of exact/blocking.h; else 0.
+int sideBeyond(const Vector& w, const Vector& x, const Vector& y, double slack) {
+  const exact::Estimate rough = exact::estimate(w, x, y, exact::underflowOf(w));
+  // No component of x cross y exceeds twice the product of the largest of each.
+  const double margin = 2.125 * slack * (largest(x) * largest(y));
+  return std::abs(rough.value) > rough.error + margin ? exact::signOf(rough.value) : 0;
+}
+
+}  // namespace
+
+bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
+                     double slack) {
+  if (feature < 6) {
+    const bool ofA = feature >= 3;
+    const exact::Triangle& face = ofA ? a : b;
+    const Vector& corner = ofA ? b[feature - 3] : a[feature];
+    int sides = 0;
+    for (int i = 0; i < 3; ++i) {
+      sides += sideBeyond(minus(face[i], corner), d, minus(face[(i + 1) % 3], face[i]), slack);
+    }
+    return std::abs(sides) == 3 &&
+           sideBeyond(minus(face[0], corner), minus(face[1], face[0]), minus(face[2], face[0]), slack) != 0;
+  }
+  const int i = (feature - 6) / 3, k = (feature - 6) % 3;
+  const Vector &a0 = a[i], &a1 = a[(i + 1) % 3], &b0 = b[k], &b1 = b[(k + 1) % 3];
+  const Vector x = minus(a1, a0), y = minus(b1, b0), w = minus(b0, a0);
+  // Triangles in one plane, up to the slack, are judged by another rule.
+  const Vector z = minus(b[(k + 2) % 3], b0);
+  if (sideBeyond(w, y, z, slack) == 0 && sideBeyond(minus(b0, a1), y, z, slack) == 0) return false;
+  return sideBeyond(w, d, x, slack) * sideBeyond(minus(b1, a0), d, x, slack) < 0 &&
+         sideBeyond(w, d, y, slack) * sideBeyond(minus(b0, a1), d, y, slack) < 0 && sideBeyond(w, x, y, slack) != 0;
 }
 
 }  // namespace radar::cpu

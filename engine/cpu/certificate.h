@@ -20,4 +20,9 @@ Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const
 /// The contact by features that certainlyFirst certified. It has the bits of exact::contact's `first`.
 exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction);
 
+/// Whether a contact by features that certainlyFirst certified certainly blocks: everything within `slack` of the point
+/// of contact, as seen along `direction`, is inside both features.
+bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
+                     double slack);
+
 }  // namespace radar::cpu

@@ -9,10 +9,11 @@ struct CpuSweeper::Impl {
   unsigned threads;
   cpu::Search search;
   CpuStats stats;
+  Lists lists;
 };
 
 CpuSweeper::CpuSweeper(const Scene& scene, unsigned threads)
-    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}, {}})) {}
+    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}, {}, {}})) {}
 CpuSweeper::~CpuSweeper() = default;
 CpuSweeper::CpuSweeper(CpuSweeper&&) noexcept = default;
 CpuSweeper& CpuSweeper::operator=(CpuSweeper&&) noexcept = default;
@@ -29,11 +30,17 @@ std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
   }
   std::vector<Result> results(queries.size());
   const cpu::SearchStats before = impl_->search.stats();
-  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, results);
+  std::vector<QueryLists> lists = listsFor(queries);
+  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, results, lists);
+  impl_->lists = joined(lists);
   const cpu::SearchStats after = impl_->search.stats();
   impl_->stats = {queries.size(), after.nodes - before.nodes, after.pairs - before.pairs,
                   after.exactPairs - before.exactPairs};
   return results;
+}
+
+const Lists& CpuSweeper::lists() const {
+  return impl_->lists;
 }
 
 const CpuStats& CpuSweeper::stats() const {

@@ -7,31 +7,80 @@
 
 namespace radar::cpu {
 
-FirstContact::FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size)
-    : motion_(motion), anyHit_(anyHit), view_(sensor, size, motion.unit), earliest_(motion), latest_(motion.distance) {}
+FirstContact::FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size)
+    : PairVisitor(motion.distance),
+      query_(query),
+      motion_(motion),
+      view_(sensor, size, motion.unit),
+      earliest_(motion) {}
 
 // Returns whether the pair is the earliest so far.
 bool FirstContact::considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) {
   const Vector& d = motion_.direction;
+  const auto doesBlock = [&] {
+    return !query_.ignoreLeaving || exact::blocks(pair.a, pair.b, d, rule_.slack, rule_.mirrored);
+  };
   if (const Feature feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
     const exact::Event event = eventOf(feature, pair.a, pair.b, d);
-    if (event.s > event.error) return earliest_.considerKnown(name, pair, event);
+    if (event.s > event.error) {
+      if (query_.ignoreLeaving && !certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack) && !doesBlock()) {
+        return false;
+      }
+      return earliest_.considerKnown(name, pair, event);
+    }
   }
   if (!mayMeet(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_)) return false;
-  return earliest_.consider(name, pair);
+  return doesBlock() && earliest_.consider(name, pair);
 }
 
 void FirstContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) {
   if (isBefore(name) || !considerExactly(name, pair, axis)) return;
-  // A distance a little beyond t*, by what the parameter, the length and the product may have lost.
+  decided_ = query_.anyHit;
+  atStart_ = earliest_.overlaps();
+  first_ = earliest_.name();
+  limit(earliest_);
+}
+
+// Lowers `latest_` to a distance a little beyond that of a contact, by what the parameter, the length and the product
+// may have lost.
+void FirstContact::limit(const exact::EarliestContact& contact) {
   double latest = 0;
-  if (!earliest_.overlaps()) {
-    const exact::Event& first = earliest_.event();
+  if (!contact.overlaps()) {
+    const exact::Event& first = contact.event();
     const bool rough = first.error > 1e-12 * first.s;
     const double s = rough ? exact::parameter(first) : first.s + first.error;
     latest = s * motion_.length * (1 + 8 * kUnit);
   }
   latest_ = std::min(motion_.distance, latest);
+}
+
+void FirstContact::endObject() {
+  if (query_.hits == 1 || !earliest_.found()) return;
+  const auto isBefore = [](const auto& p, const auto& q) { return p.precedes(q); };
+  nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), earliest_, isBefore), earliest_);
+  if (nearest_.size() > query_.hits) nearest_.pop_back();
+  latest_ = motion_.distance;
+  if (nearest_.size() == query_.hits) limit(nearest_.back());
+  atStart_ = false;
+  earliest_ = exact::EarliestContact(motion_);
+}
+
+Result FirstContact::first() const {
+  return nearest_.empty() ? earliest_.answer(query_.anyHit) : nearest_.front().answer(false);
+}
+
+std::vector<Result> FirstContact::nearest() const {
+  std::vector<Result> results;
+  results.reserve(nearest_.size());
+  for (const exact::EarliestContact& contact : nearest_) results.push_back(contact.answer(false));
+  // Times that differ by less than their rounding may be equal as doubles.
+  std::sort(results.begin(), results.end(),
+            [](const Result& p, const Result& q) { return p.t != q.t ? p.t < q.t : p.object < q.object; });
+  return results;
+}
+
+void CrossingTest::consider(const exact::PairName&, const exact::PlacedPair& pair, Axis) {
+  decided_ = decided_ || exact::cross(pair.a, pair.b, rule_.slack);
 }
 
 }  // namespace radar::cpu

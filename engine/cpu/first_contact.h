@@ -1,39 +1,64 @@
-// Finds a query's first contact among the pairs of triangles that a search passes to it.
+// Finds a query's contacts among the pairs of triangles that a search passes to it: the first, or the first with each
+// of the nearest objects.
 #pragma once
 
-#include "cpu/leaf_test.h"
+#include <utility>
+#include <vector>
+
+#include "cpu/pair_visitor.h"
 #include "cpu/view.h"
-#include "exact/earliest_contact.h"
+#include "exact/blocking.h"
 
 namespace radar::cpu {
 
-class FirstContact {
+/// How the pairs of a sensor and an object are judged (exact/blocking.h).
+struct PairRule {
+  double slack = 0;
+  exact::Mirrored mirrored;
+};
+
+class FirstContact final : public PairVisitor {
  public:
-  /// `anyHit`: any contact suffices. `sensor`, `size`: the sensor's approximate position and size. `motion` must
-  /// outlive this.
-  FirstContact(const Motion& motion, bool anyHit, const Vector& sensor, double size);
+  /// `sensor`, `size`: the sensor's approximate position and size. `query` and `motion` must outlive this.
+  FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size);
 
-  /// Whether no further pair matters.
-  bool isDecided() const { return anyHit_ && earliest_.found(); }
-  /// No contact later than this, world units, can be the first.
-  double latest() const { return latest_; }
-  /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
-  bool isBefore(const exact::PairName& least) const { return earliest_.overlaps() && earliest_.name() < least; }
+  /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
+  void beginObject(const PairRule& rule) { rule_ = rule; }
+  void endObject();
 
-  /// Considers a pair of placed triangles that probably meet first along `axis`.
-  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
 
-  /// The answer, without the tier.
-  Result result() const { return earliest_.answer(anyHit_); }
+  /// The answers, without their tiers: the first contact, or clear; and the contacts with the nearest objects, by (t,
+  /// object), if the query asks for more than one.
+  Result first() const;
+  std::vector<Result> nearest() const;
 
  private:
   bool considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
+  void limit(const exact::EarliestContact& contact);
 
+  const Query& query_;
   const Motion& motion_;
-  bool anyHit_;
   View view_;
-  exact::EarliestContact earliest_;
-  double latest_;
+  PairRule rule_;
+  exact::EarliestContact earliest_;              // of all objects, or of the current one if several are asked for
+  std::vector<exact::EarliestContact> nearest_;  // one per object, earliest first
+};
+
+/// Finds out whether surfaces cross at the start.
+class CrossingTest final : public PairVisitor {
+ public:
+  CrossingTest() : PairVisitor(0) {}
+
+  /// Call before and after the pairs of one object.
+  void beginObject(const PairRule& rule) { rule_ = rule; }
+  /// Returns whether the surfaces of the sensor and the object cross.
+  bool endObject() { return std::exchange(decided_, false); }
+
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
+
+ private:
+  PairRule rule_;
 };
 
 }  // namespace radar::cpu

@@ -131,15 +131,15 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
   return keys;
 }
 
-/// Passes the pairs of triangles of two leaves to `first`, earliest first.
+/// Passes the pairs of triangles of two leaves to `visitor`, earliest first.
 template <class Real>
 void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
-                FirstContact& first, SearchStats& stats) {
+                PairVisitor& visitor, SearchStats& stats) {
   // Raised by more than rounding to Real may lower it.
-  const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(first.latest())); };
+  const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(visitor.latest())); };
   const LeafTimes<Real> found = test(a, b, near, latest());
   stats.pairs += trianglesOf(a) * trianglesOf(b);
-  for (unsigned pending = found.possible; pending != 0 && !first.isDecided();) {
+  for (unsigned pending = found.possible; pending != 0 && !visitor.isDecided();) {
     int lane = std::countr_zero(pending);
     for (int i = lane + 1; i < 4; ++i) {
       if ((pending >> i & 1) != 0 && found.times.from[i] < found.times.from[lane]) lane = i;
@@ -149,43 +149,43 @@ void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode&
     const uint32_t triA = pair.sensor.mesh.tree.order[(a.link & gpu::kLinkItem) + (lane & 1)];
     const uint32_t triB = pair.other.mesh.tree.order[(b.link & gpu::kLinkItem) + (lane >> 1)];
     const uint64_t before = exact::exactDecisions();
-    first.consider({pair.object, triB, triA},
-                   {placedTriangle(pair.sensor.mesh, pair.sensor.pose, triA),
-                    placedTriangle(pair.other.mesh, pair.other.pose, triB)},
-                   static_cast<Axis>(found.axis[lane]));
+    visitor.consider({pair.object, triB, triA},
+                     {placedTriangle(pair.sensor.mesh, pair.sensor.pose, triA),
+                      placedTriangle(pair.other.mesh, pair.other.pose, triB)},
+                     static_cast<Axis>(found.axis[lane]));
     stats.exactPairs += exact::exactDecisions() != before;
   }
 }
 
 }  // namespace
 
-void MeshSearch::run(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats) {
+void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats) {
   if (floatsSuffice(pair)) {
-    descend<float>(pair, near, first, stats);
+    descend<float>(pair, near, visitor, stats);
   } else {
-    descend<double>(pair, near, first, stats);
+    descend<double>(pair, near, visitor, stats);
   }
 }
 
 template <class Real>
-void MeshSearch::descend(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats) {
+void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats) {
   const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
   const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
   LeafTest<Real> leafTimes(pair.sensor.mesh, pair.other.mesh, pair.fromOther);
   const Opener opener(pair);
-  const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(first.latest())); };
+  const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(visitor.latest())); };
   float latest = latestNow();
 
   open_.resize(3 * (size_t{treeA.depth} + treeB.depth) + 4);
   open_[0] = {static_cast<float>((1 - 0x1p-22) * near), 0, 0};
   Open* top = open_.data() + 1;
-  while (top != open_.data() && !first.isDecided()) {
+  while (top != open_.data() && !visitor.isDecided()) {
     const Open pairNow = *--top;
     if (pairNow.near > latest) continue;
-    if (first.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
+    if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
     if (isLeaf(a) && isLeaf(b)) {
-      meetLeaves(pair, leafTimes, a, b, pairNow.near, first, stats);
+      meetLeaves(pair, leafTimes, a, b, pairNow.near, visitor, stats);
       latest = latestNow();
       continue;
     }

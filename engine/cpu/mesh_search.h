@@ -1,10 +1,11 @@
-// Searches for first contact between a sensor and one object: traverses both meshes' trees, nearest first.
+// Searches for the pairs of triangles of a sensor and one object that matter to a visitor: traverses both meshes'
+// trees, nearest first.
 #pragma once
 
 #include <vector>
 
-#include "cpu/first_contact.h"
 #include "cpu/node_test.h"
+#include "cpu/pair_visitor.h"
 
 namespace radar::cpu {
 
@@ -32,9 +33,9 @@ struct MeshPair {
 /// Reuses its memory between searches. For one thread at a time.
 class MeshSearch {
  public:
-  /// Passes all pairs of triangles that may be the first contact to `first`. There is no contact before `near`, in the
+  /// Passes all pairs of triangles that may matter to `visitor`. There is no contact before `near`, in the
   /// pair's unit of time.
-  void run(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats);
+  void run(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats);
 
  private:
   /// Two nodes that cannot meet before `near`.
@@ -44,7 +45,7 @@ class MeshSearch {
   };
 
   template <class Real>
-  void descend(const MeshPair& pair, double near, FirstContact& first, SearchStats& stats);
+  void descend(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats);
 
   std::vector<Open> open_;
 };

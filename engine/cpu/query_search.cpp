@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cpu/first_contact.h"
 #include "cpu/swept_box.h"
 
 namespace radar::cpu {
@@ -31,44 +32,87 @@ void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& n
 struct QuerySearch::Task {
   const Query& query;
   const Scene::Impl& scene;
+  std::span<const ObjectId> overlapping;  ///< ascending; not eligible
   const Mesh& sensor;
   Motion motion;
   Placement placement;
   MeshAxes axes;
-  FirstContact first;
+  double magnitude = 0;
+  bool mirrored = false;
 
-  Task(const Query& q, const Scene::Impl& s)
+  Task(const Query& q, const Scene::Impl& s, std::span<const ObjectId> skipped)
       : query(q),
         scene(s),
+        overlapping(skipped),
         sensor(s.meshes[q.mesh]),
         motion(q),
         placement(sensor, q.worldFromMesh),
-        axes(placement.linear),
-        first(motion, q.anyHit, middleOf(sensor, placement),
-              std::max({placement.extent[0], placement.extent[1], placement.extent[2]})) {}
+        axes(placement.linear) {
+    if (!query.ignoreLeaving && !query.skipOverlapping) return;
+    magnitude = placedMagnitude(sensor, query.worldFromMesh);
+    mirrored = exact::isMirroring(query.worldFromMesh);
+  }
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
 
-  /// Whether the object shares a mask bit with the query and is not excluded.
+  /// Whether the object shares a mask bit with the query and is neither excluded nor skipped.
   bool isEligible(ObjectId id) const {
     if ((scene.objects[id].object.mask & query.mask) == 0) return false;
-    return std::find(query.exclude.begin(), query.exclude.end(), id) == query.exclude.end();
+    return std::find(query.exclude.begin(), query.exclude.end(), id) == query.exclude.end() &&
+           !std::binary_search(overlapping.begin(), overlapping.end(), id);
+  }
+
+  /// How pairs with an object are judged. Computed only if the query needs it.
+  PairRule ruleFor(ObjectId id) const {
+    if (!query.ignoreLeaving && !query.skipOverlapping) return {};
+    const auto& [mesh, worldFromMesh, mask] = scene.objects[id].object;
+    const double slack =
+        query.slack ? *query.slack
+                    : exact::defaultSlack(std::max(magnitude, placedMagnitude(scene.meshes[mesh], worldFromMesh)));
+    return {slack, {mirrored, exact::isMirroring(worldFromMesh)}};
   }
 };
 
-Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
-  Task task(query, scene);
-  if (tree.inRange()) {
-    searchTree(task, tree);
-  } else {
-    for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-      if (scene.objects[id].used) searchObject(task, id);
-    }
-  }
-  return task.first.result();
+Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists) {
+  std::vector<ObjectId> skipped;
+  if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
+  const Task task(query, scene, skipped);
+  const Vector& extent = task.placement.extent;
+  FirstContact first(query, task.motion, middleOf(task.sensor, task.placement),
+                     std::max({extent[0], extent[1], extent[2]}));
+  forObjects(task, tree, first, [&](ObjectId id) {
+    first.beginObject(task.ruleFor(id));
+    searchObject(task, id, first);
+    first.endObject();
+  });
+  if (lists != nullptr) *lists = {first.nearest(), std::move(skipped)};
+  return first.first();
 }
 
-void QuerySearch::searchTree(Task& task, const ObjectTree& tree) {
+std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
+  Query still = query;
+  still.distance = 0;
+  const Task task(still, scene, {});
+  std::vector<ObjectId> found;
+  CrossingTest test;
+  forObjects(task, tree, test, [&](ObjectId id) {
+    test.beginObject(task.ruleFor(id));
+    searchObject(task, id, test);
+    if (test.endObject()) found.push_back(id);
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+template <class SearchObject>
+void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const PairVisitor& visitor,
+                             const SearchObject& search) {
+  if (!tree.inRange()) {
+    for (ObjectId id = 0; id < task.scene.objects.size(); ++id) {
+      if (task.scene.objects[id].used && !visitor.isDecided() && task.isEligible(id)) search(id);
+    }
+    return;
+  }
   const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
   if (nodes.empty()) return;
   const SweptBox meets(boxOf(task.sensor, task.query.worldFromMesh.m), task.motion, tree);
@@ -76,14 +120,15 @@ void QuerySearch::searchTree(Task& task, const ObjectTree& tree) {
   Open* top = open_.data();
   const auto push = [&](double near, const gpu::ObjectNode& node) {
     *top = {near, node.link};
-    top += near <= task.first.latest();
+    top += near <= visitor.latest();
   };
   push(meets(nodes[0], nodes[0])[0], nodes[0]);
-  while (top != open_.data() && !task.first.isDecided()) {
+  while (top != open_.data() && !visitor.isDecided()) {
     const Open next = *--top;
-    if (next.near > task.first.latest()) continue;
+    if (next.near > visitor.latest()) continue;
     if ((next.link & gpu::kLinkLeaf) != 0) {
-      searchObject(task, next.link & gpu::kLinkItem);
+      const ObjectId id = next.link & gpu::kLinkItem;
+      if (task.isEligible(id)) search(id);
       continue;
     }
     const gpu::ObjectNode &left = nodes[next.link], &right = nodes[next.link + 1];
@@ -96,16 +141,15 @@ void QuerySearch::searchTree(Task& task, const ObjectTree& tree) {
   }
 }
 
-void QuerySearch::searchObject(Task& task, ObjectId id) {
-  if (task.first.isDecided() || !task.isEligible(id)) return;
+void QuerySearch::searchObject(const Task& task, ObjectId id, PairVisitor& visitor) {
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
-  if (task.first.isBefore({id, mesh.tree.below[0].least, 0})) return;
+  if (visitor.isBefore({id, mesh.tree.below[0].least, 0})) return;
 
   const gpu::MeshNode &rootA = task.sensor.tree.nodes[0], &rootB = mesh.tree.nodes[0];
   ++stats_.nodes;
   const Placement placement(mesh, object.worldFromMesh);
-  const PairMotion motion(task.placement, placement, task.motion, task.first.latest());
+  const PairMotion motion(task.placement, placement, task.motion, visitor.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
   const RelativePlacement fromSensor(task.axes, placement, motion, -1);
@@ -116,7 +160,7 @@ void QuerySearch::searchObject(Task& task, ObjectId id) {
   if (times.empty()) return;
   const MeshPair pair{
       {task.sensor, task.query.worldFromMesh}, {mesh, object.worldFromMesh}, id, motion, fromSensor, fromObject};
-  meshes_.run(pair, times.from, task.first, stats_);
+  meshes_.run(pair, times.from, visitor, stats_);
 }
 
 }  // namespace radar::cpu

@@ -4,14 +4,16 @@
 #include <vector>
 
 #include "cpu/mesh_search.h"
+#include "scene/query_lists.h"
 
 namespace radar::cpu {
 
 /// Reuses its memory between queries. For one thread at a time.
 class QuerySearch {
  public:
-  /// Answers a valid query, except for the tier. `tree` is the scene's; neither changes meanwhile.
-  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
+  /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
+  /// the query asks for none.
+  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
   const SearchStats& stats() const { return stats_; }
 
  private:
@@ -21,8 +23,12 @@ class QuerySearch {
     uint32_t link;
   };
 
-  void searchTree(Task& task, const ObjectTree& tree);
-  void searchObject(Task& task, ObjectId id);
+  /// Finds the objects whose surfaces cross the sensor's at the start.
+  std::vector<ObjectId> overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
+  /// Calls `search` with each eligible object in reach of the visitor.
+  template <class SearchObject>
+  void forObjects(const Task& task, const ObjectTree& tree, const PairVisitor& visitor, const SearchObject& search);
+  void searchObject(const Task& task, ObjectId id, PairVisitor& visitor);
 
   std::vector<Open> open_;
   MeshSearch meshes_;

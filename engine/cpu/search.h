@@ -16,12 +16,13 @@ namespace radar::cpu {
 /// Answers queries; reuses the memory of its searches. For one thread at a time.
 class Search {
  public:
-  /// Writes the answers to `queries`, each with `tier`, to `results`, of the same length. Uses up to `threads` threads
+  /// Writes the answers to `queries`, each with `tier`, to `results` and `lists`, of the same length; `lists` may be
+  /// empty if no query has lists. Uses up to `threads` threads
   /// (0: one per core), including the caller's; it starts none for one query, or for a few that take less time than
   /// starting a thread. The answers do not depend on the number of threads. The queries are valid, and the scene does
   /// not change meanwhile.
   void run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-           std::span<Result> results);
+           std::span<Result> results, std::span<QueryLists> lists);
 
   /// Totals over all threads since construction.
   SearchStats stats() const;

@@ -6,6 +6,7 @@
 #include "contact/pass.h"
 #include "embed/host_geometry.h"
 #include "gpu/barrier.h"
+#include "scene/query_lists.h"
 
 // pass                                            reads           writes   barrier after it
 // ----------------------------------------------- --------------- -------- ------------------
@@ -91,6 +92,9 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
+    if (wrong.empty() && (queries[i].ignoreLeaving || hasLists(queries[i]))) {
+      wrong = "ignoreLeaving, skipOverlapping, hits: only a Sweeper, a CpuSweeper and a Pool offer these";
+    }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
 }

@@ -8,7 +8,7 @@
 namespace radar::exact {
 
 bool EarliestContact::consider(const PairName& name, const PlacedPair& pair) {
-  const auto interval = contact(pair.a, pair.b, motion_.direction);
+  const auto interval = contact(pair.a, pair.b, motion_->direction);
   if (!interval || sign(interval->last) < 0) return false;
   return keep(name, pair, interval->first, sign(interval->first) <= 0);
 }
@@ -19,13 +19,23 @@ bool EarliestContact::considerKnown(const PairName& name, const PlacedPair& pair
 
 // -1, 0 or 1: the event comes before, at or after D.
 int EarliestContact::compareToEnd(const Event& event) const {
-  return event.s + event.error < motion_.parameter ? -1 : compareToDistance(event, motion_.distance);
+  return event.s + event.error < motion_->parameter ? -1 : compareToDistance(event, motion_->distance);
+}
+
+// -1, 0 or 1: a contact that begins with `event` comes before, with or after the other.
+int EarliestContact::compareTimes(bool overlap, const Event& event, const EarliestContact& other) {
+  return overlap || other.overlap_ ? int(other.overlap_) - int(overlap) : compare(event, other.event_);
+}
+
+bool EarliestContact::precedes(const EarliestContact& other) const {
+  const int order = compareTimes(overlap_, event_, other);
+  return order < 0 || (order == 0 && name_ < other.name_);
 }
 
 bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap) {
   if (!overlap && compareToEnd(first) > 0) return false;
   if (found_) {
-    const int order = overlap || overlap_ ? int(overlap_) - int(overlap) : compare(first, event_);
+    const int order = compareTimes(overlap, first, *this);
     if (order > 0 || (order == 0 && name_ < name)) return false;
   }
   found_ = true;
@@ -44,7 +54,7 @@ Result EarliestContact::answer(bool anyHit) const {
   if (anyHit) {
     result.status = Status::hit;
     result.lo = 0;
-    result.hi = motion_.distance;
+    result.hi = motion_->distance;
   } else {
     describe(result);
   }
@@ -66,17 +76,17 @@ void EarliestContact::describe(Result& result) const {
   if (overlap_) {
     result.t = result.lo = result.hi = result.fraction = 0;
   } else {
-    setBracket(result, s * motion_.length);
+    setBracket(result, s * motion_->length);
   }
 }
 
 void EarliestContact::setBracket(Result& result, double t) const {
-  const double distance = motion_.distance;
+  const double distance = motion_->distance;
   const bool atEnd = compareToEnd(event_) == 0;
   result.t = atEnd ? distance : std::min(t, distance);
   // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is
   // what the parameter may lose if it is subnormal.
-  const double slack = 8 * kUnit * t + (motion_.length + 2) * std::numeric_limits<double>::denorm_min();
+  const double slack = 8 * kUnit * t + (motion_->length + 2) * std::numeric_limits<double>::denorm_min();
   result.lo = atEnd ? distance : std::min(std::max(t - slack, 0.0), result.t);
   result.hi = atEnd ? distance : std::min(t + slack, distance);
   result.fraction = result.t / distance;

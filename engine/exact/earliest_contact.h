@@ -16,7 +16,7 @@ struct PairName {
   friend auto operator<=>(const PairName&, const PairName&) = default;
 };
 
-/// The sensor's triangle and the scene's, placed. Sorted corners make the result independent of their order.
+/// The sensor's triangle and the scene's, placed.
 struct PlacedPair {
   Triangle a, b;
 };
@@ -24,7 +24,7 @@ struct PlacedPair {
 class EarliestContact {
  public:
   /// `motion` must outlive this.
-  explicit EarliestContact(const Motion& motion) : motion_(motion) {}
+  explicit EarliestContact(const Motion& motion) : motion_(&motion) {}
 
   /// Computes the pair's contact exactly, and keeps it if it is the earliest so far. Returns whether it was kept.
   bool consider(const PairName& name, const PlacedPair& pair);
@@ -37,16 +37,19 @@ class EarliestContact {
   const PairName& name() const { return name_; }
   /// Where contact of the pair begins; before the start if overlaps().
   const Event& event() const { return event_; }
+  /// Whether this contact comes before another one, by (time, name). Both are found, for the same motion.
+  bool precedes(const EarliestContact& other) const;
   /// The answer to a query for the first contact, or with `anyHit` for any, without the tier; clear if none was found.
   Result answer(bool anyHit) const;
 
  private:
   bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap);
+  static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
   int compareToEnd(const Event& event) const;
   void describe(Result& result) const;
   void setBracket(Result& result, double t) const;
 
-  const Motion& motion_;
+  const Motion* motion_;
   bool found_ = false;
   bool overlap_ = false;
   PairName name_;

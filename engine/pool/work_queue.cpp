@@ -27,6 +27,7 @@ std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, siz
   job->passed.resize(workers);
   job->stop = std::move(stop);
   job->answers.results.resize(queries.size());
+  job->lists = listsFor(queries);
   job->place.resize(queries.size());
   std::iota(job->place.begin(), job->place.end(), 0u);
   std::stable_sort(job->place.begin(), job->place.end(),
@@ -165,14 +166,13 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
   }
 }
 
-void WorkQueue::deliver(const Chunk& chunk, std::span<const Result> results,
-                        const std::map<size_t, std::string>& reasons, const SweepStats& stats, ChunkTrace trace,
-                        double deviceMs) {
+void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs) {
   const Lock lock(mutex_);
   Job& job = *chunk.job;
-  for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = results[i];
-  for (const auto& [i, reason] : reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
-  addStats(job.answers.stats, stats);
+  for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = batch.answers[i];
+  for (size_t i = 0; i < batch.lists.size(); ++i) job.lists[job.place[chunk.first + i]] = std::move(batch.lists[i]);
+  for (const auto& [i, reason] : batch.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
+  addStats(job.answers.stats, batch.stats);
   PoolDevice& device = devices_[trace.device];
   device.queries += chunk.count;
   ++device.chunks;
@@ -220,6 +220,7 @@ void WorkQueue::settle(Job& job, size_t count) {
   job.answered += count;
   if (job.answered < job.queries.size()) return;
   job.answers.answered = now();
+  job.answers.lists = joined(job.lists);
   job.promise.set_value(std::move(job.answers));
   std::erase_if(open_, [&](const auto& other) { return other.get() == &job; });
   settled_.notify_all();

@@ -9,6 +9,7 @@
 
 #include "pool/chunk_scheduler.h"
 #include "radar/pool.h"
+#include "sweep/query_batch.h"
 
 namespace radar {
 
@@ -20,6 +21,7 @@ struct Job {
   std::stop_token stop;
   std::promise<PoolAnswers> promise;
   PoolAnswers answers;
+  std::vector<QueryLists> lists;  ///< as in QueryBatch, by original index
   size_t taken = 0, answered = 0;
   std::vector<bool> took, passed;  ///< by worker: has taken a chunk, has deferred to others
 };
@@ -50,8 +52,7 @@ class WorkQueue {
   /// queries in flight or is to end; then returns nothing.
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
   /// Stores a chunk's answers. `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
-  void deliver(const Chunk& chunk, std::span<const Result> results, const std::map<size_t, std::string>& reasons,
-               const SweepStats& stats, ChunkTrace trace, double deviceMs);
+  void deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs);
   /// Ends the worker; its chunks go to the others.
   void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
   /// Gives the worker no more chunks: it is about to retire. Returns false, and changes nothing, if it is the only one

@@ -105,8 +105,7 @@ void Worker::finish(Lane& lane) {
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;
-  queue_.deliver(std::exchange(lane.chunk, {}), lane.results, sweep.reasons, sweep.stats, std::move(lane.trace),
-                 deviceMs);
+  queue_.deliver(std::exchange(lane.chunk, {}), sweep, std::move(lane.trace), deviceMs);
 }
 
 }  // namespace radar

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "math/rounding.h"
 
@@ -159,6 +160,20 @@ std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFro
     corners[i] = transformPoint(worldFromMesh, &mesh.positions[3 * vertex]);
   }
   return corners;
+}
+
+double placedMagnitude(const Mesh& mesh, const Transform& worldFromMesh) {
+  double greatest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double* row = &worldFromMesh.m[4 * i];
+    double sum = std::abs(row[3]);
+    for (int k = 0; k < 3; ++k) {
+      sum += std::abs(row[k]) *
+             std::max(std::abs(mesh.origin[k] + mesh.box.lo[k]), std::abs(mesh.origin[k] + mesh.box.hi[k]));
+    }
+    greatest = std::max(greatest, sum);
+  }
+  return std::min(greatest, std::numeric_limits<double>::max());
 }
 
 Scene::Impl::Impl() : identity(nextVersion()) {}

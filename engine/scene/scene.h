@@ -83,6 +83,10 @@ struct Scene::Impl {
 /// The corners of a triangle of the placed mesh.
 std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle);
 
+/// The greatest sum of absolute values from which a coordinate of the placed mesh is summed, over its vertices and
+/// axes. No placed coordinate is larger.
+double placedMagnitude(const Mesh& mesh, const Transform& worldFromMesh);
+
 /// A box around the transformed mesh. It contains every vertex that `transformPoint` computes, and every one that a
 /// shader computes from the local floats.
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);

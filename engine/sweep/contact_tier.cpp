@@ -62,14 +62,17 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
   const size_t first = which.front(), count = which.size();
   if (which.back() - first + 1 == count) {  // ascending, and so without gaps
     cpu_.run(batch_.asked.subspan(first, count), scene, Tier::contact, options_.cpuThreads,
-             batch_.answers.subspan(first, count));
+             batch_.answers.subspan(first, count),
+             batch_.lists.empty() ? std::span<QueryLists>() : std::span(batch_.lists).subspan(first, count));
   } else {
     std::vector<Query> queries;
     queries.reserve(count);
     for (const size_t i : which) queries.push_back(batch_.asked[i]);
     std::vector<Result> results(count);
-    cpu_.run(queries, scene, Tier::contact, options_.cpuThreads, results);
+    std::vector<QueryLists> lists = listsFor(queries);
+    cpu_.run(queries, scene, Tier::contact, options_.cpuThreads, results, lists);
     for (size_t k = 0; k < count; ++k) batch_.answers[which[k]] = results[k];
+    for (size_t k = 0; k < lists.size(); ++k) batch_.lists[which[k]] = std::move(lists[k]);
   }
   batch_.stats.cpuQueries += count;
   batch_.addCpuTime("cpu", msSince(start));
@@ -89,13 +92,17 @@ void ContactTier::run(std::span<const size_t> which) {
   const Clock::time_point begun = Clock::now();
   const ObjectTree& tree = scene.objectTree();
   batch_.addCpuTime("select", msSince(begun));
-  std::vector<size_t> outOfRange;
+  std::vector<size_t> onlyCpu;  // floats cannot hold them, or the device's search does not offer what they ask
   Clock::time_point start = Clock::now();
   for (const size_t i : which) {
+    if (batch_.asked[i].ignoreLeaving || hasLists(batch_.asked[i])) {
+      onlyCpu.push_back(i);
+      continue;
+    }
     const Planned planned = addSensor(sensors_, batch_.asked[i], static_cast<uint32_t>(planned_.size()), scene, tree);
     if (planned == Planned::added) planned_.push_back(i);
     if (planned == Planned::clear) batch_.answers[i] = clearAnswer();
-    if (planned == Planned::outOfRange) outOfRange.push_back(i);
+    if (planned == Planned::outOfRange) onlyCpu.push_back(i);
     if (planned_.size() < mostSensors_) continue;
     batch_.addCpuTime("encode", msSince(start));
     submit();
@@ -103,7 +110,7 @@ void ContactTier::run(std::span<const size_t> which) {
   }
   batch_.addCpuTime("encode", msSince(start));
   submit();
-  answerOnCpu(outOfRange);
+  answerOnCpu(onlyCpu);
 }
 
 void ContactTier::submit() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radar/radar.h"
+#include "scene/query_lists.h"
 
 namespace radar {
 
@@ -20,7 +21,8 @@ inline double msSince(Clock::time_point start) {
 
 struct QueryBatch {
   std::span<const Query> asked;
-  std::span<Result> answers;  ///< one for each query
+  std::span<Result> answers;      ///< one for each query
+  std::vector<QueryLists> lists;  ///< one for each query, or none if no query has lists
   SweepStats stats;
   std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its index
   std::optional<Error> failure;           ///< the first Vulkan call that failed

@@ -63,6 +63,7 @@ void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> resu
   assert(queries.size() == results.size());
   asked = queries;
   answers = results;
+  lists = listsFor(queries);
   stats = {};
   reasons.clear();
   failure.reset();
@@ -104,6 +105,7 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
   std::vector<Result> results(queries.size());
   impl_->begin(queries, results);
   impl_->finish();
+  impl_->joinedLists = joined(impl_->lists);
   return results;
 }
 
@@ -112,6 +114,10 @@ Scopes Sweeper::scopes(const Query& query) {
   impl_->device.requireSampled("scopes()");
   impl_->stats = {};
   return impl_->sampled().scopes(query);
+}
+
+const Lists& Sweeper::lists() const {
+  return impl_->joinedLists;
 }
 
 const SweepStats& Sweeper::stats() const {

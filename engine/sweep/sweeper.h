@@ -28,6 +28,7 @@ struct Sweeper::Impl : QueryBatch {
   std::shared_ptr<GpuScene> copy;
   std::optional<SampledTier> sampledTier;  ///< made when first needed, since pipelines take time
   ContactTier contactTier;
+  Lists joinedLists;  ///< of the last run()
 };
 
 }  // namespace radar

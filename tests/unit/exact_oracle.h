@@ -173,8 +173,9 @@ inline Corners corners(const radar::MeshView& mesh, const radar::Transform& pose
   return out;
 }
 
-/// Brute force over all pairs.
-inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
+/// Brute force over all pairs. `counts` tells of a placed pair, of the sensor and of the object, whether it counts.
+template <class Counts>
+Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts& counts) {
   Answer best;
   const radar::MeshView sensor = scene.mesh(query.mesh);
   for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
@@ -191,11 +192,16 @@ inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
         // The loops visit ids in increasing order, so the first of equals stays.
         if (best.found && compare(s, best.s) >= 0) continue;
         if (compareToDistance(s, query.direction, query.distance) > 0) continue;
+        if (!counts(id, corners(sensor, query.worldFromMesh, triA), b)) continue;
         best = {true, s, id, triB, triA};
       }
     }
   }
   return best;
+}
+
+inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
+  return answer(scene, query, [](radar::ObjectId, const Corners&, const Corners&) { return true; });
 }
 
 }  // namespace oracle

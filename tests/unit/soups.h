@@ -176,9 +176,8 @@ inline void checkContact(const radar::Scene& scene, const radar::Query& query, c
   REQUIRE(n[0] * d[0] + n[1] * d[1] + n[2] * d[2] <= 1e-15 * length);
 }
 
-/// Checks the status, the pair and the bracket of an answer against the oracle.
-inline void checkTruth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
-  const oracle::Answer truth = oracle::answer(scene, query);
+/// Checks the status, the pair and the bracket of an answer.
+inline void checkTruth(const oracle::Answer& truth, const radar::Query& query, const radar::Result& result) {
   if (!truth.found) {
     REQUIRE(result.status == radar::Status::clear);
     return;
@@ -191,6 +190,10 @@ inline void checkTruth(const radar::Scene& scene, const radar::Query& query, con
   REQUIRE(oracle::compareToDistance(truth.s, query.direction, result.lo) >= 0);
   REQUIRE(oracle::compareToDistance(truth.s, query.direction, result.hi) <= 0);
   REQUIRE(result.hi - result.lo <= 4e-15 * result.hi + 1e-300);
+}
+
+inline void checkTruth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
+  checkTruth(oracle::answer(scene, query), query, result);
 }
 
 /// Checks everything that the oracle knows about an answer.

@@ -37,6 +37,8 @@ class RADAR_API CpuSweeper {
   std::vector<Result> run(std::span<const Query> queries);
 
   const CpuStats& stats() const;
+  /// Lists of the last run(): of queries with `hits` above 1 or `skipOverlapping`.
+  const Lists& lists() const;
 
  private:
   struct Impl;

@@ -32,6 +32,7 @@ struct ChunkTrace {
 /// The answers to a batch.
 struct PoolAnswers {
   std::vector<Result> results;  ///< in the order of the queries
+  Lists lists;                  ///< of queries with `hits` above 1 or `skipOverlapping`
   /// Why a result is Status::invalid, by its index. In addition to a Sweeper's reasons: "cancelled", "the pool was
   /// closed", or that no device is left and why.
   std::map<size_t, std::string> reasons;

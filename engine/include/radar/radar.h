@@ -160,11 +160,30 @@ struct Query {
   bool anyHit = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
   std::vector<ObjectId> exclude;  ///< objects to ignore, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part if its mask shares a bit
+
+  /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
+  /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
+  /// along it. Triangles in one plane that face each other and overlap block exactly if the direction goes into the
+  /// object's. Exact for closed meshes, wound outwards, whose interiors are disjoint at the start; docs/exact.md has
+  /// the rule.
+  bool ignoreLeaving = false;
+  /// Mode contact: objects whose surfaces cross the sensor's at the start, by more than the slack, take no part and are
+  /// listed (Lists::overlapping). Whether a motion deepens an interpenetration cannot be told from surfaces.
+  bool skipOverlapping = false;
+  /// With the two above, world units: how far surfaces may sink into each other at the start and still count as
+  /// touching. It is for rounding: far below the size of triangles. Without a value: 2^-48 times the greatest
+  /// coordinate of the two shapes as placed (its terms' absolute values summed), which covers poses rounded once.
+  std::optional<double> slack;
+  /// Mode contact: lists the first contacts with this many nearest objects (Lists::hits), one per object; kAllHits:
+  /// with all in reach. 1: no list.
+  uint32_t hits = 1;
+
   /// Mode sampled: pixels along the window's longer side, up to kMaxResolution. 0: chosen from the meshes.
   uint32_t resolution = 0;
 };
 
 inline constexpr uint32_t kMaxResolution = 2048;
+inline constexpr uint32_t kAllHits = 0xffffffffu;
 
 enum class Status : uint32_t {
   hit,        ///< certain contact within D: t*, the exact distance, lies in [lo, hi], hi <= D
@@ -215,6 +234,20 @@ struct RADAR_API Result {
 };
 inline constexpr uint32_t kResultVersion = 2;
 static_assert(sizeof(Result) == 120);
+
+/// What the queries of a batch list besides their first contacts. All vectors are empty if no query lists anything.
+struct RADAR_API Lists {
+  /// Of queries with `hits` above 1: the first contact with each object, by (t, object). Those of query i begin at
+  /// hitOffsets[i] and end before hitOffsets[i + 1].
+  std::vector<Result> hits;
+  std::vector<size_t> hitOffsets;
+  /// Of queries with `skipOverlapping`: the objects left out, ascending. Offsets as above.
+  std::vector<ObjectId> overlapping;
+  std::vector<size_t> overlappingOffsets;
+
+  std::span<const Result> hitsOf(size_t query) const;
+  std::span<const ObjectId> overlappingOf(size_t query) const;
+};
 
 /// Check the contracts of Scene and Query. Return an empty string, or what is wrong and what was expected.
 RADAR_API std::string validate(const Transform& worldFromMesh);
@@ -403,6 +436,8 @@ class RADAR_API Sweeper {
   Scopes scopes(const Query& query);
 
   const SweepStats& stats() const;
+  /// Lists of the last run(): of queries with `hits` above 1 or `skipOverlapping`.
+  const Lists& lists() const;
   /// Why the i-th answer of the last run() is invalid; empty if it is valid.
   const std::string& reason(size_t i) const;
 

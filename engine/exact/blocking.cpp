@@ -1,0 +1,214 @@
+#include "exact/blocking.h"
+
+#include "exact/bounded.h"
+#include "exact/determinant.h"
+
+namespace radar::exact {
+
+namespace {
+
+// The decisions below are written once, for two kinds of numbers: Bounded, which may leave them open, and Dyadic.
+enum class Answer { no, yes, open };
+
+Answer operator!(Answer answer) {
+  return answer == Answer::open ? answer : answer == Answer::no ? Answer::yes : Answer::no;
+}
+
+Answer both(Answer p, Answer q) {
+  if (p == Answer::no || q == Answer::no) return Answer::no;
+  return p == Answer::yes && q == Answer::yes ? Answer::yes : Answer::open;
+}
+
+Answer either(Answer p, Answer q) {
+  return !both(!p, !q);
+}
+
+Answer isPositive(const Bounded& x) {
+  return x.sign() > 0 ? Answer::yes : x.isCertain() ? Answer::no : Answer::open;
+}
+
+Answer isPositive(const Dyadic& x) {
+  return x.sign() > 0 ? Answer::yes : Answer::no;
+}
+
+Dyadic abs(const Dyadic& x) {
+  return x.sign() < 0 ? Dyadic(0) - x : x;
+}
+
+Dyadic max(const Dyadic& p, const Dyadic& q) {
+  return (p - q).sign() < 0 ? q : p;
+}
+
+template <class Number>
+using Three = std::array<Number, 3>;
+
+template <class Number>
+Three<Number> numbers(const Vector& v) {
+  return {Number(v[0]), Number(v[1]), Number(v[2])};
+}
+
+template <class Number>
+Three<Number> minus(const Three<Number>& p, const Three<Number>& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
+template <class Number>
+Three<Number> crossProduct(const Three<Number>& p, const Three<Number>& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+template <class Number>
+Number inner(const Three<Number>& p, const Three<Number>& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+/// How far two triangles reach past each other along a normal n.
+template <class Number>
+struct Depths {
+  Number forward;   ///< greatest n . (b - a)
+  Number backward;  ///< greatest n . (a - b)
+  Number allowed;   ///< slack times the largest component of n
+};
+
+/// Two placed triangles, and the direction if one counts.
+template <class Number>
+class Pair {
+ public:
+  Pair(const Triangle& a, const Triangle& b, const Vector* direction, double slack)
+      : moves_(direction != nullptr), slack_(slack) {
+    const Three<Number> origin = numbers<Number>(a[0]);
+    for (size_t i = 0; i < 3; ++i) {
+      a_[i] = minus(numbers<Number>(a[i]), origin);
+      b_[i] = minus(numbers<Number>(b[i]), origin);
+    }
+    for (size_t i = 0; i < 3; ++i) {
+      edgesA_[i] = minus(a_[(i + 1) % 3], a_[i]);
+      edgesB_[i] = minus(b_[(i + 1) % 3], b_[i]);
+    }
+    if (moves_) direction_ = numbers<Number>(*direction);
+    normalA_ = crossProduct(edgesA_[0], edgesA_[1]);
+    normalB_ = crossProduct(edgesB_[0], edgesB_[1]);
+  }
+
+  /// Whether the triangles lie in one plane, face each other and overlap.
+  Answer areFlush(Mirrored mirrored) const {
+    const Number facing = inner(normalA_, normalB_);
+    Answer flush = isPositive(mirrored.a == mirrored.b ? Number(0) - facing : facing);
+    if (flush == Answer::no) return flush;
+    flush = both(flush, both(isThin(normalA_), isThin(normalB_)));
+    for (size_t i = 0; i < 3 && flush != Answer::no; ++i) {
+      flush = both(flush, overlapAlong(crossProduct(normalA_, edgesA_[i])));
+      flush = both(flush, overlapAlong(crossProduct(normalB_, edgesB_[i])));
+    }
+    return flush;
+  }
+
+  /// Whether the direction goes against the outward normal of b.
+  Answer isAgainstB(bool mirrored) const {
+    const Number along = inner(direction_, normalB_);
+    return isPositive(mirrored ? along : Number(0) - along);
+  }
+
+  /// Whether no normal keeps the triangles apart. The normals are those of all faces of the polyhedron of differences b
+  /// - a or, with a direction, b - a - s * direction for all s >= 0.
+  Answer areInseparable() const {
+    Answer exists = Answer::no, apart = Answer::no;
+    const auto tryNormal = [&](const Three<Number>& n, bool isAcross) {
+      if (apart == Answer::yes) return;
+      const Answer isNormal = isNotZero(n);
+      exists = either(exists, isNormal);
+      if (isNormal != Answer::no) apart = either(apart, both(isNormal, separates(n, isAcross)));
+    };
+    tryNormal(normalA_, false);
+    tryNormal(normalB_, false);
+    for (size_t i = 0; i < 3 && moves_; ++i) {
+      tryNormal(crossProduct(direction_, edgesA_[i]), true);
+      tryNormal(crossProduct(direction_, edgesB_[i]), true);
+    }
+    for (size_t i = 0; i < 9; ++i) tryNormal(crossProduct(edgesA_[i / 3], edgesB_[i % 3]), false);
+    return both(exists, !apart);
+  }
+
+ private:
+  static Answer isNotZero(const Three<Number>& n) {
+    Answer positive = Answer::no;
+    for (const Number& c : n) positive = either(positive, isPositive(abs(c)));
+    return positive;
+  }
+
+  Depths<Number> depthsAlong(const Three<Number>& n) const {
+    const Number a[3] = {inner(n, a_[0]), inner(n, a_[1]), inner(n, a_[2])};
+    const Number b[3] = {inner(n, b_[0]), inner(n, b_[1]), inner(n, b_[2])};
+    const auto greatest = [](const Number(&p)[3]) { return max(max(p[0], p[1]), p[2]); };
+    const auto least = [](const Number(&p)[3]) {
+      const Number zero(0);
+      return zero - max(max(zero - p[0], zero - p[1]), zero - p[2]);
+    };
+    return {greatest(b) - least(a), greatest(a) - least(b), slack_ * max(max(abs(n[0]), abs(n[1])), abs(n[2]))};
+  }
+
+  /// Whether n or -n keeps the triangles apart. `isAcross`: n is orthogonal to the direction.
+  Answer separates(const Three<Number>& n, bool isAcross) const {
+    const Depths<Number> depths = depthsAlong(n);
+    Answer forward = !isPositive(depths.forward - depths.allowed);
+    Answer backward = !isPositive(depths.backward - depths.allowed);
+    if (moves_ && !isAcross && (forward != Answer::no || backward != Answer::no)) {
+      const Number along = inner(n, direction_);
+      forward = both(forward, !isPositive(Number(0) - along));
+      backward = both(backward, !isPositive(along));
+    }
+    return either(forward, backward);
+  }
+
+  Answer isThin(const Three<Number>& n) const {
+    const Depths<Number> depths = depthsAlong(n);
+    return both(!isPositive(depths.forward - depths.allowed), !isPositive(depths.backward - depths.allowed));
+  }
+
+  Answer overlapAlong(const Three<Number>& n) const {
+    const Depths<Number> depths = depthsAlong(n);
+    return both(isPositive(depths.forward - depths.allowed), isPositive(depths.backward - depths.allowed));
+  }
+
+  bool moves_;
+  Number slack_;
+  Three<Number> a_[3], b_[3], edgesA_[3], edgesB_[3];  // corners relative to corner 0 of a
+  Three<Number> direction_, normalA_, normalB_;
+};
+
+template <class Number>
+Answer decideBlocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
+  const Pair<Number> pair(a, b, &direction, slack);
+  const Answer flush = pair.areFlush(mirrored);
+  if (flush == Answer::open) return flush;
+  return flush == Answer::yes ? pair.isAgainstB(mirrored.b) : pair.areInseparable();
+}
+
+template <class Number>
+Answer decideCross(const Triangle& a, const Triangle& b, double slack) {
+  return Pair<Number>(a, b, nullptr, slack).areInseparable();
+}
+
+}  // namespace
+
+bool isMirroring(const Transform& pose) {
+  const auto row = [&](int i) { return Vector{pose.m[4 * i], pose.m[4 * i + 1], pose.m[4 * i + 2]}; };
+  const Vector first = row(0), second = row(1), third = row(2);
+  return sign(Determinant{{kOrigin, first}, {kOrigin, second}, {kOrigin, third}}) < 0;
+}
+
+bool blocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
+  const Answer rough = decideBlocks<Bounded>(a, b, direction, slack, mirrored);
+  if (rough != Answer::open) return rough == Answer::yes;
+  countExactDecision();
+  return decideBlocks<Dyadic>(a, b, direction, slack, mirrored) == Answer::yes;
+}
+
+bool cross(const Triangle& a, const Triangle& b, double slack) {
+  const Answer rough = decideCross<Bounded>(a, b, slack);
+  if (rough != Answer::open) return rough == Answer::yes;
+  countExactDecision();
+  return decideCross<Dyadic>(a, b, slack) == Answer::yes;
+}
+
+}  // namespace radar::exact

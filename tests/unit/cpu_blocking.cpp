@@ -1,0 +1,354 @@
+// Queries that ignore what they leave, skip what overlaps or list several contacts: compares the CPU's answers with
+// brute force by the definition, and with the truth about solids.
+#include "blocking_oracle.h"
+#include "radar/cpu_sweeper.h"
+#include "voxel_solids.h"
+
+using namespace radar;
+using oracle::Rational;
+using soups::Random;
+
+namespace {
+
+double magnitude(const Scene& scene, MeshId mesh, const Transform& pose) {
+  double greatest = 0;
+  const MeshView view = scene.mesh(mesh);
+  std::array<double, 3> most{};
+  for (size_t i = 0; i < view.positions.size(); ++i) {
+    most[i % 3] = std::max(most[i % 3], std::abs(double{view.positions[i]}));
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    double sum = std::abs(pose.m[4 * i + 3]);
+    for (size_t k = 0; k < 3; ++k) sum += std::abs(pose.m[4 * i + k]) * most[k];
+    greatest = std::max(greatest, sum);
+  }
+  return greatest;
+}
+
+double slackFor(const Scene& scene, const Query& query, ObjectId id) {
+  const Object& object = scene.object(id);
+  return query.slack.value_or(0x1p-48 * std::max(magnitude(scene, query.mesh, query.worldFromMesh),
+                                                 magnitude(scene, object.mesh, object.worldFromMesh)));
+}
+
+bool isMirrored(const Transform& pose) {
+  using oracle::RationalVec;
+  const auto row = [&](size_t i) {
+    return RationalVec{Rational(pose.m[4 * i]), Rational(pose.m[4 * i + 1]), Rational(pose.m[4 * i + 2])};
+  };
+  return oracle::dot(row(0), oracle::cross(row(1), row(2))) < 0;
+}
+
+/// The first contact that counts, by brute force.
+oracle::Answer truthOf(const Scene& scene, const Query& query) {
+  return oracle::answer(scene, query, [&](ObjectId id, const oracle::Corners& a, const oracle::Corners& b) {
+    if (!query.ignoreLeaving) return true;
+    const bool mirroredB = isMirrored(scene.object(id).worldFromMesh);
+    return oracle::blocks(a, isMirrored(query.worldFromMesh), b, mirroredB, query.direction,
+                          slackFor(scene, query, id));
+  });
+}
+
+bool surfacesCross(const Scene& scene, const Query& query, ObjectId id) {
+  const Object& object = scene.object(id);
+  const MeshView sensor = scene.mesh(query.mesh), mesh = scene.mesh(object.mesh);
+  for (uint32_t triA = 0; triA < sensor.triangleCount(); ++triA) {
+    for (uint32_t triB = 0; triB < mesh.triangleCount(); ++triB) {
+      const oracle::Corners a = oracle::corners(sensor, query.worldFromMesh, triA);
+      const oracle::Corners b = oracle::corners(mesh, object.worldFromMesh, triB);
+      const auto interval = oracle::contact(a, b, query.direction);
+      if (!interval || interval->first.sign() > 0 || interval->last.sign() < 0) continue;
+      if (oracle::cross(a, b, slackFor(scene, query, id))) return true;
+    }
+  }
+  return false;
+}
+
+/// Checks an answer and its lists by brute force.
+void check(const Scene& scene, const Query& asked) {
+  CpuSweeper sweeper(scene, 1);
+  const Result result = sweeper.run({&asked, 1})[0];
+  Query query = asked;
+  if (asked.skipOverlapping) {
+    std::vector<ObjectId> crossing;
+    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+      const bool isExcluded = std::find(asked.exclude.begin(), asked.exclude.end(), id) != asked.exclude.end();
+      if (!isExcluded && (scene.object(id).mask & asked.mask) != 0 && surfacesCross(scene, asked, id)) {
+        crossing.push_back(id);
+      }
+    }
+    const auto listed = sweeper.lists().overlappingOf(0);
+    REQUIRE(std::vector(listed.begin(), listed.end()) == crossing);
+    query.exclude.insert(query.exclude.end(), crossing.begin(), crossing.end());
+  }
+  soups::checkTruth(truthOf(scene, query), query, result);
+  if (asked.hits == 1) {
+    REQUIRE(sweeper.lists().hitsOf(0).empty());
+    return;
+  }
+  // Each object alone.
+  std::vector<std::pair<oracle::Answer, ObjectId>> alone;
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    if (std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end()) continue;
+    Query one = query;
+    for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
+      if (other != id) one.exclude.push_back(other);
+    }
+    if (const oracle::Answer truth = truthOf(scene, one); truth.found) alone.emplace_back(truth, id);
+  }
+  std::stable_sort(alone.begin(), alone.end(),
+                   [](const auto& p, const auto& q) { return oracle::compare(p.first.s, q.first.s) < 0; });
+  if (alone.size() > asked.hits) alone.resize(asked.hits);
+  const auto hits = sweeper.lists().hitsOf(0);
+  REQUIRE(hits.size() == alone.size());
+  for (size_t i = 0; i < hits.size(); ++i) {
+    REQUIRE(hits[i].object == alone[i].second);
+    soups::checkTruth(alone[i].first, query, hits[i]);
+  }
+}
+
+/// A packing of solids, of which the first is the sensor.
+struct Assembly {
+  Scene scene;
+  std::vector<voxels::Solid> solids;
+  std::vector<MeshId> meshes;
+};
+
+Assembly assembly(Random& random, int side) {
+  Assembly out;
+  while (out.solids.empty() || out.solids[0].empty()) out.solids = voxels::packing(random, side, random.integer(2, 4));
+  std::erase_if(out.solids, [](const voxels::Solid& solid) { return solid.empty(); });
+  for (const voxels::Solid& solid : out.solids) {
+    out.meshes.push_back(soups::add(out.scene, voxels::boundary(solid, random)));
+  }
+  return out;
+}
+
+/// A pose that turns the axes into one another, some of them reversed, times a power of two.
+Transform turnedAxes(Random& random) {
+  Transform pose;
+  pose.m.fill(0);
+  const int first = random.integer(0, 2), step = random.integer(1, 2);
+  const double scale = std::ldexp(1.0, random.integer(-2, 2));
+  for (int i = 0; i < 3; ++i) {
+    pose.m[4 * i + (first + step * i) % 3] = random.chance(0.5) ? scale : -scale;
+    pose.m[4 * i + 3] = random.integer(-3, 3);
+  }
+  return pose;
+}
+
+std::array<int, 3> latticeDirection(Random& random, bool generic) {
+  std::array<int, 3> d{};
+  while (d == std::array<int, 3>{} || (generic && (d[0] == 0 || d[1] == 0 || d[2] == 0))) {
+    for (int& c : d) c = random.integer(-2, 2);
+  }
+  return d;
+}
+
+std::array<double, 3> turned(const Transform& pose, const std::array<int, 3>& d) {
+  std::array<double, 3> out;
+  for (size_t i = 0; i < 3; ++i) out[i] = pose.m[4 * i] * d[0] + pose.m[4 * i + 1] * d[1] + pose.m[4 * i + 2] * d[2];
+  return out;
+}
+
+/// The least s over all solids, or -1.
+Rational truthOf(const Assembly& made, const std::array<int, 3>& direction) {
+  Rational best = -1;
+  for (size_t i = 1; i < made.solids.size(); ++i) {
+    const Rational s = voxels::begins(made.solids[0], made.solids[i], direction);
+    if (s >= 0 && (best < 0 || s < best)) best = s;
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("solids that fit exactly move until their interiors would meet") {
+  Random random(1);
+  int blocked = 0, free = 0, later = 0;
+  for (int i = 0; i < 3000; ++i) {
+    INFO("case " << i);
+    Assembly made = assembly(random, random.integer(2, 5));
+    const Transform pose = turnedAxes(random);
+    for (size_t k = 1; k < made.meshes.size(); ++k) made.scene.addObject({made.meshes[k], pose});
+    const std::array<int, 3> direction = latticeDirection(random, false);
+    Query query{.mesh = made.meshes[0], .worldFromMesh = pose, .direction = turned(pose, direction), .distance = 1000};
+    query.ignoreLeaving = true;
+    if (random.chance(0.5)) query.slack = 0;
+    const Result result = CpuSweeper(made.scene, 1).run({&query, 1})[0];
+    const Rational truth = truthOf(made, direction);
+    if (truth < 0) {
+      REQUIRE(result.status == Status::clear);
+      ++free;
+    } else if (truth == 0) {
+      REQUIRE(result.status == Status::overlap);
+      ++blocked;
+    } else {
+      REQUIRE(result.status == Status::hit);
+      const auto& d = query.direction;
+      REQUIRE(result.t == Approx(truth.convert_to<double>() * std::hypot(d[0], d[1], d[2])).epsilon(1e-14));
+      ++later;
+    }
+  }
+  REQUIRE(blocked > 200);
+  REQUIRE(free > 200);
+  REQUIRE(later > 100);
+}
+
+TEST_CASE("solids at rest in rotated poses move as they would unrotated") {
+  Random random(2);
+  for (int i = 0; i < 2000; ++i) {
+    INFO("case " << i);
+    Assembly made = assembly(random, random.integer(2, 5));
+    const Transform pose = random.pose(std::exp(random.uniform(-5, 5)), {random.uniform(-9, 9), 0, 7});
+    for (size_t k = 1; k < made.meshes.size(); ++k) made.scene.addObject({made.meshes[k], pose});
+    const std::array<int, 3> direction = latticeDirection(random, true);
+    Query query{.mesh = made.meshes[0], .worldFromMesh = pose, .direction = turned(pose, direction), .distance = 1e6};
+    // Rounded once more, so that surfaces that touched may cross.
+    for (size_t k : {3, 7, 11}) query.worldFromMesh.m[k] *= 1 + 0x1p-53 * random.integer(-1, 1);
+    query.ignoreLeaving = true;
+    const Result result = CpuSweeper(made.scene, 1).run({&query, 1})[0];
+    const Rational truth = truthOf(made, direction);
+    if (truth < 0) {
+      REQUIRE(result.status == Status::clear);
+    } else if (truth == 0) {
+      REQUIRE(result.status != Status::clear);
+      REQUIRE(result.t <= 1e-12);
+    } else {
+      const auto& d = query.direction;
+      REQUIRE(result.t == Approx(truth.convert_to<double>() * std::hypot(d[0], d[1], d[2])).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("queries that ignore what they leave equal brute force on solids and on lattice soups") {
+  Random random(3);
+  for (int i = 0; i < 60; ++i) {
+    INFO("case " << i);
+    const bool solid = random.chance(0.5);
+    Assembly made = assembly(random, 2);
+    if (!solid) {
+      for (MeshId& mesh : made.meshes) mesh = soups::add(made.scene, soups::lattice(random, random.integer(1, 8), 2));
+    }
+    const auto pose = [&] { return random.chance(0.6) ? Transform() : turnedAxes(random); };
+    for (size_t k = 1; k < made.meshes.size(); ++k) made.scene.addObject({made.meshes[k], pose()});
+    const std::array<int, 3> d = latticeDirection(random, false);
+    Query query{
+        .mesh = made.meshes[0], .worldFromMesh = pose(), .direction = {double(d[0]), double(d[1]), double(d[2])}};
+    query.distance = random.chance(0.2) ? 0 : random.uniform(0, 12);
+    query.ignoreLeaving = random.chance(0.7);
+    query.skipOverlapping = random.chance(0.5);
+    query.hits = random.chance(0.3) ? 1 : random.chance(0.5) ? kAllHits : static_cast<uint32_t>(random.integer(2, 3));
+    if (random.chance(0.7)) query.slack = random.chance(0.5) ? 0 : random.uniform(0, 0.5);
+    check(made.scene, query);
+  }
+}
+
+namespace {
+
+/// A floor below z = 0, a wall beyond x = 3 and a unit cube that rests on the floor with its corner at the origin.
+struct Room {
+  Scene scene;
+  MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
+
+  ObjectId add(std::array<double, 3> from, std::array<double, 3> to) {
+    Transform pose;
+    for (size_t k = 0; k < 3; ++k) {
+      pose.m[5 * k] = to[k] - from[k];
+      pose.m[4 * k + 3] = 0.5 * (from[k] + to[k]);
+    }
+    return scene.addObject({box, pose});
+  }
+
+  Result move(std::array<double, 3> direction, double distance = 10) {
+    Query query{.mesh = box, .worldFromMesh = soups::at(0.5, 0.5, 0.5), .direction = direction, .distance = distance};
+    query.ignoreLeaving = true;
+    return CpuSweeper(scene, 1).run({&query, 1})[0];
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a box at rest may be lifted and pushed along the floor, but neither down nor through a wall") {
+  Room room;
+  room.add({-9, -9, -1}, {9, 9, 0});
+  const ObjectId wall = room.add({3, -9, 0}, {4, 9, 9});
+  REQUIRE(room.move({0, 0, 1}).status == Status::clear);
+  REQUIRE(room.move({-1, 0, 0}, 5).status == Status::clear);
+  REQUIRE(room.move({0, 0, -1}).status == Status::overlap);
+  REQUIRE(room.move({1, 0, -1e-9}).status == Status::overlap);
+  for (const std::array<double, 3> direction : {std::array{1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {1.0, 0.0, 1.0}}) {
+    const Result result = room.move(direction);
+    REQUIRE(result.status == Status::hit);
+    REQUIRE(result.object == wall);
+    REQUIRE(result.fraction * 10 * direction[0] / std::hypot(direction[0], direction[2]) == Approx(2));
+  }
+}
+
+TEST_CASE("an edge that is only grazed does not hide the wall behind it") {
+  Room room;
+  room.add({1, 1, -9}, {2, 2, 9});  // touched along one edge, and left along its face
+  const ObjectId wall = room.add({5, -9, -9}, {6, 9, 9});
+  const Result result = room.move({1, 0, 0});
+  REQUIRE(result.object == wall);
+  REQUIRE(result.t == 4);
+}
+
+TEST_CASE("walls in one plane let a box slide along both") {
+  Room room;
+  room.add({-9, -1, -9}, {1, 0, 9});
+  room.add({1, -1, -9}, {9, 0, 9});
+  REQUIRE(room.move({1, 0, 0}, 5).status == Status::clear);
+  REQUIRE(room.move({1, -1e-3, 0}, 5).status == Status::overlap);
+}
+
+TEST_CASE("a peg that fits a hole exactly moves along its axis only") {
+  Room room;
+  room.add({-9, -9, -9}, {0, 9, 9});
+  room.add({1, -9, -9}, {9, 9, 9});
+  room.add({0, -9, -9}, {1, 0, 9});
+  room.add({0, 1, -9}, {1, 9, 9});
+  REQUIRE(room.move({0, 0, 1}).status == Status::clear);
+  REQUIRE(room.move({0, 0, -1}).status == Status::clear);
+  REQUIRE(room.move({1, 0, 0}).status == Status::overlap);
+  REQUIRE(room.move({0, -1, 0}).status == Status::overlap);
+  REQUIRE(room.move({1e-6, 0, 1}).status == Status::overlap);
+}
+
+TEST_CASE("a body inside a cavity meets the cavity's wall from inside") {
+  Room room;
+  const ObjectId shell = room.add({-2, -2, -2}, {3, 3, 3});
+  const Result result = room.move({0, 1, 0});
+  REQUIRE(result.object == shell);
+  REQUIRE(result.t == 2);
+}
+
+TEST_CASE("objects that cross the sensor are skipped and listed, those that touch it are not") {
+  Room room;
+  const ObjectId crossing = room.add({0.5, 0.5, 0.5}, {2, 2, 2});
+  const ObjectId resting = room.add({-9, -9, -1}, {9, 9, 0});
+  const ObjectId wall = room.add({3, -9, -9}, {4, 9, 9});
+  Query query{.mesh = room.box, .worldFromMesh = soups::at(0.5, 0.5, 0.5), .direction = {1, 0, 0}, .distance = 10};
+  query.ignoreLeaving = query.skipOverlapping = true;
+  CpuSweeper sweeper(room.scene, 1);
+  const Result result = sweeper.run({&query, 1})[0];
+  REQUIRE(result.object == wall);
+  REQUIRE(result.t == 2);
+  const auto overlapping = sweeper.lists().overlappingOf(0);
+  REQUIRE(std::vector(overlapping.begin(), overlapping.end()) == std::vector{crossing});
+
+  query.ignoreLeaving = false;  // then the floor, which is only touched, ends the motion
+  REQUIRE(sweeper.run({&query, 1})[0].object == resting);
+}
+
+TEST_CASE("equal boxes stacked exactly let each other go upwards only") {
+  Room room;
+  room.add({0, 0, -1}, {1, 1, 0});
+  for (const auto& [direction, status] : {std::pair{std::array{0.0, 0.0, 1.0}, Status::clear},
+                                          {std::array{1.0, 0.0, 0.0}, Status::clear},
+                                          {std::array{1.0, 1.0, 0.0}, Status::clear},
+                                          {std::array{0.0, 0.0, -1.0}, Status::overlap},
+                                          {std::array{1.0, 0.0, -1.0}, Status::overlap}}) {
+    REQUIRE(room.move(direction).status == status);
+  }
+}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "exact/blocking.h"
 #include "exact/earliest_contact.h"
 
 namespace radar {
@@ -26,27 +27,46 @@ std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor)
 
 namespace {
 
-// Corners are sorted, so that the device's numbering of them does not matter.
-exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query) {
+Transform poseOf(const gpu::UnresolvedPair& pair) {
   Transform worldFromObject;
   std::copy(std::begin(pair.pose), std::end(pair.pose), worldFromObject.m.begin());
+  return worldFromObject;
+}
+
+exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query) {
+  const Transform worldFromObject = poseOf(pair);
   exact::PlacedPair placed;
   for (int i = 0; i < 3; ++i) {
     placed.a[i] = transformPoint(query.worldFromMesh, pair.a[i]);
     placed.b[i] = transformPoint(worldFromObject, pair.b[i]);
   }
-  std::sort(placed.a.begin(), placed.a.end());
-  std::sort(placed.b.begin(), placed.b.end());
   return placed;
+}
+
+bool blocks(const gpu::UnresolvedPair& pair, const exact::PlacedPair& placed, const Query& query,
+            const Vector& direction, const GpuScene& scene) {
+  const Transform worldFromObject = poseOf(pair);
+  const double slack =
+      query.slack ? *query.slack
+                  : exact::defaultSlack(std::max(placedMagnitude(scene.farthest(query.mesh), query.worldFromMesh),
+                                                 placedMagnitude(scene.farthest(pair.mesh), worldFromObject)));
+  return exact::blocks(placed.a, placed.b, direction, slack,
+                       {exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)});
 }
 
 }  // namespace
 
-Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query) {
+Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
+                        const GpuScene& scene) {
   const Motion motion(query);
   exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {
-    earliest.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query));
+    exact::PlacedPair placed = placedPair(*pair, query);
+    if (query.ignoreLeaving && !blocks(*pair, placed, query, motion.direction, scene)) continue;
+    // Sorted, so that the device's numbering of corners does not matter.
+    std::sort(placed.a.begin(), placed.a.end());
+    std::sort(placed.b.begin(), placed.b.end());
+    earliest.consider({pair->object, pair->triB, pair->triA}, placed);
     if (query.anyHit && earliest.found()) break;
   }
   if (!earliest.found() && found.detected == Detected::yes) {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "scene/scene.h"
+#include "scene/gpu_scene.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {
@@ -22,8 +22,9 @@ class UnresolvedPairs {
 
 /// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
 /// For a query with `anyHit`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search
-/// found a certain contact, but none of `pairs` meets.
-Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query);
+/// found a certain contact, but none of `pairs` meets. `scene`: the copy that was searched.
+Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
+                        const GpuScene& scene);
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "gpu/requirements.h"
+#include "spirv/contact_block_comp.h"
 #include "spirv/contact_collect_comp.h"
 #include "spirv/contact_filter_comp.h"
 #include "spirv/contact_link_comp.h"
@@ -39,7 +40,9 @@ ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& sh
           device,
           device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
           "resolve", device.divisionConstants()) {
-  if (device.doubles) refine.emplace(device, k_contact_refine_comp, "refine", device.divisionConstants());
+  if (!device.doubles) return;
+  block.emplace(device, k_contact_block_comp, "block");
+  refine.emplace(device, k_contact_refine_comp, "refine", device.divisionConstants());
 }
 
 }  // namespace radar

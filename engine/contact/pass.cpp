@@ -17,6 +17,8 @@
 //                                                the other list of tasks
 // After the last round:                                                                 computeWriteToIndirect
 // filter    states, counts, candidates           counts, refined pairs                  computeWriteToComputeReadWrite
+// block     scene, sweeps, counts                refined pairs                          computeWriteToComputeReadWrite
+//             (only with doubles, and if a query ignores what does not block)
 // refine    scene, sweeps, counts                refined pairs, states                  computeWriteToComputeReadWrite
 //             (only with doubles)
 // link      states, counts                       refined pairs, heads                   computeWriteToComputeReadWrite
@@ -38,7 +40,7 @@ constexpr uint32_t kMostTasks = 1u << 21;
 // Capacity for candidates, of 20 bytes and 56 as refined pairs: at first per sensor, at least in total, and the most
 // that it grows to. Sensors have some 10 candidates among boxes, 30 among meshes, hundreds where shapes interlock.
 constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
-// Capacity for unresolved pairs, of 184 bytes: at first per sensor, and at most in total.
+// Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
 constexpr uint32_t kUnresolved = 4, kMostUnresolved = 1u << 20;
 
 // Whether the device runs on the CPU: it then has as many lanes at work as threads times the width of a vector.
@@ -77,6 +79,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
     room_.width =
         runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
   }
+  if (kernels_->block) block_.emplace(*kernels_->block);
   if (kernels_->refine) refine_.emplace(*kernels_->refine);
 }
 
@@ -121,6 +124,8 @@ void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded)
 
 void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene) {
   sensorCount_ = batch.count();
+  ignoresLeaving_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
+                                [](const gpu::Sweep& sweep) { return sweep.ignoreLeaving != 0; });
   const VkDeviceSize sceneBytes = scene_.prepare(scene);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
@@ -180,6 +185,15 @@ void ContactPass::setArguments() {
                {kSlotCounts, counts_},
                {kSlotCandidatePairs, candidates_},
                {kSlotRefinedPairs, refinedPairs_}});
+  if (block_) {
+    block_->set({{kSlotCounts, counts_},
+                 {kSlotRefinedPairs, refinedPairs_},
+                 {kSlotVertices, scene.vertices},
+                 {kSlotTriangles, scene.triangles},
+                 {kSlotSweeps, sweeps_},
+                 {kSlotObjects, scene.objects},
+                 {kSlotMeshes, scene.meshes}});
+  }
   if (refine_) {
     refine_->set({{kSlotStates, states_},
                   {kSlotCounts, counts_},
@@ -225,6 +239,10 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   gpu::computeWriteToIndirect(commands);
   filter_.dispatchIndirect(commands, counts_, 0, gpu::FilterPush{candidateRoom_});
   gpu::computeWriteToComputeReadWrite(commands);
+  if (block_ && ignoresLeaving_) {
+    block_->dispatchIndirect(commands, counts_, 0);
+    gpu::computeWriteToComputeReadWrite(commands);
+  }
   if (refine_) {
     refine_->dispatchIndirect(commands, counts_, 0);
     gpu::computeWriteToComputeReadWrite(commands);

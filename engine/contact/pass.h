@@ -77,10 +77,11 @@ class ContactPass {
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
   // Rounds alternate between the two lists of tasks.
   gpu::KernelArguments search_[2], collect_[2], filter_, link_, resolve_;
-  std::optional<gpu::KernelArguments> refine_;
+  std::optional<gpu::KernelArguments> block_, refine_;
   std::vector<gpu::SearchState> stateList_;
   std::vector<gpu::SearchTask> taskList_;
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;
+  bool ignoresLeaving_ = false;
   uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
   VkDeviceSize reservedBytes_ = 0;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exact/contact.h"
+#include "exact/blocking.h"
 #include "math/frame.h"
 #include "math/rounding.h"
 #include "scene/placement.h"
@@ -74,6 +74,11 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sensor.placement.mesh = query.mesh;
   sensor.scale = static_cast<float>(scale);
   sensor.unscale = static_cast<float>(1 / scale);
+  // A contact that is certain wherever the slack moves a corner blocks. Twice the slack, since it may also tilt planes:
+  // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block").
+  if (query.ignoreLeaving && query.slack) sensor.frame[3] = roundUp(std::min(2 * *query.slack * scale, kMostDistance));
+  // By default the slack is at most a sixteenth of either placement's error.
+  if (query.ignoreLeaving && !query.slack) sensor.frame[7] = 0.125f;
   sensor.distance = roundUp(distance);
   sensor.stopBefore = query.anyHit ? roundDown(distance) : -1.0f;
   setBox(sensor, box, tree.anchor(), farthest);
@@ -92,6 +97,12 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sweep.result = result;
   sweep.scale = sensor.scale;
   sweep.start = sensor.distance;
+  if (query.ignoreLeaving) {
+    sweep.ignoreLeaving = 1;
+    sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;
+    sweep.slack = query.slack.value_or(-1);
+    sweep.magnitude = placedMagnitude(mesh.farthest, query.worldFromMesh);
+  }
   batch.sensors.push_back(sensor);
   batch.sweeps.push_back(sweep);
   return Planned::added;

@@ -49,7 +49,7 @@ struct QuerySearch::Task {
         placement(sensor, q.worldFromMesh),
         axes(placement.linear) {
     if (!query.ignoreLeaving && !query.skipOverlapping) return;
-    magnitude = placedMagnitude(sensor, query.worldFromMesh);
+    magnitude = placedMagnitude(sensor.farthest, query.worldFromMesh);
     mirrored = exact::isMirroring(query.worldFromMesh);
   }
   Task(const Task&) = delete;
@@ -67,8 +67,9 @@ struct QuerySearch::Task {
     if (!query.ignoreLeaving && !query.skipOverlapping) return {};
     const auto& [mesh, worldFromMesh, mask] = scene.objects[id].object;
     const double slack =
-        query.slack ? *query.slack
-                    : exact::defaultSlack(std::max(magnitude, placedMagnitude(scene.meshes[mesh], worldFromMesh)));
+        query.slack
+            ? *query.slack
+            : exact::defaultSlack(std::max(magnitude, placedMagnitude(scene.meshes[mesh].farthest, worldFromMesh)));
     return {slack, {mirrored, exact::isMirroring(worldFromMesh)}};
   }
 };

@@ -92,8 +92,8 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    if (wrong.empty() && (queries[i].ignoreLeaving || hasLists(queries[i]))) {
-      wrong = "ignoreLeaving, skipOverlapping, hits: only a Sweeper, a CpuSweeper and a Pool offer these";
+    if (wrong.empty() && hasLists(queries[i])) {
+      wrong = "skipOverlapping, hits: only a Sweeper, a CpuSweeper and a Pool offer these";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -173,7 +173,7 @@ std::vector<Result> Recorder::read() {
     const uint32_t query = self.sensors.sweeps[i].result;
     const auto pairs = unresolved.of(i);
     if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
-    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query]);
+    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query], self.copy);
   }
   return results;
 }

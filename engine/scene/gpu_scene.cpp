@@ -71,10 +71,12 @@ VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
 // Assigns every mesh its place in the buffers.
 void GpuScene::layOut(const Scene::Impl& scene) {
   records_.assign(scene.meshes.size(), {});
+  farthest_.clear();
   uint64_t vertices = 0, triangles = 0, nodes = 0;
   for (MeshId i = 0; i < scene.meshes.size(); ++i) {
     const Mesh& mesh = scene.meshes[i];
     gpu::MeshRecord& record = records_[i];
+    farthest_.push_back(mesh.farthest);
     copyPoint(mesh.origin, record.origin);
     copyPoint(mesh.box.lo, record.lo);
     copyPoint(mesh.box.hi, record.hi);

@@ -52,6 +52,8 @@ class GpuScene {
   const Buffers& buffers() const { return buffers_; }
   /// A mesh's place in the buffers, after prepare().
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
+  /// Mesh::farthest, as of the last prepare().
+  const Vector& farthest(MeshId mesh) const { return farthest_[mesh]; }
 
  private:
   void checkWriteLimits(const Scene::Impl& scene) const;
@@ -66,6 +68,7 @@ class GpuScene {
   const Device::Impl* device_;
   Buffers buffers_;
   std::vector<gpu::MeshRecord> records_;
+  std::vector<Vector> farthest_;  ///< of each mesh
   uint64_t seenScene_ = 0, seenMeshes_ = 0, seenIndices_ = 0, seenPoses_ = 0, seenTree_ = 0;
   bool hasIndices_ = false, recordsChanged_ = false, indicesChanged_ = false, treeChanged_ = false;
   std::vector<MeshId> changedMeshes_;

@@ -66,6 +66,7 @@ void derive(Mesh& mesh, Box box) {
   }
   float largest = 0;
   for (int k = 0; k < 3; ++k) {
+    mesh.farthest[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
     mesh.origin[k] = originOf(box.lo[k], box.hi[k]);
     mesh.box.lo[k] = box.lo[k] - mesh.origin[k];
     mesh.box.hi[k] = box.hi[k] - mesh.origin[k];
@@ -162,15 +163,12 @@ std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFro
   return corners;
 }
 
-double placedMagnitude(const Mesh& mesh, const Transform& worldFromMesh) {
+double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh) {
   double greatest = 0;
   for (int i = 0; i < 3; ++i) {
     const double* row = &worldFromMesh.m[4 * i];
     double sum = std::abs(row[3]);
-    for (int k = 0; k < 3; ++k) {
-      sum += std::abs(row[k]) *
-             std::max(std::abs(mesh.origin[k] + mesh.box.lo[k]), std::abs(mesh.origin[k] + mesh.box.hi[k]));
-    }
+    for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * farthest[k];
     greatest = std::max(greatest, sum);
   }
   return std::min(greatest, std::numeric_limits<double>::max());

@@ -29,6 +29,7 @@ struct Mesh {
   /// is near 0, its middle on the others. One array per axis, so that loops over vertices vectorise.
   Vector origin{};
   std::array<std::vector<float>, 3> local;
+  Vector farthest{};             ///< greatest |coordinate|, declared bounds included
   Box box;                       ///< of local vertices, declared bounds included
   std::array<float, 3> reach{};  ///< greatest |coordinate| in the box
   double meanEdge = 0;           ///< mean length of the triangles' edges
@@ -83,9 +84,9 @@ struct Scene::Impl {
 /// The corners of a triangle of the placed mesh.
 std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle);
 
-/// The greatest sum of absolute values from which a coordinate of the placed mesh is summed, over its vertices and
-/// axes. No placed coordinate is larger.
-double placedMagnitude(const Mesh& mesh, const Transform& worldFromMesh);
+/// The greatest sum of absolute values from which a coordinate of a placed mesh is summed, over its box and the axes.
+/// No placed coordinate is larger. `farthest`: of the mesh.
+double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh);
 
 /// A box around the transformed mesh. It contains every vertex that `transformPoint` computes, and every one that a
 /// shader computes from the local floats.

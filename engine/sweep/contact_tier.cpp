@@ -95,7 +95,7 @@ void ContactTier::run(std::span<const size_t> which) {
   std::vector<size_t> onlyCpu;  // floats cannot hold them, or the device's search does not offer what they ask
   Clock::time_point start = Clock::now();
   for (const size_t i : which) {
-    if (batch_.asked[i].ignoreLeaving || hasLists(batch_.asked[i])) {
+    if (hasLists(batch_.asked[i])) {
       onlyCpu.push_back(i);
       continue;
     }
@@ -172,7 +172,8 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
       const size_t query = queries[open[k]];
-      batch_.answers[query] = decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query]);
+      batch_.answers[query] =
+          decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query], resident_);
     }
   });
   for (const uint32_t i : open) batch_.stats.cpuPairs += unresolved.of(i).size();

@@ -15,7 +15,9 @@ namespace gpu {
 // The input of a search.
 struct Sensor {
   Placement placement;
-  Rows frame;      // world axes of the sensor's frame: across, across, along the motion
+  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the first two rows:
+                   // by how much the slack of a query that ignores what does not block may move a corner, scaled, as a
+                   // number and as a share of both placements' errors
   Point direction; // unit, world
   float scale;
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
@@ -39,6 +41,10 @@ struct Sweep {
   uint result;      // index of its answer
   float scale;      // see Sensor
   float start;      // Sensor::distance, the initial SearchState::hi
+  uint ignoreLeaving;  // only pairs that block count
+  uint isMirrored;     // the pose turns the mesh inside out
+  double slack;        // radar::Query::slack; negative: by default
+  double magnitude;    // of the placed mesh, for the default
 };
 
 struct SearchState {
@@ -82,16 +88,20 @@ struct RefinedPair {
   float first;   // `low`, scaled, rounded down
   uint padding;
 };
+INTEROP_CONST kPairMayPass = 0x1000; // may not block, so nothing else about it is certain
+INTEROP_CONST kPairPasses = 0x800;   // does not block, so it does not count
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
 INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier
 
-// A pair that the device leaves to the CPU: its ids, its mesh corners, and the object's pose.
+// A pair that the device leaves to the CPU: its ids, its corners in the order of their meshes, and the object's pose.
 struct UnresolvedPair {
   uint sensor;
   uint object;
   uint triB;
   uint triA;
+  uint mesh;  // the object's
+  uint pad;
   Point a[3];
   Point b[3];
   PreciseRows pose;

@@ -1,11 +1,10 @@
-// A triangle's corners in the world, in double precision, by the formula of radar.h; sorted, so that an edge shared by two
-// triangles has the same bits in both. Included after shared/scene.glsl.
+// A triangle's corners in the world, in double precision, by the formula of radar.h. Included after shared/scene.glsl.
 #include "shared/widen.glsl"
 bool before(dvec3 p, dvec3 q) {
   return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
 }
 
-void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
+void cornersInOrder(PreciseRows pose, uint slot, out dvec3 p[3]) {
   const uvec4 corner = triangleAt(slot);
   for (uint i = 0; i < 3; ++i) {
     const dvec3 q = widened(vertexBitsAt(corner[i]));
@@ -14,6 +13,11 @@ void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
       p[i][k] = sum;
     }
   }
+}
+
+// Sorted, so that an edge shared by two triangles has the same bits in both.
+void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
+  cornersInOrder(pose, slot, p);
   for (int pass = 0; pass < 3; ++pass) {
     const int i = pass & 1;
     const bool swap = before(p[i + 1], p[i]);

@@ -30,10 +30,12 @@ void main() {
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
-  const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  m.ahead = m.ahead && (c.flags & (kPairPasses | kPairMayPass)) == 0;
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
   // A contact that ends before the start counts as never.
-  const double low = m.latest >= 0.0LF ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
+  const bool isPossible = m.latest >= 0.0LF && (c.flags & kPairPasses) == 0;
+  const double low = isPossible ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;

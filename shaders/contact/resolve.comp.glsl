@@ -56,7 +56,7 @@ uint reserveUnresolved(uint pairs) {
 void writeUnresolved(uint at, RefinedPair c) {
   const uvec3 name = nameOf(c);
   unresolved[at] =
-      UnresolvedPair(s, name.x, name.y, name.z, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
+      UnresolvedPair(s, name.x, name.y, name.z, objects[c.object].mesh, 0, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
 }
 
 #ifndef RADAR_NO_DOUBLES

@@ -49,6 +49,8 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const mat3 frame = rows(sensorTexel(sensor, kTexelFrame).xyz, sensorTexel(sensor, kTexelFrame + 1).xyz,
                           sensorTexel(sensor, kTexelFrame + 2).xyz);
   const float scale = sensorTexel(sensor, kTexelDirection).w;
+  const float slack = sensorTexel(sensor, kTexelFrame).w + sensorTexel(sensor, kTexelFrame + 1).w * scale *
+                      (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
   PairFrame f;
   f.originA = originA.xyz;
   f.perUnitA = originA.w;
@@ -65,7 +67,7 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   f.offset = frame * apart;
   f.columnsA = vec3(1.0) * abs3(matrixA);
   f.columnsB = vec3(1.0) * abs3(matrixB);
-  f.errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30;
+  f.errorA = 1.75 * scale * sensorTexel(sensor, kTexelError).x + 1e-30 + slack;
   f.errorB = 1.75 * scale * objectTexel(object, kTexelError).x + 24.0 * kUnit * sum3(abs(apart)) + 1e-30;
   return f;
 }

@@ -1,0 +1,123 @@
+// Queries that ignore what does not block: the device's answers have the bits of the CPU's.
+#include <catch2/catch.hpp>
+
+#include "radar/cpu_sweeper.h"
+#include "support/same_bits.h"
+#include "support/test_device.h"
+#include "unit/voxel_solids.h"
+
+using namespace radar;
+using soups::Random;
+
+namespace {
+
+/// Solids that fit each other, in a common pose, and sweeps of the first one: at rest, beside it, and turned.
+struct Batch {
+  Scene scene;
+  std::vector<Query> queries;
+};
+
+void addQueries(Batch& batch, Random& random, MeshId mesh, const Transform& rest, size_t count) {
+  for (size_t i = 0; i < count; ++i) {
+    Query query{.mesh = mesh, .worldFromMesh = rest};
+    for (double& c : query.direction) c = random.integer(-2, 2);
+    if (query.direction == std::array<double, 3>{}) query.direction[0] = 1;
+    if (random.chance(0.5)) {
+      const std::array<double, 3> d = query.direction;
+      for (size_t k = 0; k < 3; ++k) {
+        query.direction[k] = rest.m[4 * k] * d[0] + rest.m[4 * k + 1] * d[1] + rest.m[4 * k + 2] * d[2];
+      }
+    }
+    if (random.chance(0.2)) query.direction = random.inBall();
+    if (random.chance(0.2)) query.worldFromMesh.m[3] += random.uniform(-3, 3);
+    if (random.chance(0.1)) query.worldFromMesh = random.pose(1, {0, 0, 0});
+    if (random.chance(0.2)) {
+      for (size_t k : {0, 4, 8}) query.worldFromMesh.m[k] = -query.worldFromMesh.m[k];
+    }
+    query.distance = random.chance(0.1) ? 0 : random.uniform(0, 20);
+    query.ignoreLeaving = !random.chance(0.1);
+    query.anyHit = random.chance(0.2);
+    if (random.chance(0.4)) query.slack = random.chance(0.5) ? 0 : random.uniform(0, 0.3);
+    batch.queries.push_back(query);
+  }
+}
+
+Batch batchOf(uint64_t seed) {
+  Random random(seed);
+  Batch batch;
+  std::vector<voxels::Solid> solids;
+  while (solids.empty() || solids[0].empty())
+    solids = voxels::packing(random, random.integer(2, 5), random.integer(2, 5));
+  std::erase_if(solids, [](const voxels::Solid& solid) { return solid.empty(); });
+  Transform rest;
+  if (random.chance(0.6)) rest = random.pose(std::exp(random.uniform(-6, 6)), {random.uniform(-50, 50), 0, 3});
+  MeshId sensor = 0;
+  for (const voxels::Solid& solid : solids) {
+    const MeshId mesh = soups::add(batch.scene, voxels::boundary(solid, random));
+    if (&solid == &solids[0]) {
+      sensor = mesh;
+    } else {
+      batch.scene.addObject({mesh, rest});
+    }
+  }
+  if (random.chance(0.3)) {
+    const MeshId mesh = soups::add(batch.scene, soups::lattice(random, random.integer(1, 12), 3));
+    batch.scene.addObject({mesh, rest});
+  }
+  addQueries(batch, random, sensor, rest, 48);
+  return batch;
+}
+
+}  // namespace
+
+TEST_CASE("the device's answers to queries that ignore what does not block have the CPU's bits") {
+  size_t free = 0, resting = 0, later = 0;
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    const Batch batch = batchOf(seed);
+    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+    Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
+    const std::vector<Result> results = sweeper.run(batch.queries);
+    for (size_t i = 0; i < results.size(); ++i) {
+      INFO("seed " << seed << " query " << i);
+      expected[i].tier = results[i].tier;
+      REQUIRE(test::sameBits(results[i], expected[i]));
+      if (!batch.queries[i].ignoreLeaving) continue;
+      free += results[i].status == Status::clear;
+      resting += results[i].status == Status::overlap;
+      later += results[i].status == Status::hit;
+    }
+  }
+  REQUIRE(free > 150);
+  REQUIRE(resting > 150);
+  REQUIRE(later > 150);
+}
+
+TEST_CASE("a body on a fine floor is answered by the device alone") {
+  if (!test::device().doubles()) return;
+  // Two floors of 20 x 20 squares: 800 triangles each, in one plane, under a box of 4 x 4 squares.
+  voxels::Solid floor, box;
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 20; ++y) floor.insert({x, y, -1});
+  }
+  for (int x = 8; x < 12; ++x) {
+    for (int y = 8; y < 12; ++y) box.insert({x, y, 0});
+  }
+  Random random(1);
+  Scene scene;
+  const Transform rest = random.pose(0.7, {5, -3, 2});
+  scene.addObject({soups::add(scene, voxels::boundary(floor, random)), rest});
+  const MeshId mesh = soups::add(scene, voxels::boundary(box, random));
+  std::vector<Query> queries;
+  for (int i = 0; i < 32; ++i) {
+    Query query{.mesh = mesh, .worldFromMesh = rest, .distance = 30};
+    const std::array<double, 3> d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.001, 1)};
+    for (size_t k = 0; k < 3; ++k)
+      query.direction[k] = rest.m[4 * k] * d[0] + rest.m[4 * k + 1] * d[1] + rest.m[4 * k + 2] * d[2];
+    query.ignoreLeaving = true;
+    queries.push_back(query);
+  }
+  Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
+  for (const Result& result : sweeper.run(queries)) REQUIRE(result.status == Status::clear);
+  REQUIRE(sweeper.stats().cpuQueries == 0);
+  REQUIRE(sweeper.stats().cpuPairs == 0);
+}

@@ -100,7 +100,7 @@ class Margins {
   /// A random pose of size `size`, up to `far` times its size from the origin.
   Transform poseOf(double size, double far) {
     Transform pose = tools::makePose(random_.rotation(), {1, 1, 1}, {});
-    if (random_.oneIn(2)) pose = tools::randomAffine(random_, {});
+    if (random_.oneIn(2)) pose = random_.affine({});
     if (random_.oneIn(6))
       pose = tools::makePose(random_.rotation(), {1, magnitude(random_, 14), magnitude(random_, 14)}, {});
     if (random_.oneIn(4)) pose = Transform();

@@ -81,7 +81,7 @@ void checkCopy(const GpuScene& copy, const Scene& scene) {
 }
 
 Transform randomPose(tools::Random& random) {
-  return tools::randomAffine(random, random.inBox({-20, -20, -20}, {20, 20, 20}));
+  return random.affine(random.inCube(20));
 }
 
 MeshId addSoup(Scene& scene, tools::Random& random, uint32_t triangles) {

@@ -31,7 +31,7 @@ double powerOfTwo(Random& random, int lowest, int highest) {
 
 // Rotated, scaled unevenly and sheared; sometimes nearly flat.
 Transform randomPose(Random& random, double scale, double away) {
-  Transform pose = tools::randomAffine(random, random.inBox({-away, -away, -away}, {away, away, away}));
+  Transform pose = random.affine(random.inCube(away));
   const bool flat = random.oneIn(4);
   const double flattened = flat ? powerOfTwo(random, -20, -1) : 1;
   for (int row = 0; row < 3; ++row) {

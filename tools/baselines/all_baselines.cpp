@@ -1,4 +1,4 @@
-#include "baselines/rows.h"
+#include "baselines/rigid.h"
 
 namespace radar::tools {
 

@@ -5,7 +5,6 @@
 #include <btBulletCollisionCommon.h>
 
 #include "baselines/rigid.h"
-#include "baselines/rows.h"
 
 namespace radar::tools {
 
@@ -65,32 +64,21 @@ struct Closest : btCollisionWorld::ClosestConvexResultCallback {
   const Query& query;
 };
 
-class Bullet : public Baseline {
+template <bool byTriangle>
+class Bullet : public SceneBaseline {
  public:
-  Bullet(const Workload& workload, bool byTriangle) : shapes_(workload, shapeOf), byTriangle_(byTriangle) {}
-  ~Bullet() override { clear(); }
-
-  void show(std::span<const Instance> objects) override {
-    if (objects.size() != shown_.size()) {
-      clear();
-      for (const Instance& instance : objects) add(instance);
-    } else {
-      for (size_t i = 0; i < objects.size(); ++i) {
-        if (!(objects[i] == shown_[i])) move(i, objects[i]);
-      }
-    }
-    shown_.assign(objects.begin(), objects.end());
-  }
+  Bullet(const Workload& workload, uint32_t) : shapes_(workload, shapeOf) {}
+  ~Bullet() override { begin(0); }
 
   std::optional<double> cast(const Query& query) override {
-    RigidPose pose;
-    Shape& shape = shapes_.of({query.mesh, query.worldFromMesh}, pose);
+    const RigidPose pose = rigidPose(query.worldFromMesh);
+    Shape& shape = shapes_.of(query.mesh, pose);
     const btTransform from = transformOf(pose);
-    const std::array<double, 3> v = unitDirection(query);
+    const Vec3 v = unitDirection(query);
     btTransform to = from;
     to.setOrigin(from.getOrigin() + query.distance * vectorOf(v.data()));
     Closest closest(query, from.getOrigin(), to.getOrigin());
-    if (byTriangle_) {
+    if constexpr (byTriangle) {
       sweepTriangles(*shape.triangles, from, to, closest);
     } else {
       if (!shape.hull) shape.hull = hullOf(*shape.triangles);
@@ -116,43 +104,33 @@ class Bullet : public Baseline {
     }
   }
 
-  void add(const Instance& instance) {
-    RigidPose pose;
-    const Shape& shape = shapes_.of(instance, pose);
-    objects_.push_back(std::make_unique<btCollisionObject>());
-    objects_.back()->setCollisionShape(shape.tree.get());
-    objects_.back()->setWorldTransform(transformOf(pose));
-    objects_.back()->setUserIndex(static_cast<int>(objects_.size()) - 1);
-    world_.addCollisionObject(objects_.back().get());
-  }
-
-  void move(size_t number, const Instance& instance) {
-    RigidPose pose;
-    const Shape& shape = shapes_.of(instance, pose);
-    objects_[number]->setCollisionShape(shape.tree.get());
-    objects_[number]->setWorldTransform(transformOf(pose));
-    world_.updateSingleAabb(objects_[number].get());
-  }
-
-  void clear() {
+  void begin(size_t count) override {
     for (const auto& object : objects_) world_.removeCollisionObject(object.get());
     objects_.clear();
+    objects_.resize(count);
+  }
+
+  void place(size_t number, const Instance& instance, bool anew) override {
+    const RigidPose pose = rigidPose(instance.worldFromMesh);
+    if (anew) objects_[number] = std::make_unique<btCollisionObject>();
+    btCollisionObject* object = objects_[number].get();
+    object->setCollisionShape(shapes_.of(instance.mesh, pose).tree.get());
+    object->setWorldTransform(transformOf(pose));
+    object->setUserIndex(static_cast<int>(number));
+    if (anew) {
+      world_.addCollisionObject(object);
+    } else {
+      world_.updateSingleAabb(object);
+    }
   }
 
   ShapeCache<Shape> shapes_;
-  bool byTriangle_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
-  std::vector<Instance> shown_;
   std::vector<std::unique_ptr<btCollisionObject>> objects_;
 };
-
-template <bool byTriangle>
-std::unique_ptr<Baseline> make(const Workload& workload, uint32_t) {
-  return std::make_unique<Bullet>(workload, byTriangle);
-}
 
 }  // namespace
 
@@ -164,14 +142,14 @@ std::vector<BaselineRow> bulletRows() {
            .limits = "casts only convex shapes, and any other sensor as its hull, which is a different shape. No "
                      "certificate; deforming meshes need new trees.",
            .sizes = {0},
-           .make = make<false>},
+           .make = make<Bullet<false>>},
           {.family = "Bullet triangles",
            .product = product,
            .limits = "casts the sensor triangle by triangle: any shape, at the cost of that many casts. No "
                      "certificate; deforming meshes need new trees.",
            .sizes = {0},
            .sections = {"front"},
-           .make = make<true>}};
+           .make = make<Bullet<true>>}};
 }
 
 }  // namespace radar::tools

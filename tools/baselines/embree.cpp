@@ -2,38 +2,25 @@
 // of the sensor into the scene and of the scene back onto the sensor.
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "baselines/rigid.h"
-#include "baselines/rows.h"
 
 namespace radar::tools {
 
 namespace {
 
-using Vector = std::array<double, 3>;
 using SceneHandle = std::unique_ptr<RTCSceneTy, void (*)(RTCScene)>;
 constexpr uint32_t kPacket = 8;
 
-Vector along(const Vector& start, const Vector& direction, double t) {
-  return {start[0] + t * direction[0], start[1] + t * direction[1], start[2] + t * direction[2]};
-}
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // Axes across a unit vector.
-std::pair<Vector, Vector> across(const Vector& w) {
+std::pair<Vec3, Vec3> across(const Vec3& w) {
   const size_t least = std::abs(w[0]) < std::abs(w[1]) ? (std::abs(w[0]) < std::abs(w[2]) ? 0 : 2)
                                                        : (std::abs(w[1]) < std::abs(w[2]) ? 1 : 2);
-  Vector u{};
+  Vec3 u{};
   u[least] = 1;
-  u = along(u, w, -w[least]);
-  const double length = std::sqrt(dot(u, u));
-  for (double& value : u) value /= length;
+  u = u - w[least] * w;
+  u = (1 / lengthOf(u)) * u;
   return {u, {w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]}};
 }
 
@@ -47,15 +34,10 @@ struct Inverse {
               -minor(0, 2, 4, 6), minor(4, 5, 8, 9),   -minor(0, 1, 8, 9), minor(0, 1, 4, 5)};
     for (double& value : linear) value /= determinant;
   }
-  Vector turned(const Vector& v) const {
-    return {linear[0] * v[0] + linear[1] * v[1] + linear[2] * v[2],
-            linear[3] * v[0] + linear[4] * v[1] + linear[5] * v[2],
-            linear[6] * v[0] + linear[7] * v[1] + linear[8] * v[2]};
-  }
-  Vector placed(const Vector& p) const { return turned({p[0] - at[0], p[1] - at[1], p[2] - at[2]}); }
+  Vec3 placed(const Vec3& p) const { return turned(linear, p - at); }
 
-  std::array<double, 9> linear{};
-  Vector at;
+  Rotation linear{};
+  Vec3 at;
 };
 
 // What a filter needs to know: which instances take no part.
@@ -78,7 +60,7 @@ struct Context : RTCIntersectContext {
 struct Packet {
   alignas(32) int valid[kPacket] = {};
   RTCRayHit8 rays{};
-  void set(uint32_t lane, const Vector& origin, const Vector& direction, double far) {
+  void set(uint32_t lane, const Vec3& origin, const Vec3& direction, double far) {
     valid[lane] = -1;
     rays.ray.org_x[lane] = static_cast<float>(origin[0]);
     rays.ray.org_y[lane] = static_cast<float>(origin[1]);
@@ -95,39 +77,15 @@ struct Packet {
   bool hit(uint32_t lane) const { return valid[lane] != 0 && rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
 };
 
-class Embree : public Baseline {
+class Embree : public SceneBaseline {
  public:
-  explicit Embree(const Workload& workload)
+  Embree(const Workload& workload, uint32_t)
       : workload_(workload), device_(rtcNewDevice("threads=1"), rtcReleaseDevice), top_(nullptr, rtcReleaseScene) {
     if (!device_) throw std::runtime_error("does not open");
     if (rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) == 0) {
       throw std::runtime_error("has no packets of 8 rays on this processor");
     }
     for (const MeshData& mesh : workload.meshes) meshes_.push_back(sceneOf(mesh));
-  }
-
-  void show(std::span<const Instance> objects) override {
-    const bool anew = !top_ || objects.size() != shown_.size();
-    if (anew) {
-      top_ = newScene();
-      boxes_.resize(objects.size());
-    }
-    for (uint32_t i = 0; i < objects.size(); ++i) {
-      if (!anew && objects[i] == shown_[i]) continue;
-      boxes_[i] = boxOf(workload_.meshes[objects[i].mesh], objects[i].worldFromMesh);
-      const RTCGeometry instance =
-          anew ? rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE) : rtcGetGeometry(top_.get(), i);
-      rtcSetGeometryInstancedScene(instance, meshes_[objects[i].mesh].get());
-      float transform[12];
-      std::copy(objects[i].worldFromMesh.m.begin(), objects[i].worldFromMesh.m.end(), transform);
-      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
-      rtcCommitGeometry(instance);
-      if (!anew) continue;
-      rtcAttachGeometryByID(top_.get(), instance, i);
-      rtcReleaseGeometry(instance);
-    }
-    rtcCommitScene(top_.get());
-    shown_.assign(objects.begin(), objects.end());
   }
 
  protected:
@@ -154,52 +112,70 @@ class Embree : public Baseline {
     return scene;
   }
 
+  void begin(size_t count) override {
+    top_ = newScene();
+    boxes_.assign(count, {});
+  }
+
+  void place(size_t number, const Instance& object, bool anew) override {
+    const MeshData& mesh = workload_.meshes[object.mesh];
+    boxes_[number] = boundsOf({mesh.positions, mesh.indices}, object.worldFromMesh);
+    const RTCGeometry instance = anew ? rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE)
+                                      : rtcGetGeometry(top_.get(), static_cast<unsigned>(number));
+    rtcSetGeometryInstancedScene(instance, meshes_[object.mesh].get());
+    float transform[12];
+    std::copy(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), transform);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, transform);
+    rtcCommitGeometry(instance);
+    if (!anew) return;
+    rtcAttachGeometryByID(top_.get(), instance, static_cast<unsigned>(number));
+    rtcReleaseGeometry(instance);
+  }
+
+  void end(bool) override { rtcCommitScene(top_.get()); }
+
   const Workload& workload_;
   std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
   std::vector<SceneHandle> meshes_;
   SceneHandle top_;
-  std::vector<Instance> shown_;
-  std::vector<WorldBox> boxes_;
+  std::vector<Bounds> boxes_;
 };
 
 // Each pixel: the sensor's front by a ray from ahead, then a ray from there into the scene.
 class PixelRays : public Embree {
  public:
-  PixelRays(const Workload& workload, uint32_t resolution) : Embree(workload), resolution_(resolution) {}
+  PixelRays(const Workload& workload, uint32_t resolution) : Embree(workload, 0), resolution_(resolution) {}
 
   std::optional<double> cast(const Query& query) override {
-    const Vector w = unitDirection(query);
+    const Vec3 w = unitDirection(query);
     const auto [u, v] = across(w);
     const MeshData& mesh = workload_.meshes[query.mesh];
-    Vector low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    Bounds front;  // along u, v and w
     for (const uint32_t vertex : mesh.indices) {
-      const Vector p = transformPoint(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-      const Vector turned{dot(p, u), dot(p, v), dot(p, w)};
-      for (size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], turned[k]);
-        high[k] = std::max(high[k], turned[k]);
-      }
+      const Vec3 p = transformPoint(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
+      front.add({dot(p, u), dot(p, v), dot(p, w)});
     }
+    const auto& [low, high] = front;
     const double pixel = std::max(high[0] - low[0], high[1] - low[1]) / resolution_;
     if (!(pixel > 0)) return std::nullopt;
     const Inverse meshFromWorld(query.worldFromMesh);
     const double ahead = high[2] + pixel, depth = high[2] - low[2] + 2 * pixel;
-    const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
+    const Vec3 back = turned(meshFromWorld.linear, -1 * w);
     Context own(query), scene(query);
     own.filter = nullptr;
     double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
     bool found = false;
     for (double y = low[1] + 0.5 * pixel; y < high[1]; y += pixel) {
       for (double x = low[0] + 0.5 * pixel; x < high[0]; x += kPacket * pixel) {
-        Vector starts[kPacket];
+        Vec3 starts[kPacket];
         Packet onto, into;
         for (uint32_t lane = 0; lane < kPacket && x + lane * pixel < high[0]; ++lane) {
-          starts[lane] = along(along(along({}, u, x + lane * pixel), v, y), w, ahead);
+          starts[lane] = (x + lane * pixel) * u + y * v + ahead * w;
           onto.set(lane, meshFromWorld.placed(starts[lane]), back, depth);
         }
         rtcIntersect8(onto.valid, meshes_[query.mesh].get(), &own, &onto.rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
-          if (onto.hit(lane)) into.set(lane, along(starts[lane], w, -double{onto.rays.ray.tfar[lane]}), w, best);
+          if (onto.hit(lane)) into.set(lane, starts[lane] - double{onto.rays.ray.tfar[lane]} * w, w, best);
         }
         rtcIntersect8(into.valid, top_.get(), &scene, &into.rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
@@ -221,27 +197,19 @@ class VertexRays : public Embree {
   using Embree::Embree;
 
   std::optional<double> cast(const Query& query) override {
-    const Vector w = unitDirection(query);
+    const Vec3 w = unitDirection(query);
     const MeshData& mesh = workload_.meshes[query.mesh];
     Context own(query), scene(query);
     own.filter = nullptr;
     own.flags = scene.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
     bool found = false;
-    const auto shoot = [&](RTCScene target, Context& context, const Vector& origin, const Vector& direction) {
+    const auto shoot = [&](RTCScene target, Context& context, const Vec3& origin, const Vec3& direction) {
       RTCRayHit ray{};
-      ray.ray = {float(origin[0]),
-                 float(origin[1]),
-                 float(origin[2]),
-                 0,
-                 float(direction[0]),
-                 float(direction[1]),
-                 float(direction[2]),
-                 0,
-                 float(best),
-                 ~0u,
-                 0,
-                 0};
+      ray.ray.org_x = float(origin[0]), ray.ray.org_y = float(origin[1]), ray.ray.org_z = float(origin[2]);
+      ray.ray.dir_x = float(direction[0]), ray.ray.dir_y = float(direction[1]), ray.ray.dir_z = float(direction[2]);
+      ray.ray.tfar = float(best);
+      ray.ray.mask = ~0u;
       ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(target, &context, &ray);
       if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
@@ -251,15 +219,15 @@ class VertexRays : public Embree {
     for (size_t i = 0; i < mesh.positions.size(); i += 3) {
       shoot(top_.get(), scene, transformPoint(query.worldFromMesh, &mesh.positions[i]), w);
     }
-    const WorldBox swept = boxOf(mesh, query.worldFromMesh).swept(along({}, w, query.distance));
+    const Bounds way = swept(boundsOf({mesh.positions, mesh.indices}, query.worldFromMesh), query.distance * w);
     const Inverse meshFromWorld(query.worldFromMesh);
-    const Vector back = meshFromWorld.turned({-w[0], -w[1], -w[2]});
+    const Vec3 back = turned(meshFromWorld.linear, -1 * w);
     for (uint32_t object = 0; object < shown_.size(); ++object) {
-      if (!swept.meets(boxes_[object]) || isExcluded(query, object)) continue;
+      if (!meet(way, boxes_[object]) || isExcluded(query, object)) continue;
       const MeshData& other = workload_.meshes[shown_[object].mesh];
       for (size_t i = 0; i < other.positions.size(); i += 3) {
-        const Vector p = transformPoint(shown_[object].worldFromMesh, &other.positions[i]);
-        if (!swept.meets({p, p})) continue;
+        const Vec3 p = transformPoint(shown_[object].worldFromMesh, &other.positions[i]);
+        if (!meet(way, {p, p})) continue;
         shoot(meshes_[query.mesh].get(), own, meshFromWorld.placed(p), back);
       }
     }
@@ -277,17 +245,13 @@ std::vector<BaselineRow> embreeRows() {
        .limits = "one ray per pixel from the sensor's front. It misses what lies between pixels, what lies behind the "
                  "front in a concavity, and what surrounds the start. No certificate; deforming meshes need new trees.",
        .sizes = {16, 32, 64, 128, 256, 512, 1024},
-       .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
-         return std::make_unique<PixelRays>(workload, size);
-       }},
+       .make = make<PixelRays>},
       {.family = "Embree vertex rays",
        .product = product,
        .limits = "rays from the vertices of both sides. It misses contacts of two edges. No certificate; deforming "
                  "meshes need new trees.",
        .sizes = {0},
-       .make = [](const Workload& workload, uint32_t) -> std::unique_ptr<Baseline> {
-         return std::make_unique<VertexRays>(workload);
-       }}};
+       .make = make<VertexRays>}};
 }
 
 }  // namespace radar::tools

@@ -3,7 +3,6 @@
 #include <fcl/fcl.h>
 
 #include "baselines/rigid.h"
-#include "baselines/rows.h"
 
 namespace radar::tools {
 
@@ -54,34 +53,14 @@ bool checkPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
   return check.meets;
 }
 
-class Fcl : public Baseline {
+class Fcl : public SceneBaseline {
  public:
   Fcl(const Workload& workload, uint32_t steps) : shapes_(workload, modelOf), steps_(steps) {}
-
-  void show(std::span<const Instance> objects) override {
-    if (!manager_ || objects.size() != shown_.size()) {
-      objects_.clear();
-      manager_ = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
-      std::vector<fcl::CollisionObjectd*> all;
-      for (const Instance& instance : objects) {
-        objects_.push_back(placed(instance));
-        objects_.back()->setUserData(reinterpret_cast<void*>(objects_.size()));
-        all.push_back(objects_.back().get());
-      }
-      manager_->registerObjects(all);
-      manager_->setup();
-    } else {
-      for (size_t i = 0; i < objects.size(); ++i) {
-        if (!(objects[i] == shown_[i])) move(i, objects[i]);
-      }
-    }
-    shown_.assign(objects.begin(), objects.end());
-  }
 
   std::optional<double> cast(const Query& query) override {
     const std::unique_ptr<fcl::CollisionObjectd> sensor = placed({query.mesh, query.worldFromMesh});
     const fcl::Vector3d start = sensor->getTranslation();
-    const std::array<double, 3> v = unitDirection(query);
+    const Vec3 v = unitDirection(query);
     return steppedContact(query.distance, steps_, [&](double t) {
       sensor->setTranslation(start + t * fcl::Vector3d(v[0], v[1], v[2]));
       sensor->computeAABB();
@@ -93,21 +72,33 @@ class Fcl : public Baseline {
 
  private:
   std::unique_ptr<fcl::CollisionObjectd> placed(const Instance& instance) {
-    RigidPose pose;
-    const std::shared_ptr<Model> model = shapes_.of(instance, pose);
-    return std::make_unique<fcl::CollisionObjectd>(model, transformOf(pose));
+    const RigidPose pose = rigidPose(instance.worldFromMesh);
+    return std::make_unique<fcl::CollisionObjectd>(shapes_.of(instance.mesh, pose), transformOf(pose));
   }
 
-  void move(size_t number, const Instance& instance) {
-    manager_->unregisterObject(objects_[number].get());
+  void begin(size_t count) override {
+    manager_ = std::make_unique<fcl::DynamicAABBTreeCollisionManagerd>();
+    objects_.clear();
+    objects_.resize(count);
+  }
+
+  void place(size_t number, const Instance& instance, bool anew) override {
+    if (!anew) manager_->unregisterObject(objects_[number].get());
     objects_[number] = placed(instance);
     objects_[number]->setUserData(reinterpret_cast<void*>(number + 1));
-    manager_->registerObject(objects_[number].get());
+    if (!anew) manager_->registerObject(objects_[number].get());
+  }
+
+  void end(bool anew) override {
+    if (!anew) return;
+    std::vector<fcl::CollisionObjectd*> all;
+    for (const auto& object : objects_) all.push_back(object.get());
+    manager_->registerObjects(all);
+    manager_->setup();
   }
 
   ShapeCache<std::shared_ptr<Model>> shapes_;
   uint32_t steps_;
-  std::vector<Instance> shown_;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
   std::unique_ptr<fcl::DynamicAABBTreeCollisionManagerd> manager_;
 };
@@ -120,9 +111,7 @@ std::vector<BaselineRow> fclRows() {
            .limits = "asks at a number of steps whether the shapes meet, then bisects. It passes through what is "
                      "thinner than a step. No certificate; shears, scales and deforming meshes need new trees.",
            .sizes = {16, 64, 256},
-           .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
-             return std::make_unique<Fcl>(workload, size);
-           }}};
+           .make = make<Fcl>}};
 }
 
 }  // namespace radar::tools

@@ -3,7 +3,6 @@
 #include <ode/ode.h>
 
 #include "baselines/rigid.h"
-#include "baselines/rows.h"
 
 namespace radar::tools {
 
@@ -31,45 +30,37 @@ std::shared_ptr<Mesh> meshOf(const std::vector<double>& positions, const MeshDat
 
 using Geometry = std::unique_ptr<dxGeom, void (*)(dGeomID)>;
 
-WorldBox boxOf(dGeomID geometry) {
+Bounds boundsOf(dGeomID geometry) {
   dReal bounds[6];
   dGeomGetAABB(geometry, bounds);
   return {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
 }
 
-class Ode : public Baseline {
+class Ode : public SceneBaseline {
  public:
   Ode(const Workload& workload, uint32_t steps) : shapes_(workload, meshOf), steps_(steps) {
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
   }
 
-  void show(std::span<const Instance> objects) override {
-    objects_.clear();
-    boxes_.clear();
-    for (const Instance& instance : objects) {
-      objects_.push_back(placed(instance));
-      boxes_.push_back(boxOf(objects_.back().get()));
-    }
-  }
-
   std::optional<double> cast(const Query& query) override {
     const Geometry sensor = placed({query.mesh, query.worldFromMesh});
-    const WorldBox box = boxOf(sensor.get());
-    const std::array<double, 3> v = unitDirection(query);
-    const WorldBox swept = box.swept({query.distance * v[0], query.distance * v[1], query.distance * v[2]});
+    const Bounds box = boundsOf(sensor.get());
+    const Vec3 v = unitDirection(query);
+    const Bounds way = swept(box, query.distance * v);
     std::vector<uint32_t> near;
     for (uint32_t i = 0; i < boxes_.size(); ++i) {
-      if (swept.meets(boxes_[i]) && !isExcluded(query, i)) near.push_back(i);
+      if (meet(way, boxes_[i]) && !isExcluded(query, i)) near.push_back(i);
     }
     const dReal* position = dGeomGetPosition(sensor.get());
-    const std::array<double, 3> start{position[0], position[1], position[2]};
+    const Vec3 start{position[0], position[1], position[2]};
     return steppedContact(query.distance, steps_, [&](double t) {
-      dGeomSetPosition(sensor.get(), start[0] + t * v[0], start[1] + t * v[1], start[2] + t * v[2]);
-      const WorldBox here = boxOf(sensor.get());
+      const Vec3 now = start + t * v;
+      dGeomSetPosition(sensor.get(), now[0], now[1], now[2]);
+      const Bounds here = boundsOf(sensor.get());
       for (const uint32_t i : near) {
         dContactGeom contact;
-        if (here.meets(boxes_[i]) &&
+        if (meet(here, boxes_[i]) &&
             dCollide(sensor.get(), objects_[i].get(), 1 | CONTACTS_UNIMPORTANT, &contact, sizeof contact) > 0) {
           return true;
         }
@@ -79,9 +70,23 @@ class Ode : public Baseline {
   }
 
  private:
+  void begin(size_t) override {
+    objects_.clear();
+    boxes_.clear();
+  }
+
+  void place(size_t number, const Instance& instance, bool anew) override {
+    if (anew) {
+      objects_.emplace_back(nullptr, dGeomDestroy);
+      boxes_.emplace_back();
+    }
+    objects_[number] = placed(instance);
+    boxes_[number] = boundsOf(objects_[number].get());
+  }
+
   Geometry placed(const Instance& instance) {
-    RigidPose pose;
-    const std::shared_ptr<Mesh>& mesh = shapes_.of(instance, pose);
+    const RigidPose pose = rigidPose(instance.worldFromMesh);
+    const std::shared_ptr<Mesh>& mesh = shapes_.of(instance.mesh, pose);
     Geometry geometry(dCreateTriMesh(nullptr, mesh->data, nullptr, nullptr, nullptr), dGeomDestroy);
     const auto& r = pose.rotation;
     const dMatrix3 rotation{r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0};
@@ -93,7 +98,7 @@ class Ode : public Baseline {
   ShapeCache<std::shared_ptr<Mesh>> shapes_;
   uint32_t steps_;
   std::vector<Geometry> objects_;
-  std::vector<WorldBox> boxes_;
+  std::vector<Bounds> boxes_;
 };
 
 }  // namespace
@@ -106,9 +111,7 @@ std::vector<BaselineRow> odeRows() {
                      "certificate; one thread; shears, scales and deforming meshes need new trees.",
            .sizes = {16, 64, 256},
            .threads = false,
-           .make = [](const Workload& workload, uint32_t size) -> std::unique_ptr<Baseline> {
-             return std::make_unique<Ode>(workload, size);
-           }}};
+           .make = make<Ode>}};
 }
 
 }  // namespace radar::tools

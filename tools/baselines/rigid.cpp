@@ -1,8 +1,5 @@
 #include "baselines/rigid.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace radar::tools {
 
 namespace {
@@ -16,74 +13,50 @@ double coarse(double value) {
 
 }  // namespace
 
-SplitPose split(const Transform& pose) {
-  const auto& m = pose.m;
-  SplitPose out;
-  out.rigid.at = {m[3], m[7], m[11]};
-  std::array<double, 3> scale{};
-  for (size_t k = 0; k < 3; ++k) scale[k] = std::hypot(m[k], m[4 + k], m[8 + k]);
+RigidPose rigidPose(const Transform& pose) {
+  const Rotation linear = linearPart(pose);
+  const auto column = [&](size_t k) { return Vec3{linear[k], linear[3 + k], linear[6 + k]}; };
+  RigidPose out{kUpright, {pose.m[3], pose.m[7], pose.m[11]}, linear};
+  Vec3 scale{};
+  for (size_t k = 0; k < 3; ++k) scale[k] = std::hypot(linear[k], linear[3 + k], linear[6 + k]);
   const auto alongEachOther = [&](size_t i, size_t k) {
-    const double dot = m[i] * m[k] + m[4 + i] * m[4 + k] + m[8 + i] * m[8 + k];
-    return std::abs(dot) > 1e-12 * scale[i] * scale[k];
+    return std::abs(dot(column(i), column(k))) > 1e-12 * scale[i] * scale[k];
   };
-  const double volume =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  if (volume <= 0 || alongEachOther(0, 1) || alongEachOther(1, 2) || alongEachOther(0, 2)) {
-    out.bake = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-    out.rigid.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    return out;
-  }
+  const double volume = linear[0] * (linear[4] * linear[8] - linear[5] * linear[7]) -
+                        linear[1] * (linear[3] * linear[8] - linear[5] * linear[6]) +
+                        linear[2] * (linear[3] * linear[7] - linear[4] * linear[6]);
+  if (volume <= 0 || alongEachOther(0, 1) || alongEachOther(1, 2) || alongEachOther(0, 2)) return out;
   out.bake = {coarse(scale[0]), 0, 0, 0, coarse(scale[1]), 0, 0, 0, coarse(scale[2])};
-  for (size_t row = 0; row < 3; ++row) {
-    for (size_t k = 0; k < 3; ++k) out.rigid.rotation[3 * row + k] = m[4 * row + k] / scale[k];
-  }
+  for (size_t i = 0; i < 9; ++i) out.rotation[i] = linear[i] / scale[i % 3];
   return out;
 }
 
-std::vector<double> baked(const MeshData& mesh, const std::array<double, 9>& linear) {
-  std::vector<double> positions(mesh.positions.size());
-  for (size_t i = 0; i < positions.size(); i += 3) {
+std::vector<double> baked(const MeshData& mesh, const Rotation& linear) {
+  std::vector<double> positions;
+  for (size_t i = 0; i < mesh.positions.size(); i += 3) {
     const float* p = &mesh.positions[i];
-    for (size_t row = 0; row < 3; ++row) {
-      const double* r = &linear[3 * row];
-      positions[i + row] = r[0] * p[0] + r[1] * p[1] + r[2] * p[2];
-    }
+    const Vec3 moved = turned(linear, {p[0], p[1], p[2]});
+    positions.insert(positions.end(), moved.begin(), moved.end());
   }
   return positions;
 }
 
-bool WorldBox::meets(const WorldBox& other) const {
+bool meet(const Bounds& a, const Bounds& b) {
   for (size_t k = 0; k < 3; ++k) {
-    if (low[k] > other.high[k] || other.low[k] > high[k]) return false;
+    if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
   }
   return true;
 }
 
-WorldBox WorldBox::swept(const std::array<double, 3>& displacement) const {
-  WorldBox box = *this;
-  for (size_t k = 0; k < 3; ++k) {
-    box.low[k] += std::min(displacement[k], 0.0);
-    box.high[k] += std::max(displacement[k], 0.0);
-  }
-  return box;
+Bounds swept(Bounds bounds, const Vec3& displacement) {
+  const Bounds start = bounds;
+  bounds.add(start.low + displacement);
+  bounds.add(start.high + displacement);
+  return bounds;
 }
 
-WorldBox boxOf(const MeshData& mesh, const Transform& pose) {
-  WorldBox box;
-  box.low.fill(INFINITY);
-  box.high.fill(-INFINITY);
-  for (size_t i = 0; i < mesh.positions.size(); i += 3) {
-    const std::array<double, 3> p = transformPoint(pose, &mesh.positions[i]);
-    for (size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], p[k]);
-      box.high[k] = std::max(box.high[k], p[k]);
-    }
-  }
-  return box;
-}
-
-std::array<double, 3> unitDirection(const Query& query) {
-  const auto& v = query.direction;
+Vec3 unitDirection(const Query& query) {
+  const Vec3& v = query.direction;
   const double length = std::hypot(v[0], v[1], v[2]);
   return {v[0] / length, v[1] / length, v[2] / length};
 }

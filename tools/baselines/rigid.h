@@ -1,40 +1,69 @@
-// For libraries that place meshes by rotation and translation only: what else a pose does is baked into vertices.
+// What the libraries share: scenes that change little, meshes placed by rotation and translation only, boxes.
 #pragma once
 
 #include <functional>
 #include <map>
 
-#include "workloads/workload.h"
+#include "baselines/baseline.h"
+#include "workloads/vectors.h"
 
 namespace radar::tools {
 
-/// World = rotation (row-major) * p + at.
-struct RigidPose {
-  std::array<double, 9> rotation{};
-  std::array<double, 3> at{};
+/// The rows of each library.
+std::vector<BaselineRow> embreeRows();
+std::vector<BaselineRow> fclRows();
+std::vector<BaselineRow> bulletRows();
+std::vector<BaselineRow> odeRows();
+
+template <class Library>
+std::unique_ptr<Baseline> make(const Workload& workload, uint32_t size) {
+  return std::make_unique<Library>(workload, size);
+}
+
+/// A library that places only what differs from the scene shown before.
+class SceneBaseline : public Baseline {
+ public:
+  void show(std::span<const Instance> objects) final {
+    const bool anew = !shownBefore_ || objects.size() != shown_.size();
+    if (anew) begin(objects.size());
+    for (size_t i = 0; i < objects.size(); ++i) {
+      if (anew || !(objects[i] == shown_[i])) place(i, objects[i], anew);
+    }
+    end(anew);
+    shown_.assign(objects.begin(), objects.end());
+    shownBefore_ = true;
+  }
+
+ protected:
+  /// Forgets all objects; place() comes for each of the new ones.
+  virtual void begin(size_t count) = 0;
+  /// `anew`: since begin(); otherwise the object is there and changes.
+  virtual void place(size_t number, const Instance& instance, bool anew) = 0;
+  virtual void end(bool /*anew*/) {}
+
+  std::vector<Instance> shown_;
+
+ private:
+  bool shownBefore_ = false;
 };
 
-/// A pose as a rigid one after a linear map of the mesh.
-struct SplitPose {
-  std::array<double, 9> bake{};  ///< row-major
-  RigidPose rigid;
+/// A pose as a rigid one, rotation * p + at, after a linear map of the mesh. Scaling along the mesh's axes is baked, by
+/// factors of 40 bits, so that a shape that turns stays one shape; shears and mirrors are baked whole.
+struct RigidPose {
+  Rotation rotation{};
+  Vec3 at{};
+  Rotation bake{};  ///< row-major
 };
-/// Scaling along the mesh's axes is baked, by factors of 40 bits, so that a shape that turns stays one shape; shears
-/// and mirrors are baked whole.
-SplitPose split(const Transform& pose);
+RigidPose rigidPose(const Transform& pose);
 
 /// The vertices of a mesh under a linear map, 3 numbers each.
-std::vector<double> baked(const MeshData& mesh, const std::array<double, 9>& linear);
+std::vector<double> baked(const MeshData& mesh, const Rotation& linear);
 
-struct WorldBox {
-  std::array<double, 3> low{}, high{};
-  bool meets(const WorldBox& other) const;
-  /// Grown by where it gets along the motion.
-  WorldBox swept(const std::array<double, 3>& displacement) const;
-};
-WorldBox boxOf(const MeshData& mesh, const Transform& pose);
+bool meet(const Bounds& a, const Bounds& b);
+/// Grown by where it gets along the motion.
+Bounds swept(Bounds bounds, const Vec3& displacement);
 
-std::array<double, 3> unitDirection(const Query& query);
+Vec3 unitDirection(const Query& query);
 bool isExcluded(const Query& query, uint32_t object);
 
 /// First contact by discrete checks: the distance is walked in `steps` steps, then bisected to a millionth of a step.
@@ -49,20 +78,18 @@ class ShapeCache {
   using Make = std::function<Shape(const std::vector<double>& positions, const MeshData& mesh)>;
   ShapeCache(const Workload& workload, Make make) : workload_(workload), make_(std::move(make)) {}
 
-  Shape& of(const Instance& instance, RigidPose& rigid) {
-    const SplitPose pose = split(instance.worldFromMesh);
-    rigid = pose.rigid;
-    const auto key = std::pair(instance.mesh, pose.bake);
+  Shape& of(uint32_t mesh, const RigidPose& pose) {
+    const auto key = std::pair(mesh, pose.bake);
     const auto found = shapes_.find(key);
     if (found != shapes_.end()) return found->second;
-    const MeshData& mesh = workload_.meshes[instance.mesh];
-    return shapes_.emplace(key, make_(baked(mesh, pose.bake), mesh)).first->second;
+    const MeshData& data = workload_.meshes[mesh];
+    return shapes_.emplace(key, make_(baked(data, pose.bake), data)).first->second;
   }
 
  private:
   const Workload& workload_;
   Make make_;
-  std::map<std::pair<uint32_t, std::array<double, 9>>, Shape> shapes_;
+  std::map<std::pair<uint32_t, Rotation>, Shape> shapes_;
 };
 
 }  // namespace radar::tools

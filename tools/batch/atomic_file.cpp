@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
@@ -23,16 +21,6 @@ void writeAtomically(const std::filesystem::path& file, std::string_view content
     throw std::runtime_error(file.string() + ": expected a place to write to, got " +
                              (error ? error.message() : "an error while writing"));
   }
-}
-
-void appendNumber(std::string& text, double value) {
-  if (!std::isfinite(value)) {
-    text += "null";
-    return;
-  }
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-  text.append(digits, end);
 }
 
 }  // namespace radar::tools

@@ -11,7 +11,4 @@ namespace radar::tools {
 /// there before is then untouched and nothing half-written stays.
 void writeAtomically(const std::filesystem::path& file, std::string_view content);
 
-/// The shortest decimal number that reads back as the same double; "null" for NaN and infinities.
-void appendNumber(std::string& text, double value);
-
 }  // namespace radar::tools

@@ -1,8 +1,8 @@
-#include <cstring>
-#include <nlohmann/json.hpp>
+#include <bit>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
+#include "batch/json_output.h"
 #include "batch/query_file.h"
 
 namespace radar::tools {
@@ -11,12 +11,10 @@ namespace {
 
 constexpr size_t kMostInline = 64;
 
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-void appendLittleEndian(std::string& bytes, uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift & 0xff);
+template <class Value>
+void appendBytes(std::string& bytes, const Value& value) {
+  static_assert(std::endian::native == std::endian::little);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 std::string plyOf(const MeshData& mesh) {
@@ -24,14 +22,10 @@ std::string plyOf(const MeshData& mesh) {
                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
                       std::to_string(mesh.triangleCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 4 * mesh.positions.size() + 5 * mesh.indices.size());
-  for (float value : mesh.positions) {
-    uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    appendLittleEndian(bytes, bits);
-  }
+  for (float value : mesh.positions) appendBytes(bytes, value);
   for (size_t i = 0; i < mesh.indices.size(); ++i) {
     if (i % 3 == 0) bytes += '\3';
-    appendLittleEndian(bytes, mesh.indices[i]);
+    appendBytes(bytes, mesh.indices[i]);
   }
   return bytes;
 }
@@ -45,63 +39,49 @@ void appendInstance(std::string& text, const Instance& instance, const char* sep
   }
 }
 
-template <class List, class Append>
-void appendList(std::string& text, const List& list, Append append) {
-  text += "[";
-  for (size_t i = 0; i < list.size(); ++i) {
-    if (i > 0) text += ",";
-    append(list[i]);
-  }
-  text += "]";
+std::string instanceText(const Instance& instance) {
+  std::string text = "[";
+  appendInstance(text, instance, ",");
+  return text + "]";
 }
 
-void appendScene(std::string& text, const SceneSpec& scene, const std::string& instanceFile) {
-  text.append("{\"id\": ").append(quoted(scene.id));
-  if (scene.base) text.append(", \"base\": ").append(std::to_string(*scene.base));
+std::string sceneText(const SceneSpec& scene, const std::string& instanceFile) {
+  JsonObject object;
+  object.addString("id", scene.id);
+  if (scene.base) object.add("base", std::to_string(*scene.base));
   if (!instanceFile.empty()) {
-    text += ", \"instances_file\": " + quoted(instanceFile);
+    object.addString("instances_file", instanceFile);
   } else {
-    text += ", \"instances\": ";
-    appendList(text, scene.instances, [&](const Instance& instance) {
-      text += "[";
-      appendInstance(text, instance, ",");
-      text += "]";
-    });
+    object.add("instances", listOf(scene.instances, ",", [](std::string& text, const Instance& instance) {
+                 text += instanceText(instance);
+               }));
   }
   if (!scene.masks.empty()) {
-    text += ", \"masks\": ";
-    appendList(text, scene.masks, [&](const ObjectMask& mask) {
-      text.append("[").append(std::to_string(mask.first)).append(",").append(std::to_string(mask.second)).append("]");
-    });
+    object.add("masks", listOf(scene.masks, ",", [](std::string& text, const ObjectMask& mask) {
+                 text += "[" + std::to_string(mask.first) + "," + std::to_string(mask.second) + "]";
+               }));
   }
-  text += "}";
+  return object.text();
 }
 
-void appendQuery(std::string& text, const QuerySpec& query) {
-  text += "{\"id\": " + quoted(query.id) + ", \"scene\": " + std::to_string(query.scene) +
-          ", \"batch\": " + std::to_string(query.batch) + ", \"sensor\": [";
-  appendInstance(text, query.sensor, ",");
-  text += "]";
+std::string queryText(const QuerySpec& query) {
+  JsonObject object;
+  object.addString("id", query.id);
+  object.add("scene", std::to_string(query.scene));
+  object.add("batch", std::to_string(query.batch));
+  object.add("sensor", instanceText(query.sensor));
   if (!query.exclude.empty()) {
-    text += ", \"exclude\": ";
-    appendList(text, query.exclude, [&](uint32_t object) { text += std::to_string(object); });
+    object.add("exclude",
+               listOf(query.exclude, ",", [](std::string& text, uint32_t number) { text += std::to_string(number); }));
   }
-  text += ", \"dir\": ";
-  appendList(text, query.direction, [&](double value) { appendNumber(text, value); });
-  text += ", \"D\": ";
-  appendNumber(text, query.distance);
-  if (query.mask != ~0u) text.append(", \"mask\": ").append(std::to_string(query.mask));
-  if (query.anyHit) text += ", \"decide\": true";
-  if (query.mode) text += std::string(", \"mode\": \"") + nameOf(*query.mode) + "\"";
-  if (query.speed) {
-    text += ", \"speed\": ";
-    appendNumber(text, *query.speed);
-  }
-  if (query.tolerance) {
-    text += ", \"tolerance\": ";
-    appendNumber(text, *query.tolerance);
-  }
-  text += "}";
+  object.add("dir", listOf(query.direction, ",", appendNumber));
+  object.addNumber("D", query.distance);
+  if (query.mask != ~0u) object.add("mask", std::to_string(query.mask));
+  if (query.anyHit) object.add("decide", "true");
+  if (query.mode) object.addString("mode", nameOf(*query.mode));
+  if (query.speed) object.addNumber("speed", *query.speed);
+  if (query.tolerance) object.addNumber("tolerance", *query.tolerance);
+  return object.text();
 }
 
 }  // namespace
@@ -130,13 +110,11 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
       }
       writeAtomically(folder / instanceFile, lines);
     }
-    text += i > 0 ? ",\n  " : "\n  ";
-    appendScene(text, scene, instanceFile);
+    text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, instanceFile);
   }
   text += "],\n \"queries\": [";
   for (size_t i = 0; i < workload.queries.size(); ++i) {
-    text += i > 0 ? ",\n  " : "\n  ";
-    appendQuery(text, workload.queries[i]);
+    text += (i > 0 ? ",\n  " : "\n  ") + queryText(workload.queries[i]);
   }
   text += "]}\n";
   std::filesystem::path file = folder / "queries.json";

@@ -3,7 +3,6 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
-#include <array>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -46,24 +45,16 @@ bool tellsOfBrokenGeometry(const std::string& logLine) {
   return false;
 }
 
-using Matrix = std::array<double, 12>;  // rows of a 3x4 affine matrix
-
-Matrix product(const Matrix& a, const aiMatrix4x4& b) {
-  Matrix result;
-  for (int row = 0; row < 3; ++row) {
+Transform product(const Transform& a, const aiMatrix4x4& b) {
+  Transform result;
+  for (unsigned row = 0; row < 3; ++row) {
     for (unsigned column = 0; column < 4; ++column) {
-      double sum = column == 3 ? a[4 * row + 3] : 0.0;
-      for (unsigned k = 0; k < 3; ++k) sum += a[4 * row + k] * double(b[k][column]);
-      result[4 * row + column] = sum;
+      double sum = column == 3 ? a.m[4 * row + 3] : 0.0;
+      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * double(b[k][column]);
+      result.m[4 * row + column] = sum;
     }
   }
   return result;
-}
-
-std::string inWords(const aiVector3D& p) {
-  std::ostringstream words;
-  words << p.x << " " << p.y << " " << p.z << " before the node's transform";
-  return words.str();
 }
 
 struct Collector {
@@ -72,12 +63,12 @@ struct Collector {
   MeshData mesh;
   uint64_t points = 0, lines = 0;
 
-  void add(const aiNode& node, const Matrix& fileFromParent);
-  void add(const aiMesh& part, const Matrix& fileFromPart, const std::string& place);
+  void add(const aiNode& node, const Transform& fileFromParent);
+  void add(const aiMesh& part, const Transform& fileFromPart, const std::string& place);
 };
 
-void Collector::add(const aiNode& node, const Matrix& fileFromParent) {
-  const Matrix fileFromNode = product(fileFromParent, node.mTransformation);
+void Collector::add(const aiNode& node, const Transform& fileFromParent) {
+  const Transform fileFromNode = product(fileFromParent, node.mTransformation);
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const unsigned number = node.mMeshes[i];
     const std::string place = "node \"" + std::string(node.mName.C_Str()) + "\": mesh " + std::to_string(number);
@@ -86,19 +77,20 @@ void Collector::add(const aiNode& node, const Matrix& fileFromParent) {
   for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], fileFromNode);
 }
 
-void Collector::add(const aiMesh& part, const Matrix& fileFromPart, const std::string& place) {
+void Collector::add(const aiMesh& part, const Transform& fileFromPart, const std::string& place) {
   const size_t first = mesh.vertexCount();
   if (first + part.mNumVertices > std::numeric_limits<uint32_t>::max() / 3) {
     throw InputError(file, place, "expected at most 2^32 / 3 vertices, got more");
   }
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const double x = part.mVertices[i].x, y = part.mVertices[i].y, z = part.mVertices[i].z;
-    for (int row = 0; row < 3; ++row) {
-      const double* m = &fileFromPart[4 * row];
-      const float value = static_cast<float>(((m[0] * x + m[1] * y) + m[2] * z) + m[3]);
+    const aiVector3D& vertex = part.mVertices[i];
+    for (const double coordinate : transformPoint(fileFromPart, &vertex.x)) {
+      const float value = static_cast<float>(coordinate);
       if (!std::isfinite(value)) {
-        throw InputError(file, place + ": vertex " + std::to_string(i),
-                         "expected 3 finite numbers, got " + inWords(part.mVertices[i]));
+        std::ostringstream problem;
+        problem << "expected 3 finite numbers, got " << vertex.x << " " << vertex.y << " " << vertex.z
+                << " before the node's transform";
+        throw InputError(file, place + ": vertex " + std::to_string(i), problem.str());
       }
       mesh.positions.push_back(value);
     }
@@ -130,8 +122,11 @@ std::string plural(uint64_t count, const char* noun) {
 MeshData readMesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   const std::string name = file.string();
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw InputError(name, "", "expected a mesh file, got no such file");
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError(name, "", "expected a mesh file, got a folder");
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw InputError(name, "",
+                     std::string("expected a mesh file, got ") +
+                         (std::filesystem::exists(file, error) ? "a folder" : "no such file"));
+  }
 
   requireIntact(file);
 
@@ -152,7 +147,7 @@ MeshData readMesh(const std::filesystem::path& file, std::vector<std::string>& w
     if (tellsOfBrokenGeometry(line)) throw InputError(name, "", "expected an intact mesh file, got: " + line);
   }
   Collector collector{name, *scene, {file.filename().string(), {}, {}}};
-  collector.add(*scene->mRootNode, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+  collector.add(*scene->mRootNode, {});
   if (collector.mesh.indices.empty()) {
     throw InputError(name, "",
                      "expected at least one triangle, got " + plural(collector.points, "point") + " and " +

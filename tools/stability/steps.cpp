@@ -49,7 +49,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       std::vector<Query> queries;
       for (const QuerySpec& spec : workload.queries) {
         const Query query = toQuery(spec, Mode::contact);
-        const Vec3 step = scaled(random.direction(), settings.size * sensorSize(scene, query));
+        const Vec3 step = settings.size * sensorSize(scene, query) * random.direction();
         appendSteps(queries, query, step, settings.steps);
       }
       const std::vector<Result> exact = cpu.run(queries);

@@ -1,9 +1,6 @@
 #include "workloads/generate.h"
 
-#include <cmath>
-
-#include "workloads/city.h"
-#include "workloads/clearance.h"
+#include <unordered_map>
 
 namespace radar::tools {
 
@@ -14,25 +11,61 @@ constexpr double kTable1Distance = 10;
 constexpr double kScaleVolumePerBox = kCubeSide * kCubeSide * kCubeSide / 10'000;
 constexpr double kVolumePerMesh = 200;
 
-double lengthOf(const Vec3& v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-Vec3 cubeCorner(double side) {
-  return {0.5 * side, 0.5 * side, 0.5 * side};
-}
-
-Vec3 negated(const Vec3& v) {
-  return {-v[0], -v[1], -v[2]};
-}
-
-/// The pose that turns a mesh, scales it alike in all directions and puts the middle of its box at `at`.
-Transform poseAround(const MeshExtent& extent, const std::array<double, 9>& rotation, double scale, const Vec3& at) {
-  Transform pose = makePose(rotation, {scale, scale, scale}, at);
-  for (int row = 0; row < 3; ++row) {
-    double* r = &pose.m[4 * row];
-    r[3] -= r[0] * extent.middle[0] + r[1] * extent.middle[1] + r[2] * extent.middle[2];
+struct Sphere {
+  Vec3 centre{};
+  double radius = 0;
+  bool touches(const Sphere& other) const {
+    const Vec3 between = centre - other.centre;
+    const double reach = radius + other.radius;
+    return dot(between, between) <= reach * reach;
   }
+};
+
+/// Which places in a scene are free, by bounding spheres in a grid of cells. A cell should be about twice the radius of
+/// a large sphere.
+class Clearance {
+ public:
+  explicit Clearance(double cell) : cell_(cell) {}
+
+  void add(const Sphere& sphere) {
+    largest_ = std::max(largest_, sphere.radius);
+    cells_[keyOf(cellOf(sphere.centre[0]), cellOf(sphere.centre[1]), cellOf(sphere.centre[2]))].push_back(sphere);
+  }
+  /// Whether a sphere touches none of those added.
+  bool isFree(const Sphere& sphere) const {
+    const double reach = sphere.radius + largest_;
+    const auto first = [&](size_t k) { return cellOf(sphere.centre[k] - reach); };
+    const auto last = [&](size_t k) { return cellOf(sphere.centre[k] + reach); };
+    for (int64_t x = first(0); x <= last(0); ++x) {
+      for (int64_t y = first(1); y <= last(1); ++y) {
+        for (int64_t z = first(2); z <= last(2); ++z) {
+          const auto found = cells_.find(keyOf(x, y, z));
+          if (found == cells_.end()) continue;
+          for (const Sphere& other : found->second) {
+            if (sphere.touches(other)) return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  int64_t cellOf(double coordinate) const { return static_cast<int64_t>(std::floor(coordinate / cell_)); }
+  static uint64_t keyOf(int64_t x, int64_t y, int64_t z) {
+    constexpr int64_t kHalf = 1 << 20;  // 21 bits an axis
+    return uint64_t(x + kHalf) << 42 | uint64_t(y + kHalf) << 21 | uint64_t(z + kHalf);
+  }
+
+  double cell_;
+  double largest_ = 0;
+  std::unordered_map<uint64_t, std::vector<Sphere>> cells_;
+};
+
+/// The pose that turns a mesh, scales it alike in all directions and puts the middle of its box at `where`.
+Transform poseAround(const MeshExtent& extent, const Rotation& rotation, double scale, const Vec3& where) {
+  Transform pose = makePose(rotation, {scale, scale, scale}, where);
+  moveBy(pose, -1 * turned(linearPart(pose), extent.middle));
   return pose;
 }
 
@@ -42,94 +75,80 @@ double randomScale(Random& random, const MeshExtent& extent) {
   return extent.longest == 0 ? 1 : longest / extent.longest;
 }
 
+/// The side of a cube for `count` objects. cbrt is not the same everywhere; a side rounded to 1/64 is.
+double sideFor(uint32_t count, double volumeOfEach) {
+  return std::round(64 * std::cbrt(volumeOfEach * count)) / 64;
+}
+
 /// A place in the cube where a sphere is free, if kTries find one.
 Vec3 freePlace(Random& random, const Clearance& clearance, double side, double radius) {
-  Vec3 at{};
+  Vec3 where{};
   for (int i = 0; i < kTries; ++i) {
-    at = random.inBox(negated(cubeCorner(side)), cubeCorner(side));
-    if (clearance.isFree(at, radius)) break;
+    where = random.inCube(0.5 * side);
+    if (clearance.isFree({where, radius})) break;
   }
-  return at;
+  return where;
 }
 
-/// Unit box, mesh 0, in every instance: {edges, rotation, place} at random.
-std::vector<Instance> randomBoxes(Random& random, uint32_t count, double side, double least, double most,
-                                  Clearance& clearance) {
-  std::vector<Instance> boxes;
-  boxes.reserve(count);
+/// A scene of unit boxes, mesh 0, with edges of `least` to `most`.
+SceneSpec randomBoxes(Random& random, uint32_t count, double side, double least, double most, Clearance& clearance) {
+  SceneSpec scene{"boxes", {}, {}, {}};
+  scene.instances.reserve(count);
   for (uint32_t i = 0; i < count; ++i) {
-    const Vec3 edges = random.inBox({least, least, least}, {most, most, most});
-    const auto rotation = random.rotation();
-    const Vec3 at = random.inBox(negated(cubeCorner(side)), cubeCorner(side));
-    boxes.push_back({0, makePose(rotation, edges, at)});
-    clearance.add(at, 0.5 * lengthOf(edges));
+    const Vec3 edges = random.inBox(least * kFull, most * kFull);
+    const Rotation rotation = random.rotation();
+    const Vec3 where = random.inCube(0.5 * side);
+    scene.instances.push_back({0, makePose(rotation, edges, where)});
+    clearance.add({where, 0.5 * lengthOf(edges)});
   }
-  return boxes;
+  return scene;
 }
 
-/// Table 1's sensors: unit box, mesh 0, or teapot, mesh 1. `placeFor` finds a place for a sphere of the radius given.
-template <class PlaceFor>
-void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, const PlaceFor& placeFor) {
-  const MeshExtent teapot = extentOf(workload.meshes[1]);
-  for (uint32_t i = 0; i < count; ++i) {
-    QuerySpec query;
-    query.id = "sensor/" + std::to_string(i);
-    const auto rotation = random.rotation();
-    const Vec3 edges = random.inBox({1, 1, 1}, {3, 3, 3});
-    if (shape == SensorShape::box) {
-      const Vec3 at = placeFor(0.5 * lengthOf(edges));
-      query.sensor = {0, makePose(rotation, edges, at)};
-    } else {
-      const double scale = 3 / teapot.longest;
-      const Vec3 at = placeFor(scale * teapot.radius);
-      query.sensor = {1, poseAround(teapot, rotation, scale, at)};
-    }
-    query.direction = random.direction();
-    query.distance = kTable1Distance;
-    workload.queries.push_back(std::move(query));
-  }
+QuerySpec sensorQuery(uint32_t i) {
+  QuerySpec query;
+  query.id = "sensor/" + std::to_string(i);
+  query.distance = kTable1Distance;
+  return query;
 }
 
-Workload boxesAndSensors(uint32_t boxes, uint32_t sensors, SensorShape shape, double side, uint64_t seed) {
+template <class Options>
+Workload boxesAndSensors(const Options& options, double side) {
   Workload workload;
-  workload.meshes = {makeBox({1, 1, 1}), makeTeapot()};
-  Random boxRandom(seed), sensorRandom(seed + 1'000'003);
+  workload.meshes = {makeBox(kFull), makeTeapot()};
+  Random boxRandom(options.seed), sensorRandom(options.seed + 1'000'003);
   Clearance clearance(3);
-  workload.scenes.push_back({"boxes", {}, randomBoxes(boxRandom, boxes, side, 0.3, 1.5, clearance), {}});
-  addSensors(workload, sensorRandom, sensors, shape,
+  workload.scenes.push_back(randomBoxes(boxRandom, options.boxes, side, 0.3, 1.5, clearance));
+  addSensors(workload, sensorRandom, options.sensors, options.shape,
              [&](double radius) { return freePlace(sensorRandom, clearance, side, radius); });
   return workload;
 }
 
-/// Where a Figure 7 teapot is and where it is heading.
+/// A Figure 7 teapot on its way.
 struct Flight {
-  std::array<double, 9> rotation;
-  Vec3 at, heading;
+  Rotation rotation;
+  Vec3 heading;
+  Sphere sphere;
 };
 
 constexpr double kTeapotWidth = 5, kStep = 1, kLookAhead = 15;
 
-bool canBeAt(const Vec3& at, double radius, const Clearance& boxes, const std::vector<Flight>& flights, size_t self) {
-  for (double coordinate : at) {
+bool canBeAt(const Sphere& sphere, const Clearance& boxes, const std::vector<Flight>& flights, size_t self) {
+  for (double coordinate : sphere.centre) {
     if (std::abs(coordinate) > 0.5 * kCubeSide) return false;
   }
   for (size_t i = 0; i < flights.size(); ++i) {
-    if (i != self && spheresTouch(at, radius, flights[i].at, radius)) return false;
+    if (i != self && sphere.touches(flights[i].sphere)) return false;
   }
-  return boxes.isFree(at, radius);
-}
-
-Vec3 stepFrom(const Vec3& at, const Vec3& heading) {
-  return {at[0] + kStep * heading[0], at[1] + kStep * heading[1], at[2] + kStep * heading[2]};
+  return boxes.isFree(sphere);
 }
 
 /// One step on; where something is in the way, a new heading, and where none of kTries is free, no step.
-void fly(std::vector<Flight>& flights, size_t self, double radius, const Clearance& boxes, Random& random) {
+void fly(std::vector<Flight>& flights, size_t self, const Clearance& boxes, Random& random) {
   Flight& flight = flights[self];
   for (int i = 0; i < kTries; ++i) {
-    const Vec3 next = stepFrom(flight.at, flight.heading);
-    if (canBeAt(next, radius, boxes, flights, self)) {
-      flight.at = next;
+    const Sphere next{flight.sphere.centre + kStep * flight.heading, flight.sphere.radius};
+    if (canBeAt(next, boxes, flights, self)) {
+      flight.sphere = next;
       return;
     }
     flight.heading = random.direction();
@@ -138,55 +157,57 @@ void fly(std::vector<Flight>& flights, size_t self, double radius, const Clearan
 
 }  // namespace
 
-Transform normalised(Soup soup, const Transform& pose) {
-  Transform result = pose;
-  for (int row = 0; row < 3; ++row) {
-    double* r = &result.m[4 * row];
-    if (soup == Soup::tiny) {
-      for (int k = 0; k < 3; ++k) r[k] *= 1e6;
+void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, const PlaceFor& placeFor) {
+  const MeshExtent teapot = extentOf(workload.meshes[1]);
+  for (uint32_t i = 0; i < count; ++i) {
+    QuerySpec query = sensorQuery(i);
+    const Rotation rotation = random.rotation();
+    const Vec3 edges = random.inBox(kFull, 3 * kFull);
+    if (shape == SensorShape::box) {
+      query.sensor = {0, makePose(rotation, edges, placeFor(0.5 * lengthOf(edges)))};
+    } else {
+      const double scale = 3 / teapot.longest;
+      query.sensor = {1, poseAround(teapot, rotation, scale, placeFor(scale * teapot.radius))};
     }
-    if (soup == Soup::far) r[3] -= 2000 * (r[0] + r[1] + r[2]);
+    query.direction = random.direction();
+    workload.queries.push_back(std::move(query));
   }
-  return result;
 }
 
 Workload makeWorkload(const Table1& options) {
-  return boxesAndSensors(options.boxes, options.sensors, options.shape, kCubeSide, options.seed);
+  return boxesAndSensors(options, kCubeSide);
 }
 
 Workload makeWorkload(const Scale& options) {
-  // cbrt is not the same everywhere; a side rounded to 1/64 is.
-  const double side = std::round(64 * std::cbrt(kScaleVolumePerBox * options.boxes)) / 64;
-  return boxesAndSensors(options.boxes, options.sensors, options.shape, side, options.seed);
+  return boxesAndSensors(options, sideFor(options.boxes, kScaleVolumePerBox));
 }
 
 Workload makeWorkload(const Figure7& options) {
   Workload workload;
-  workload.meshes = {makeBox({1, 1, 1}), makeTeapot()};
+  workload.meshes = {makeBox(kFull), makeTeapot()};
   const MeshExtent teapot = extentOf(workload.meshes[1]);
-  const double scale = kTeapotWidth / teapot.longest, radius = scale * teapot.radius;
+  const double scale = kTeapotWidth / teapot.longest;
   Random random(options.seed);
   Clearance clearance(8);
-  workload.scenes.push_back({"boxes", {}, randomBoxes(random, options.boxes, kCubeSide, 0.8, 3, clearance), {}});
+  workload.scenes.push_back(randomBoxes(random, options.boxes, kCubeSide, 0.8, 3, clearance));
 
   std::vector<Flight> flights;
   for (uint32_t i = 0; i < options.teapots; ++i) {
-    Flight flight{random.rotation(), {}, random.direction()};
+    Flight flight{random.rotation(), random.direction(), {{}, scale * teapot.radius}};
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      flight.at = freePlace(random, clearance, kCubeSide, radius);
-      if (canBeAt(flight.at, radius, clearance, flights, flights.size())) break;
+      flight.sphere.centre = freePlace(random, clearance, kCubeSide, flight.sphere.radius);
+      if (canBeAt(flight.sphere, clearance, flights, flights.size())) break;
     }
     flights.push_back(flight);
   }
   for (uint32_t step = 0; step < options.steps; ++step) {
     SceneSpec scene{"step/" + std::to_string(step), 0, {}, {}};
-    const uint32_t sceneNumber = static_cast<uint32_t>(workload.scenes.size());
     for (uint32_t i = 0; i < options.teapots; ++i) {
       QuerySpec query;
       query.id = scene.id + "/teapot/" + std::to_string(i);
-      query.scene = sceneNumber;
+      query.scene = static_cast<uint32_t>(workload.scenes.size());
       query.batch = step;
-      query.sensor = {1, poseAround(teapot, flights[i].rotation, scale, flights[i].at)};
+      query.sensor = {1, poseAround(teapot, flights[i].rotation, scale, flights[i].sphere.centre)};
       query.exclude = {options.boxes + i};
       query.direction = flights[i].heading;
       query.distance = kLookAhead;
@@ -195,76 +216,24 @@ Workload makeWorkload(const Figure7& options) {
       workload.queries.push_back(std::move(query));
     }
     workload.scenes.push_back(std::move(scene));
-    for (size_t i = 0; i < flights.size(); ++i) fly(flights, i, radius, clearance, random);
+    for (size_t i = 0; i < flights.size(); ++i) fly(flights, i, clearance, random);
   }
-  return workload;
-}
-
-Workload makeWorkload(const OneMesh& options) {
-  Random random(options.seed), sensorRandom(options.seed + 1'000'003);
-  const City city(static_cast<uint32_t>(std::sqrt(0.5 * options.triangles)), random);
-  Workload workload;
-  workload.meshes = {makeBox({1, 1, 1}), makeTeapot(), city.mesh()};
-  workload.scenes.push_back({"city", {}, {{2, {}}}, {}});
-  addSensors(workload, sensorRandom, options.sensors, options.shape, [&](double radius) {
-    const double edge = city.halfSide();
-    Vec3 at = sensorRandom.inBox({-edge, -edge, 0.5}, {edge, edge, 6});
-    at[2] += radius + city.highestNear(at[0], at[1], radius);
-    return at;
-  });
   return workload;
 }
 
 Workload makeWorkload(const Sheets& options) {
   Random random(options.seed);
   Workload workload;
-  workload.meshes = {makeBox({1, 1, 1}), makeSheet(100, 0.05, random)};
+  workload.meshes = {makeBox(kFull), makeSheet(100, 0.05, random)};
   Clearance clearance(3);
-  workload.scenes.push_back({"boxes", {}, randomBoxes(random, options.boxes, kCubeSide, 0.3, 1.5, clearance), {}});
+  workload.scenes.push_back(randomBoxes(random, options.boxes, kCubeSide, 0.3, 1.5, clearance));
   for (uint32_t i = 0; i < options.sensors; ++i) {
-    QuerySpec query;
-    query.id = "sensor/" + std::to_string(i);
-    const auto rotation = random.rotation();
-    // Across the sheet, towards the cube's middle.
-    query.direction = {-rotation[2], -rotation[5], -rotation[8]};
-    const double half = 0.5 * kCubeSide;
-    query.sensor = {1, makePose(rotation, {half, half, half},
-                                {2 * half * rotation[2], 2 * half * rotation[5], 2 * half * rotation[8]})};
+    QuerySpec query = sensorQuery(i);
+    const Rotation rotation = random.rotation();
+    const Vec3 outwards = turned(rotation, {0, 0, 1});
+    query.sensor = {1, makePose(rotation, 0.5 * kCubeSide * kFull, kCubeSide * outwards)};
+    query.direction = -1 * outwards;
     query.distance = 2 * kCubeSide;
-    workload.queries.push_back(std::move(query));
-  }
-  return workload;
-}
-
-Workload makeWorkload(const Soups& options) {
-  Workload workload;
-  Random random(options.seed);
-  const auto kindOf = [&](uint32_t i) { return options.kinds[i % options.kinds.size()]; };
-  const Vec3 origin{options.origin, options.origin, options.origin};
-  const auto randomPlace = [&](double reach) {
-    Vec3 at = random.inBox({-reach, -reach, -reach}, {reach, reach, reach});
-    for (int k = 0; k < 3; ++k) at[k] += origin[k];
-    return at;
-  };
-  for (uint32_t i = 0; i < options.kinds.size(); ++i) {
-    workload.meshes.push_back(makeSoup(kindOf(i), options.triangles, random));
-  }
-  const auto instanceOf = [&](uint32_t i, double reach) {
-    const uint32_t mesh = static_cast<uint32_t>(i % options.kinds.size());
-    return Instance{mesh, normalised(kindOf(i), randomAffine(random, randomPlace(reach)))};
-  };
-  SceneSpec scene{"soup", {}, {}, {}};
-  for (uint32_t i = 0; i < options.objects; ++i) scene.instances.push_back(instanceOf(i, 8));
-  workload.scenes.push_back(std::move(scene));
-  for (uint32_t i = 0; i < options.sensors; ++i) {
-    QuerySpec query;
-    query.id = "sensor/" + std::to_string(i);
-    // Kinds of sensor and object meet in all combinations, not only each with itself.
-    query.sensor = instanceOf(i + i / static_cast<uint32_t>(options.kinds.size()), 10);
-    query.direction = random.direction();
-    const double length = random.uniform(0.01, 100);
-    for (double& value : query.direction) value *= length;
-    query.distance = random.uniform(0, 12);
     workload.queries.push_back(std::move(query));
   }
   return workload;
@@ -274,31 +243,30 @@ Workload makeWorkload(const RandomPoses& options) {
   Workload workload;
   workload.meshes = options.meshes;
   Random random(options.seed);
-  std::vector<MeshExtent> bounds;
-  for (const MeshData& mesh : workload.meshes) bounds.push_back(extentOf(mesh));
-  const double side = std::round(64 * std::cbrt(kVolumePerMesh * options.objects)) / 64;
-  const uint32_t kinds = static_cast<uint32_t>(bounds.size());
+  std::vector<MeshExtent> extents;
+  for (const MeshData& mesh : workload.meshes) extents.push_back(extentOf(mesh));
+  const double side = sideFor(options.objects, kVolumePerMesh);
   Clearance clearance(4);
+  // Mesh i of the list, repeated; `placeFor` finds a place for a sphere of the radius given.
+  const auto instance = [&](uint32_t i, const auto& placeFor) {
+    const auto mesh = static_cast<uint32_t>(i % extents.size());
+    const double scale = randomScale(random, extents[mesh]);
+    const Rotation rotation = random.rotation();
+    return Instance{mesh, poseAround(extents[mesh], rotation, scale, placeFor(scale * extents[mesh].radius))};
+  };
   SceneSpec scene{"meshes", {}, {}, {}};
   for (uint32_t i = 0; i < options.objects; ++i) {
-    const MeshExtent& mesh = bounds[i % kinds];
-    const double scale = randomScale(random, mesh);
-    const auto rotation = random.rotation();
-    const Vec3 at = random.inBox(negated(cubeCorner(side)), cubeCorner(side));
-    scene.instances.push_back({i % kinds, poseAround(mesh, rotation, scale, at)});
-    clearance.add(at, scale * mesh.radius);
+    scene.instances.push_back(instance(i, [&](double radius) {
+      const Vec3 where = random.inCube(0.5 * side);
+      clearance.add({where, radius});
+      return where;
+    }));
   }
   workload.scenes.push_back(std::move(scene));
   for (uint32_t i = 0; i < options.sensors; ++i) {
-    const MeshExtent& mesh = bounds[i % kinds];
-    const double scale = randomScale(random, mesh);
-    QuerySpec query;
-    query.id = "sensor/" + std::to_string(i);
-    const auto rotation = random.rotation();
-    const Vec3 at = freePlace(random, clearance, side, scale * mesh.radius);
-    query.sensor = {i % kinds, poseAround(mesh, rotation, scale, at)};
+    QuerySpec query = sensorQuery(i);
+    query.sensor = instance(i, [&](double radius) { return freePlace(random, clearance, side, radius); });
     query.direction = random.direction();
-    query.distance = kTable1Distance;
     workload.queries.push_back(std::move(query));
   }
   return workload;

@@ -26,6 +26,11 @@ struct Table1 {
 };
 Workload makeWorkload(const Table1& options);
 
+/// Finds a place for a sphere of that radius.
+using PlaceFor = std::function<Vec3(double radius)>;
+/// Adds Table 1's sensors to a workload whose mesh 0 is a unit box and whose mesh 1 is the teapot.
+void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape shape, const PlaceFor& placeFor);
+
 /// The paper's Figure 7: `teapots` (5 to 30), 5 wide, fly straight on through `boxes` fixed boxes, one unit a step, and
 /// turn where something is in the way. One scene a step, whose base is scene 0 (the boxes); teapot k is object `boxes`
 /// + k and sensor k of the step's batch, looking 15 units ahead, itself excluded. The speed is one unit a second.

@@ -12,15 +12,9 @@ namespace {
 
 /// By quarter turns and whole steps half of the time, otherwise at random.
 void placeAnywhere(HardCase& hard, Random& random) {
-  if (random.oneIn(2)) {
-    const Rotation frame = quarterTurns(random);
-    const Vec3 origin = wholeVector(random, 8);
-    place(hard, frame, origin);
-  } else {
-    const Rotation frame = random.rotation();
-    const Vec3 origin = random.inBox({-10, -10, -10}, {10, 10, 10});
-    place(hard, frame, origin);
-  }
+  const bool exact = random.oneIn(2);
+  const Rotation frame = exact ? random.quarterTurns() : random.rotation();
+  place(hard, frame, exact ? random.wholeVector(8) : random.inCube(10));
 }
 
 uint32_t meshIn(Workload& workload, const MeshData& mesh) {
@@ -69,7 +63,7 @@ HardCase hardCase(const HardFamily& family, uint64_t seed, uint64_t number) {
   if (!family.placesItself) placeAnywhere(hard, random);
   if (hard.objects.size() == 1 && random.oneIn(2)) {
     std::swap(hard.sensor, hard.objects[0]);
-    hard.direction = scaled(hard.direction, -1);
+    hard.direction = -1 * hard.direction;
   }
   return hard;
 }

@@ -1,12 +1,11 @@
 // Cases in which collision queries are known to fail, in families. Equal arguments give equal bits on every platform.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "workloads/placement.h"
+#include "workloads/random.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {

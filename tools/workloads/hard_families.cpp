@@ -3,18 +3,85 @@
 // arguments are evaluated is the compiler's.
 #include "workloads/hard_cases.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "workloads/generate.h"
-#include "workloads/hard_case_parts.h"
 #include "workloads/random_shapes.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
 
 namespace {
+
+Vec3 farOrigin(Random& random) {
+  const double distance = random.magnitude(1, 7);
+  return distance * random.direction();
+}
+
+/// About x, by the angle of that tangent.
+Rotation tilt(double tangent) {
+  const double c = 1 / std::sqrt(1 + tangent * tangent), s = c * tangent;
+  return {1, 0, 0, 0, c, -s, 0, s, c};
+}
+
+/// About z.
+Rotation roll(Random& random) {
+  const auto [c, s] = circlePoint(random.below(360), 360);
+  return {c, -s, 0, s, c, 0, 0, 0, 1};
+}
+
+/// A distance that a contact after about `gap` may lie beyond.
+double reachFor(double gap, Random& random) {
+  constexpr std::array<double, 4> kParts{0.7, 1.5, 3, 20};
+  return gap * kParts[random.below(4)];
+}
+
+/// Something solid, about 1 wide, in any pose around `middle`.
+PlacedMesh compact(Random& random, const Vec3& middle) {
+  const uint32_t which = random.below(4);
+  MeshData mesh = which == 0   ? makeBox({1, 0.8, 0.6})
+                  : which == 1 ? resized(makeUvSphere(5, 8), 0.5)
+                  : which == 2 ? makeTorus(0.4, 0.15, 12, 6)
+                               : makeHook(1, 0.5, 0.4, 0.15);
+  const Rotation rotation = random.oneIn(3) ? kUpright : random.rotation();
+  return {std::move(mesh), makePose(rotation, kFull, middle)};
+}
+
+/// Turned; sometimes stretched, sheared and mirrored, too.
+Transform anyPose(Random& random, const Vec3& where) {
+  return random.oneIn(4) ? random.affine(where) : makePose(random.rotation(), kFull, where);
+}
+
+using MakeShape = MeshData (*)(Random&);
+
+/// The sensor below the object, which is in the way more often than not.
+HardCase pairOf(MakeShape sensor, MakeShape object, Random& random) {
+  HardCase hard;
+  hard.sensor.mesh = sensor(random);
+  hard.sensor.worldFromMesh = anyPose(random, {});
+  MeshData mesh = object(random);
+  const Vec3 where = random.inBox({-1.2, -1.2, 0.5}, {1.2, 1.2, 5});
+  hard.objects.push_back({std::move(mesh), anyPose(random, where)});
+  hard.distance = random.oneIn(10) ? 0 : reachFor(where[2], random);
+  return hard;
+}
+
+HardCase anyPair(Random& random) {
+  return pairOf(anyShape, anyShape, random);
+}
+
+/// Blocks that touch sideways along as many of x and y as `grazing` says, `gap` apart along z; D is three more.
+HardCase blocks(uint32_t grazing, double gap, Random& random) {
+  const Block a = block(random), b = block(random);
+  Vec3 where{0, 0, a.reach[2] + b.reach[2] + gap};
+  const uint32_t first = random.below(2);
+  for (uint32_t k = 0; k < 2; ++k) {
+    const bool touches = grazing > (k == first ? 0u : 1u);
+    where[k] = touches ? a.reach[k] + b.reach[k] : 0.25 * random.below(3);
+    if (random.oneIn(2)) where[k] = -where[k];
+  }
+  return {{a.mesh, {}}, {{b.mesh, placedAt(where)}}, {0, 0, 1}, std::max(gap, 0.0) + 3};
+}
 
 double stepped(double value, int ulps) {
   for (; ulps > 0; --ulps) value = std::nextafter(value, INFINITY);
@@ -92,8 +159,8 @@ HardCase ulpCase(double ulps, Random& random) {
   HardCase hard = blocks(random.below(3), gap, random);
   const bool atEnd = random.oneIn(3);
   if (atEnd) hard.distance = gap;
-  const Rotation frame = random.oneIn(3) ? random.rotation() : quarterTurns(random);
-  place(hard, frame, scaled(wholeVector(random, 16), 0.5));
+  const Rotation frame = random.oneIn(3) ? random.rotation() : random.quarterTurns();
+  place(hard, frame, 0.5 * random.wholeVector(16));
   if (atEnd && gap > 0 && random.oneIn(2)) {
     hard.distance = stepped(hard.distance, static_cast<int>(-ulps));
   } else {
@@ -131,27 +198,27 @@ HardCase depthCase(double depth, Random& random) {
 /// Boxes and triangles with whole corners, at whole halves, along a whole direction: objects that are met at the same
 /// t, or touched, or met at exactly D.
 HardCase latticeCase(double how, Random& random) {
-  const auto whole = [&] { return at(scaled(wholeVector(random, 6), 0.5)); };
+  const auto whole = [&] { return placedAt(0.5 * random.wholeVector(6)); };
   HardCase hard;
   hard.sensor.mesh = latticeShape(random);
   for (uint32_t i = 1 + random.below(8); i > 0; --i) {
     MeshData mesh = latticeShape(random);
     hard.objects.push_back({std::move(mesh), whole()});
   }
-  hard.direction = axis(random);
-  if (random.oneIn(2)) hard.direction = wholeVector(random, 2);
+  hard.direction = random.axis();
+  if (random.oneIn(2)) hard.direction = random.wholeVector(2);
   if (hard.direction == Vec3{}) hard.direction = {1, 2, -2};
   hard.distance = random.below(12);
   if (how == 0) {
-    const Rotation frame = quarterTurns(random);
-    const Vec3 origin = scaled(wholeVector(random, 12), 0.5);
+    const Rotation frame = random.quarterTurns();
+    const Vec3 origin = 0.5 * random.wholeVector(12);
     place(hard, frame, origin);
     return hard;
   }
   const Rotation frame = random.rotation();
-  place(hard, frame, random.inBox({-6, -6, -6}, {6, 6, 6}));
+  place(hard, frame, random.inCube(6));
   if (how == 1) return hard;
-  resize(hard, magnitude(random, -3, 3));
+  resize(hard, random.magnitude(-3, 3));
   if (random.oneIn(2)) place(hard, kUpright, farOrigin(random));
   if (how == 2) return hard;
   for (PlacedMesh& object : hard.objects) {
@@ -171,7 +238,7 @@ HardCase containmentCase(double ratio, Random& random) {
   double* m = hard.sensor.worldFromMesh.m.data();
   for (size_t i = 0; i < 12; ++i) m[i] *= i % 4 == 3 ? 1 : ratio;
   hard.objects.push_back({std::move(shell), {}});
-  hard.direction = random.oneIn(2) ? axis(random) : random.direction();
+  hard.direction = random.oneIn(2) ? random.axis() : random.direction();
   hard.distance = random.uniform(0.1, 3);
   return hard;
 }
@@ -198,21 +265,18 @@ HardCase soupCase(double kind, Random& random) {
 
 HardCase farPosedCase(double distance, Random& random) {
   HardCase hard = anyPair(random);
-  const Vec3 origin = scaled(random.direction(), distance);
+  const Vec3 origin = distance * random.direction();
   place(hard, kUpright, origin);
   return hard;
 }
 
 HardCase farBakedCase(double distance, Random& random) {
   HardCase hard = anyPair(random);
-  const Vec3 origin = scaled(random.direction(), distance);
+  const Vec3 origin = distance * random.direction();
   const bool back = random.oneIn(2);
   for (PlacedMesh* placed : {&hard.sensor, &hard.objects[0]}) {
     moveVertices(*placed, origin);
-    for (size_t row = 0; row < 3; ++row) {
-      double* r = &placed->worldFromMesh.m[4 * row];
-      r[3] -= r[0] * origin[0] + r[1] * origin[1] + r[2] * origin[2] - (back ? 0 : origin[row]);
-    }
+    moveBy(placed->worldFromMesh, (back ? Vec3{} : origin) - turned(linearPart(placed->worldFromMesh), origin));
   }
   return hard;
 }
@@ -229,7 +293,7 @@ HardCase floorCase(double size, Random& random) {
   hard.sensor = compact(random, {});
   if (random.oneIn(2)) hard.sensor.mesh = anyShape(random);
   resize(hard, size);
-  for (size_t k = 0; k < 3; ++k) hard.sensor.worldFromMesh.m[4 * k + 3] = above[k];
+  moveBy(hard.sensor.worldFromMesh, above);
   hard.objects.push_back({makeSheet(1 + random.below(8), 0, random), makePose(kUpright, {1e4, 1e4, 1e4}, {})});
   if (random.oneIn(3)) hard.direction = {1, 0, powerOfTen(-static_cast<int>(random.below(7)))};
   if (random.oneIn(4)) hard.direction = random.direction();
@@ -246,7 +310,7 @@ HardCase directionCase(double off, Random& random) {
   if (other == 2) hard.objects[0].mesh = makeRod(0.2, 2, 8);
   const Vec3 aside = random.direction();
   for (size_t k = 0; k < 3; ++k) hard.direction[k] += random.oneIn(3) ? 0 : off * aside[k];
-  hard.direction = scaled(hard.direction, magnitude(random, -12, 12));
+  hard.direction = random.magnitude(-12, 12) * hard.direction;
   hard.distance += random.uniform(0, 3);
   return hard;
 }
@@ -301,7 +365,7 @@ HardCase tiesCase(double objects, Random& random) {
   const double height = (flat ? 0 : 0.25) + gap + 0.25;
   for (uint32_t i = 0; i < count; ++i) {
     const uint32_t column = i % side, row = i / side;
-    hard.objects.push_back({object, at({column + 0.5 * (1.0 - side), row + 0.5 * (1.0 - side), height})});
+    hard.objects.push_back({object, placedAt({column + 0.5 * (1.0 - side), row + 0.5 * (1.0 - side), height})});
   }
   hard.distance = random.oneIn(3) ? gap : gap + 1;
   return hard;
@@ -310,12 +374,12 @@ HardCase tiesCase(double objects, Random& random) {
 HardCase interlockingCase(double which, Random& random) {
   static const std::vector<Interlocked> shapes = interlockedShapes();
   const Interlocked& pair = shapes[static_cast<size_t>(which)];
-  const double angle = random.oneIn(7) ? 0 : magnitude(random, -6, -1);
+  const double angle = random.oneIn(7) ? 0 : random.magnitude(-6, -1);
   HardCase hard;
-  hard.sensor = {pair.first, makePose(slightRotation(random, angle), kFull, {})};
-  const Rotation second = product(slightRotation(random, angle), pair.rotation);
+  hard.sensor = {pair.first, makePose(random.slightRotation(angle), kFull, {})};
+  const Rotation second = product(random.slightRotation(angle), pair.rotation);
   hard.objects.push_back({pair.second, makePose(second, kFull, pair.offset)});
-  hard.direction = random.oneIn(2) ? axis(random) : random.direction();
+  hard.direction = random.oneIn(2) ? random.axis() : random.direction();
   hard.distance = random.uniform(0.1, 8);
   return hard;
 }

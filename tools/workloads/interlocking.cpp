@@ -14,9 +14,7 @@ MeshData makeGrating(uint32_t strips, double length, double pitch) {
   for (uint32_t i = 0; i < strips; ++i) {
     const double low = pitch * (i - 0.5 * strips);
     for (const double x : {-0.5 * length, 0.5 * length}) {
-      for (const double y : {low, low + 0.5 * pitch}) {
-        for (const double value : {x, y, 0.0}) mesh.positions.push_back(static_cast<float>(value));
-      }
+      for (const double y : {low, low + 0.5 * pitch}) addVertex(mesh, {x, y, 0});
     }
     for (const uint32_t corner : {0u, 1u, 2u, 1u, 3u, 2u}) mesh.indices.push_back(4 * i + corner);
   }
@@ -25,8 +23,7 @@ MeshData makeGrating(uint32_t strips, double length, double pitch) {
 
 // A comb of round teeth with room between them for another's.
 MeshData makeRoundComb(uint32_t teeth) {
-  MeshData mesh = makeBox({0.5 * teeth, 0.3, 0.3});
-  mesh.name = "round comb";
+  MeshData mesh = named("round comb", makeBox({0.5 * teeth, 0.3, 0.3}));
   for (uint32_t i = 0; i < teeth; ++i) {
     append(mesh, makeRod(0.075, 3, 64), {0.5 * (i + 0.5) - 0.25 * teeth, 0, 1.65});
   }
@@ -62,12 +59,10 @@ Workload makeWorkload(const InterlockingPairs& options) {
   workload.scenes.push_back({nameOf(options.kind), {}, {}, {}});
   for (uint32_t i = 0; i < options.sensors; ++i) {
     const Vec3 home{100.0 * i, 0, 0};
-    const auto frame = random.rotation();
-    Vec3 second = turned(frame, shapes.offset);
-    for (size_t k = 0; k < 3; ++k) second[k] += home[k];
+    const Rotation frame = random.rotation();
+    const Vec3 second = turned(frame, shapes.offset) + home;
     workload.scenes[0].instances.push_back({1, makePose(product(frame, shapes.rotation), kFull, second)});
-    Vec3 towards = random.inBox({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3});
-    towards[2] += 1;
+    const Vec3 towards = random.inCube(0.3) + Vec3{0, 0, 1};
     QuerySpec query;
     query.id = std::to_string(i);
     query.sensor = {0, makePose(frame, kFull, home)};

@@ -1,6 +1,5 @@
 #include "workloads/random.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -17,6 +16,13 @@ std::array<double, 2> cosSin(double x) {
     sine = (1 - sine) * y / (k * (k + 1.0));
   }
   return {1 - cosine, x * (1 - sine)};
+}
+
+/// Of the quaternion w + xi + yj + zk; s: 2 over the square of its length.
+Rotation fromQuaternion(double w, double x, double y, double z, double s) {
+  return {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
+          s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),
+          s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
 }
 
 }  // namespace
@@ -36,42 +42,59 @@ Vec3 Random::inBox(const Vec3& low, const Vec3& high) {
 
 Vec3 Random::direction() {
   while (true) {
-    const Vec3 p = inBox({-1, -1, -1}, {1, 1, 1});
-    const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    const Vec3 p = inCube(1);
+    const double square = dot(p, p);
     if (square > 1 || square < 1e-4) continue;
     const double length = std::sqrt(square);
     return {p[0] / length, p[1] / length, p[2] / length};
   }
 }
 
-std::array<double, 9> Random::rotation() {
+Rotation Random::rotation() {
   while (true) {
     const double w = uniform(-1, 1), x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
     const double square = w * w + x * x + y * y + z * z;
-    if (square > 1 || square < 1e-4) continue;
-    const double s = 2 / square;
-    return {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
-            s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),
-            s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
+    if (square <= 1 && square >= 1e-4) return fromQuaternion(w, x, y, z, 2 / square);
   }
 }
 
-Transform makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at) {
-  Transform pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int k = 0; k < 3; ++k) pose.m[4 * row + k] = rotation[3 * row + k] * scale[k];
-    pose.m[4 * row + 3] = at[row];
-  }
-  return pose;
+Rotation Random::slightRotation(double most) {
+  const Vec3 v = inCube(0.5 * most);
+  const double w = 1 / std::sqrt(1 + v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  return fromQuaternion(w, v[0] * w, v[1] * w, v[2] * w, 2);
 }
 
-Transform randomAffine(Random& random, const Vec3& at) {
-  const auto rotation = random.rotation();
-  const Vec3 scale = random.inBox({0.3, 0.3, 0.3}, {2, 2, 2});
-  Transform pose = makePose(rotation, {random.below(2) == 0 ? scale[0] : -scale[0], scale[1], scale[2]}, at);
-  if (random.below(2) == 0) {
-    const double shear = random.uniform(-0.5, 0.5);
-    for (int row = 0; row < 3; ++row) pose.m[4 * row + 1] += shear * pose.m[4 * row];
+Rotation Random::quarterTurns() {
+  Rotation rotation = kUpright;
+  for (const Rotation& turn : {Rotation{0, -1, 0, 1, 0, 0, 0, 0, 1}, Rotation{0, 0, 1, 0, 1, 0, -1, 0, 0}, kOnEdge}) {
+    for (uint32_t i = below(4); i > 0; --i) rotation = product(turn, rotation);
+  }
+  return rotation;
+}
+
+Vec3 Random::wholeVector(uint32_t limit) {
+  Vec3 v{};
+  for (double& value : v) value = double(below(2 * limit + 1)) - limit;
+  return v;
+}
+
+Vec3 Random::axis() {
+  Vec3 v{};
+  v[below(3)] = oneIn(2) ? 1 : -1;
+  return v;
+}
+
+double Random::magnitude(int least, int most) {
+  return powerOfTen(least + static_cast<int>(below(static_cast<uint32_t>(most - least + 1))));
+}
+
+Transform Random::affine(const Vec3& at) {
+  const Rotation turn = rotation();
+  const Vec3 scale = inBox({0.3, 0.3, 0.3}, {2, 2, 2});
+  Transform pose = makePose(turn, {oneIn(2) ? scale[0] : -scale[0], scale[1], scale[2]}, at);
+  if (oneIn(2)) {
+    const double shear = uniform(-0.5, 0.5);
+    for (size_t row = 0; row < 3; ++row) pose.m[4 * row + 1] += shear * pose.m[4 * row];
   }
   return pose;
 }

@@ -2,15 +2,12 @@
 // standard library are not, nor are sin and cos. Only +, -, *, / and sqrt of doubles follow here.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <random>
 
-#include "radar/radar.h"
+#include "workloads/vectors.h"
 
 namespace radar::tools {
-
-using Vec3 = std::array<double, 3>;
 
 class Random {
  public:
@@ -20,18 +17,21 @@ class Random {
   uint32_t below(uint32_t limit);           ///< in 0 .. limit - 1; limit > 0
   bool oneIn(uint32_t n) { return below(n) == 0; }
   Vec3 inBox(const Vec3& low, const Vec3& high);  ///< a point
-  Vec3 direction();                               ///< on the unit sphere
-  std::array<double, 9> rotation();               ///< row-major, uniform over all rotations
+  Vec3 inCube(double reach) { return inBox({-reach, -reach, -reach}, {reach, reach, reach}); }
+  Vec3 direction();                      ///< on the unit sphere
+  Rotation rotation();                   ///< uniform over all rotations
+  Rotation slightRotation(double most);  ///< about a random axis, by up to about half of `most`
+  Rotation quarterTurns();               ///< exact
+  Vec3 wholeVector(uint32_t limit);      ///< whole numbers of -limit to limit
+  Vec3 axis();                           ///< one of the six unit vectors
+  /// 10^least to 10^most, whole powers alike.
+  double magnitude(int least, int most);
+  /// Turned, scaled by 0.3 to 2 per axis, sometimes sheared and sometimes mirrored.
+  Transform affine(const Vec3& at);
 
  private:
   std::mt19937_64 bits_;
 };
-
-/// World = rotation * diag(scale) * p + at.
-Transform makePose(const std::array<double, 9>& rotation, const Vec3& scale, const Vec3& at);
-
-/// Turned, scaled by 0.3 to 2 per axis, sometimes sheared and sometimes mirrored.
-Transform randomAffine(Random& random, const Vec3& at);
 
 /// 10^exponent, the same bits everywhere.
 double powerOfTen(int exponent);

@@ -1,7 +1,6 @@
 // What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
 #include "workloads/random_shapes.h"
 
-#include "workloads/generate.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -16,9 +15,7 @@ MeshData looseComb() {
 }
 
 MeshData smallBall() {
-  MeshData ball = makeUvSphere(8, 12);
-  for (float& value : ball.positions) value *= 0.5f;
-  return ball;
+  return resized(makeUvSphere(8, 12), 0.5);
 }
 
 }  // namespace
@@ -49,11 +46,8 @@ MeshData nonConvexShape(Random& random) {
       return makeComb(2 + random.below(5), 0.5, 1, 0.3);
     case 3:
       return makeCup(1, 1.5, 0.15, segments);
-    default: {
-      MeshData teapot = makeTeapot();
-      for (float& value : teapot.positions) value *= 0.375f;
-      return teapot;
-    }
+    default:
+      return resized(makeTeapot(), 0.375);
   }
 }
 
@@ -80,13 +74,8 @@ MeshData crossingShape(Random& random) {
   MeshData mesh = random.oneIn(2) ? convexShape(random) : openShape(random);
   const MeshData again = mesh;
   const double reach = random.oneIn(2) ? 0 : 0.5;  // 0: every triangle twice
-  append(mesh, again, random.inBox({-reach, -reach, -reach}, {reach, reach, reach}));
+  append(mesh, again, random.inCube(reach));
   return mesh;
-}
-
-MeshData soupShape(Random& random) {
-  const Soup soup = std::array{Soup::plain, Soup::needles, Soup::degenerate, Soup::lattice}[random.below(4)];
-  return makeSoup(soup, 1 + random.below(40), random);
 }
 
 MeshData anyShape(Random& random) {
@@ -102,8 +91,10 @@ MeshData anyShape(Random& random) {
       return openShape(random);
     case 6:
       return crossingShape(random);
-    default:
-      return soupShape(random);
+    default: {
+      const Soup soup = std::array{Soup::plain, Soup::needles, Soup::degenerate, Soup::lattice}[random.below(4)];
+      return makeSoup(soup, 1 + random.below(40), random);
+    }
   }
 }
 
@@ -120,7 +111,7 @@ MeshData latticeShape(Random& random) {
   }
   MeshData mesh{"triangles", {}, {}};
   for (uint32_t corner = 0, corners = 3 * (1 + random.below(6)); corner < corners; ++corner) {
-    for (double value : wholeVector(random, 2)) mesh.positions.push_back(static_cast<float>(value));
+    addVertex(mesh, random.wholeVector(2));
     mesh.indices.push_back(corner);
   }
   return mesh;
@@ -128,7 +119,7 @@ MeshData latticeShape(Random& random) {
 
 MeshData triangleShape(Random& random) {
   MeshData mesh{"triangle", {}, {0, 1, 2}};
-  for (int i = 0; i < 9; ++i) mesh.positions.push_back(static_cast<float>(random.uniform(-1, 1)));
+  for (int i = 0; i < 3; ++i) addVertex(mesh, random.inCube(1));
   return mesh;
 }
 
@@ -136,23 +127,17 @@ MeshData degenerateShape(uint32_t kind, Random& random) {
   MeshData mesh{"degenerate", {}, {}};
   for (uint32_t count = 1 + random.below(6); count > 0; --count) {
     std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) corner = random.inBox({-1, -1, -1}, {1, 1, 1});
+    for (Vec3& corner : corners) corner = random.inCube(1);
     const auto between = [&](double part, double off) {
-      Vec3 p{};
-      for (size_t k = 0; k < 3; ++k) {
-        p[k] = corners[0][k] + part * (corners[1][k] - corners[0][k]) + off * (corners[2][k] - corners[0][k]);
-      }
-      return p;
+      return corners[0] + part * (corners[1] - corners[0]) + off * (corners[2] - corners[0]);
     };
     if (kind == 0) corners[1] = corners[2] = corners[0];
     if (kind == 1) corners[2] = between(random.uniform(-0.5, 1.5), 0);
     if (kind == 2) corners[2] = corners[random.below(2)];
     if (kind == 3) corners = {between(0, 0), between(1000, 0), between(1000, 1e-6)};
-    if (kind == 4) corners[2] = between(0.5, magnitude(random, -9, -4));
+    if (kind == 4) corners[2] = between(0.5, random.magnitude(-9, -4));
     MeshData triangle{"", {}, {0, 1, 2}};
-    for (const Vec3& corner : corners) {
-      for (double value : corner) triangle.positions.push_back(static_cast<float>(value));
-    }
+    for (const Vec3& corner : corners) addVertex(triangle, corner);
     for (int copy = kind == 5 ? 3 : 1; copy > 0; --copy) append(mesh, triangle, {});
   }
   return mesh;

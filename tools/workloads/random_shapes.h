@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "workloads/placement.h"
+#include "workloads/random.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -13,9 +13,7 @@ MeshData nonConvexShape(Random& random);
 MeshData openShape(Random& random);
 /// Self-intersecting, or every triangle twice.
 MeshData crossingShape(Random& random);
-/// Triangles without any order.
-MeshData soupShape(Random& random);
-/// One of the kinds above.
+/// One of the kinds above, or triangles without any order.
 MeshData anyShape(Random& random);
 
 /// Boxes, plates, a sheet and triangles with whole and half corners.

@@ -1,6 +1,5 @@
 #include "workloads/same_contact.h"
 
-#include <cmath>
 #include <utility>
 
 #include "workloads/random_shapes.h"
@@ -19,12 +18,8 @@ MeshData onGrid(MeshData mesh) {
 
 Vec3 wholeLength(Random& random) {
   constexpr std::array<Vec3, 6> kWhole{{{0, 0, 1}, {0, 3, 4}, {0, 5, 12}, {1, 2, 2}, {2, 3, 6}, {1, 4, 8}}};
-  const Rotation rotation = quarterTurns(random);
+  const Rotation rotation = random.quarterTurns();
   return turned(rotation, kWhole[random.below(kWhole.size())]);
-}
-
-double lengthOf(const Vec3& v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 MeshData cut(const MeshData& mesh, Random& random) {
@@ -52,14 +47,13 @@ HardCase dyadicCase(Random& random) {
   const auto placed = [&](const Vec3& where) {
     MeshData mesh = onGrid(anyShape(random));
     const double size = random.oneIn(3) ? 2 : random.oneIn(2) ? 0.5 : 1;
-    const Rotation rotation = quarterTurns(random);
+    const Rotation rotation = random.quarterTurns();
     return PlacedMesh{std::move(mesh), makePose(rotation, {size, size, size}, where)};
   };
   hard.direction = wholeLength(random);
   const double steps = random.below(96);
-  const Vec3 aside = scaled(wholeVector(random, 6), 0.25);
-  Vec3 where = scaled(hard.direction, 0.0625 * steps);
-  for (size_t k = 0; k < 3; ++k) where[k] += aside[k];
+  const Vec3 aside = 0.25 * random.wholeVector(6);
+  const Vec3 where = (0.0625 * steps) * hard.direction + aside;
   hard.sensor = placed({});
   hard.objects.push_back(placed(where));
   hard.distance = 0.0625 * lengthOf(hard.direction) * (steps + random.below(48));
@@ -68,18 +62,15 @@ HardCase dyadicCase(Random& random) {
 
 HardCase movedTogether(const HardCase& hard, Random& random) {
   HardCase out = hard;
-  const Vec3 offset = scaled(wholeVector(random, 1000), 0.25);
+  const Vec3 offset = 0.25 * random.wholeVector(1000);
   if (random.oneIn(2)) {
-    place(out, quarterTurns(random), offset);
+    place(out, random.quarterTurns(), offset);
     return out;
   }
   // In the vertices: each pose turns the offset back before, so that the world moves alike.
   const auto bakeBack = [&](PlacedMesh& placed) {
     moveVertices(placed, offset);
-    for (size_t row = 0; row < 3; ++row) {
-      double* r = &placed.worldFromMesh.m[4 * row];
-      r[3] += offset[row] - (r[0] * offset[0] + r[1] * offset[1] + r[2] * offset[2]);
-    }
+    moveBy(placed.worldFromMesh, offset - turned(linearPart(placed.worldFromMesh), offset));
   };
   bakeBack(out.sensor);
   for (PlacedMesh& object : out.objects) bakeBack(object);
@@ -89,7 +80,7 @@ HardCase movedTogether(const HardCase& hard, Random& random) {
 HardCase changedPlaces(const HardCase& hard) {
   HardCase out = hard;
   std::swap(out.sensor, out.objects.at(0));
-  out.direction = scaled(out.direction, -1);
+  out.direction = -1 * out.direction;
   return out;
 }
 
@@ -104,9 +95,8 @@ HardCase withFarObjects(const HardCase& hard, Random& random) {
   HardCase out = hard;
   const double beyond = 1000 + 2 * hard.distance;
   for (uint32_t i = 1 + random.below(5); i > 0; --i) {
-    const Vec3 where = scaled(random.direction(), beyond);
-    MeshData mesh = anyShape(random);
-    out.objects.push_back({std::move(mesh), makePose(kUpright, kFull, where)});
+    const Vec3 where = beyond * random.direction();
+    out.objects.push_back({anyShape(random), placedAt(where)});
   }
   return out;
 }
@@ -118,7 +108,7 @@ std::array<HardCase, 2> splitWay(const HardCase& hard, Random& random) {
   std::array<HardCase, 2> parts{hard, hard};
   parts[0].distance = part * length;
   parts[1].distance = hard.distance - parts[0].distance;
-  for (size_t k = 0; k < 3; ++k) parts[1].sensor.worldFromMesh.m[4 * k + 3] += part * hard.direction[k];
+  moveBy(parts[1].sensor.worldFromMesh, part * hard.direction);
   return parts;
 }
 

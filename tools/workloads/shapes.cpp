@@ -1,18 +1,9 @@
 #include "workloads/shapes.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace radar::tools {
-
-namespace {
 
 void addVertex(MeshData& mesh, const Vec3& p) {
   for (double value : p) mesh.positions.push_back(static_cast<float>(value));
-}
-
-void addTriangle(MeshData& mesh, uint32_t a, uint32_t b, uint32_t c) {
-  mesh.indices.insert(mesh.indices.end(), {a, b, c});
 }
 
 MeshData named(const char* name, MeshData mesh) {
@@ -20,7 +11,10 @@ MeshData named(const char* name, MeshData mesh) {
   return mesh;
 }
 
-}  // namespace
+MeshData resized(MeshData mesh, double factor) {
+  for (float& value : mesh.positions) value = static_cast<float>(value * factor);
+  return mesh;
+}
 
 MeshData makeBox(const Vec3& size) {
   MeshData mesh{"box", {}, {}};
@@ -48,9 +42,12 @@ MeshData makeLathe(std::span<const std::array<double, 2>> profile, bool closed, 
     const auto corner = [&](size_t point, uint32_t s) {
       return first[point] + (profile[point][0] == 0 ? 0 : s % segments);
     };
+    const auto addTriangle = [&](uint32_t a, uint32_t b, uint32_t c) {
+      mesh.indices.insert(mesh.indices.end(), {a, b, c});
+    };
     for (uint32_t s = 0; s < segments; ++s) {
-      if (profile[i][0] != 0) addTriangle(mesh, corner(i, s), corner(i, s + 1), corner(j, s));
-      if (profile[j][0] != 0) addTriangle(mesh, corner(i, s + 1), corner(j, s + 1), corner(j, s));
+      if (profile[i][0] != 0) addTriangle(corner(i, s), corner(i, s + 1), corner(j, s));
+      if (profile[j][0] != 0) addTriangle(corner(i, s + 1), corner(j, s + 1), corner(j, s));
     }
   }
   return mesh;
@@ -107,21 +104,25 @@ MeshData makeHook(double length, double reach, double tip, double thickness) {
   return mesh;
 }
 
-MeshData makeSheet(uint32_t cells, double roughness, Random& random) {
-  MeshData mesh{"sheet", {}, {}};
-  for (uint32_t y = 0; y <= cells; ++y) {
-    for (uint32_t x = 0; x <= cells; ++x) {
-      addVertex(mesh, {2.0 * x / cells - 1, 2.0 * y / cells - 1, random.uniform(-roughness, roughness)});
-    }
+MeshData makeGrid(uint32_t cells, Diagonal diagonal, const std::function<Vec3(uint32_t, uint32_t)>& vertex) {
+  MeshData mesh;
+  for (uint32_t row = 0; row <= cells; ++row) {
+    for (uint32_t column = 0; column <= cells; ++column) addVertex(mesh, vertex(column, row));
   }
-  for (uint32_t y = 0; y < cells; ++y) {
-    for (uint32_t x = 0; x < cells; ++x) {
-      const uint32_t corner = y * (cells + 1) + x, above = corner + cells + 1;
-      addTriangle(mesh, corner, corner + 1, above);
-      addTriangle(mesh, corner + 1, above + 1, above);
+  for (uint32_t row = 0; row < cells; ++row) {
+    for (uint32_t column = 0; column < cells; ++column) {
+      const uint32_t a = row * (cells + 1) + column, b = a + 1, c = a + cells + 1, d = c + 1;
+      const bool rising = diagonal == Diagonal::rising;
+      mesh.indices.insert(mesh.indices.end(), {a, b, rising ? d : c, rising ? a : b, d, c});
     }
   }
   return mesh;
+}
+
+MeshData makeSheet(uint32_t cells, double roughness, Random& random) {
+  return named("sheet", makeGrid(cells, Diagonal::falling, [&](uint32_t x, uint32_t y) {
+                 return Vec3{2.0 * x / cells - 1, 2.0 * y / cells - 1, random.uniform(-roughness, roughness)};
+               }));
 }
 
 MeshData makeKey() {
@@ -145,46 +146,6 @@ MeshData makeKeyhole() {
   return mesh;
 }
 
-const char* nameOf(Soup soup) {
-  constexpr std::array<const char*, kSoups.size()> kNames{"plain", "needles", "degenerate", "lattice", "tiny", "far"};
-  return kNames[static_cast<size_t>(soup)];
-}
-
-MeshData makeSoup(Soup soup, uint32_t triangles, Random& random) {
-  MeshData mesh{std::string("soup-") + nameOf(soup), {}, {}};
-  const Vec3 low{-1, -1, -1}, high{1, 1, 1};
-  for (uint32_t i = 0; i < triangles; ++i) {
-    const Vec3 middle = random.inBox(low, high);
-    std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) {
-      const Vec3 offset = random.inBox(low, high);
-      for (int k = 0; k < 3; ++k) corner[k] = middle[k] + 0.2 * offset[k];
-    }
-    if (soup == Soup::needles) {
-      for (int k = 0; k < 3; ++k) corners[2][k] = corners[0][k] + 1e-6 * (corners[2][k] - middle[k]);
-    }
-    if (soup == Soup::degenerate) {
-      const uint32_t kind = random.below(4);  // 0: a triangle
-      const double along = random.uniform(-0.5, 1.5);
-      for (int k = 0; k < 3; ++k) {
-        if (kind == 1) corners[1][k] = corners[2][k] = corners[0][k];
-        if (kind == 2) corners[2][k] = corners[0][k] + along * (corners[1][k] - corners[0][k]);
-        if (kind == 3) corners[2][k] = corners[1][k];
-      }
-    }
-    for (Vec3& corner : corners) {
-      for (double& value : corner) {
-        if (soup == Soup::lattice) value = std::floor(4 * value + 0.5) / 4;
-        if (soup == Soup::tiny) value *= 1e-6;
-        if (soup == Soup::far) value += 2000;
-      }
-      addVertex(mesh, corner);
-    }
-    addTriangle(mesh, 3 * i, 3 * i + 1, 3 * i + 2);
-  }
-  return mesh;
-}
-
 void append(MeshData& mesh, const MeshData& part, const Vec3& offset) {
   const uint32_t first = mesh.vertexCount();
   for (size_t i = 0; i < part.positions.size(); ++i) {
@@ -194,25 +155,11 @@ void append(MeshData& mesh, const MeshData& part, const Vec3& offset) {
 }
 
 MeshExtent extentOf(const MeshData& mesh) {
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  const Bounds bounds = boundsOf({mesh.positions, mesh.indices}, {});
+  MeshExtent extent{0.5 * (bounds.low + bounds.high), 0, bounds.longest()};
   for (uint32_t vertex : mesh.indices) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], double(mesh.positions[3 * vertex + k]));
-      high[k] = std::max(high[k], double(mesh.positions[3 * vertex + k]));
-    }
-  }
-  MeshExtent extent;
-  for (int k = 0; k < 3; ++k) {
-    extent.middle[k] = 0.5 * (low[k] + high[k]);
-    extent.longest = std::max(extent.longest, high[k] - low[k]);
-  }
-  for (uint32_t vertex : mesh.indices) {
-    double square = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double offset = mesh.positions[3 * vertex + k] - extent.middle[k];
-      square += offset * offset;
-    }
-    extent.radius = std::max(extent.radius, std::sqrt(square));
+    const float* p = &mesh.positions[3 * size_t{vertex}];
+    extent.radius = std::max(extent.radius, lengthOf(Vec3{p[0], p[1], p[2]} - extent.middle));
   }
   return extent;
 }

@@ -1,8 +1,7 @@
 // Meshes made by rule. Sizes are in the mesh's own units; the same arguments give the same bits on every platform.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <functional>
 #include <span>
 
 #include "workloads/random.h"
@@ -31,8 +30,11 @@ MeshData makePlate(double width, double depth, double thickness);
 MeshData makeComb(uint32_t teeth, double pitch, double toothLength, double thickness);
 /// A shank along z, bent towards +x and up again at the tip, of square section `thickness`.
 MeshData makeHook(double length, double reach, double tip, double thickness);
-/// A sheet of cells x cells squares over -1..1 across z, two triangles a square, its vertices up to `roughness` off z =
-/// 0. Open: it has a rim.
+/// How the squares of a grid are cut in two.
+enum class Diagonal { rising, falling };
+/// cells x cells squares of two triangles; `vertex(column, row)` gives their corners, row by row.
+MeshData makeGrid(uint32_t cells, Diagonal diagonal, const std::function<Vec3(uint32_t, uint32_t)>& vertex);
+/// A grid over -1..1 across z, its vertices up to `roughness` off z = 0. Open: it has a rim.
 MeshData makeSheet(uint32_t cells, double roughness, Random& random);
 /// A key along z whose bit points towards -y, and a plate across z with the hole that it passes with 0.05 to spare.
 MeshData makeKey();
@@ -58,6 +60,7 @@ const char* nameOf(Soup soup);
 /// Random triangles, no corner shared, in a cube of edge 2 around the origin (scaled or moved as `soup` says).
 MeshData makeSoup(Soup soup, uint32_t triangles, Random& random);
 
+void addVertex(MeshData& mesh, const Vec3& p);
 /// Appends `part`, moved by `offset`.
 void append(MeshData& mesh, const MeshData& part, const Vec3& offset);
 
@@ -68,5 +71,7 @@ struct MeshExtent {
   double longest = 0;
 };
 MeshExtent extentOf(const MeshData& mesh);
+MeshData named(const char* name, MeshData mesh);
+MeshData resized(MeshData mesh, double factor);
 
 }  // namespace radar::tools

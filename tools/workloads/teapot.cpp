@@ -82,9 +82,7 @@ Vec3 pointOf(const Patch& patch, int rowStep, int columnStep) {
   const auto rows = bernstein(rowStep), columns = bernstein(columnStep);
   Vec3 point{};
   for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      for (int k = 0; k < 3; ++k) point[k] += rows[i] * columns[j] * patch[i][j][k];
-    }
+    for (int j = 0; j < 4; ++j) point = point + (rows[i] * columns[j]) * patch[i][j];
   }
   return point;
 }
@@ -93,9 +91,8 @@ void addPatch(MeshData& mesh, const Patch& patch, double mirrorX, double mirrorY
   const uint32_t first = mesh.vertexCount();
   for (int i = 0; i <= kCells; ++i) {
     for (int j = 0; j <= kCells; ++j) {
-      const Vec3 p = pointOf(patch, i, j);
-      mesh.positions.insert(mesh.positions.end(), {static_cast<float>(mirrorX * p[0]),
-                                                   static_cast<float>(mirrorY * p[1]), static_cast<float>(p[2])});
+      const auto [x, y, z] = pointOf(patch, i, j);
+      addVertex(mesh, {mirrorX * x, mirrorY * y, z});
     }
   }
   const bool pole = patch[0][0] == patch[0][3];

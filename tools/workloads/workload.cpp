@@ -1,16 +1,47 @@
 #include "workloads/workload.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <map>
+
+#include "workloads/vectors.h"
 
 namespace radar::tools {
 
+namespace {
+
+/// Makes the objects of one scene.
+class Objects {
+ public:
+  Objects(const Workload& workload, uint32_t scene) : workload_(workload), scene_(scene) {
+    const SceneSpec& spec = workload.scenes[scene];
+    masks_.insert(spec.masks.begin(), spec.masks.end());
+  }
+  Object operator[](uint32_t number) const {
+    const Instance& instance = workload_.instance(scene_, number);
+    const auto mask = masks_.find(number);
+    return {instance.mesh, instance.worldFromMesh, mask == masks_.end() ? ~0u : mask->second};
+  }
+
+ private:
+  const Workload& workload_;
+  uint32_t scene_;
+  std::map<uint32_t, uint32_t> masks_;
+};
+
+}  // namespace
+
+std::span<const Instance> Workload::baseOf(uint32_t scene) const {
+  const std::optional<uint32_t>& base = scenes[scene].base;
+  return base ? std::span<const Instance>(scenes[*base].instances) : std::span<const Instance>();
+}
+
 uint32_t Workload::objectCount(uint32_t scene) const {
-  const SceneSpec& spec = scenes[scene];
-  const size_t still = spec.base ? scenes[*spec.base].instances.size() : 0;
-  return static_cast<uint32_t>(still + spec.instances.size());
+  return static_cast<uint32_t>(baseOf(scene).size() + scenes[scene].instances.size());
+}
+
+const Instance& Workload::instance(uint32_t scene, uint32_t object) const {
+  const std::span<const Instance> base = baseOf(scene);
+  return object < base.size() ? base[object] : scenes[scene].instances[object - base.size()];
 }
 
 Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
@@ -28,16 +59,7 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
 }
 
 double sensorSize(const Scene& scene, const Query& query) {
-  const MeshView mesh = scene.mesh(query.mesh);
-  std::array<double, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-  for (const uint32_t vertex : mesh.indices) {
-    const std::array<double, 3> p = transformPoint(query.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-    for (size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
-  }
-  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  return boundsOf(scene.mesh(query.mesh), query.worldFromMesh).longest();
 }
 
 std::vector<Batch> batchesOf(const Workload& workload) {
@@ -60,17 +82,8 @@ void replaceBy(const Workload& workload, uint32_t scene, Scene& to) {
     if (to.hasMesh(id)) to.removeMesh(id);
   }
   for (const MeshData& mesh : workload.meshes) to.addMesh(mesh.positions, mesh.indices);
-  const SceneSpec& spec = workload.scenes[scene];
-  const std::map<uint32_t, uint32_t> masks(spec.masks.begin(), spec.masks.end());
-  uint32_t object = 0;
-  const auto add = [&](const std::vector<Instance>& instances) {
-    for (const Instance& instance : instances) {
-      const auto mask = masks.find(object++);
-      to.addObject({instance.mesh, instance.worldFromMesh, mask == masks.end() ? ~0u : mask->second});
-    }
-  };
-  if (spec.base) add(workload.scenes[*spec.base].instances);
-  add(spec.instances);
+  const Objects objects(workload, scene);
+  for (uint32_t i = 0; i < workload.objectCount(scene); ++i) to.addObject(objects[i]);
 }
 
 ScenePlayer::ScenePlayer(const Workload& workload) : workload_(workload) {
@@ -81,37 +94,29 @@ void ScenePlayer::show(uint32_t scene) {
   if (shown_ == scene) return;
   const SceneSpec& spec = workload_.scenes[scene];
   const SceneSpec* before = shown_ ? &workload_.scenes[*shown_] : nullptr;
-  static const std::vector<Instance> kNothing;
-  const std::vector<Instance>& still = spec.base ? workload_.scenes[*spec.base].instances : kNothing;
-  const uint32_t stillCount = static_cast<uint32_t>(still.size());
   const uint32_t count = workload_.objectCount(scene);
-
   for (uint32_t id = scene_.objectLimit(); id > count; --id) {
     if (scene_.hasObject(id - 1)) scene_.removeObject(id - 1);
   }
-  std::map<uint32_t, uint32_t> masks(spec.masks.begin(), spec.masks.end());
-  const auto maskOf = [&](uint32_t object) {
-    const auto found = masks.find(object);
-    return found == masks.end() ? ~0u : found->second;
-  };
+  const Objects objects(workload_, scene);
   // A step of a sequence costs what moves in it, not what stands still.
   const bool sameBase = before && spec.base && before->base == spec.base && before->masks == spec.masks;
-  for (uint32_t i = sameBase ? stillCount : 0; i < stillCount; ++i) showObject(i, still[i], maskOf(i));
-  for (uint32_t i = stillCount; i < count; ++i) showObject(i, spec.instances[i - stillCount], maskOf(i));
+  const size_t first = sameBase ? workload_.baseOf(scene).size() : 0;
+  for (auto i = static_cast<uint32_t>(first); i < count; ++i) showObject(objects[i], i);
   shown_ = scene;
 }
 
-void ScenePlayer::showObject(uint32_t object, const Instance& instance, uint32_t mask) {
-  if (scene_.hasObject(object)) {
-    const Object& present = scene_.object(object);
-    if (present.mesh == instance.mesh && present.mask == mask) {
-      if (present.worldFromMesh != instance.worldFromMesh) scene_.setTransform(object, instance.worldFromMesh);
+void ScenePlayer::showObject(const Object& object, ObjectId id) {
+  if (scene_.hasObject(id)) {
+    const Object& present = scene_.object(id);
+    if (present.mesh == object.mesh && present.mask == object.mask) {
+      if (present.worldFromMesh != object.worldFromMesh) scene_.setTransform(id, object.worldFromMesh);
       return;
     }
-    scene_.removeObject(object);
+    scene_.removeObject(id);
   }
-  [[maybe_unused]] const ObjectId id = scene_.addObject({instance.mesh, instance.worldFromMesh, mask});
-  assert(id == object && "the least free id is given next");
+  [[maybe_unused]] const ObjectId given = scene_.addObject(object);
+  assert(given == id && "the least free id is given next");
 }
 
 }  // namespace radar::tools

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,8 +63,11 @@ struct Workload {
   std::vector<SceneSpec> scenes;
   std::vector<QuerySpec> queries;
 
+  /// The objects that a scene has from its base.
+  std::span<const Instance> baseOf(uint32_t scene) const;
   /// Objects of a scene, its base's included.
   uint32_t objectCount(uint32_t scene) const;
+  const Instance& instance(uint32_t scene, uint32_t object) const;
 };
 
 /// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
@@ -93,7 +97,7 @@ class ScenePlayer {
   const Scene& scene() const { return scene_; }
 
  private:
-  void showObject(uint32_t object, const Instance& instance, uint32_t mask);
+  void showObject(const Object& object, ObjectId id);
 
   const Workload& workload_;
   Scene scene_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "batch/answer_file.h"
 #include "bench/clock.h"
+#include "cyber_radar/commands.h"
 
 namespace radar::tools {
 
@@ -15,11 +17,6 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
   } else {
     found->ms += stage.ms;
   }
-}
-
-// Of answers found by the engine.
-AnswerMode answerModeOf(Mode mode) {
-  return mode == Mode::sampled ? AnswerMode::sampled : AnswerMode::contact;
 }
 
 }  // namespace
@@ -37,6 +34,7 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
       (swept ? needsDevice : needsCpu) = true;
       Part& part = swept ? group.swept : group.onCpu;
       part.numbers.push_back(number);
+      part.modes.push_back(mode);
       part.queries.push_back(
           toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options.resolution));
     }
@@ -74,54 +72,58 @@ Answering::Pass Answering::run(const std::string& label) {
   pass.answers.resize(workload_.queries.size());
   Progress progress(label, workload_.queries.size());
   const double start = bench::now();
+  const auto keep = [&](const Part& part, const PoolAnswers& found) {
+    for (size_t i = 0; i < found.results.size(); ++i) {
+      const auto reason = found.reasons.find(i);
+      pass.answers[part.numbers[i]] = {found.results[i], part.modes[i],
+                                       reason == found.reasons.end() ? "" : reason->second};
+    }
+    pass.pairs += found.stats.pairs;
+    pass.cpuPairs += found.stats.cpuPairs;
+    for (const StageTime& stage : found.stats.stages) addStage(pass.stages, stage);
+    progress.add(found.results.size());
+  };
   for (const Group& group : groups_) {
     show(group.scene);
-    sweep(group.swept, pass, progress);
-    answerOnCpu(group.onCpu, pass, progress);
+    if (!group.swept.queries.empty()) keep(group.swept, sweep(group.swept.queries));
+    if (!group.onCpu.queries.empty()) keep(group.onCpu, answerOnCpu(group.onCpu.queries));
   }
   pass.ms = 1e3 * (bench::now() - start);
   return pass;
 }
 
-void Answering::sweep(const Part& part, Pass& pass, Progress& progress) {
-  if (part.queries.empty()) return;
-  if (pool_) {
-    share(part, pass, progress);
-    return;
+PoolAnswers Answering::sweep(const std::vector<Query>& queries) {
+  if (pool_) return pool_->submit(queries).get();
+  PoolAnswers found;
+  found.results = sweeper_->run(queries);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (found.results[i].status == Status::invalid) found.reasons[i] = sweeper_->reason(i);
   }
-  const std::vector<Result> results = sweeper_->run(part.queries);
-  for (size_t i = 0; i < results.size(); ++i) {
-    pass.answers[part.numbers[i]] = {results[i], answerModeOf(part.queries[i].mode), sweeper_->reason(i)};
-  }
-  const SweepStats& stats = sweeper_->stats();
-  pass.pairs += stats.pairs;
-  pass.cpuPairs += stats.cpuPairs;
-  for (const StageTime& stage : stats.stages) addStage(pass.stages, stage);
-  progress.add(results.size());
+  found.stats = sweeper_->stats();
+  return found;
 }
 
-void Answering::share(const Part& part, Pass& pass, Progress& progress) {
-  const PoolAnswers answers = pool_->submit(part.queries).get();
-  for (size_t i = 0; i < answers.results.size(); ++i) {
-    const AnswerMode mode = answerModeOf(part.queries[i].mode);
-    const auto reason = answers.reasons.find(i);
-    pass.answers[part.numbers[i]] = {answers.results[i], mode, reason == answers.reasons.end() ? "" : reason->second};
-  }
-  pass.pairs += answers.stats.pairs;
-  pass.cpuPairs += answers.stats.cpuPairs;
-  for (const StageTime& stage : answers.stats.stages) addStage(pass.stages, stage);
-  progress.add(answers.results.size());
-}
-
-void Answering::answerOnCpu(const Part& part, Pass& pass, Progress& progress) {
-  if (part.queries.empty()) return;
+PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
   const double start = bench::now();
-  const std::vector<Result> results = cpu_->run(part.queries);
-  for (size_t i = 0; i < results.size(); ++i) pass.answers[part.numbers[i]] = {results[i], AnswerMode::reference, {}};
-  pass.pairs += cpu_->stats().pairs;
-  pass.cpuPairs += cpu_->stats().pairs;
-  progress.add(results.size());
-  addStage(pass.stages, {"reference", 1e3 * (bench::now() - start)});
+  PoolAnswers found;
+  found.results = cpu_->run(queries);
+  found.stats.pairs = found.stats.cpuPairs = cpu_->stats().pairs;
+  found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
+  return found;
+}
+
+std::string answerLines(const Workload& workload, const std::vector<Answer>& answers) {
+  std::string lines;
+  for (size_t i = 0; i < answers.size(); ++i) {
+    lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
+  }
+  return lines;
+}
+
+int exitStatusOf(const std::vector<Answer>& answers) {
+  const bool someInvalid =
+      std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.result.status == Status::invalid; });
+  return someInvalid ? kStatusSomeInvalid : 0;
 }
 
 }  // namespace radar::tools

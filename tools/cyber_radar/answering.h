@@ -57,6 +57,7 @@ class Answering {
  private:
   struct Part {
     std::vector<uint32_t> numbers;  ///< in the workload
+    std::vector<AnswerMode> modes;
     std::vector<Query> queries;
   };
   struct Group {
@@ -64,9 +65,8 @@ class Answering {
     Part swept, onCpu;
   };
   void show(uint32_t scene);
-  void sweep(const Part& part, Pass& pass, Progress& progress);
-  void share(const Part& part, Pass& pass, Progress& progress);
-  void answerOnCpu(const Part& part, Pass& pass, Progress& progress);
+  PoolAnswers sweep(const std::vector<Query>& queries);
+  PoolAnswers answerOnCpu(const std::vector<Query>& queries);
 
   const Workload& workload_;
   std::vector<Group> groups_;
@@ -76,5 +76,10 @@ class Answering {
   std::optional<Pool> pool_;
   std::optional<CpuSweeper> cpu_;
 };
+
+/// The lines of an answer file.
+std::string answerLines(const Workload& workload, const std::vector<Answer>& answers);
+/// The exit status of a command that gives these answers.
+int exitStatusOf(const std::vector<Answer>& answers);
 
 }  // namespace radar::tools

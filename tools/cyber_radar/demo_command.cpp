@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -32,23 +31,17 @@ std::string number(double value, const char* format) {
   return text;
 }
 
-std::string cell(const Answer& answer) {
-  const std::string object = answer.result.object == kNone ? "-" : std::to_string(answer.result.object);
-  char text[64];
-  std::snprintf(text, sizeof text, "%-10s%9s%8s", nameOf(answer.result.status), number(answer.result.t, "%.4f").c_str(),
-                object.c_str());
-  return text;
-}
-
 std::string tableOf(const std::vector<Row>& rows) {
   std::string text =
       "                    the paper's method (sampled)   exact (reference)\n"
       "teapot              status            t  object    status            t  object    late by\n";
-  for (const Row& row : rows) {
-    const double late = row.sampled.result.t - row.exact.result.t;
+  const auto object = [](const Result& result) { return result.object == kNone ? "-" : std::to_string(result.object); };
+  for (const auto& [query, sampled, exact] : rows) {
+    const Result &a = sampled.result, &b = exact.result;
     char line[160];
-    std::snprintf(line, sizeof line, "%-20s%s    %s%11s\n", row.query.id.c_str(), cell(row.sampled).c_str(),
-                  cell(row.exact).c_str(), number(late, "%.1e").c_str());
+    std::snprintf(line, sizeof line, "%-20s%-10s%9s%8s    %-10s%9s%8s%11s\n", query.id.c_str(), nameOf(a.status),
+                  number(a.t, "%.4f").c_str(), object(a).c_str(), nameOf(b.status), number(b.t, "%.4f").c_str(),
+                  object(b).c_str(), number(a.t - b.t, "%.1e").c_str());
     text += line;
   }
   return text;
@@ -65,14 +58,6 @@ std::vector<Answer> answersIn(const Workload& workload, AnswerMode mode, const A
   return answers;
 }
 
-void writeAnswers(const std::filesystem::path& file, const Workload& workload, const std::vector<Answer>& answers) {
-  std::string lines;
-  for (size_t i = 0; i < answers.size(); ++i) {
-    lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
-  }
-  writeAtomically(file, lines);
-}
-
 /// The scopes of the first few teapots that hit something.
 std::vector<std::string> drawHits(const std::filesystem::path& folder, const std::vector<Row>& rows, Sweeper& sweeper) {
   std::vector<std::string> files;
@@ -82,8 +67,8 @@ std::vector<std::string> drawHits(const std::filesystem::path& folder, const std
     const std::string name = "teapot-" + std::to_string(i) + ".png";
     writeScopePicture(folder / name,
                       rows[i].query.id + ":  d = " + inDigits(scopes.d) + ",  t = " + inDigits(scopes.result.t) +
-                          ",  min(L) = " + inDigits(scopes.result.paperMinL),
-                      scopes, panelsOf(scopes));
+                          ",  min(L) = " + leastFreeDistance(scopes),
+                      scopes);
     files.push_back(name);
   }
   return files;
@@ -109,8 +94,8 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
   std::cout << table << "\nobjects below " << settings.boxes << " are boxes, the others teapots; sampled on "
             << deviceName << "\n";
   writeAtomically(folder / "table.txt", table);
-  writeAnswers(folder / "answers-sampled.jsonl", workload, sampled);
-  writeAnswers(folder / "answers-reference.jsonl", workload, exact);
+  writeAtomically(folder / "answers-sampled.jsonl", answerLines(workload, sampled));
+  writeAtomically(folder / "answers-reference.jsonl", answerLines(workload, exact));
 
   const uint32_t scene = workload.queries.front().scene;
   const Device device = Device::open({.index = engine.device});
@@ -130,9 +115,7 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
   std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ":\n  pictures   " << pictures
             << "\n  answers    table.txt, answers-sampled.jsonl, answers-reference.jsonl\n  questions  "
             << file.filename().string() << "; try: cyber-radar query " << file.string() << "\n";
-  const bool someInvalid = std::any_of(rows.begin(), rows.end(),
-                                       [](const Row& row) { return row.sampled.result.status == Status::invalid; });
-  return someInvalid ? kStatusSomeInvalid : 0;
+  return exitStatusOf(sampled);
 }
 
 }  // namespace

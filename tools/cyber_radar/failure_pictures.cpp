@@ -1,7 +1,5 @@
 #include "cyber_radar/failure_pictures.h"
 
-#include <cmath>
-
 #include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
 #include "radar/cpu_sweeper.h"
@@ -33,12 +31,11 @@ void draw(const Device& device, const Shown& shown, const std::filesystem::path&
   const Scopes scopes = sweeper.scopes(query);
   const Result exact = CpuSweeper(scene).run({&query, 1})[0];
   const double value = family.values[shown.number % family.values.size()];
-  const std::string numbers =
-      "case " + std::to_string(shown.number) + " of \"" + family.name + "\" (" + inDigits(value) +
-      "):  D = " + inDigits(query.distance) +
-      ",  exact t = " + (exact.status == Status::clear ? "none" : inDigits(exact.t)) +
-      ",  min(L) = " + (std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL));
-  writeScopePicture(folder / shown.file, numbers, scopes, panelsOf(scopes));
+  const std::string numbers = "case " + std::to_string(shown.number) + " of \"" + family.name + "\" (" +
+                              inDigits(value) + "):  D = " + inDigits(query.distance) +
+                              ",  exact t = " + (exact.status == Status::clear ? "none" : inDigits(exact.t)) +
+                              ",  min(L) = " + leastFreeDistance(scopes);
+  writeScopePicture(folder / shown.file, numbers, scopes);
 }
 
 }  // namespace

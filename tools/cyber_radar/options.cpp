@@ -18,6 +18,7 @@ void requireFinite(const char* option, const std::vector<double>& values) {
   }
 }
 
+/// The sensor's pose: turned about an axis by an angle in degrees, then moved.
 Transform poseFrom(const std::vector<double>& at, const std::vector<double>& rotate) {
   Transform pose;
   if (!rotate.empty()) {

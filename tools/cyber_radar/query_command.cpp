@@ -1,8 +1,6 @@
-#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "batch/answer_file.h"
 #include "batch/atomic_file.h"
 #include "batch/query_file.h"
 #include "bench/clock.h"
@@ -55,14 +53,6 @@ std::string statsOf(const Workload& workload, const Answering& answering, const 
   return stats.dump(2) + "\n";
 }
 
-std::string linesOf(const Workload& workload, const std::vector<Answer>& answers) {
-  std::string lines;
-  for (size_t i = 0; i < answers.size(); ++i) {
-    lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
-  }
-  return lines;
-}
-
 int query(const Options& options) {
   AnsweringOptions engine = options.engine.checked();
   if (!options.out.empty()) requireFolderOf("--out", options.out);
@@ -94,7 +84,7 @@ int query(const Options& options) {
     pass.stages = profile.run("measuring stages").stages;
     writeAtomically(options.stats, statsOf(workload, answering, pass, loadMs, setupMs, median(times)));
   }
-  const std::string lines = linesOf(workload, pass.answers);
+  const std::string lines = answerLines(workload, pass.answers);
   if (options.out.empty()) {
     std::cout << lines << std::flush;
     if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
@@ -108,9 +98,7 @@ int query(const Options& options) {
   for (const PoolDevice& device : answering.poolDevices()) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
-  const bool someInvalid = std::any_of(pass.answers.begin(), pass.answers.end(),
-                                       [](const Answer& a) { return a.result.status == Status::invalid; });
-  return someInvalid ? kStatusSomeInvalid : 0;
+  return exitStatusOf(pass.answers);
 }
 
 }  // namespace

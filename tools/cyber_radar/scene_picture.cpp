@@ -16,10 +16,6 @@ constexpr double kMargin = 16, kCaption = 44;
 constexpr Colour kStill{0.55, 0.62, 0.70}, kMoving{0.90, 0.45, 0.05}, kPath{0.75, 0.15, 0.10};
 constexpr Vec3 kLight{-0.4, 0.6, -0.69};  // towards the light: from the left, above and the viewer
 
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// A disc that covers the cube, seen from a corner, and looks to the opposite one.
 QuerySpec viewOf(uint32_t scene, uint32_t discMesh) {
   const double a = 1 / std::sqrt(2.0), b = 1 / std::sqrt(6.0), c = 1 / std::sqrt(3.0);
@@ -50,46 +46,38 @@ void drawSurfaces(const Canvas& canvas, const Scopes& all, const Scopes& moving)
       const double x = slope(depth, here - 1, here, here + 1, all.pixel);
       const double y = slope(depth, here - all.width, here, here + all.width, all.pixel);
       const Vec3 normal{x, y, -1};  // towards the viewer
-      const double light = std::max(0.0, dot(normal, kLight)) / std::sqrt(dot(normal, normal));
+      const double light = std::max(0.0, dot(normal, kLight)) / lengthOf(normal);
       // Far things fade, so that near ones stand out.
       const double fade = 0.5 * std::min(1.0, depth[here] / (1.9 * kCubeSide));
       const bool moves = std::abs(moving.R[here] - depth[here]) < all.pixel;
       const Colour& base = moves ? kMoving : kStill;
-      Colour colour;
-      for (int k = 0; k < 3; ++k) {
-        const double lit = base[k] * (0.45 + 0.75 * light);
-        colour[k] = moves ? lit : lit + fade * (1 - lit);
-      }
-      canvas.colour(colour);
+      const Vec3 lit = (0.45 + 0.75 * light) * base;
+      canvas.colour(moves ? lit : lit + fade * (kFull - lit));
       canvas.fill(kMargin + column, kMargin + all.height - 1 - row, 1, 1);
     }
   }
 }
 
 void drawFlight(const Canvas& canvas, const Scopes& view, const Workload& workload, const Flight& flight) {
-  const MeshExtent extent = extentOf(workload.meshes[flight.query.sensor.mesh]);
+  const Transform& pose = flight.query.sensor.worldFromMesh;
+  const Vec3 middle = extentOf(workload.meshes[flight.query.sensor.mesh]).middle;
+  const Vec3 start = turned(linearPart(pose), middle) + Vec3{pose.m[3], pose.m[7], pose.m[11]};
   const Vec3& direction = flight.query.direction;
-  const double part = flight.distance / std::sqrt(dot(direction, direction));
-  std::array<Vec3, 2> ends;
-  for (int k = 0; k < 3; ++k) {
-    const double* row = &flight.query.sensor.worldFromMesh.m[4 * k];
-    ends[0][k] = row[0] * extent.middle[0] + row[1] * extent.middle[1] + row[2] * extent.middle[2] + row[3];
-    ends[1][k] = ends[0][k] + part * direction[k];
-  }
-  std::array<std::pair<double, double>, 2> points;
-  for (int i = 0; i < 2; ++i) {
-    Vec3 offset;
-    for (int k = 0; k < 3; ++k) offset[k] = ends[i][k] - view.origin[k];
-    points[i] = {kMargin + dot(offset, view.right) / view.pixel,
-                 kMargin + view.height - dot(offset, view.up) / view.pixel};
-  }
+  const Vec3 end = start + (flight.distance / lengthOf(direction)) * direction;
+  const auto pixelOf = [&](const Vec3& p) {
+    const Vec3 offset = p - view.origin;
+    return std::pair(kMargin + dot(offset, view.right) / view.pixel,
+                     kMargin + view.height - dot(offset, view.up) / view.pixel);
+  };
+  const auto [x0, y0] = pixelOf(start);
+  const auto [x1, y1] = pixelOf(end);
   canvas.colour(kPath);
   cairo_set_line_width(canvas.get(), 2.5);
-  cairo_move_to(canvas.get(), points[0].first, points[0].second);
-  cairo_line_to(canvas.get(), points[1].first, points[1].second);
+  cairo_move_to(canvas.get(), x0, y0);
+  cairo_line_to(canvas.get(), x1, y1);
   cairo_stroke(canvas.get());
   if (!flight.touches) return;
-  cairo_arc(canvas.get(), points[1].first, points[1].second, 5.5, 0, 2 * std::acos(-1.0));
+  cairo_arc(canvas.get(), x1, y1, 5.5, 0, 2 * std::acos(-1.0));
   cairo_fill(canvas.get());
 }
 

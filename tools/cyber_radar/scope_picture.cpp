@@ -87,72 +87,66 @@ void drawMark(const Canvas& canvas, double x, double y, double pixel) {
   }
 }
 
-struct Layout {
-  double pixel, width, height, panelWidth;
+/// One scope to draw: `values` as in radar::Scopes, NaN where there is none.
+struct Panel {
+  char name;
+  const char *title, *noValue;  ///< noValue: what a hatched pixel means
+  const std::vector<float>& values;
 };
 
-Layout layoutOf(const Scopes& scopes) {
-  const double longer = std::max({scopes.width, scopes.height, 1u});
-  Layout layout;
-  layout.pixel = std::max(1.0, std::floor(kSide / longer));
-  layout.width = layout.pixel * scopes.width;
-  layout.height = layout.pixel * scopes.height;
-  layout.panelWidth = std::max(layout.width, kLeastWidth) + kBarGap + kBarWidth + kBarText;
-  return layout;
-}
-
-void drawPanel(const Canvas& canvas, const Scopes& scopes, const ScopePanel& panel, const Layout& layout, double x,
-               double y) {
-  const std::vector<float>& values = *panel.values;
+void drawPanel(const Canvas& canvas, const Scopes& scopes, const Panel& panel, double pixel, double x, double y) {
+  const std::vector<float>& values = panel.values;
+  const double width = pixel * scopes.width, height = pixel * scopes.height;
   const Range range = rangeOf(values);
   canvas.text(x, y + 15, 15, panel.title);
   y += kPanelTitle;
-  hatch(canvas, x, y, layout.width, layout.height);
+  hatch(canvas, x, y, width, height);
   const double span = range.high > range.low ? range.high - range.low : 1;
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
     canvas.colour(viridis(range.high > range.low ? (values[i] - range.low) / span : 0.5));
     const size_t column = i % scopes.width, row = i / scopes.width;
-    canvas.fill(x + layout.pixel * double(column), y + layout.height - layout.pixel * double(row + 1), layout.pixel,
-                layout.pixel);
+    canvas.fill(x + pixel * double(column), y + height - pixel * double(row + 1), pixel, pixel);
   }
-  canvas.outline(x, y, layout.width, layout.height);
-  const double below = y + layout.height + 17;
+  canvas.outline(x, y, width, height);
+  const double below = y + height + 17;
   if (range.empty) {
-    canvas.text(x, below, 12, "no pixel has a value: " + panel.noValue);
+    canvas.text(x, below, 12, std::string("no pixel has a value: ") + panel.noValue);
     return;
   }
-  drawBar(canvas, range, x + layout.width + kBarGap, y, layout.height);
-  canvas.text(x, below, 12, "world units; hatched: " + panel.noValue);
-  if (panel.markMinimum) {
-    const size_t column = range.lowest % scopes.width, row = range.lowest / scopes.width;
-    drawMark(canvas, x + layout.pixel * (double(column) + 0.5), y + layout.height - layout.pixel * (double(row) + 0.5),
-             layout.pixel);
-    canvas.text(x, below + 16, 12,
-                "least value " + inDigits(range.low) + " at pixel (" + std::to_string(column) + ", " +
-                    std::to_string(row) + "), ringed");
-  }
+  drawBar(canvas, range, x + width + kBarGap, y, height);
+  canvas.text(x, below, 12, std::string("world units; hatched: ") + panel.noValue);
+  if (panel.name != 'L') return;
+  const size_t column = range.lowest % scopes.width, row = range.lowest / scopes.width;
+  drawMark(canvas, x + pixel * (double(column) + 0.5), y + height - pixel * (double(row) + 0.5), pixel);
+  canvas.text(x, below + 16, 12,
+              "least value " + inDigits(range.low) + " at pixel (" + std::to_string(column) + ", " +
+                  std::to_string(row) + "), ringed");
 }
 
 }  // namespace
 
-std::vector<ScopePanel> panelsOf(const Scopes& scopes) {
-  return {{"R: from the back plane to the scene", "nothing there", &scopes.R, false},
-          {"M: from the far end back to the sensor", "no sensor there", &scopes.M, false},
-          {"L = R + M - d: free distance", "sensor or scene missing", &scopes.L, true}};
-}
-
 void writeScopePicture(const std::filesystem::path& file, const std::string& title, const Scopes& scopes,
-                       const std::vector<ScopePanel>& panels) {
-  const Layout layout = layoutOf(scopes);
-  const double panelStep = layout.panelWidth + kMargin;
-  const Canvas canvas(kMargin + panelStep * double(panels.size()),
-                      2 * kMargin + kTitle + kPanelTitle + layout.height + kCaption);
+                       const std::string& which) {
+  std::vector<Panel> panels;
+  for (const Panel& panel : {Panel{'R', "R: from the back plane to the scene", "nothing there", scopes.R},
+                             Panel{'M', "M: from the far end back to the sensor", "no sensor there", scopes.M},
+                             Panel{'L', "L = R + M - d: free distance", "sensor or scene missing", scopes.L}}) {
+    if (which.find(panel.name) != which.npos) panels.push_back(panel);
+  }
+  const double pixel = std::max(1.0, std::floor(kSide / std::max({scopes.width, scopes.height, 1u})));
+  const double step = std::max(pixel * scopes.width, kLeastWidth) + kBarGap + kBarWidth + kBarText + kMargin;
+  const Canvas canvas(kMargin + step * double(panels.size()),
+                      2 * kMargin + kTitle + kPanelTitle + pixel * scopes.height + kCaption);
   canvas.text(kMargin, kMargin + 17, 17, title);
   for (size_t i = 0; i < panels.size(); ++i) {
-    drawPanel(canvas, scopes, panels[i], layout, kMargin + panelStep * double(i), kMargin + kTitle);
+    drawPanel(canvas, scopes, panels[i], pixel, kMargin + step * double(i), kMargin + kTitle);
   }
   canvas.write(file);
+}
+
+std::string leastFreeDistance(const Scopes& scopes) {
+  return std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
 }
 
 }  // namespace radar::tools

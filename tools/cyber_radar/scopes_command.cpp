@@ -1,6 +1,5 @@
 #include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <bit>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -63,21 +62,12 @@ const QuerySpec& findQuery(const Workload& workload, const Options& options) {
   return *found;
 }
 
-std::string rawOf(const std::vector<float>& values) {
-  std::string bytes;
-  bytes.reserve(4 * values.size());
-  for (float value : values) {
-    uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
-  }
-  return bytes;
-}
-
 void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const Scopes& scopes) {
-  writeAtomically(folder / "R.f32", rawOf(scopes.R));
-  writeAtomically(folder / "M.f32", rawOf(scopes.M));
-  writeAtomically(folder / "L.f32", rawOf(scopes.L));
+  static_assert(std::endian::native == std::endian::little);
+  for (const auto& [name, values] :
+       {std::pair{"R.f32", &scopes.R}, std::pair{"M.f32", &scopes.M}, std::pair{"L.f32", &scopes.L}}) {
+    writeAtomically(folder / name, {reinterpret_cast<const char*>(values->data()), 4 * values->size()});
+  }
   nlohmann::ordered_json sidecar;
   sidecar["width"] = scopes.width;
   sidecar["height"] = scopes.height;
@@ -108,15 +98,13 @@ void drawScopes(Options& options) {
   }
   std::filesystem::create_directories(options.out);
   const std::filesystem::path folder = options.out;
-  const std::string leastL = std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
   const std::string title = query.id + ":  d = " + inDigits(scopes.d) + ",  D = " + inDigits(query.distance) +
-                            ",  min(L) = " + leastL + ",  " + std::to_string(scopes.width) + " x " +
+                            ",  min(L) = " + leastFreeDistance(scopes) + ",  " + std::to_string(scopes.width) + " x " +
                             std::to_string(scopes.height) + " pixels of " + inDigits(scopes.pixel);
-  const std::vector<ScopePanel> panels = panelsOf(scopes);
-  writeScopePicture(folder / "R.png", title, scopes, {panels[0]});
-  writeScopePicture(folder / "M.png", title, scopes, {panels[1]});
-  writeScopePicture(folder / "L.png", title, scopes, {panels[2]});
-  writeScopePicture(folder / "scopes.png", title, scopes, panels);
+  writeScopePicture(folder / "R.png", title, scopes, "R");
+  writeScopePicture(folder / "M.png", title, scopes, "M");
+  writeScopePicture(folder / "L.png", title, scopes, "L");
+  writeScopePicture(folder / "scopes.png", title, scopes);
   if (options.raw) writeRaw(folder, query, scopes);
   std::cout << title << "\n"
             << inWords(workload, query, {scopes.result, AnswerMode::sampled, {}})

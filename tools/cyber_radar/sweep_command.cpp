@@ -1,6 +1,5 @@
 #include <iostream>
 
-#include "batch/answer_file.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
@@ -24,34 +23,32 @@ struct Options {
 };
 
 std::string introduction(const Workload& workload) {
-  const QuerySpec& query = workload.queries.front();
-  std::string text;
-  const auto addMesh = [&](const char* role, const MeshData& mesh) {
-    text += role + mesh.name + ", " + std::to_string(mesh.triangleCount()) + " triangles\n";
+  const auto describe = [&](size_t number) {
+    const MeshData& mesh = workload.meshes[number];
+    return mesh.name + ", " + std::to_string(mesh.triangleCount()) + " triangles\n";
   };
-  addMesh("scene:  ", workload.meshes[0]);
-  addMesh("sensor: ", workload.meshes[1]);
-  return text + "moves " + inDigits(query.distance) + " along " + inDigits(query.direction) + "\n";
+  const QuerySpec& query = workload.queries.front();
+  return "scene:  " + describe(0) + "sensor: " + describe(1) + "moves " + inDigits(query.distance) + " along " +
+         inDigits(query.direction) + "\n";
 }
 
 int sweep(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   const Workload workload = options.sweep.load();
-  const QuerySpec& query = workload.queries.front();
   Answering answering(workload, engine);
   answering.setUp();
   const Answer answer = answering.run("sweeping").answers.front();
   if (options.json) {
-    std::cout << answerLine(query, answer.result, answer.mode, answer.reason) << "\n";
+    std::cout << answerLines(workload, {answer});
   } else {
-    std::cout << introduction(workload) << "\n" << inWords(workload, query, answer);
+    std::cout << introduction(workload) << "\n" << inWords(workload, workload.queries.front(), answer);
     const std::string resolution = resolutionsInWords({answer});
     if (!resolution.empty()) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "
                 << answering.devices()[0].name() << "\n";
     }
   }
-  return answer.result.status == Status::invalid ? kStatusSomeInvalid : 0;
+  return exitStatusOf({answer});
 }
 
 }  // namespace

@@ -8,14 +8,8 @@ namespace radar::tools {
 
 namespace {
 
-const Instance& instanceOf(const Workload& workload, uint32_t scene, uint32_t object) {
-  const SceneSpec& spec = workload.scenes[scene];
-  const size_t still = spec.base ? workload.scenes[*spec.base].instances.size() : 0;
-  return object < still ? workload.scenes[*spec.base].instances[object] : spec.instances[object - still];
-}
-
 std::string contactInWords(const Workload& workload, const QuerySpec& query, const Result& result) {
-  const Instance& touched = instanceOf(workload, query.scene, result.object);
+  const Instance& touched = workload.instance(query.scene, result.object);
   std::string text = "  what    triangle " + std::to_string(result.triB) + " of object " +
                      std::to_string(result.object) + " (" + workload.meshes[touched.mesh].name +
                      "), by the sensor's triangle " + std::to_string(result.triA) + " (" +
@@ -26,11 +20,6 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
   }
   if (query.speed) text += "  when    after " + inDigits(result.t / *query.speed) + " s\n";
   return text;
-}
-
-std::string certaintyInWords(const Result& result) {
-  return result.tier == Tier::sampled ? "certainly no later; mode sampled does not say how much earlier"
-                                      : "exact, to rounding";
 }
 
 }  // namespace
@@ -51,8 +40,10 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
   switch (result.status) {
     case Status::hit:
       return "hit: first contact after " + inDigits(result.t) + " of " + distance + " (" +
-             inDigits(100 * result.fraction) + "% of the way)\n  how     " + certaintyInWords(result) + "\n" +
-             contactInWords(workload, query, result);
+             inDigits(100 * result.fraction) + "% of the way)\n  how     " +
+             (result.tier == Tier::sampled ? "certainly no later; mode sampled does not say how much earlier"
+                                           : "exact, to rounding") +
+             "\n" + contactInWords(workload, query, result);
     case Status::overlap:
       return "overlap: the surfaces meet at the start already\n" + contactInWords(workload, query, result);
     case Status::clear:

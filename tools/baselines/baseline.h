@@ -1,5 +1,5 @@
-// What people use today for the same question, each behind one narrow interface. Built with -DRADAR_BASELINES=ON;
-// without, there are none.
+// Other libraries that answer the same question, behind one interface. -DRADAR_BASELINES=ON builds them; without it
+// there are none.
 #pragma once
 
 #include <memory>
@@ -12,17 +12,16 @@
 
 namespace radar::tools {
 
-/// One library in one thread, with structures of its own over a workload's meshes. It is made to last: show() may be
-/// called again and again.
+/// One library in one thread, with its own structures over a workload's meshes.
 class Baseline {
  public:
   virtual ~Baseline() = default;
 
-  /// These are the objects from now on; they stay where they are until the next show().
+  /// Replaces the objects.
   virtual void show(std::span<const Instance> objects) = 0;
 
-  /// First contact within query.distance as this library finds it: a distance along the motion, or none. Looks at the
-  /// query's sensor, direction, distance and excluded objects only.
+  /// First contact within query.distance as this library finds it: a distance along the motion, or none. Uses
+  /// only the query's sensor, direction, distance and excluded objects.
   virtual std::optional<double> cast(const Query& query) = 0;
 };
 

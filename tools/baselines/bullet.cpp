@@ -14,7 +14,6 @@ btVector3 vectorOf(const double* p) {
   return {p[0], p[1], p[2]};
 }
 
-// What keeps a mesh alive.
 struct Shape {
   std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btBvhTriangleMeshShape> tree;  ///< as scene

@@ -1,5 +1,5 @@
-// Embree: rays from pixels of the sensor's front into the scene, as the paper's pictures look, or rays from vertices,
-// of the sensor into the scene and of the scene back onto the sensor.
+// Embree, in two ways: a ray per pixel from the sensor's front into the scene, like the paper's pictures; or a ray from
+// each vertex, of the sensor into the scene and of the scene back onto the sensor.
 #include <embree3/rtcore.h>
 
 #include <stdexcept>
@@ -40,7 +40,7 @@ struct Inverse {
   Vec3 at;
 };
 
-// What a filter needs to know: which instances take no part.
+// Leaves out the instances that the query excludes.
 struct Context : RTCIntersectContext {
   explicit Context(const Query& asked) : query(asked) {
     rtcInitIntersectContext(this);
@@ -56,7 +56,7 @@ struct Context : RTCIntersectContext {
   const Query& query;
 };
 
-// A ray a lane; lanes without one stay off.
+// One ray per lane; lanes without a ray are off.
 struct Packet {
   alignas(32) int valid[kPacket] = {};
   RTCRayHit8 rays{};
@@ -141,7 +141,7 @@ class Embree : public SceneBaseline {
   std::vector<Bounds> boxes_;
 };
 
-// Each pixel: the sensor's front by a ray from ahead, then a ray from there into the scene.
+// For each pixel, a ray from ahead finds the sensor's front, and a second ray goes from there into the scene.
 class PixelRays : public Embree {
  public:
   PixelRays(const Workload& workload, uint32_t resolution) : Embree(workload, 0), resolution_(resolution) {}

@@ -1,5 +1,5 @@
-// FCL: trees of OBBRSS over triangles under a dynamic tree of boxes, asked at steps and then bisected. Its continuous
-// mode answers for one pair a call, and approximately, so it is not what a user with a scene would take.
+// FCL: trees of OBBRSS over triangles under a dynamic tree of boxes, at steps along the motion and then by bisection.
+// FCL's continuous mode is approximate and takes one pair of objects per call, so users with a scene do not use it.
 #include <fcl/fcl.h>
 
 #include "baselines/rigid.h"
@@ -35,7 +35,6 @@ fcl::Transform3d transformOf(const RigidPose& pose) {
   return transform;
 }
 
-// What a check carries through the tree.
 struct Check {
   const Query* query = nullptr;
   bool meets = false;

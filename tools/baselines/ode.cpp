@@ -1,5 +1,5 @@
-// ODE with OPCODE, the library of the paper's comparison: objects by a linear walk over their boxes, triangles by
-// OPCODE's trees, at steps and then bisected.
+// ODE with OPCODE, the library that the paper compares with. A linear walk over boxes finds objects, OPCODE's trees
+// find triangles, at steps along the motion and then by bisection.
 #include <ode/ode.h>
 
 #include "baselines/rigid.h"

@@ -4,7 +4,7 @@ namespace radar::tools {
 
 namespace {
 
-// Numbers that differ by roundings become one.
+// Makes numbers that differ by roundings equal.
 double coarse(double value) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);

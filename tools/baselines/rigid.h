@@ -1,4 +1,4 @@
-// What the libraries share: scenes that change little, meshes placed by rotation and translation only, boxes.
+// Parts that the libraries share.
 #pragma once
 
 #include <functional>
@@ -47,8 +47,9 @@ class SceneBaseline : public Baseline {
   bool shownBefore_ = false;
 };
 
-/// A pose as a rigid one, rotation * p + at, after a linear map of the mesh. Scaling along the mesh's axes is baked, by
-/// factors of 40 bits, so that a shape that turns stays one shape; shears and mirrors are baked whole.
+/// A pose as a linear map `bake` of the mesh and then a rigid pose, rotation * p + at. Libraries place meshes by rigid
+/// poses only. `bake` holds the scale along the mesh's axes, rounded to 40 bits so that a turning shape keeps one map,
+/// or the whole linear part if the pose shears or mirrors.
 struct RigidPose {
   Rotation rotation{};
   Vec3 at{};
@@ -60,7 +61,7 @@ RigidPose rigidPose(const Transform& pose);
 std::vector<double> baked(const MeshData& mesh, const Rotation& linear);
 
 bool meet(const Bounds& a, const Bounds& b);
-/// Grown by where it gets along the motion.
+/// Also holds all places along the motion.
 Bounds swept(Bounds bounds, const Vec3& displacement);
 
 Vec3 unitDirection(const Query& query);

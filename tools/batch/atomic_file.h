@@ -1,4 +1,4 @@
-// Output files that are there whole or not at all.
+// Output files that are either complete or absent.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace radar::tools {
 
-/// Writes `content` beside `file` and renames it into place. Throws std::runtime_error that names the file; what was
-/// there before is then untouched and nothing half-written stays.
+/// Writes `content` beside `file` and renames it into place. Throws std::runtime_error that names the file; the old
+/// file is then untouched and no unfinished file stays.
 void writeAtomically(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace radar::tools

@@ -13,7 +13,7 @@ namespace radar::tools {
 
 /// Reads a query file with its meshes and instance files. Everything is checked: what is returned keeps the contracts
 /// of radar::Scene and radar::Query. Throws InputError that names the file, the JSON path (or line) and what was
-/// expected. Appends to `warnings` what a mesh file gives reason for.
+/// expected. Appends the warnings about mesh files to `warnings`.
 Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64

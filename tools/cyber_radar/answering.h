@@ -1,4 +1,4 @@
-// A workload answered: the one place where the program meets the engine.
+// Answers workloads with the engine.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What the program's pictures are drawn with.
+// Draws the program's pictures.
 #pragma once
 
 #include <cairo.h>

@@ -42,7 +42,7 @@ std::vector<uint32_t> devicesFrom(const std::string& text);
 
 void printWarnings(const std::vector<std::string>& warnings);
 
-/// Refuses a file whose folder does not exist, before long work. Throws InputError.
+/// Throws InputError if the file's folder does not exist. Commands call it before long work.
 void requireFolderOf(const char* option, const std::string& file);
 
 }  // namespace radar::tools

@@ -1,4 +1,4 @@
-// What a report says of where and when it was made.
+// Where and when a report was made.
 #pragma once
 
 #include <string>

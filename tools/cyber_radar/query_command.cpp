@@ -77,7 +77,7 @@ int query(const Options& options) {
     times.push_back(answering.run("answering again").ms);
   }
   if (!options.stats.empty()) {
-    // Stages in a pass of their own: the clocks that measure them would slow the others.
+    // A separate pass measures the stages, since timestamps slow the others.
     engine.timestamps = true;
     Answering profile(workload, engine);
     profile.setUp();

@@ -91,7 +91,7 @@ void drawScopes(Options& options) {
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
   Query asked = toQuery(query, radar::Mode::sampled, engine.resolution);
-  asked.anyHit = false;  // the words below tell the whole answer
+  asked.anyHit = false;  // the text below needs the whole answer
   const Scopes scopes = sweeper.scopes(asked);
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");

@@ -1,4 +1,3 @@
-// The one error of everything that reads files.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,4 @@
-// PLY and OFF files that end early or name vertices that do not exist: assimp reads them without a word, filling in
-// what is missing.
+// Assimp accepts PLY and OFF files that end early or name vertices that do not exist, and fills in what is missing.
 #pragma once
 
 #include <filesystem>

@@ -15,8 +15,8 @@ namespace radar::tools {
 
 namespace {
 
-/// Assimp repairs some broken files, an index out of range among them, and says so in its log only. The rest of that
-/// log is about materials and the like.
+/// Assimp repairs some broken files, such as those with an index out of range, and says so only in its log. Most lines
+/// of the log are about materials.
 class ImportLog : public Assimp::LogStream {
  public:
   explicit ImportLog(std::vector<std::string>& lines) : lines_(lines) {
@@ -131,7 +131,7 @@ MeshData readMesh(const std::filesystem::path& file, std::vector<std::string>& w
   requireIntact(file);
 
   Assimp::Importer importer;
-  // Else files that hold bones only come with an invented mesh.
+  // Without this, assimp invents a mesh for a file that holds only bones.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   std::vector<std::string> logLines;
   const aiScene* scene = nullptr;

@@ -1,10 +1,8 @@
-// bin/cyber-radar of the archive: finds which libraries the machine has in a version that suffices, and runs the
-// program with those, and with the archive's own in place of the others. Linked statically, since it chooses the C
-// library.
+// bin/cyber-radar of the archive. It runs the program with those libraries of the machine that are new enough, and with
+// the archive's copies of the others. It is linked statically, since it chooses the C library.
 //
-// A Vulkan driver is loaded into the same process and needs the libraries of its machine, or newer ones. So the
-// machine's copy is taken wherever it is new enough for the program; where it is not, the archive's copy is the newer
-// one.
+// A Vulkan driver is loaded into the same process and needs the libraries of its machine, or newer ones. A machine's
+// copy that is too old for the program is older than the archive's, so the driver works with the archive's.
 
 #include <elf.h>
 #include <sys/auxv.h>

@@ -1,4 +1,4 @@
-// A job of CAM: where a cutter that is let down onto a part touches it, for every point of a raster.
+// A task of CAM: a cutter is let down onto a part at every point of a raster. Where does it touch?
 #pragma once
 
 #include "workloads/workload.h"

@@ -142,7 +142,7 @@ bool canBeAt(const Sphere& sphere, const Clearance& boxes, const std::vector<Fli
   return boxes.isFree(sphere);
 }
 
-/// One step on; where something is in the way, a new heading, and where none of kTries is free, no step.
+/// Moves one step on. If something is in the way, tries other headings; after kTries, stays.
 void fly(std::vector<Flight>& flights, size_t self, const Clearance& boxes, Random& random) {
   Flight& flight = flights[self];
   for (int i = 0; i < kTries; ++i) {

@@ -83,7 +83,7 @@ struct Soups {
 };
 Workload makeWorkload(const Soups& options);
 
-/// The pose for a mesh of makeSoup with its size and place in the mesh undone: a cube of edge 2 around the origin.
+/// `pose` after the step that brings a mesh of makeSoup into a cube of edge 2 around the origin.
 Transform normalised(Soup soup, const Transform& pose);
 
 /// Given meshes in random poses: each is scaled so that its longest edge is 1 to 3, in a cube that gives an object 200

@@ -1,6 +1,6 @@
-// How the cases of each family are made. In a maker's own frame the sensor moves along +z unless it says otherwise, and
-// the case as a whole may be turned and moved. Random numbers are drawn in statements of their own: the order in which
-// arguments are evaluated is the compiler's.
+// One function per family makes its cases. The sensor moves along +z unless the function sets another direction. Most
+// cases are turned and moved as a whole afterwards. Each random number is drawn in a statement of its own, since the
+// compiler chooses the order in which it evaluates arguments.
 #include "workloads/hard_cases.h"
 
 #include <utility>
@@ -18,13 +18,13 @@ Vec3 farOrigin(Random& random) {
   return distance * random.direction();
 }
 
-/// About x, by the angle of that tangent.
+/// A rotation about x, by the angle with this tangent.
 Rotation tilt(double tangent) {
   const double c = 1 / std::sqrt(1 + tangent * tangent), s = c * tangent;
   return {1, 0, 0, 0, c, -s, 0, s, c};
 }
 
-/// About z.
+/// A rotation about z, by a random whole number of degrees.
 Rotation roll(Random& random) {
   const auto [c, s] = circlePoint(random.below(360), 360);
   return {c, -s, 0, s, c, 0, 0, 0, 1};
@@ -36,7 +36,7 @@ double reachFor(double gap, Random& random) {
   return gap * kParts[random.below(4)];
 }
 
-/// Something solid, about 1 wide, in any pose around `middle`.
+/// A closed shape about 1 wide, in any pose around `middle`.
 PlacedMesh compact(Random& random, const Vec3& middle) {
   const uint32_t which = random.below(4);
   MeshData mesh = which == 0   ? makeBox({1, 0.8, 0.6})
@@ -47,14 +47,14 @@ PlacedMesh compact(Random& random, const Vec3& middle) {
   return {std::move(mesh), makePose(rotation, kFull, middle)};
 }
 
-/// Turned; sometimes stretched, sheared and mirrored, too.
+/// A rotation, sometimes with scale, shear and a mirror.
 Transform anyPose(Random& random, const Vec3& where) {
   return random.oneIn(4) ? random.affine(where) : makePose(random.rotation(), kFull, where);
 }
 
 using MakeShape = MeshData (*)(Random&);
 
-/// The sensor below the object, which is in the way more often than not.
+/// Puts the object above the sensor, mostly in its way.
 HardCase pairOf(MakeShape sensor, MakeShape object, Random& random) {
   HardCase hard;
   hard.sensor.mesh = sensor(random);
@@ -89,7 +89,7 @@ double stepped(double value, int ulps) {
   return value;
 }
 
-/// The same, `factor` as large.
+/// Scales everything by `factor`.
 void resize(HardCase& hard, double factor) {
   for (double& value : hard.sensor.worldFromMesh.m) value *= factor;
   for (PlacedMesh& object : hard.objects) {
@@ -195,8 +195,7 @@ HardCase depthCase(double depth, Random& random) {
   return hard;
 }
 
-/// Boxes and triangles with whole corners, at whole halves, along a whole direction: objects that are met at the same
-/// t, or touched, or met at exactly D.
+/// All coordinates and the direction are multiples of 1/2, so that several contacts come at the same t or exactly at D.
 HardCase latticeCase(double how, Random& random) {
   const auto whole = [&] { return placedAt(0.5 * random.wholeVector(6)); };
   HardCase hard;
@@ -316,7 +315,7 @@ HardCase directionCase(double off, Random& random) {
 }
 
 HardCase distanceCase(double distance, Random& random) {
-  // Few triangles: in a scene as long as the greatest D, floats cannot tell where any of them is.
+  // In a scene as long as the greatest D, floats cannot tell triangles apart, so a few of them suffice.
   HardCase hard = blocks(0, 0.5 * random.below(4), random);
   if (random.oneIn(3)) hard.objects[0].worldFromMesh.m[11] += distance;
   hard.distance = distance;

@@ -1,4 +1,3 @@
-// What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
 #include "workloads/interlocking.h"
 
 #include "workloads/random_shapes.h"
@@ -30,7 +29,7 @@ MeshData makeRoundComb(uint32_t teeth) {
   return mesh;
 }
 
-/// Two meshes, where the second is while the first is at the origin, and the way the first is mostly free to move: +z.
+/// While the first mesh is at the origin, it is mostly free to move along +z.
 Interlocked shapesOf(Interlocking kind) {
   constexpr Rotation kReversed{1, 0, 0, 0, -1, 0, 0, 0, -1}, kTurned{0.28, -0.96, 0, 0.96, 0.28, 0, 0, 0, 1};
   constexpr Rotation kSlightly{0.9998, 0, 0.02, 0, 1, 0, -0.02, 0, 0.9998};

@@ -1,5 +1,5 @@
-// Shapes of many long thin triangles inside each other, turned off the axes, so that the boxes of their parts
-// overlap from the start: what a search by boxes finds hardest.
+// Shapes of many long thin triangles, inside each other and turned off the axes. The boxes of their parts overlap from
+// the start, which is the hardest case for a search by boxes.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ enum class Interlocking {
 inline constexpr std::array kInterlocking{Interlocking::ringOnPeg, Interlocking::combInComb, Interlocking::crossing};
 const char* nameOf(Interlocking kind);
 
-/// One scene of as many pairs as sensors, far from each other, and one batch: of each pair the first is the sensor and
-/// moves as far as the shapes are long, mostly the way it is free to move. Pair k is k of `kind`.
+/// One scene of as many pairs as sensors, far from each other, and one batch: the
+/// first shape of each pair is the sensor. It moves as far as the shapes are long, mostly where it is free to move.
 struct InterlockingPairs {
   Interlocking kind = Interlocking::ringOnPeg;
   uint32_t sensors = 16;

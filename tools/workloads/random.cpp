@@ -101,7 +101,7 @@ Transform Random::affine(const Vec3& at) {
 
 std::array<double, 2> circlePoint(uint32_t k, uint32_t n) {
   constexpr double kPi = 3.14159265358979323846;
-  // Folded into the first eighth of a turn by exact integers, so that symmetric points are symmetric to the bit.
+  // Integers fold the angle into the first eighth of a turn, so that symmetric points are symmetric to the bit.
   const uint64_t eighths = 8ull * (k % n);
   const uint64_t octant = eighths / n;
   const uint64_t rest = octant % 2 == 0 ? eighths % n : n - eighths % n;

@@ -1,4 +1,4 @@
-// What is drawn at random is named first: the order in which arguments are evaluated is the compiler's.
+// Each random number is stored before it is used, since the compiler chooses the order in which it evaluates arguments.
 #include "workloads/random_shapes.h"
 
 #include "workloads/shapes.h"

@@ -1,4 +1,4 @@
-// Changes of a case that leave its first contact where it is, to the bit: every coordinate stays exact in float.
+// Changes of a case that keep its first contact to the bit, since every coordinate stays exact in float.
 #pragma once
 
 #include "workloads/hard_cases.h"
@@ -9,15 +9,15 @@ namespace radar::tools {
 /// have whole components and a whole length.
 HardCase dyadicCase(Random& random);
 
-/// Everything turned by quarter turns and moved, by the poses or in the vertices.
+/// Turns everything by quarter turns and moves it, in the poses or in the vertices.
 HardCase movedTogether(const HardCase& hard, Random& random);
 /// The object moves towards the sensor instead.
 HardCase changedPlaces(const HardCase& hard);
-/// Triangles cut from a corner to the middle of the opposite edge, at random.
+/// Cuts random triangles from a corner to the middle of the opposite edge.
 HardCase cutInTwo(const HardCase& hard, Random& random);
-/// Objects added that the sensor cannot reach.
+/// Adds objects that the sensor cannot reach.
 HardCase withFarObjects(const HardCase& hard, Random& random);
-/// The first part of the way, and the rest from where that ends.
+/// Sweeps the first part of the way, then the rest from there.
 std::array<HardCase, 2> splitWay(const HardCase& hard, Random& random);
 
 }  // namespace radar::tools

@@ -1,4 +1,4 @@
-// Meshes that are heights over a square, and the workloads on them.
+// The workloads whose scene is a relief: heights over a square.
 #include "workloads/drop_cutter.h"
 #include "workloads/generate.h"
 
@@ -47,7 +47,7 @@ class City {
     return named("city", makeGrid(side_, Diagonal::rising, vertex));
   }
 
-  /// Of all ground within `radius` of a place, across x and y alike.
+  /// The greatest height whose x and y are both within `radius` of a place.
   double highestNear(double x, double y, double radius) const {
     const auto cell = [&](double where) {
       return static_cast<uint32_t>(std::clamp((where + halfSide()) / kCell, 0.0, double(side_)));

@@ -99,7 +99,7 @@ void ScenePlayer::show(uint32_t scene) {
     if (scene_.hasObject(id - 1)) scene_.removeObject(id - 1);
   }
   const Objects objects(workload_, scene);
-  // A step of a sequence costs what moves in it, not what stands still.
+  // The objects of a base that stays need no comparison, so that a step costs only what moves in it.
   const bool sameBase = before && spec.base && before->base == spec.base && before->masks == spec.masks;
   const size_t first = sameBase ? workload_.baseOf(scene).size() : 0;
   for (auto i = static_cast<uint32_t>(first); i < count; ++i) showObject(objects[i], i);

@@ -32,7 +32,7 @@ struct Instance {
 
 using ObjectMask = std::pair<uint32_t, uint32_t>;  ///< object, bits
 
-/// Objects are numbered through: those of the base, then `instances`. A base has no base itself and comes earlier.
+/// The base's objects have the first numbers, `instances` the next. A base has no base itself and comes earlier.
 struct SceneSpec {
   std::string id;
   std::optional<uint32_t> base;
@@ -86,8 +86,8 @@ std::vector<Batch> batchesOf(const Workload& workload);
 /// Makes `to` hold the workload's meshes and one of its scenes, under the workload's numbers, and nothing else.
 void replaceBy(const Workload& workload, uint32_t scene, Scene& to);
 
-/// Plays a workload's scenes in one radar::Scene, whose mesh and object ids are the workload's numbers. From one scene
-/// to the next, objects that are the same stay untouched and those that only moved are moved.
+/// Shows a workload's scenes in one radar::Scene, whose mesh and object ids are the workload's numbers. An object that
+/// two scenes share stays as it is; one that only moved is moved.
 class ScenePlayer {
  public:
   /// Adds all meshes, shows nothing yet. The workload must outlive the player.

@@ -15,6 +15,7 @@ btVector3 vectorOf(const double* p) {
 }
 
 struct Shape {
+  std::vector<btVector3> corners;  ///< 3 per triangle
   std::unique_ptr<btTriangleMesh> triangles;
   std::unique_ptr<btBvhTriangleMeshShape> tree;  ///< as scene
   std::unique_ptr<btConvexHullShape> hull;       ///< as sensor
@@ -22,25 +23,19 @@ struct Shape {
 
 Shape shapeOf(const std::vector<double>& positions, const MeshData& mesh) {
   Shape shape;
+  for (const uint32_t vertex : mesh.indices) shape.corners.push_back(vectorOf(&positions[3 * size_t{vertex}]));
   shape.triangles = std::make_unique<btTriangleMesh>();
-  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const auto corner = [&](size_t k) { return vectorOf(&positions[3 * size_t{mesh.indices[i + k]}]); };
-    shape.triangles->addTriangle(corner(0), corner(1), corner(2));
+  for (size_t i = 0; i < shape.corners.size(); i += 3) {
+    shape.triangles->addTriangle(shape.corners[i], shape.corners[i + 1], shape.corners[i + 2]);
   }
   shape.tree = std::make_unique<btBvhTriangleMeshShape>(shape.triangles.get(), true);
   shape.tree->setMargin(0);
   return shape;
 }
 
-std::unique_ptr<btConvexHullShape> hullOf(const btTriangleMesh& triangles) {
-  btAlignedObjectArray<btVector3> vertices;
-  const auto& part = triangles.getIndexedMeshArray()[0];
-  for (int i = 0; i < part.m_numVertices; ++i) {
-    const auto* p = reinterpret_cast<const btScalar*>(part.m_vertexBase + i * part.m_vertexStride);
-    vertices.push_back({p[0], p[1], p[2]});
-  }
+std::unique_ptr<btConvexHullShape> hullOf(const std::vector<btVector3>& points) {
   btConvexHullComputer hull;
-  hull.compute(&vertices[0].getX(), sizeof(btVector3), vertices.size(), 0, 0);
+  hull.compute(&points[0].getX(), sizeof(btVector3), static_cast<int>(points.size()), 0, 0);
   auto shape = std::make_unique<btConvexHullShape>();
   for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
   shape->recalcLocalAabb();
@@ -77,32 +72,22 @@ class Bullet : public SceneBaseline {
     btTransform to = from;
     to.setOrigin(from.getOrigin() + query.distance * vectorOf(v.data()));
     Closest closest(query, from.getOrigin(), to.getOrigin());
+    const auto sweep = [&](const btConvexShape& moving) { world_.convexSweepTest(&moving, from, to, closest, 0); };
     if constexpr (byTriangle) {
-      sweepTriangles(*shape.triangles, from, to, closest);
+      for (size_t i = 0; i < shape.corners.size(); i += 3) {
+        btTriangleShape triangle(shape.corners[i], shape.corners[i + 1], shape.corners[i + 2]);
+        triangle.setMargin(0);
+        sweep(triangle);
+      }
     } else {
-      if (!shape.hull) shape.hull = hullOf(*shape.triangles);
-      world_.convexSweepTest(shape.hull.get(), from, to, closest, 0);
+      if (!shape.hull) shape.hull = hullOf(shape.corners);
+      sweep(*shape.hull);
     }
     if (!closest.hasHit()) return std::nullopt;
     return closest.m_closestHitFraction * query.distance;
   }
 
  private:
-  void sweepTriangles(const btTriangleMesh& triangles, const btTransform& from, const btTransform& to,
-                      Closest& closest) {
-    const auto& part = triangles.getIndexedMeshArray()[0];
-    const auto corner = [&](int number) {
-      const int vertex = reinterpret_cast<const int*>(part.m_triangleIndexBase)[number];
-      const auto* p = reinterpret_cast<const btScalar*>(part.m_vertexBase + vertex * part.m_vertexStride);
-      return btVector3(p[0], p[1], p[2]);
-    };
-    for (int i = 0; i < part.m_numTriangles; ++i) {
-      btTriangleShape triangle(corner(3 * i), corner(3 * i + 1), corner(3 * i + 2));
-      triangle.setMargin(0);
-      world_.convexSweepTest(&triangle, from, to, closest, 0);
-    }
-  }
-
   void begin(size_t count) override {
     for (const auto& object : objects_) world_.removeCollisionObject(object.get());
     objects_.clear();

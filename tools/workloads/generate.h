@@ -71,10 +71,9 @@ struct Sheets {
 };
 Workload makeWorkload(const Sheets& options);
 
-/// Random triangle soups (of each kind in turn, or of one kind) in random affine poses with scales of 0.3 to 2, mirrors
-/// among them, that overlap, interlock and miss: one scene, one batch. `origin` moves everything along x, y and z.
+/// Random triangle soups of each kind in turn, in random affine poses with scales of 0.3 to 2 and with mirrors, that
+/// overlap, interlock and miss: one scene, one batch. `origin` moves everything along x, y and z.
 struct Soups {
-  std::vector<Soup> kinds{kSoups.begin(), kSoups.end()};
   uint32_t objects = 30;
   uint32_t sensors = 64;
   uint32_t triangles = 20;  ///< of each mesh

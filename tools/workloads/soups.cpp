@@ -49,19 +49,19 @@ Transform normalised(Soup soup, const Transform& pose) {
 Workload makeWorkload(const Soups& options) {
   Workload workload;
   Random random(options.seed);
-  const auto kinds = static_cast<uint32_t>(options.kinds.size());
-  for (const Soup soup : options.kinds) workload.meshes.push_back(makeSoup(soup, options.triangles, random));
+  constexpr auto kKinds = static_cast<uint32_t>(kSoups.size());
+  for (const Soup soup : kSoups) workload.meshes.push_back(makeSoup(soup, options.triangles, random));
   const auto instance = [&](uint32_t i, double reach) {
     const Vec3 where = random.inCube(reach) + options.origin * kFull;
-    return Instance{i % kinds, normalised(options.kinds[i % kinds], random.affine(where))};
+    return Instance{i % kKinds, normalised(kSoups[i % kKinds], random.affine(where))};
   };
   workload.scenes.push_back({"soup", {}, {}, {}});
   for (uint32_t i = 0; i < options.objects; ++i) workload.scenes[0].instances.push_back(instance(i, 8));
   for (uint32_t i = 0; i < options.sensors; ++i) {
     QuerySpec query;
     query.id = "sensor/" + std::to_string(i);
-    // Sensors and objects of all kinds meet, not only those of one kind.
-    query.sensor = instance(i + i / kinds, 10);
+    // Sensors and objects of all kKinds meet, not only those of one kind.
+    query.sensor = instance(i + i / kKinds, 10);
     const Vec3 direction = random.direction();
     query.direction = random.uniform(0.01, 100) * direction;
     query.distance = random.uniform(0, 12);

@@ -160,3 +160,49 @@ TEST_CASE("help shows examples, and a call without a command points to the help"
   CHECK(nothing.status == 2);
   CHECK_THAT(nothing.err, Contains("--help"));
 }
+
+TEST_CASE("query leaves what the sensor rests on, skips what it crosses and lists several contacts") {
+  const ScratchFolder folder;
+  // A unit cube, wound outwards.
+  folder.write("cube.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+               "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  // A floor, two walls at 3 and 5, and a cube that crosses the sensor.
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["cube.obj"],
+    "scenes": [{"id": "room", "instances": [[0, 20,0,0,-9, 0,20,0,-9, 0,0,1,-1], [0, 1,0,0,3, 0,1,0,0, 0,0,1,0],
+                                            [0, 1,0,0,5, 0,1,0,0, 0,0,1,0], [0, 1,0,0,0.5, 0,1,0,0.5, 0,0,1,0.5]]}],
+    "queries": [{"id": "up", "scene": 0, "sensor": [0], "exclude": [3], "dir": [0,0,1], "D": 8, "ignore_leaving": true},
+                {"id": "down", "scene": 0, "sensor": [0], "exclude": [3], "dir": [0,0,-1], "D": 8, "ignore_leaving": true},
+                {"id": "along", "scene": 0, "sensor": [0], "dir": [1,0,0], "D": 8, "ignore_leaving": true, "slack": 1e-12,
+                 "skip_overlapping": true, "hits": "all"},
+                {"id": "touching", "scene": 0, "sensor": [0], "exclude": [3], "dir": [1,0,0], "D": 8, "hits": 2}]})");
+  const char* mode = GENERATE("contact", "reference");
+  CAPTURE(mode);
+  const Run run = runProgram(folder, std::string("query q.json --mode ") + mode);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto lines = linesOf(run.out);
+  CHECK(lines[0]["status"] == "clear");
+  CHECK(lines[1]["status"] == "overlap");
+  CHECK(lines[2]["t"] == 2);
+  CHECK(lines[2]["overlapping"] == nlohmann::json::parse("[3]"));
+  REQUIRE(lines[2]["hits"].size() == 2);
+  CHECK((lines[2]["hits"][0]["object"] == 1 && lines[2]["hits"][0]["t"] == 2));
+  CHECK((lines[2]["hits"][1]["object"] == 2 && lines[2]["hits"][1]["t"] == 4));
+  CHECK((lines[3]["status"] == "overlap" && lines[3]["object"] == 0));
+  CHECK((lines[3]["hits"][0]["t"] == 0 && lines[3]["hits"][1]["object"] == 1));
+  CHECK_FALSE(lines[3].contains("overlapping"));
+
+  const Run sampled = runProgram(folder, "query q.json --mode sampled");
+  CHECK(sampled.status == 2);
+  CHECK_THAT(sampled.err, Contains("--mode: expected contact or reference") && Contains("\"up\""));
+}
+
+TEST_CASE("sweep lifts a crate from the floor that it rests on") {
+  const ScratchFolder folder;
+  folder.write("floor.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+  folder.write("crate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const std::string sweep = "sweep floor.obj crate.obj --direction 0 0 1 --distance 5";
+  CHECK_THAT(runProgram(folder, sweep).out, Contains("overlap"));
+  CHECK_THAT(runProgram(folder, sweep + " --ignore-leaving").out, Contains("clear"));
+}

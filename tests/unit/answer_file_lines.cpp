@@ -37,7 +37,7 @@ QuerySpec queryWithId(const std::string& id) {
 }  // namespace
 
 TEST_CASE("an answer line has every key in order and the shortest numbers that read back the same") {
-  CHECK(answerLine(queryWithId("ring/0"), hit(), AnswerMode::sampled, "") ==
+  CHECK(answerLine(queryWithId("ring/0"), {.result = hit(), .mode = AnswerMode::sampled}) ==
         R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
         R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
         R"("point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
@@ -47,7 +47,7 @@ TEST_CASE("values that an answer does not have are null") {
   Result clear;
   clear.status = Status::clear;
   clear.detected = Detected::no;
-  CHECK(answerLine(queryWithId("a"), clear, AnswerMode::reference, "") ==
+  CHECK(answerLine(queryWithId("a"), {.result = clear}) ==
         R"({"id": "a", "status": "clear", "t": null, "lo": null, "hi": null, "fraction": null, "detected": false, )"
         R"("object": null, "tri_a": null, "tri_b": null, "point": null, "normal": null, "tier": "select"})");
 }
@@ -55,11 +55,12 @@ TEST_CASE("values that an answer does not have are null") {
 TEST_CASE("time appears only with a speed, paper_min_l only in mode sampled, and reason only if invalid") {
   QuerySpec query = queryWithId("a");
   query.speed = 2;
-  const auto timed = nlohmann::json::parse(answerLine(query, hit(), AnswerMode::reference, ""));
+  const auto timed = nlohmann::json::parse(answerLine(query, {.result = hit(), .mode = AnswerMode::reference}));
   CHECK(timed["time"] == (0.1 + 0.2) / 2);
   CHECK_FALSE(timed.contains("paper_min_l"));
   CHECK_FALSE(timed.contains("reason"));
-  const auto invalid = nlohmann::json::parse(answerLine(query, Result(), AnswerMode::sampled, "out of memory"));
+  const auto invalid =
+      nlohmann::json::parse(answerLine(query, {.mode = AnswerMode::sampled, .reason = "out of memory"}));
   CHECK(invalid["status"] == "invalid");
   CHECK(invalid["reason"] == "out of memory");
   CHECK(invalid["time"].is_null());
@@ -67,9 +68,25 @@ TEST_CASE("time appears only with a speed, paper_min_l only in mode sampled, and
   CHECK(invalid["detected"].is_null());
 }
 
+TEST_CASE("hits and overlapping objects appear only where the query asks for them") {
+  QuerySpec query = queryWithId("a");
+  query.hits = 2;
+  query.skipOverlapping = true;
+  const Answer answer{.result = hit(), .hits = {hit(), hit()}, .overlapping = {3, 5}};
+  const auto line = nlohmann::json::parse(answerLine(query, answer));
+  CHECK(line["overlapping"] == nlohmann::json::parse("[3, 5]"));
+  REQUIRE(line["hits"].size() == 2);
+  CHECK(line["hits"][1] == nlohmann::json::parse(R"({"object": 7, "t": 0.30000000000000004, "lo": 0,
+      "hi": 0.30000000000000004, "tri_a": 0, "tri_b": 4294967294, "point": [1, -2.5, 1e22], "normal": [0, 0, -1]})"));
+  const auto none = nlohmann::json::parse(answerLine(query, {}));
+  CHECK((none["hits"].empty() && none["hits"].is_array() && none["overlapping"].is_array()));
+  const auto plain = nlohmann::json::parse(answerLine(queryWithId("a"), answer));
+  CHECK_FALSE((plain.contains("hits") || plain.contains("overlapping")));
+}
+
 TEST_CASE("an id of any characters reads back unchanged") {
   const std::string id = "\"quoted\"\n\\ \x01 \xc3\xa4";
-  CHECK(nlohmann::json::parse(answerLine(queryWithId(id), hit(), AnswerMode::sampled, ""))["id"] == id);
+  CHECK(nlohmann::json::parse(answerLine(queryWithId(id), {.result = hit(), .mode = AnswerMode::sampled}))["id"] == id);
 }
 
 TEST_CASE("writeAtomically writes a whole file or leaves nothing") {

@@ -132,6 +132,15 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/1/tolerance", "-1", "queries[1].tolerance: ", "a number of 0 or more"},
       {"/queries/1/tolerance", "null", "queries[1].tolerance: ", "a finite number"},
       {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
+      {"/queries/0/ignore_leaving", "1", "queries[0].ignore_leaving: ", "true or false"},
+      {"/queries/0/skip_overlapping", "\"yes\"", "queries[0].skip_overlapping: ", "true or false"},
+      {"/queries/0/slack", "-1e-12", "queries[0].slack: ", "a number of 0 or more"},
+      {"/queries/0/hits", "0", "queries[0].hits: ", "from 1 to 4294967294, or \"all\", got 0"},
+      {"/queries/0/hits", "1e300", "queries[0].hits: ", "or \"all\""},
+      {"/queries/0/hits", "\"some\"", "queries[0].hits: ", "or \"all\""},
+      {"/queries/1/hits", "2", "queries[1].hits: ", "1 beside \"decide\""},
+      {"/queries/1/ignore_leaving", "true", "queries[1].mode: ", "contact or reference"},
+      {"/queries/0/clearance", "1", "queries[0].clearance: ", "not available in this version"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.pointer, c.value);
@@ -255,4 +264,22 @@ TEST_CASE("a workload that is written and read back has the same bits") {
     CHECK((a.mask == b.mask && a.anyHit == b.anyHit && a.mode == b.mode && a.speed == b.speed));
     CHECK(a.tolerance == b.tolerance);
   }
+}
+
+TEST_CASE("a query may ask what counts as a contact and for how many, and is written as it was read") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["queries"][0].update(
+      nlohmann::json::parse(R"({"ignore_leaving": true, "slack": 1e-9, "skip_overlapping": true, "hits": "all"})"));
+  const Workload workload = files.read(file.dump());
+  std::vector<std::string> warnings;
+  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  for (const QuerySpec& query : {workload.queries[0], again.queries[0]}) {
+    CHECK(query.ignoreLeaving);
+    CHECK(query.slack == 1e-9);
+    CHECK(query.skipOverlapping);
+    CHECK(query.hits == radar::kAllHits);
+  }
+  CHECK_FALSE((workload.queries[1].ignoreLeaving || workload.queries[1].slack || workload.queries[1].skipOverlapping));
+  CHECK(workload.queries[1].hits == 1);
 }

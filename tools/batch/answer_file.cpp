@@ -18,6 +18,19 @@ const char* wordFor(Detected detected) {
   return detected == Detected::no ? "false" : detected == Detected::yes ? "true" : "null";
 }
 
+std::string hitText(const Result& hit) {
+  JsonObject object;
+  object.add("object", idText(hit.object));
+  object.addNumber("t", hit.t);
+  object.addNumber("lo", hit.lo);
+  object.addNumber("hi", hit.hi);
+  object.add("tri_a", idText(hit.triA));
+  object.add("tri_b", idText(hit.triB));
+  object.add("point", vectorText(hit.point));
+  object.add("normal", vectorText(hit.normal));
+  return object.text();
+}
+
 }  // namespace
 
 const char* nameOf(Status status) {
@@ -30,11 +43,12 @@ const char* nameOf(Tier tier) {
   return kNames[static_cast<size_t>(tier)];
 }
 
-std::string answerLine(const QuerySpec& query, const Result& result, AnswerMode mode, const std::string& reason) {
+std::string answerLine(const QuerySpec& query, const Answer& answer) {
+  const Result& result = answer.result;
   JsonObject line;
   line.addString("id", query.id);
   line.addString("status", nameOf(result.status));
-  if (result.status == Status::invalid) line.addString("reason", reason);
+  if (result.status == Status::invalid) line.addString("reason", answer.reason);
   line.addNumber("t", result.t);
   line.addNumber("lo", result.lo);
   line.addNumber("hi", result.hi);
@@ -47,7 +61,14 @@ std::string answerLine(const QuerySpec& query, const Result& result, AnswerMode 
   line.add("point", vectorText(result.point));
   line.add("normal", vectorText(result.normal));
   line.addString("tier", nameOf(result.tier));
-  if (mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
+  if (answer.mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
+  if (query.hits > 1) {
+    line.add("hits", listOf(answer.hits, ", ", [](std::string& text, const Result& hit) { text += hitText(hit); }));
+  }
+  if (query.skipOverlapping) {
+    line.add("overlapping",
+             listOf(answer.overlapping, ", ", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+  }
   return line.text();
 }
 

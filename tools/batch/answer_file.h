@@ -2,16 +2,25 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "radar/radar.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
 
+struct Answer {
+  Result result;
+  AnswerMode mode = AnswerMode::reference;
+  std::string reason;                 ///< why the status is invalid
+  std::vector<Result> hits;           ///< as in radar::Lists
+  std::vector<ObjectId> overlapping;  ///< as in radar::Lists
+};
+
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
 /// `paper_min_l` only in mode sampled, `time` only where the query gives a speed, `reason` only where the status is
-/// invalid.
-std::string answerLine(const QuerySpec& query, const Result& result, AnswerMode mode, const std::string& reason);
+/// invalid, `hits` and `overlapping` only where the query asks for them.
+std::string answerLine(const QuerySpec& query, const Answer& answer);
 
 const char* nameOf(Status status);
 const char* nameOf(Tier tier);

@@ -21,6 +21,11 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 /// file's then). Returns the query file. Throws std::runtime_error if something cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
 
+/// Whether a query asks for what mode sampled does not offer; and what to use instead.
+bool needsExactMode(const QuerySpec& query);
+inline constexpr const char* kExactModes =
+    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\" and several \"hits\" need";
+
 /// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them.
 const char* nameOf(AnswerMode mode);
 AnswerMode modeFrom(std::string_view name);

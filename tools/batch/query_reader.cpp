@@ -16,7 +16,7 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "top", "rotation"};
+constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "clearance", "top", "rotation"};
 
 std::string readWhole(const std::filesystem::path& file, const char* kind) {
   std::error_code error;
@@ -179,8 +179,8 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 void Reader::readQuery(const JsonValue& query) {
-  requireKnownKeys(
-      query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "decide", "mode", "speed", "tolerance"});
+  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "decide", "mode", "speed",
+                           "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits"});
   QuerySpec spec;
   const JsonValue id = query.member("id");
   spec.id = id.string();
@@ -201,9 +201,17 @@ void Reader::readQuery(const JsonValue& query) {
   spec.distance = query.member("D").numberFrom0();
   query.ifHas("mask", [&](const JsonValue& mask) { spec.mask = mask.wholeNumber<uint32_t>(); });
   query.ifHas("decide", [&](const JsonValue& decide) { spec.anyHit = decide.boolean(); });
+  query.ifHas("ignore_leaving", [&](const JsonValue& ignore) { spec.ignoreLeaving = ignore.boolean(); });
+  query.ifHas("slack", [&](const JsonValue& slack) { spec.slack = slack.numberFrom0(); });
+  query.ifHas("skip_overlapping", [&](const JsonValue& skip) { spec.skipOverlapping = skip.boolean(); });
+  query.ifHas("hits", [&](const JsonValue& hits) {
+    spec.hits = hits.json() == "all" ? kAllHits : hits.wholeNumberFrom1("\"all\"");
+    if (spec.hits > 1 && spec.anyHit) hits.expected("1 beside \"decide\"");
+  });
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
+    if (spec.mode == AnswerMode::sampled && needsExactMode(spec)) mode.expected(kExactModes);
   });
   query.ifHas("speed", [&](const JsonValue& speed) {
     spec.speed = speed.number();
@@ -217,6 +225,10 @@ void Reader::readQuery(const JsonValue& query) {
 
 Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   return Reader(file, warnings).read();
+}
+
+bool needsExactMode(const QuerySpec& query) {
+  return query.ignoreLeaving || query.skipOverlapping || query.hits > 1;
 }
 
 const char* nameOf(AnswerMode mode) {

@@ -80,6 +80,10 @@ std::string queryText(const QuerySpec& query) {
   if (query.anyHit) object.add("decide", "true");
   if (query.mode) object.addString("mode", nameOf(*query.mode));
   if (query.speed) object.addNumber("speed", *query.speed);
+  if (query.ignoreLeaving) object.add("ignore_leaving", "true");
+  if (query.slack) object.addNumber("slack", *query.slack);
+  if (query.skipOverlapping) object.add("skip_overlapping", "true");
+  if (query.hits != 1) object.add("hits", query.hits == kAllHits ? "\"all\"" : std::to_string(query.hits));
   if (query.tolerance) object.addNumber("tolerance", *query.tolerance);
   return object.text();
 }

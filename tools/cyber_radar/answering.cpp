@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "batch/answer_file.h"
+#include "batch/query_file.h"
 #include "bench/clock.h"
 #include "cyber_radar/commands.h"
 
@@ -30,6 +30,10 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     for (uint32_t number : batch.queries) {
       const QuerySpec& spec = workload.queries[number];
       const AnswerMode mode = spec.mode.value_or(options.mode);
+      if (mode == AnswerMode::sampled && needsExactMode(spec)) {
+        throw InputError("--mode", "",
+                         std::string("expected ") + kExactModes + " (query \"" + spec.id + "\"), got sampled");
+      }
       const bool swept = mode != AnswerMode::reference;
       (swept ? needsDevice : needsCpu) = true;
       Part& part = swept ? group.swept : group.onCpu;
@@ -75,8 +79,13 @@ Answering::Pass Answering::run(const std::string& label) {
   const auto keep = [&](const Part& part, const PoolAnswers& found) {
     for (size_t i = 0; i < found.results.size(); ++i) {
       const auto reason = found.reasons.find(i);
-      pass.answers[part.numbers[i]] = {found.results[i], part.modes[i],
-                                       reason == found.reasons.end() ? "" : reason->second};
+      const auto hits = found.lists.hitsOf(i);
+      const auto overlapping = found.lists.overlappingOf(i);
+      pass.answers[part.numbers[i]] = {found.results[i],
+                                       part.modes[i],
+                                       reason == found.reasons.end() ? "" : reason->second,
+                                       {hits.begin(), hits.end()},
+                                       {overlapping.begin(), overlapping.end()}};
     }
     pass.pairs += found.stats.pairs;
     pass.cpuPairs += found.stats.cpuPairs;
@@ -96,6 +105,7 @@ PoolAnswers Answering::sweep(const std::vector<Query>& queries) {
   if (pool_) return pool_->submit(queries).get();
   PoolAnswers found;
   found.results = sweeper_->run(queries);
+  found.lists = sweeper_->lists();
   for (size_t i = 0; i < queries.size(); ++i) {
     if (found.results[i].status == Status::invalid) found.reasons[i] = sweeper_->reason(i);
   }
@@ -107,6 +117,7 @@ PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
   const double start = bench::now();
   PoolAnswers found;
   found.results = cpu_->run(queries);
+  found.lists = cpu_->lists();
   found.stats.pairs = found.stats.cpuPairs = cpu_->stats().pairs;
   found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
   return found;
@@ -115,7 +126,7 @@ PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
 std::string answerLines(const Workload& workload, const std::vector<Answer>& answers) {
   std::string lines;
   for (size_t i = 0; i < answers.size(); ++i) {
-    lines += answerLine(workload.queries[i], answers[i].result, answers[i].mode, answers[i].reason) + "\n";
+    lines += answerLine(workload.queries[i], answers[i]) + "\n";
   }
   return lines;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "batch/answer_file.h"
 #include "cyber_radar/progress.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
@@ -22,12 +23,6 @@ struct AnsweringOptions {
   bool timestamps = false;    ///< measure each stage
   uint32_t cpuBatch = kNone;  ///< SweeperOptions::cpuBatch
   uint32_t threads = 0;       ///< of the CPU's exact search; 0: one for each core
-};
-
-struct Answer {
-  Result result;
-  AnswerMode mode = AnswerMode::reference;
-  std::string reason;  ///< why the status is invalid
 };
 
 class Answering {

@@ -154,6 +154,12 @@ Workload SweepOptions::load() const {
     throw InputError("--speed", "", "expected a finite number above 0, got " + std::to_string(*speed));
   }
   query.speed = speed;
+  query.ignoreLeaving = ignoreLeaving;
+  query.skipOverlapping = skipOverlapping;
+  if (slack && !(*slack >= 0 && std::isfinite(*slack))) {
+    throw InputError("--slack", "", "expected a finite number of 0 or more, got " + std::to_string(*slack));
+  }
+  query.slack = slack;
   query.sensor = {1, poseFrom(at, rotate)};
 
   std::vector<std::string> warnings;

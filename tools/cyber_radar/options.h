@@ -28,7 +28,8 @@ struct EngineOptions {
 struct SweepOptions {
   std::string scene, sensor;
   std::vector<double> direction, at, rotate;
-  std::optional<double> distance, speed;
+  std::optional<double> distance, speed, slack;
+  bool ignoreLeaving = false, skipOverlapping = false;
 
   /// All but the two files.
   void addMotionTo(CLI::App& command);

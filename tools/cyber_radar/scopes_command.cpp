@@ -78,7 +78,8 @@ void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const
   sidecar["right"] = scopes.right;
   sidecar["up"] = scopes.up;
   sidecar["forward"] = scopes.forward;
-  sidecar["answer"] = nlohmann::ordered_json::parse(answerLine(query, scopes.result, AnswerMode::sampled, ""));
+  sidecar["answer"] =
+      nlohmann::ordered_json::parse(answerLine(query, {.result = scopes.result, .mode = AnswerMode::sampled}));
   writeAtomically(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
@@ -91,7 +92,9 @@ void drawScopes(Options& options) {
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
   Query asked = toQuery(query, radar::Mode::sampled, engine.resolution);
-  asked.anyHit = false;  // the text below needs the whole answer
+  // The text below needs the whole answer, and the pictures are of mode sampled.
+  asked.anyHit = asked.ignoreLeaving = asked.skipOverlapping = false;
+  asked.hits = 1;
   const Scopes scopes = sweeper.scopes(asked);
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");

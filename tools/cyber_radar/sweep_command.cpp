@@ -11,6 +11,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep hall.glb robot.ply --direction 1 0 0 --distance 5
   cyber-radar sweep ring.obj peg.stl --at 0 0 -3 --rotate 0 1 0 15 --direction 0 0 1 --distance 8 --speed 0.5
+  cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --json | python3 -m json.tool
 
 SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit. The scene stands as it is;
@@ -61,6 +62,15 @@ void addSweepCommand(CLI::App& app, int& status) {
   command->add_option("SENSOR", options->sweep.sensor, "Mesh file of what moves")->required();
   options->sweep.addMotionTo(*command);
   command->add_option("--speed", options->sweep.speed, "Units per second; the answer then says when")->type_name("S");
+  command->add_flag("--ignore-leaving", options->sweep.ignoreLeaving,
+                    "Counts only what blocks: the sensor may leave what it rests on, or slide along it");
+  command->add_flag("--skip-overlapping", options->sweep.skipOverlapping,
+                    "Leaves the scene out, and says so, if its surface crosses the sensor's at the start");
+  command
+      ->add_option("--slack", options->sweep.slack,
+                   "With these two: how far surfaces that touch may sink into each other, for rounding; else derived "
+                   "from the coordinates")
+      ->type_name("W");
   options->engine.addTo(*command);
   command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
   command->callback([options, &status] { status = sweep(*options); });

@@ -35,6 +35,9 @@ std::string inDigits(const std::array<double, 3>& vector) {
 }
 
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
+  if (!answer.overlapping.empty()) {
+    return "skipped: the surfaces cross at the start, so nothing is left to meet\n";
+  }
   const Result& result = answer.result;
   const std::string distance = inDigits(query.distance);
   switch (result.status) {

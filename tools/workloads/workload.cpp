@@ -54,6 +54,10 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.exclude = spec.exclude;
   query.mask = spec.mask;
   query.anyHit = spec.anyHit;
+  query.ignoreLeaving = spec.ignoreLeaving;
+  query.skipOverlapping = spec.skipOverlapping;
+  query.slack = spec.slack;
+  query.hits = spec.hits;
   query.resolution = resolution;
   return query;
 }

@@ -53,6 +53,9 @@ struct QuerySpec {
   double distance = 0;
   uint32_t mask = ~0u;
   bool anyHit = false;
+  bool ignoreLeaving = false, skipOverlapping = false;
+  std::optional<double> slack;
+  uint32_t hits = 1;
   std::optional<AnswerMode> mode;   ///< overrides the command's
   std::optional<double> speed;      ///< units per second
   std::optional<double> tolerance;  ///< world units; every exact answer meets it

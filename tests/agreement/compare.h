@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "stability/judge.h"
-#include "stability/method.h"
+#include "stability/case_run.h"
 #include "workloads/workload.h"
 
 namespace radar::test {

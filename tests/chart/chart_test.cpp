@@ -1,9 +1,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "chart/accuracy.h"
-#include "chart/documents.h"
-#include "chart/findings.h"
+#include "chart/charts.h"
 #include "chart/in_child.h"
 #include "chart/run.h"
 #include "support/scratch_folder.h"
@@ -66,8 +64,7 @@ Ran run(const RunSettings& settings, const std::string& origin, const test::Scra
   const std::vector<BaselineRow> none;
   const std::vector<Planned> plan = planOf(settings, none);
   Record start;
-  start.run = fingerprintOf(settings, origin);
-  start.workloads = {{"locked", "Interlocking shapes"}, {"flight", "Teapots in flight"}};
+  start.add("run", fingerprintOf(settings, origin));
   Ran ran;
   ran.record = measureAll(settings, plan, start, test::device(), folder.path(), [&] { ++ran.steps; });
   CHECK(ran.steps == plan.size());
@@ -94,21 +91,6 @@ TEST_CASE("the front holds what nothing beats in both speed and accuracy, and a 
   CHECK(namesOn({}).empty());
 }
 
-TEST_CASE("mode contact is compared with methods that sample, not with other certain ones") {
-  std::vector<Cell> cells{madeUp("contact", 5, 0), madeUp("reference", 1, 0), madeUp("sampled", 2, 0, 1),
-                          madeUp("Embree rays", 3, 0.2), madeUp("ODE/OPCODE steps", 12, 0)};
-  const auto isOnFront = [&] {
-    std::vector<const Cell*> all;
-    for (const Cell& cell : cells) all.push_back(&cell);
-    return isContactOnFrontBesideSampling(all);
-  };
-  CHECK(isOnFront());
-  cells[4].us = 3;
-  CHECK_FALSE(isOnFront());
-  cells.erase(cells.begin());
-  CHECK_FALSE(isOnFront());
-}
-
 TEST_CASE("of one method's rows the fastest number of threads is shown, and none that failed") {
   Record record;
   record.cells = {madeUp("m", 4, 0), madeUp("m", 3, 0), madeUp("broken", NAN, NAN)};
@@ -117,10 +99,6 @@ TEST_CASE("of one method's rows the fastest number of threads is shown, and none
   const std::vector<const Cell*> shown = shownCells(record, "front", "w");
   REQUIRE(shown.size() == 1);
   CHECK(shown[0]->threads == 2);
-}
-
-TEST_CASE("slopes are those of power laws") {
-  CHECK(slopeOf(std::vector<Point>{{1, 3}, {10, 3 * std::sqrt(10.0)}, {100, 30}}) == Approx(0.5));
 }
 
 TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
@@ -141,26 +119,23 @@ TEST_CASE("answers are judged against the truth: errors, misses, inventions and 
   CHECK(cell.errorMedian == 0.25);
   CHECK(cell.errorWorst == 0.5);
   CHECK(cell.widthWorst == 0.5);
-  CHECK(wrongShare(cell) == 0.5);
+  CHECK(cell.wrongShare() == 0.5);
 }
 
 TEST_CASE("a record read is the record written, and a damaged one is refused with its place") {
   Record record;
-  record.command = "cyber-radar chart \"x\"";
-  record.run = "0123";
-  record.workloads = {{"w", "About: \"w\", #1"}};
-  record.notes = {"one: text"};
+  record.add("command", "cyber-radar chart \"x\"");
+  record.add("workload", "w: About: \"w\",\n#1");
+  record.add("workload", "v: ");
   record.cells = {madeUp("a", 0.1, 1.0 / 3), madeUp("b, \"quoted\"", NAN, NAN)};
   record.cells[1].failed = "#1\n2";
   record.cells[1].certified = true;
   const std::string csv = csvOf(record);
   const Record again = recordFrom(csv, "chart.csv");
   CHECK(csvOf(again) == csv);
-  CHECK(again.command == record.command);
-  CHECK(again.run == record.run);
-  REQUIRE(again.workloads.size() == 1);
-  CHECK(again.workloads[0].about == record.workloads[0].about);
-  CHECK(again.notes == record.notes);
+  CHECK(again.values("command") == std::vector<std::string>{"cyber-radar chart \"x\""});
+  CHECK(again.values("workload") == std::vector<std::string>{"w: About: \"w\", #1", "v: "});
+  CHECK(again.values("run").empty());
   REQUIRE(again.cells.size() == 2);
   CHECK(again.cells[0].errorWorst == 1.0 / 3);
   CHECK(std::isnan(again.cells[1].us));
@@ -172,8 +147,6 @@ TEST_CASE("a record read is the record written, and a damaged one is refused wit
     text.replace(text.find(from), from.size(), to);
     CHECK_THROWS_WITH(recordFrom(text, "chart.csv"), StartsWith("chart.csv: ") && Contains(why));
   };
-  refused(csv, "chart-2", "chart-9", "line 1: expected");
-  refused(csv, "# date", "# dates", "line 6: expected");
   refused(csv, ",workload,", ",job,", "columns: expected");
   refused(csv, "0.3333333333333333", "a third", "row 1: error_worst: expected a number, got \"a third\"");
   refused(csv, ",yes,", ",maybe,", "row 2: certified: expected yes or no, got \"maybe\"");
@@ -211,30 +184,13 @@ TEST_CASE("the accuracy columns of two runs are the same to the last digit, and 
     CHECK(cell.violations == 0);
     CHECK(cell.us > 0);
     CHECK(cell.contacts > 0);
-    if (cell.certified) CHECK(wrongShare(cell) == 0);
-    CHECK(cell.settledSelect + cell.settledSampled + cell.settledContact + cell.settledReference == Approx(1));
+    if (cell.certified) CHECK(cell.wrongShare() == 0);
   }
 }
 
-TEST_CASE("the documents link their charts, say where they come from and what other libraries cannot do") {
+TEST_CASE("the tables sum up every method over all workloads, and tell where it fails") {
   Record record;
-  record.command = "cyber-radar chart --out <here>";
-  record.workloads = {{"w", "Shapes & more: of all kinds"}, {"none", "Not measured"}};
-  record.notes = {"Baseline: cannot <that>"};
-  record.cells = {madeUp("sampled", 3, 0.1, 2), madeUp("contact", 2, 0), madeUp("FCL steps", 1, 0, 10)};
-  record.cells[2].errorWorst = NAN;
-  const std::string accuracy = accuracyDocument(record, "chart"), performance = performanceDocument(record, "chart");
-  CHECK_THAT(accuracy, Contains("![Shapes & more](chart/front-w.svg)") && Contains("- Baseline: cannot <that>"));
-  CHECK_THAT(accuracy,
-             !Contains("front-none.svg") && Contains("contact is on the front on 1 of 2 workloads, not on none."));
-  for (const std::string& document : {accuracy, performance}) {
-    CHECK_THAT(document, Contains("cyber-radar chart --out <here>") && !Contains("nan") && !Contains("inf "));
-  }
-}
-
-TEST_CASE("the documents sum up every method over all workloads, and tell where it fails") {
-  Record record;
-  record.workloads = {{"w", "Shapes"}, {"v", "Others"}};
+  record.head = {"workload: w: Shapes", "workload: v: Others", "workload: none: Not measured"};
   record.cells = {madeUp("contact", 2, 0), madeUp("FCL steps", 4, 0), madeUp("FCL steps", 9, 0.1, 1),
                   madeUp("contact", 5, 0), madeUp("ODE steps", 1, 0, 3)};
   record.cells[1].size = 16;
@@ -248,35 +204,28 @@ TEST_CASE("the documents sum up every method over all workloads, and tell where 
     broken.family = "ODE steps";
     broken.failed = "crashes";
   }
-  const std::string accuracy = accuracyDocument(record, "chart"), performance = performanceDocument(record, "chart");
-  CHECK_THAT(accuracy, Contains("| contact | 0.0% | 0.0% | 0 | 2 to 5 |"));
-  CHECK_THAT(accuracy, Contains("| FCL steps 64 (fails on v) | 10.0% | 10.0% | 0.1 | 9 to 9 |"));
-  CHECK_THAT(accuracy, Contains("| ODE steps (fails on w) | 30.0% | 30.0% | 0 | 1 to 1 |"));
-  CHECK_THAT(accuracy, Contains("Not drawn: ODE steps 16, ODE steps 64 (crashes).") && !Contains("| FCL steps 16"));
-  CHECK_THAT(accuracy, Contains("It took 2 to 5 µs per query; its worst error was 0."));
-  CHECK_THAT(accuracy, Contains("on the front on 2 of 2 workloads."));
-  CHECK_THAT(performance, Contains("| w | 2 | - | - | - | 4 (FCL steps 16) |"));
-  CHECK_THAT(performance, Contains("| v | 5 | - | - | - | none |"));
-  record.cells[4].misses = 0;
-  CHECK_THAT(accuracyDocument(record, "chart"), Contains("on the front on 1 of 2 workloads, not on v."));
+  CHECK(csvOf(methodTable(record)) ==
+        "method,wrong_percent,on_worst_workload,worst_error,us_least,us_most,fails_on\n"
+        "contact,0,0,0,2,5,none\nFCL steps 16,0,0,0,4,4,v none\nFCL steps 64,10,10,0.1,9,9,v none\n"
+        "ODE steps,30,30,0,1,1,w none\n");
+  CHECK(csvOf(workloadTable(record)) ==
+        "workload,queries,contacts,contact,contact on device,reference,sampled 64,fastest_other_always_right,us\n"
+        "w,10,10,2,,,,FCL steps 16,4\nv,10,10,5,,,,none,\n");
 }
 
-TEST_CASE("Table 1 is described from its first row to its last") {
+TEST_CASE("growing work is described from its first row to its last, beside the paper's times of Table 1") {
   Record record;
   for (const double boxes : {10'000.0, 20'000.0, 30'000.0}) {
-    for (const char* method : {"contact", "sampled 64", "FCL steps 64"}) {
-      const bool isContact = std::string(method) == "contact", isFcl = std::string(method) == "FCL steps 64";
-      Cell& cell = record.cells.emplace_back(madeUp(method, isContact ? 4 : isFcl ? boxes / 5'000 : 2'000, 0));
+    for (const char* method : {"contact", "FCL steps 64"}) {
+      Cell& cell = record.cells.emplace_back(madeUp(method, method == std::string("contact") ? 4 : boxes / 5'000, 0));
       cell.section = "table1";
       cell.workload = "boxes";
       cell.x = boxes;
     }
   }
-  const std::string performance = performanceDocument(record, "chart");
-  CHECK_THAT(performance, Contains("| µs per query among | 10,000 boxes | 30,000 boxes | ratio |"));
-  CHECK_THAT(performance, Contains("| FCL steps 64 | 2 | 6 | 3.00 |"));
-  CHECK_THAT(performance, Contains("| the paper's OPCODE | 11270 | 85480 | 7.58 |"));
-  CHECK_THAT(performance, Contains("Mode contact takes 4 µs per query among 10,000 boxes and 4 µs among 30,000: 1.00"));
+  const std::string csv = csvOf(growthTable(record));
+  CHECK_THAT(csv, Contains("\ntable1,contact,10000,4,30000,4,1\ntable1,FCL steps 64,10000,2,30000,6,3\n"));
+  CHECK_THAT(csv, Contains("\ntable1,the paper's OPCODE,10000,11270,30000,85480,7.58"));
 }
 
 TEST_CASE("a child hands over numbers, an exception's words, the signal that ended it, or that it took too long") {

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "scale/findings.h"
 #include "scale/report.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -19,23 +18,21 @@ ScaleReport madeUp() {
   report.sensors = {3};
   report.batches = {1};
   report.queries = {3};
-  report.processors = 8;
   const auto share = [](uint32_t queries, double busy, double start, double gap, double tail) {
     return DeviceShare{queries, 1, queries, queries, busy, start, gap, tail, 0.1, 0, 0};
   };
-  const auto run = [](std::vector<uint32_t> devices, bool alone, double ms, std::vector<DeviceShare> shares) {
+  const auto run = [](std::vector<uint32_t> devices, double ms, std::vector<DeviceShare> shares) {
     ScaleRun made;
     made.devices = std::move(devices);
-    made.alone = alone;
     made.ms = made.least = made.most = ms;
     made.shares = std::move(shares);
     made.batches.resize(1);
     made.batches[0].answered = ms;
     return made;
   };
-  report.runs = {run({0}, false, 6, {share(3, 6, 0, 0, 0)}),
-                 run({0, 1}, false, 5, {share(2, 4, 0, 0, 1), share(1, 4, 0.25, 0.75, 0)}),
-                 run({1}, true, 12, {share(3, 12, 0, 0, 0)})};
+  report.runs = {run({0}, 6, {share(3, 6, 0, 0, 0)}),
+                 run({0, 1}, 5, {share(2, 4, 0, 0, 1), share(1, 4, 0.25, 0.75, 0)}),
+                 run({1}, 12, {share(3, 12, 0, 0, 0)})};
   return report;
 }
 
@@ -49,25 +46,20 @@ TEST_CASE("speed-up is against the first device, efficiency against the speeds o
   CHECK(report.efficiency(report.alone(0, 1)) == Approx(1));
 }
 
-TEST_CASE("the parts of the devices' time add up, and the findings begin with the greatest loss") {
+TEST_CASE("the table tells where the devices' time went") {
   ScaleReport report = madeUp();
-  const Losses losses = lossesOf(report, report.run(0, 2));
-  CHECK(losses.useful == Approx(0.8));
-  CHECK(losses.tail == Approx(0.1));
-  CHECK(losses.gap == Approx(0.075));
-  CHECK(losses.start == Approx(0.025));
-  CHECK(losses.slower == Approx(0).margin(1e-12));
-  std::vector<std::string> findings = findingsOf(report);
-  REQUIRE(findings.size() == 4);
-  CHECK_THAT(findings[0], Contains("1.20 times as fast") && Contains("80%"));
-  CHECK_THAT(findings[1], Contains("imbalance"));
-  CHECK_THAT(findings[2], Contains("between chunks"));
-  // Each device slower than alone, while this process has all cores.
+  const Json row = runTable(report)[1];
+  CHECK(row["devices"] == "0+1");
+  CHECK(row["speed_up"].get<double>() == Approx(1.2));
+  CHECK(row["useful_%"].get<double>() == Approx(80));
+  CHECK(row["tail_%"].get<double>() == Approx(10));
+  CHECK(row["gap_%"].get<double>() == Approx(7.5));
+  CHECK(row["start_%"].get<double>() == Approx(2.5));
+  CHECK(row["slower_%"].get<double>() == Approx(0).margin(1e-9));
+  CHECK(row["encode_%"].get<double>() == Approx(2.5));
+  // One device slower than alone.
   report.runs[1].shares[0].busy = 5;
-  report.runs[1].shares[0].tail = 0;
-  report.runs[1].cores = 7.9;
-  findings = findingsOf(report);
-  CHECK_THAT(findings[1], Contains("longer for a query than alone") && Contains("8 cores were 99% in use"));
+  CHECK(runTable(report)[1]["slower_%"].get<double>() == Approx(10));
 }
 
 TEST_CASE("a measured workload accounts for all time and all queries, with the same bits on every set of devices") {
@@ -87,10 +79,14 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
     uint32_t queries = 0;
     for (const DeviceShare& share : run.shares) queries += share.queries;
     CHECK(queries == report.queries[run.point]);
-    const Losses losses = lossesOf(report, run);
-    CHECK(losses.useful + losses.slower + losses.start + losses.gap + losses.tail + losses.scene ==
-          Approx(1).margin(0.01));
     CHECK(run.stages.empty() == (run.point == 0));
   }
-  CHECK_THAT(tableOf(report), Contains("devices 0+1, ") && Contains("readback"));
+  for (const Json& row : runTable(report)) {
+    double sum = 0;
+    for (const char* part : {"useful_%", "slower_%", "start_%", "gap_%", "tail_%", "scene_%"}) {
+      sum += row[part].get<double>();
+    }
+    CHECK(sum == Approx(100).margin(1));
+  }
+  CHECK_THAT(csvOf(stageTable(report)), Contains("\n0+1,readback,"));
 }

@@ -44,12 +44,12 @@ TEST_CASE("rows over families add up counts and keep the worst") {
 }
 
 TEST_CASE("a row is a line of the table") {
-  const std::string csv = csvOf({rowOf("thin", Method::paper, 2, 0.5)});
+  const std::string csv = csvOf(tableOf(std::vector{rowOf("thin", Method::paper, 2, 0.5)}));
   CHECK(csv.substr(csv.find('\n') + 1) == "thin,paper,64,10,7,2,0,0,0,0.5,0\n");
-  CHECK(csvOf(std::vector<StepRow>{{"slope", Method::sampled, 512, 1, 2.5e-6}}) ==
+  CHECK(csvOf(tableOf(std::vector<StepRow>{{"slope", Method::sampled, 512, 1, 2.5e-6}})) ==
         "family,tier,steps,flips,excess\nslope,sampled,512,1,2.5e-06\n");
-  CHECK(csvOf(std::vector<ChangeRow>{{Change::cut, Method::contact, 8, 5, 1}}) ==
+  CHECK(csvOf(tableOf(std::vector<ChangeRow>{{Change::cut, Method::contact, 8, 5, 1}})) ==
         "change,tier,cases,contacts,broken\ntriangles cut in two,contact,8,5,1\n");
   const std::vector<HardFamily> family{{"far", "by the pose, in units", {0, 1e-6}, nullptr}};
-  CHECK(csvOf(family) == "family,parameter,values\nfar,\"by the pose, in units\",0 1e-06\n");
+  CHECK(csvOf(tableOf(family)) == "family,parameter,values\nfar,\"by the pose, in units\",0 1e-06\n");
 }

@@ -3,9 +3,9 @@
 #include <thread>
 
 #include "bench/benchmarks.h"
-#include "bench/csv.h"
 #include "bench/statistics.h"
 #include "commit/commit.h"
+#include "report/tables.h"
 
 namespace radar::bench {
 
@@ -34,9 +34,9 @@ std::vector<double> printRows(const std::string& workload, const std::vector<Met
     const double host = perQuery * tools::median(secondsOf(all[i].answer, &Lap::thread));
     answers.push_back(perQuery * tools::median(secondsOf(all[i].answer)));
     if (i == 0) first = prepare + answers[0];
-    const std::string line =
-        csvLineOf(workload, batches[0].queries.size(), methods[i].name, hundredths(prepare), hundredths(answers[i]),
-                  hundredths(host), hundredths((prepare + answers[i]) / first), all[i].differ);
+    const std::string line = tools::csvLine({workload, batches[0].queries.size(), methods[i].name, hundredths(prepare),
+                                             hundredths(answers[i]), hundredths(host),
+                                             hundredths((prepare + answers[i]) / first), all[i].differ});
     std::fputs(line.c_str(), stdout);
     std::fflush(stdout);
     if (all[i].differ > 0) status = 1;

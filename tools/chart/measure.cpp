@@ -1,12 +1,14 @@
 #include "chart/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <thread>
 
 #include "bench/statistics.h"
-#include "chart/accuracy.h"
 #include "chart/in_child.h"
 #include "radar/cpu_sweeper.h"
 
@@ -19,6 +21,11 @@ constexpr unsigned kMostSeconds = 25;
 
 // A slow method gets so much more time, then fewer passes than it should.
 constexpr double kPatience = 6;
+
+// An error that is infinite is known all the same.
+double finite(double length) {
+  return std::min(std::abs(length), std::numeric_limits<double>::max());
+}
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -167,6 +174,27 @@ std::vector<Result> castInChild(Cell& cell, const Workload& workload, const Base
 
 }  // namespace
 
+void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> truth, std::span<const double> sizes) {
+  std::vector<double> errors, widths;
+  for (size_t i = 0; i < claims.size(); ++i) {
+    const Verdict verdict = judge(claims[i], truth[i], sizes[i]);
+    const bool isBounded = !std::isnan(claims[i].hi);
+    cell.contacts += meets(truth[i]);
+    cell.found += verdict.found;
+    cell.misses += verdict[Fault::missed] || verdict.unseen;
+    cell.falseHits += verdict[Fault::falseHit];
+    cell.violations += verdict[Fault::bracket] || (verdict[Fault::falseHit] && isBounded) ||
+                       (verdict[Fault::missed] && cell.certified);
+    if (!verdict.found) continue;
+    errors.push_back(finite(verdict.error));
+    if (cell.certified) widths.push_back(finite((claims[i].hi - claims[i].lo) / sizes[i]));
+  }
+  cell.errorMedian = quantile(errors, 0.5);
+  cell.error99 = quantile(errors, 0.99);
+  cell.errorWorst = quantile(errors, 1);
+  cell.widthWorst = quantile(widths, 1);
+}
+
 struct Bench::Engine {
   Engine(const Workload& workload, const Device& device, const SweeperOptions& given)
       : options(given), player(workload), sweeper(device, player.scene(), given) {
@@ -215,7 +243,6 @@ Cell Bench::measure(const Method& method, const BaselineRow* row) {
   std::vector<Claim> claims(results.size());
   std::transform(results.begin(), results.end(), claims.begin(), claimOf);
   judge(cell, claims, truth_, sizes_);
-  if (row == nullptr) countTiers(cell, results);
   return cell;
 }
 

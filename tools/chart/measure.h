@@ -6,9 +6,13 @@
 #include "baselines/baseline.h"
 #include "bench/harness.h"
 #include "chart/cases.h"
-#include "chart/cell.h"
+#include "chart/record.h"
+#include "stability/judge.h"
 
 namespace radar::tools {
+
+/// Fills the accuracy columns of a cell whose `certified` is set. `truth` is the reference's, `sizes` the sensors'.
+void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> truth, std::span<const double> sizes);
 
 /// A workload on which methods are measured, one after the other.
 class Bench {

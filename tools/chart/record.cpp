@@ -7,25 +7,12 @@
 #include <sstream>
 
 #include "batch/atomic_file.h"
-#include "bench/csv.h"
 #include "import/input_error.h"
+#include "report/tables.h"
 
 namespace radar::tools {
 
 namespace {
-
-constexpr const char* kFormat = "# cyber-radar-chart-2";
-
-// Calls visit(name, member) for each line of the head that is there once.
-template <class SomeRecord, class Visit>
-void eachOrigin(SomeRecord& record, const Visit& visit) {
-  visit("command", record.command);
-  visit("machine", record.machine);
-  visit("device", record.device);
-  visit("commit", record.commit);
-  visit("date", record.date);
-  visit("run", record.run);
-}
 
 std::vector<std::string> columnNames() {
   std::vector<std::string> names;
@@ -64,41 +51,29 @@ struct FromCsv {
   }
 };
 
-// Returns false where there is no such key.
-bool takeHead(Record& record, const std::string& key, const std::string& value) {
-  bool isKnown = true;
-  if (key == "workload") {
-    const size_t end = std::min(value.find(": "), value.size());
-    record.workloads.push_back({value.substr(0, end), value.substr(std::min(end + 2, value.size()))});
-  } else if (key == "library") {
-    record.notes.push_back(value);
-  } else {
-    isKnown = false;
-    eachOrigin(record, [&](const char* name, std::string& member) {
-      if (key != name) return;
-      member = value;
-      isKnown = true;
-    });
-  }
-  return isKnown;
-}
-
 }  // namespace
 
+void Record::add(const std::string& key, const std::string& value) {
+  std::string& line = head.emplace_back(key + ": " + value);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+}
+
+std::vector<std::string> Record::values(const std::string& key) const {
+  std::vector<std::string> values;
+  for (const std::string& line : head) {
+    if (line.starts_with(key + ": ")) values.push_back(line.substr(key.size() + 2));
+  }
+  return values;
+}
+
 std::string csvOf(const Record& record) {
-  std::string text = std::string(kFormat) + "\n";
-  const auto add = [&](const char* key, std::string value) {
-    std::replace(value.begin(), value.end(), '\n', ' ');
-    text += std::string("# ") + key + ": " + value + "\n";
-  };
-  eachOrigin(record, add);
-  for (const WorkloadNote& workload : record.workloads) add("workload", workload.name + ": " + workload.about);
-  for (const std::string& note : record.notes) add("library", note);
-  text += bench::csvLine(columnNames());
+  std::string text;
+  for (const std::string& line : record.head) text += "# " + line + "\n";
+  text += csvLine(columnNames());
   for (const Cell& cell : record.cells) {
-    std::vector<std::string> cells;
-    eachColumn(cell, [&](const char*, const auto& value) { cells.push_back(bench::csvCell(value)); });
-    text += bench::csvLine(cells);
+    Json values = Json::array();
+    eachColumn(cell, [&](const char*, const auto& value) { values.push_back(value); });
+    text += csvLine(values);
   }
   return text;
 }
@@ -106,15 +81,8 @@ std::string csvOf(const Record& record) {
 Record recordFrom(const std::string& csv, const std::string& file) {
   Record record;
   std::istringstream head(csv);
-  std::string line;
-  std::getline(head, line);
-  if (line != kFormat) throw InputError(file, "line 1", std::string("expected ") + kFormat);
-  for (size_t number = 2; std::getline(head, line) && line.starts_with("# "); ++number) {
-    const size_t colon = std::min(line.find(": "), line.size() - 2);
-    if (takeHead(record, line.substr(2, colon - 2), line.substr(colon + 2))) continue;
-    throw InputError(file, "line " + std::to_string(number), "expected what cyber-radar chart writes, got " + line);
-  }
-  const std::vector<std::vector<std::string>> table = bench::readCsv(file, csv);
+  for (std::string line; std::getline(head, line) && line.starts_with("# ");) record.head.push_back(line.substr(2));
+  const std::vector<std::vector<std::string>> table = readCsv(file, csv);
   if (table.empty() || table.front() != columnNames()) {
     throw InputError(file, "columns", "expected those that this program writes");
   }

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <memory>
 
-#include "report/print.h"
+#include "report/tables.h"
 
 namespace radar::tools {
 
@@ -100,7 +100,7 @@ std::vector<Planned> planOf(const RunSettings& settings, const std::vector<Basel
 Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan, Record record, const Device& device,
                   const std::filesystem::path& folder, const std::function<void()>& step) {
   std::optional<Record> before = readRecord(folder);
-  if (before && before->run == record.run) record.cells = std::move(before->cells);
+  if (before && before->values("run") == record.values("run")) record.cells = std::move(before->cells);
   std::unique_ptr<Bench> bench;
   for (size_t i = 0; i < plan.size(); ++i) {
     const Planned& planned = plan[i];

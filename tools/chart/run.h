@@ -26,11 +26,11 @@ struct Planned {
 std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows);
 
 /// Measures the plan and writes `record`, which comes without cells, after each cell. Where `folder` holds a record of
-/// the same Record::run, goes on after its cells. `step` is called before each cell.
+/// the same `run`, goes on after its cells. `step` is called before each cell.
 Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan, Record record, const Device& device,
                   const std::filesystem::path& folder, const std::function<void()>& step);
 
-/// For Record::run: of this very program, the settings, and `origin`, which stands for all else.
+/// For the record's `run`: of this very program, the settings, and `origin`, which stands for all else.
 std::string fingerprintOf(const RunSettings& settings, const std::string& origin);
 
 }  // namespace radar::tools

@@ -6,9 +6,7 @@
 #include <thread>
 
 #include "batch/query_file.h"
-#include "chart/documents.h"
-#include "chart/drawings.h"
-#include "chart/findings.h"
+#include "chart/charts.h"
 #include "chart/run.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
@@ -25,24 +23,17 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --quick --out chart             about a minute
   cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
   cyber-radar chart --out chart batch.json          with queries of your own
-  cyber-radar chart --out docs/chart --docs docs --render
-                                                    measures nothing: draws the charts again
+  cyber-radar chart --out docs/chart --render       measures nothing: draws the charts again
 
-DIR receives chart.csv with all measurements, points.csv with what the charts show, and the charts as SVG files. Every
-measurement is saved at once: the same command continues where it was interrupted, if program and device are the same. A
-program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
+DIR receives chart.csv with all measurements; methods.csv, workloads.csv and growth.csv, which sum them up; points.csv with
+what the charts show; and the charts as SVG files. Every measurement is saved at once: the same command continues where it
+was interrupted, if program and device are the same. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
   std::vector<std::string> files, meshes;
-  std::string out, docs, device, extent = "full";
+  std::string out, device, extent = "full";
   bool quick = false, render = false;
 };
-
-void requireFolder(const char* option, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) throw InputError(option, folder, "expected a folder, or a place for one");
-}
 
 // What a file and a link can be named after, and no case is yet.
 std::string nameFor(const std::string& file, const std::vector<Case>& cases) {
@@ -90,7 +81,6 @@ std::string commandOf(const Options& options) {
   std::string command = "cyber-radar chart --out " + asArgument(options.out);
   if (options.extent != "full") command += " --extent " + options.extent;
   if (!options.device.empty()) command += " --device " + options.device;
-  if (!options.docs.empty()) command += " --docs " + asArgument(options.docs);
   for (const std::string& mesh : options.meshes) command += " --mesh " + asArgument(mesh);
   for (const std::string& file : options.files) command += " " + asArgument(file);
   return command;
@@ -106,19 +96,19 @@ Record measure(const Options& options) {
   settings.cases = casesOf(options, settings.extent);
   const Device device = Device::open({.index = number});
   Record record;
-  record.command = commandOf(options);
-  record.machine = processorInWords();
-  record.device = device.name() + ", " + device.driver();
-  record.commit = commit();
-  record.date = today();
+  record.add("command", commandOf(options));
+  record.add("machine", processorInWords());
+  record.add("device", device.name() + ", " + device.driver());
+  record.add("commit", commit());
   const std::vector<BaselineRow> rows = peerRows();
-  for (const BaselineRow& row : rows) record.notes.push_back(row.family + " (" + row.product + "): " + row.limits);
+  for (const BaselineRow& row : rows) record.add("library", row.family + " (" + row.product + "): " + row.limits);
   for (const Case& which : settings.cases) {
-    if (which.section == "front") record.workloads.push_back({which.name, which.about});
+    if (which.section == "front") record.add("workload", which.name + ": " + which.about);
   }
-  std::string origin = record.commit + record.machine + record.device;
-  for (const std::string& note : record.notes) origin += note;
-  record.run = fingerprintOf(settings, origin);
+  std::string origin;
+  for (const std::string& line : record.head) origin += line;
+  record.add("run", fingerprintOf(settings, origin));
+  record.add("date", today());
   const std::vector<Planned> plan = planOf(settings, rows);
   Progress progress("measuring", plan.size());
   return measureAll(settings, plan, record, device, options.out, [&] { progress.add(1); });
@@ -127,8 +117,7 @@ Record measure(const Options& options) {
 void chart(Options options) {
   requireGnuplot();
   if (options.quick) options.extent = "quick";
-  requireFolder("--out", options.out);
-  if (!options.docs.empty()) requireFolder("--docs", options.docs);
+  makeFolder("--out", options.out);
   std::optional<Record> record;
   if (options.render) {
     record = readRecord(options.out);
@@ -137,15 +126,11 @@ void chart(Options options) {
     record = measure(options);
   }
   writeCharts(options.out, *record);
-  if (!options.docs.empty()) writeDocuments(options.docs, options.out, *record);
-  for (const WorkloadNote& workload : record->workloads) {
-    std::cout << workload.name << ": " << workload.about << "\n  " << fastestRight(*record, workload.name) << "\n";
-  }
-  std::cout << "table1\n";
-  for (const std::string& finding : table1Findings(*record)) std::cout << "  " << finding << "\n";
-  std::cout << "growth\n";
-  for (const std::string& finding : growthFindings(*record)) std::cout << "  " << finding << "\n";
-  std::cout << "\nIn " << std::filesystem::absolute(options.out).string() << ": chart.csv, points.csv, charts as SVG\n";
+  std::cout << "Section front, by workload; microseconds per query:\n"
+            << textOf(workloadTable(*record)) << "\nBy method; errors in sensor sizes:\n"
+            << textOf(methodTable(*record)) << "\nAs the work grows; microseconds per query:\n"
+            << textOf(growthTable(*record)) << "\nIn " << std::filesystem::absolute(options.out).string()
+            << ": chart.csv, these tables as CSV, charts as SVG\n";
 }
 
 }  // namespace
@@ -165,7 +150,6 @@ void addChartCommand(CLI::App& app) {
       ->check(CLI::IsMember({"full", "quick", "least"}))
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "--extent quick");
-  command->add_option("--docs", options->docs, "Folder for accuracy.md and performance.md")->type_name("DIR");
   command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
   command->callback([options] { chart(*options); });
 }

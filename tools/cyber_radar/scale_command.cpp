@@ -9,8 +9,6 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
 #include "plot/plot.h"
-#include "report/print.h"
-#include "scale/findings.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
 
@@ -24,8 +22,16 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar scale batch.json --mode contact --sensors 64,256,1024
 
 Without a query file, the paper's Figure 7: teapots, all of them sensors, fly among boxes; each step is a batch. With
-one, its batches; --sensors N,... then takes the first N queries of each. DIR receives report.txt, scale.csv, scale.svg
-and trace.json, a timeline for ui.perfetto.dev.)";
+one, its batches; --sensors N,... then takes the first N queries of each. DIR receives scale.csv, scale.svg and
+trace.json, a timeline for ui.perfetto.dev.)";
+
+constexpr const char* kLegend = R"(
+The devices' time adds up to 100%: useful (each device as fast as alone), slower (because of the others), and idle: start (a
+batch's first chunk is encoded), gap (the next chunk is not encoded yet), tail (another device's last chunk), scene (it is
+edited). encode: time encoding over time with the device. cores: in use by this process. machine: all cores in use, by anyone.
+
+Stages of the most sensors, milliseconds of a pass with timestamps, summed over devices:
+)";
 
 struct Options {
   std::string file, device = "all", mode = "sampled", out;
@@ -82,16 +88,6 @@ std::vector<uint32_t> numbersOf(const std::string& text, size_t devices) {
   return numbers;
 }
 
-void writeFiles(const std::filesystem::path& folder, const ScaleReport& report, const std::string& title,
-                const std::string& text) {
-  writeAtomically(folder / "report.txt", text);
-  writeAtomically(folder / "scale.csv", csvOf(report));
-  writeAtomically(folder / "trace.json", traceOf(report));
-  writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title}));
-  std::cout << "\nIn " << std::filesystem::absolute(folder).string()
-            << ": report.txt, scale.csv, scale.svg, trace.json\n";
-}
-
 int scale(Options options) {
   if (options.quick) {
     options.steps = std::min(options.steps, 4u);
@@ -109,11 +105,7 @@ int scale(Options options) {
   const std::vector<uint32_t> asked = devicesFrom(options.device);
   if (!options.out.empty()) {
     requireGnuplot();
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (!std::filesystem::is_directory(options.out)) {
-      throw InputError("--out", options.out, "expected a folder, or a place for one");
-    }
+    makeFolder("--out", options.out);
   }
   const std::vector<ScalePoint> points = options.file.empty() ? figure7Points(options) : filePoints(options);
   const std::vector<Device> devices = openDevices(asked);
@@ -128,14 +120,19 @@ int scale(Options options) {
                                   options.engine.resolution
                             : options.file) +
       "; mode " + options.mode;
-  std::string text = title + "; commit " + commit() + ", " + today() + "\n";
+  std::cout << title << "; commit " << commit() << ", " << today() << "\n";
   for (size_t i = 0; i < devices.size(); ++i) {
-    text += print("device %u: ", report.numbers[i]) + devices[i].name() + ", " + devices[i].driver() + "\n";
+    std::cout << "device " << report.numbers[i] << ": " << devices[i].name() << ", " << devices[i].driver() << "\n";
   }
-  text += "\n" + tableOf(report) + "\n";
-  for (const std::string& finding : findingsOf(report)) text += finding + "\n";
-  std::cout << text;
-  if (!options.out.empty()) writeFiles(options.out, report, title, text);
+  std::cout << "\n" << textOf(runTable(report)) << kLegend << textOf(stageTable(report));
+  if (!report.sameBits) std::cout << "\nThe answers differ between sets of devices: the drivers are not alike.\n";
+  if (!options.out.empty()) {
+    const std::filesystem::path folder = options.out;
+    writeAtomically(folder / "scale.csv", csvOf(shareTable(report)));
+    writeAtomically(folder / "trace.json", traceOf(report));
+    writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title}));
+    std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": scale.csv, scale.svg, trace.json\n";
+  }
   return 0;
 }
 
@@ -143,7 +140,7 @@ int scale(Options options) {
 
 void addScaleCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "scale", "Measures how the work scales over devices, and says what limits it: a table, a chart, a timeline");
+      "scale", "Measures how the work scales over devices, and what limits it: a table, a chart, a timeline");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
   command->add_option("FILE.json", options->file, "Query file; else the paper's Figure 7");
@@ -174,7 +171,7 @@ void addScaleCommand(CLI::App& app, int& status) {
   command->add_option("--resolution", options->engine.resolution, "Pixels of a window's longer side")
       ->type_name("N|auto")
       ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for the report, its table, chart and timeline")->type_name("DIR");
+  command->add_option("--out", options->out, "Folder for a table, a chart and a timeline")->type_name("DIR");
   command->add_flag("--quick", options->quick, "At most 4 steps and 3 passes; 5, 15 and 30 sensors: about a minute");
   command->callback([options, &status] { status = scale(*options); });
 }

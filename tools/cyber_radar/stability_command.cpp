@@ -7,7 +7,6 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/failure_pictures.h"
 #include "cyber_radar/progress.h"
-#include "import/input_error.h"
 #include "stability/table.h"
 
 namespace radar::tools {
@@ -70,38 +69,26 @@ Findings measureAll(const Device& device, const Options& options) {
 }
 
 void writeFiles(const std::filesystem::path& folder, const Device& device, const Findings& findings) {
-  writeAtomically(folder / "table.csv", csvOf(findings.rows));
-  writeAtomically(folder / "steps.csv", csvOf(findings.steps));
-  writeAtomically(folder / "changes.csv", csvOf(findings.changes));
-  writeAtomically(folder / "families.csv", csvOf(hardFamilies()));
+  writeAtomically(folder / "table.csv", csvOf(tableOf(findings.rows)));
+  writeAtomically(folder / "steps.csv", csvOf(tableOf(findings.steps)));
+  writeAtomically(folder / "changes.csv", csvOf(tableOf(findings.changes)));
+  writeAtomically(folder / "families.csv", csvOf(tableOf(hardFamilies())));
   drawFailures(device, folder);
   std::cout << "\nTables and pictures in " << std::filesystem::absolute(folder).string() << "\n";
 }
 
 int stability(const Options& options) {
-  if (!options.out.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (error) throw InputError("--out", options.out, "expected a folder, or a place for one");
-  }
+  if (!options.out.empty()) makeFolder("--out", options.out);
   const Device device = Device::open({.index = options.device});
   std::cout << "device " << device.name() << ", driver " << device.driver() << ", commit " << commit() << "\n";
   const Findings findings = measureAll(device, options);
-  std::cout << tableOf(overFamilies(findings.rows));
-  for (const StepRow& row : overFamilies(findings.steps)) {
-    std::cout << "steps, " << nameOf(row.method) << ": " << row.steps << ", " << row.flips << " flips, excess "
-              << row.excess << "\n";
-  }
+  std::cout << textOf(tableOf(overFamilies(findings.rows)));
+  if (!findings.steps.empty()) std::cout << "\n" << textOf(tableOf(overFamilies(findings.steps)));
   for (const StepRow& row : findings.steps) {
     if (isRight(row)) continue;
     std::cout << "WRONG: steps of " << row.family << ": " << row.flips << " flips, excess " << row.excess << "\n";
   }
-  uint64_t pairs = 0, broken = 0;
-  for (const ChangeRow& row : findings.changes) {
-    pairs += row.cases;
-    broken += row.broken;
-  }
-  if (pairs != 0) std::cout << "changes: " << pairs << " pairs of answers, " << broken << " contradictory\n";
+  if (!findings.changes.empty()) std::cout << "\n" << textOf(tableOf(findings.changes));
   if (!options.out.empty()) writeFiles(options.out, device, findings);
   return isRight(findings) ? 0 : 1;
 }

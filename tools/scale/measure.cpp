@@ -5,7 +5,6 @@
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "bench/harness.h"
 
@@ -31,15 +30,15 @@ MachineTime machineTime() {
   return time;
 }
 
-// The devices' places, and whether a set is a device measured for itself.
-std::vector<std::pair<std::vector<uint32_t>, bool>> setsOf(size_t devices) {
-  std::vector<std::pair<std::vector<uint32_t>, bool>> sets;
+// The devices' places: the first 1, 2, ... of them, then the second, third, ... alone.
+std::vector<std::vector<uint32_t>> setsOf(size_t devices) {
+  std::vector<std::vector<uint32_t>> sets;
   std::vector<uint32_t> first;
   for (uint32_t i = 0; i < devices; ++i) {
     first.push_back(i);
-    sets.emplace_back(first, false);
+    sets.push_back(first);
   }
-  for (uint32_t i = 1; i < devices; ++i) sets.emplace_back(std::vector<uint32_t>{i}, true);
+  for (uint32_t i = 1; i < devices; ++i) sets.push_back({i});
   return sets;
 }
 
@@ -55,7 +54,7 @@ class Pools {
  public:
   Pools(std::span<const Device> devices, const Workload& first, const ScaleSettings& settings) : settings_(settings) {
     player_.emplace(first);
-    for (const auto& [set, alone] : setsOf(devices.size())) {
+    for (const std::vector<uint32_t>& set : setsOf(devices.size())) {
       for (const bool timestamps : {false, true}) {
         const SweeperOptions options{.select = settings.select, .timestamps = timestamps, .cpuBatch = 0};
         (timestamps ? profiled_ : pools_)
@@ -186,7 +185,6 @@ size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings) 
 ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
                          const ScaleSettings& settings, const std::function<void()>& step) {
   ScaleReport report;
-  report.processors = std::thread::hardware_concurrency();
   for (const Device& device : devices) report.devices.push_back({.name = device.name(), .driver = device.driver()});
   const auto sets = setsOf(devices.size());
   Pools pools(devices, points.front().workload, settings);
@@ -207,8 +205,7 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<Scal
     });
     for (size_t s = 0; s < sets.size(); ++s) {
       ScaleRun& run = report.runs.emplace_back();
-      run.devices = sets[s].first;
-      run.alone = sets[s].second;
+      run.devices = sets[s];
       run.point = p;
       summarize(run, std::move(passes[s]));
       if (p + 1 < points.size()) continue;

@@ -37,7 +37,6 @@ struct DeviceShare {
 /// One set of devices on one point.
 struct ScaleRun {
   std::vector<uint32_t> devices;  ///< places in ScaleReport::devices
-  bool alone = false;             ///< measured for itself, beside the first 1, 2, ... devices
   size_t point = 0;
   double ms = 0, least = 0, most = 0;  ///< of a pass over all batches: the median, and the range
   double cores = 0;                    ///< processor time of this process over the time passed
@@ -56,7 +55,6 @@ struct ScaleReport {
   std::vector<size_t> batches, queries;
   std::vector<ScaleRun> runs;  ///< point by point: the first 1, 2, ... devices, then the second, third, ... alone
   bool sameBits = true;        ///< every set gave the same answers
-  uint32_t processors = 0;     ///< of this machine
 
   const ScaleRun& run(size_t point, size_t deviceCount) const;  ///< of the first devices
   const ScaleRun& alone(size_t point, uint32_t device) const;

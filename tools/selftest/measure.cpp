@@ -7,8 +7,10 @@
 
 #include "bench/harness.h"
 #include "bench/statistics.h"
+#include "radar/arithmetic.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
+#include "stability/case_run.h"
 #include "workloads/generate.h"
 
 namespace radar::tools {
@@ -54,9 +56,10 @@ class Race {
   Race(const Device& device, const Scene& scene) : sweeper_(device, scene, kOnDevice), cpu_(scene) {}
 
   /// At least one pass, and as many as fit into half a second, up to nine. `batches` are played by showing their scenes
-  /// with `show`, which is part of the time.
-  ThroughputRow measure(const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline,
-                        const std::function<void(uint32_t)>& show) {
+  /// with `show`, which is part of the time. Returns the microseconds that a query took on both together.
+  double measure(
+      const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline, Json& rows,
+      const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
     const std::vector<bench::Method> methods{{"device", [&](auto queries) { return sweeper_.run(queries); }, show},
                                              {"CPU", [&](auto queries) { return cpu_.run(queries); }, show}};
     // What is done once is no part of a small batch's time.
@@ -68,7 +71,14 @@ class Race {
       for (size_t i = 0; i < laps.size(); ++i) laps[i] += series.prepare[i];
       return medianUs(laps, series.answers.size());
     };
-    return {workload, all[0].answers.size() / batches.size(), us(all[0]), us(all[1]), all[1].differ};
+    const double device = us(all[0]), cpu = us(all[1]);
+    rows.push_back({{"workload", workload},
+                    {"batch", all[0].answers.size() / batches.size()},
+                    {"device_us_per_query", device},
+                    {"cpu_us_per_query", cpu},
+                    {"cpu_over_device", cpu / device},
+                    {"differ", all[1].differ}});
+    return device + cpu;
   }
 
  private:
@@ -76,45 +86,44 @@ class Race {
   CpuSweeper cpu_;
 };
 
-// Whether so many queries, at the pace of the last batch, fit in what is left.
-bool fits(const std::vector<ThroughputRow>& rows, const char* workload, uint64_t queries, const Deadline& deadline) {
-  if (rows.empty()) return true;
-  if (deadline.isOver()) return false;
-  if (rows.back().workload != workload) return true;
-  const double us = rows.back().deviceUs + rows.back().cpuUs;
-  return 1e-6 * us * static_cast<double>(queries) < deadline.left();
+// Whether so many queries fit in what is left, at so many microseconds each. The first batch always does.
+bool fits(const Json& rows, double us, uint64_t queries, const Deadline& deadline) {
+  return rows.empty() || (!deadline.isOver() && 1e-6 * us * static_cast<double>(queries) < deadline.left());
 }
 
 bool measureStanding(const Device& device, const char* name, const Workload& workload, const Deadline& deadline,
-                     std::vector<ThroughputRow>& rows) {
+                     Json& rows) {
   const Standing standing(workload);
   Race race(device, standing.scene());
+  double us = 0;
   for (uint64_t size = 1; size <= 1'000'000; size *= 10) {
-    if (!fits(rows, name, size, deadline)) return false;
+    if (!fits(rows, us, size, deadline)) return false;
     const bench::Batch batch = standing.repeated(size);
-    rows.push_back(race.measure(name, {&batch, 1}, deadline, [](uint32_t) {}));
+    us = race.measure(name, {&batch, 1}, deadline, rows);
   }
   return true;
 }
 
-bool measureMoving(const Device& device, const char* name, const Deadline& deadline, std::vector<ThroughputRow>& rows) {
+bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
   constexpr uint32_t kSteps = 4;
+  double us = 0;
   for (const uint32_t teapots : {10u, 30u, 100u, 300u, 1'000u}) {
     // The more there are, the more each meets: three times as many cost each up to three times as much.
-    if (!fits(rows, name, uint64_t{3} * kSteps * teapots, deadline)) return false;
+    if (!fits(rows, us, uint64_t{3} * kSteps * teapots, deadline)) return false;
     const Workload workload = makeWorkload(Figure7{.teapots = teapots, .boxes = 10'000, .steps = kSteps});
     const std::vector<bench::Batch> batches = bench::batchesOf(workload, Mode::contact);
     ScenePlayer player(workload);
     player.show(batches[0].scene);
-    rows.push_back(
-        Race(device, player.scene()).measure(name, batches, deadline, [&](uint32_t scene) { player.show(scene); }));
+    us = Race(device, player.scene()).measure("moving", batches, deadline, rows, [&](uint32_t scene) {
+      player.show(scene);
+    });
   }
   return true;
 }
 
 // Medians of each stage over some runs, and of what the calling thread saw.
 bool addStages(const Device& device, const char* name, const Workload& workload, Mode mode, const Deadline& deadline,
-               std::vector<StageRow>& rows) {
+               Json& rows) {
   const Standing standing(workload, mode);
   const uint64_t queries = standing.batch.queries.size();
   Sweeper sweeper(device, standing.scene(), {.timestamps = true, .cpuBatch = 0});
@@ -130,10 +139,11 @@ bool addStages(const Device& device, const char* name, const Workload& workload,
       times[stage.name].push_back(stage.ms);
     }
   });
-  for (const std::string& stage : order) {
-    rows.push_back({name, stage, 1e3 * median(times[stage]) / static_cast<double>(queries)});
-  }
-  rows.push_back({name, "all, as the caller sees it", medianUs(laps, queries)});
+  const auto add = [&](const std::string& stage, double us) {
+    rows.push_back({{"workload", name}, {"stage", stage}, {"us_per_query", us}});
+  };
+  for (const std::string& stage : order) add(stage, 1e3 * median(times[stage]) / static_cast<double>(queries));
+  add("all, as the caller sees it", medianUs(laps, queries));
   return laps.size() == 5;
 }
 
@@ -149,91 +159,100 @@ bench::Method laneOf(const std::string& name, Pool& pool) {
 }
 
 bool addLanes(const std::vector<bench::Method>& lanes, const bench::Batch& batch, const Deadline& deadline,
-              std::vector<LaneRow>& rows) {
+              Json& rows) {
+  double first = 0;
   const std::vector<bench::Series> all =
       bench::measure(lanes, {&batch, 1}, {.least = 3, .most = 3, .deadline = deadline});
   for (size_t i = 0; i < lanes.size(); ++i) {
     if (all[i].differ > 0) throw Error(lanes[i].name + ": other answers than " + lanes[0].name);
     const double us = medianUs(all[i].answer, kInFlight * batch.queries.size());
-    rows.push_back({lanes[i].name, us, rows.empty() ? 1 : rows[0].us / us});
+    if (i == 0) first = us;
+    rows.push_back({{"way", lanes[i].name}, {"us_per_query", us}, {"times_as_fast", first / us}});
   }
   return !deadline.isOver();
 }
 
 }  // namespace
 
-bool measureArithmetic(const Device& device, const Deadline&, DeviceTest& test) {
-  test.arithmetic = checkArithmetic(device);
+bool measureArithmetic(const NumberedDevice& device, const Deadline&, Json& rows) {
+  for (const ArithmeticCheck& check : checkArithmetic(device.device)) {
+    rows.push_back({{"operation", check.operation},
+                    {"passed", check.passed()},
+                    {"tried", check.tried},
+                    {"wrong_results", check.wrong},
+                    {"worst_ulps", check.worst},
+                    {"found", check.found},
+                    {"needed", check.needed},
+                    {"consequence", check.consequence}});
+  }
   return true;
 }
 
-bool measureExactness(const Device& device, const Deadline& deadline, DeviceTest& test) {
-  std::vector<ExactnessRow>& rows = test.exactness;
+bool measureExactness(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
   constexpr uint64_t kAtOnce = 64;
-  struct Variant {
-    bool doubles;
-    std::optional<Device> own;
-    std::unique_ptr<CaseRun> cases;
-  };
-  std::vector<Variant> variants(device.doubles() ? 2 : 1);
-  variants[0].doubles = device.doubles();
-  variants[0].cases = std::make_unique<CaseRun>(device);
   const std::vector<std::string> families = runFamilies();
+  std::optional<Device> withoutDoubles;
+  std::vector<std::unique_ptr<CaseRun>> variants(device.device.doubles() ? 2 : 1);
   for (uint64_t round = 0;; ++round) {
     for (size_t v = 0; v < variants.size(); ++v) {
-      Variant& variant = variants[v];
-      if (!variant.cases) {
-        variant.doubles = false;
-        variant.own.emplace(Device::open({.index = test.number, .doubles = false}));
-        variant.cases = std::make_unique<CaseRun>(*variant.own);
+      if (!variants[v]) {
+        if (v == 1) withoutDoubles.emplace(Device::open({.index = device.number, .doubles = false}));
+        variants[v] = std::make_unique<CaseRun>(v == 0 ? device.device : *withoutDoubles);
       }
       for (size_t f = 0; f < families.size(); ++f) {
         if (deadline.isOver() && !rows.empty()) return round > 0;
-        if (round == 0) rows.push_back({families[f], variant.doubles, {}});
-        rows[v * families.size() + f].tally.add(variant.cases->run(
+        if (round == 0) rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.device.doubles()}});
+        const Tally tally = variants[v]->run(
             {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const Approach&, const std::string&) {},
-            [](uint64_t) {}));
+            [](uint64_t) {});
+        Json& row = rows[v * families.size() + f];
+        for (const auto& [name, count] :
+             {std::pair("queries", tally.queries), std::pair("hits", tally.hits), std::pair("clear", tally.clear),
+              std::pair("overlaps", tally.overlaps), std::pair("wrong", tally.wrong), std::pair("pairs", tally.pairs),
+              std::pair("cpu_pairs", tally.cpuPairs)}) {
+          row[name] = row.value(name, uint64_t{0}) + count;
+        }
       }
     }
   }
 }
 
-bool measureThroughput(const Device& device, const Deadline& deadline, DeviceTest& test) {
+bool measureThroughput(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
   // What one workload does not use is left to the next.
   const Deadline first(deadline.left() / 3);
-  bool whole = measureStanding(device, "light", lightWorkload(), first, test.throughput);
+  bool whole = measureStanding(device.device, "light", lightWorkload(), first, rows);
   const Deadline second(deadline.left() / 2);
-  whole &= measureStanding(device, "heavy", heavyWorkload(), second, test.throughput);
-  return measureMoving(device, "moving", deadline, test.throughput) && whole;
+  whole &= measureStanding(device.device, "heavy", heavyWorkload(), second, rows);
+  return measureMoving(device.device, deadline, rows) && whole;
 }
 
-bool measureStages(const Device& device, const Deadline& deadline, DeviceTest& test) {
-  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, test.stages);
-  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, test.stages) && light;
+bool measureStages(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
+  const bool light = addStages(device.device, "light", lightWorkload(), Mode::contact, deadline, rows);
+  return addStages(device.device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
 }
 
-bool measurePasses(const Device& device, const Deadline& deadline, DeviceTest& test) {
-  return addStages(device, "256 teapots among 10,000 boxes",
+bool measurePasses(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
+  return addStages(device.device, "256 teapots among 10,000 boxes",
                    makeWorkload(Table1{.boxes = 10'000, .sensors = 256, .shape = SensorShape::teapot}), Mode::sampled,
-                   deadline, test.passes);
+                   deadline, rows);
 }
 
-bool measureLanes(const Device& device, const Deadline& deadline, DeviceTest& test) {
+bool measureLanes(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
-  Sweeper sweeper(device, standing.scene(), kOnDevice);
-  Pool pool({&device, 1}, standing.scene(), kOnDevice);
+  Sweeper sweeper(device.device, standing.scene(), kOnDevice);
+  Pool pool({&device.device, 1}, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
     return sweeper.run(queries);
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
-                  standing.batch, deadline, test.lanes);
+                  standing.batch, deadline, rows);
 }
 
 bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,
-                     std::vector<LaneRow>& rows) {
+                     Json& rows) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   std::vector<std::unique_ptr<Pool>> pools;

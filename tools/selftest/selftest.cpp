@@ -3,56 +3,124 @@
 #include <algorithm>
 #include <optional>
 
+#include "bench/clock.h"
 #include "radar/pool.h"
 #include "selftest/measure.h"
 
 namespace radar::tools {
 
-const char* nameOf(Part part) {
-  constexpr std::array kNames{"arithmetic", "exactness", "throughput", "stages", "lanes", "passes"};
-  static_assert(kNames.size() == kParts.size());
-  return kNames[static_cast<size_t>(part)];
+namespace {
+
+struct Step {
+  const char* part;
+  double weight;  // share of the device's time that is left
+  bool (*measure)(const NumberedDevice& device, const Deadline& deadline, Json& rows);
+};
+
+constexpr Step kSteps[] = {
+    {"arithmetic", 0.02, measureArithmetic}, {"exactness", 0.3, measureExactness},
+    {"throughput", 0.45, measureThroughput}, {"stages", 0.05, measureStages},
+    {"lanes", 0.08, measureLanes},           {"passes", 0.1, measurePasses},
+};
+
+Json newPart() {
+  return {{"state", "not begun"}, {"note", ""}, {"seconds", 0.0}, {"rows", Json::array()}};
 }
 
-const char* nameOf(PartState state) {
-  constexpr std::array kNames{"not begun", "running", "done", "cut short: the time was up", "failed", "impossible"};
-  return kNames[static_cast<size_t>(state)];
+// All keys are there from the start, so that no reference to a value becomes invalid.
+Json newDevice(uint32_t number, const DeviceReport& facts) {
+  Json device{{"number", number},           {"name", facts.name},           {"type", facts.type},
+              {"driver", facts.driver},     {"vulkan", facts.version},      {"memory_bytes", facts.memory},
+              {"subgroup", facts.subgroup}, {"has_doubles", facts.doubles}, {"uses_doubles", false},
+              {"usable", facts.usable()},   {"reasons", facts.reasons},     {"sampled_reasons", facts.sampledReasons},
+              {"answers_checked", 0},       {"answers_wrong", 0},           {"right", true},
+              {"limits", Json::array()},    {"parts", Json::object()}};
+  for (const DeviceLimit& limit : facts.limits) {
+    device["limits"].push_back({{"limit", limit.name},
+                                {"has", limit.has},
+                                {"needed", limit.needed},
+                                {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
+  }
+  for (const Step& step : kSteps) device["parts"][step.part] = newPart();
+  return device;
 }
 
-uint64_t DeviceTest::wrongAnswers() const {
-  uint64_t wrong = 0;
-  for (const ExactnessRow& row : exactness) wrong += row.tally.wrong;
-  for (const ThroughputRow& row : throughput) wrong += row.differ;
-  return wrong;
+// Runs one part, and keeps its state.
+void run(Json& part, const std::function<bool(Json&)>& work, const std::function<void()>& onChange) {
+  part["state"] = "running";
+  onChange();
+  const bench::Stopwatch stopwatch;
+  try {
+    part["state"] = work(part["rows"]) ? "done" : "cut short: the time was up";
+  } catch (const std::exception& error) {
+    std::string note = error.what();
+    if (const auto* own = dynamic_cast<const Error*>(&error)) {
+      for (const std::string& reason : own->reasons) note += "; " + reason;
+    }
+    part["state"] = "failed";
+    part["note"] = note;
+  }
+  part["seconds"] = stopwatch.lap().wall;
+  onChange();
 }
 
-uint64_t DeviceTest::checkedAnswers() const {
-  uint64_t checked = 0;
-  for (const ExactnessRow& row : exactness) checked += row.tally.queries;
-  for (const ThroughputRow& row : throughput) checked += row.batch;
-  return checked;
+void testDevice(Json& test, double seconds, const std::function<void()>& onChange) {
+  const Deadline end(seconds);
+  std::optional<NumberedDevice> device;
+  double weights = 1;
+  for (const Step& step : kSteps) {
+    const Deadline deadline(end.left() * step.weight / weights);
+    weights -= step.weight;
+    Json& part = test["parts"][step.part];
+    if (step.measure == measurePasses && !test["sampled_reasons"].empty()) {
+      part["state"] = "impossible";
+      part["note"] = test["sampled_reasons"].front();
+      continue;
+    }
+    const auto work = [&](Json& rows) {
+      const uint32_t number = test["number"];
+      if (!device) device.emplace(NumberedDevice{Device::open({.index = number}), number});
+      test["uses_doubles"] = device->device.doubles();
+      return step.measure(*device, deadline, rows);
+    };
+    run(part, work, onChange);
+    if (!device) return;  // it could not be opened; the part says why
+  }
 }
 
-bool DeviceTest::right() const {
-  const bool failed =
-      std::any_of(parts.begin(), parts.end(), [](const PartReport& part) { return part.state == PartState::failed; });
-  return wrongAnswers() == 0 && !failed;
+// The single values, a line each.
+std::string fieldsText(const Json& object, const std::string& indent) {
+  std::string text;
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_object() || value == "") continue;
+    const Json values = value.is_array() ? value : Json::array({value});
+    for (const Json& one : values) {
+      if (one.is_object()) continue;
+      text += indent + name + ": " + (one.is_string() ? one.get<std::string>() : one.dump()) + "\n";
+    }
+  }
+  return text;
 }
 
-bool SelftestReport::right() const {
-  return togetherState.state != PartState::failed &&
-         std::all_of(devices.begin(), devices.end(), [](const DeviceTest& device) { return device.right(); });
+std::string partText(const std::string& name, const Json& part) {
+  const std::string state = part["state"], note = part["note"];
+  return print("\n  %s: %s, %.1f s%s\n", name.c_str(), state.c_str(), part["seconds"].get<double>(),
+               note.empty() ? "" : (": " + note).c_str()) +
+         textOf(part["rows"], "    ");
 }
 
-void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
-  report.minutes = settings.minutes;
+}  // namespace
+
+Json lookAtDevices(const std::vector<uint32_t>& asked) {
   const std::vector<DeviceReport> all = listDevices();
-  std::vector<uint32_t> numbers = settings.devices;
+  std::vector<uint32_t> numbers = asked;
   if (numbers.empty()) {
     for (uint32_t i = 0; i < all.size(); ++i) numbers.push_back(i);
   }
+  Json report{{"command", ""},        {"commit", ""},   {"date", ""},    {"processor", ""},
+              {"minutes", 0.0},       {"seconds", 0.0}, {"right", true}, {"devices", Json::array()},
+              {"together", newPart()}};
   std::vector<std::string> reasons;
-  bool isSomeUsable = false;
   for (const uint32_t number : numbers) {
     if (std::count(numbers.begin(), numbers.end(), number) > 1) {
       throw Error("device " + std::to_string(number) + " is named twice");
@@ -60,102 +128,81 @@ void lookAtDevices(const SelftestSettings& settings, SelftestReport& report) {
     if (number >= all.size()) {
       throw Error("device " + std::to_string(number) + " does not exist: there are " + std::to_string(all.size()));
     }
-    DeviceTest& device = report.devices.emplace_back();
-    device.number = number;
-    device.facts = all[number];
-    isSomeUsable = isSomeUsable || device.facts.usable();
-    for (const std::string& reason : device.facts.reasons) {
-      reasons.push_back("device " + std::to_string(number) + ", " + device.facts.name + ": " + reason);
+    report["devices"].push_back(newDevice(number, all[number]));
+    for (const std::string& reason : all[number].reasons) {
+      reasons.push_back("device " + std::to_string(number) + ", " + all[number].name + ": " + reason);
     }
   }
-  if (!isSomeUsable) throw Error("no usable Vulkan device", VK_SUCCESS, reasons);
-}
-
-namespace {
-
-struct Step {
-  Part part;
-  double weight;  // share of the device's time that is left
-  bool (*measure)(const Device& device, const Deadline& deadline, DeviceTest& test);
-};
-
-constexpr Step kSteps[] = {
-    {Part::arithmetic, 0.02, measureArithmetic}, {Part::exactness, 0.3, measureExactness},
-    {Part::throughput, 0.45, measureThroughput}, {Part::stages, 0.05, measureStages},
-    {Part::lanes, 0.08, measureLanes},           {Part::passes, 0.1, measurePasses},
-};
-
-// Runs one part, and keeps its state.
-void run(PartReport& part, const std::function<bool()>& work, const std::function<void()>& onChange) {
-  part.state = PartState::running;
-  onChange();
-  const bench::Stopwatch stopwatch;
-  try {
-    part.state = work() ? PartState::done : PartState::cut;
-  } catch (const Error& error) {
-    part.state = PartState::failed;
-    part.note = error.what();
-    for (const std::string& reason : error.reasons) part.note += "; " + reason;
-  } catch (const std::exception& error) {
-    part.state = PartState::failed;
-    part.note = error.what();
+  const Json& devices = report["devices"];
+  if (std::none_of(devices.begin(), devices.end(), [](const Json& device) { return device["usable"].get<bool>(); })) {
+    throw Error("no usable Vulkan device", VK_SUCCESS, reasons);
   }
-  part.seconds = stopwatch.lap().wall;
-  onChange();
+  return report;
 }
 
-void testDevice(DeviceTest& test, double seconds, const std::function<void()>& onChange) {
-  const Deadline end(seconds);
-  std::optional<Device> device;
-  double weights = 1;
-  for (const auto& [part, weight, measure] : kSteps) {
-    const Deadline deadline(end.left() * weight / weights);
-    weights -= weight;
-    if (part == Part::passes && !test.facts.sampledReasons.empty()) {
-      test[part] = {PartState::impossible, test.facts.sampledReasons.front(), 0};
-      continue;
+void conclude(Json& report) {
+  bool allRight = report["together"]["state"] != "failed";
+  for (Json& device : report["devices"]) {
+    uint64_t checked = 0, wrong = 0;
+    bool failed = false;
+    for (const Json& part : device["parts"]) {
+      failed = failed || part["state"] == "failed";
+      for (const Json& row : part["rows"]) {
+        checked += row.value("queries", uint64_t{0}) + row.value("batch", uint64_t{0});
+        wrong += row.value("wrong", uint64_t{0}) + row.value("differ", uint64_t{0});
+      }
     }
-    const auto work = [&, measure = measure] {
-      if (!device) device.emplace(Device::open({.index = test.number}));
-      test.usesDoubles = device->doubles();
-      return measure(*device, deadline, test);
-    };
-    run(test[part], work, onChange);
-    if (!device) return;  // it could not be opened; the part says why
+    device["answers_checked"] = checked;
+    device["answers_wrong"] = wrong;
+    device["right"] = wrong == 0 && !failed;
+    allRight = allRight && device["right"];
   }
+  report["right"] = allRight;
 }
 
-}  // namespace
-
-void runSelftest(SelftestReport& report, const std::function<void()>& onChange) {
+void runSelftest(Json& report, double minutes, const std::function<void()>& onChange) {
+  report["minutes"] = minutes;
   const bench::Stopwatch stopwatch;
-  const Deadline end(60 * report.minutes);
+  const Deadline end(60 * minutes);
   const auto tell = [&] {
-    report.seconds = stopwatch.lap().wall;
+    report["seconds"] = stopwatch.lap().wall;
+    conclude(report);
     onChange();
   };
   tell();
-  std::vector<DeviceTest*> usable;
-  for (DeviceTest& device : report.devices) {
-    if (device.facts.usable()) usable.push_back(&device);
+  std::vector<Json*> usable;
+  std::vector<uint32_t> numbers;
+  for (Json& device : report["devices"]) {
+    if (!device["usable"]) continue;
+    usable.push_back(&device);
+    numbers.push_back(device["number"]);
   }
-  const double forTogether = usable.size() > 1 ? 0.1 * 60 * report.minutes : 0;
+  const double forTogether = usable.size() > 1 ? 0.1 * 60 * minutes : 0;
   for (size_t i = 0; i < usable.size(); ++i) {
     testDevice(*usable[i], (end.left() - forTogether) / static_cast<double>(usable.size() - i), tell);
   }
+  Json& together = report["together"];
   if (usable.size() < 2) {
-    report.togetherState = {PartState::impossible, "there is one usable device", 0};
+    together["state"] = "impossible";
+    together["note"] = "there is one usable device";
     return tell();
   }
   run(
-      report.togetherState,
-      [&] {
-        std::vector<uint32_t> numbers;
-        numbers.reserve(usable.size());
-        for (const DeviceTest* device : usable) numbers.push_back(device->number);
-        return measureTogether(openDevices(numbers), numbers, end, report.together);
-      },
-      tell);
+      together, [&](Json& rows) { return measureTogether(openDevices(numbers), numbers, end, rows); }, tell);
+}
+
+std::string selftestText(const Json& report) {
+  std::string text = "Cyber Radar selftest\n" + fieldsText(report, "");
+  for (const Json& device : report["devices"]) {
+    const std::string title = "\ndevice " + device["number"].dump() + ": ";
+    text +=
+        title + device["name"].get<std::string>() + "\n" + fieldsText(device, "  ") + textOf(device["limits"], "    ");
+    if (!device["usable"]) continue;
+    for (const auto& [name, part] : device["parts"].items()) text += partText(name, part);
+    text += title + device["answers_checked"].dump() + " answers checked, " + device["answers_wrong"].dump() +
+            " wrong: " + (device["right"] ? "nothing is wrong" : "SOMETHING IS WRONG") + "\n";
+  }
+  return text + partText("all devices together", report["together"]);
 }
 
 }  // namespace radar::tools

@@ -1,6 +1,7 @@
 #include "stability/case_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bench/clock.h"
@@ -14,6 +15,11 @@ namespace {
 constexpr uint32_t kMixedCases = 64;
 constexpr const char* kAtDistance = "at-distance";
 
+/// One of so many scenes is asked at that resolution: from 256 on fewer, as pixels grow more.
+uint32_t strideOf(uint32_t resolution) {
+  return std::max(1u, (resolution / 128) * (resolution / 128));
+}
+
 Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
   if (method != Method::paper) return judge(scene, query, result, exact);
   return judge(claimOf(paperAnswer(query, result)), exact, unitOf(scene, query, exact));
@@ -21,16 +27,45 @@ Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Res
 
 }  // namespace
 
+const char* nameOf(Method method) {
+  constexpr std::array<const char*, kMethods> kNames{"paper", "sampled", "contact"};
+  return kNames[static_cast<size_t>(method)];
+}
+
+std::string Approach::name() const {
+  return method == Method::contact ? nameOf(method) : nameOf(method) + (" " + std::to_string(resolution));
+}
+
+Result paperAnswer(const Query& query, const Result& sampled) {
+  Result paper = sampled;
+  const bool hit = sampled.paperMinL <= query.distance;
+  paper.status = hit ? Status::hit : Status::clear;
+  paper.t = hit ? std::max(sampled.paperMinL, 0.0) : NAN;
+  paper.lo = paper.hi = NAN;
+  return paper;
+}
+
+std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
+  for (Query& query : queries) {
+    query.mode = asked.method == Method::contact ? Mode::contact : Mode::sampled;
+    query.resolution = asked.resolution;
+  }
+  return queries;
+}
+
+std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
+  std::vector<Result> results = sweeper.run(queriesFor(asked, queries));
+  if (asked.method != Method::paper) return results;
+  for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
+  return results;
+}
+
 std::vector<std::string> runFamilies(const MeshFamilies& meshes) {
   std::vector<std::string> names;
   for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
   names.push_back(kAtDistance);
   for (const auto& [name, own] : meshes) names.push_back(name);
   return names;
-}
-
-uint32_t strideOf(uint32_t resolution) {
-  return std::max(1u, (resolution / 128) * (resolution / 128));
 }
 
 /// One scene whose meshes and objects are exchanged, and what answers it: pipelines are made once.

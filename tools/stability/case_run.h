@@ -10,10 +10,30 @@
 #include <vector>
 
 #include "stability/judge.h"
-#include "stability/method.h"
 #include "workloads/hard_cases.h"
 
 namespace radar::tools {
+
+/// `paper` is the paper's literal min(L), which mode sampled reports beside its own answer.
+enum class Method { paper, sampled, contact };
+inline constexpr size_t kMethods = 3;
+const char* nameOf(Method method);
+
+/// A method and its resolution; 0 in mode contact.
+struct Approach {
+  Method method = Method::contact;
+  uint32_t resolution = 0;
+  /// "sampled 64", "contact".
+  std::string name() const;
+};
+
+/// The paper's own reading of an answer in mode sampled: contact after min(L) if that is within D, now if it is
+/// negative. It vouches for no bounds.
+Result paperAnswer(const Query& query, const Result& sampled);
+
+/// The queries in the mode and at the resolution that are asked.
+std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
+std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);
 
 /// Meshes to ask about in random poses, by the name of the family that they make.
 using MeshFamilies = std::map<std::string, std::vector<MeshData>>;
@@ -48,8 +68,5 @@ class CaseRun {
   struct Stage;
   std::unique_ptr<Stage> stage_;
 };
-
-/// One of so many scenes is asked at that resolution: from 256 on fewer, as pixels grow more.
-uint32_t strideOf(uint32_t resolution);
 
 }  // namespace radar::tools

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "stability/judge.h"
 #include "workloads/same_contact.h"
 
 namespace radar::tools {

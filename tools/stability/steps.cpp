@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "radar/cpu_sweeper.h"
-#include "stability/judge.h"
 #include "workloads/hard_cases.h"
 
 namespace radar::tools {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stability/method.h"
+#include "stability/case_run.h"
 
 namespace radar::tools {
 

@@ -1,109 +1,98 @@
 #include "stability/table.h"
 
 #include <algorithm>
-#include <functional>
-
-#include "report/print.h"
 
 namespace radar::tools {
 
 namespace {
 
-unsigned long long whole(uint64_t value) {
-  return value;
-}
-
-/// The row of `all` for which `isSame` holds; a new one if there is none.
-template <class Row>
-Row& sumOf(std::vector<Row>& all, const Row& empty, const std::function<bool(const Row&)>& isSame) {
-  const auto found = std::find_if(all.begin(), all.end(), isSame);
-  return found != all.end() ? *found : all.emplace_back(empty);
-}
-
-/// Faults that have no column of their own.
-uint64_t otherFaults(const Tally& tally) {
-  uint64_t sum = 0;
-  for (const Fault fault :
-       {Fault::unanswered, Fault::wrongStatus, Fault::wrongPair, Fault::late, Fault::point, Fault::normal}) {
-    sum += tally[fault];
+/// Rows of one key become one row of the family `all`.
+template <class Row, class KeyOf, class Add>
+std::vector<Row> sums(const std::vector<Row>& rows, const KeyOf& keyOf, const Add& add) {
+  std::vector<Row> all;
+  for (const Row& row : rows) {
+    const auto sum = std::find_if(all.begin(), all.end(), [&](const Row& one) { return keyOf(one) == keyOf(row); });
+    if (sum != all.end()) {
+      add(*sum, row);
+    } else {
+      all.emplace_back(row).family = "all";
+    }
   }
-  return sum;
+  return all;
 }
 
 }  // namespace
 
 std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows) {
-  std::vector<StabilityRow> all;
-  for (const StabilityRow& row : rows) {
-    StabilityRow& sum = sumOf<StabilityRow>(
-        all, {"all", row.asked, {}}, [&](const StabilityRow& one) { return one.asked.name() == row.asked.name(); });
-    sum.tally.add(row.tally);
-  }
-  return all;
+  return sums(
+      rows, [](const StabilityRow& row) { return row.asked.name(); },
+      [](StabilityRow& sum, const StabilityRow& row) { sum.tally.add(row.tally); });
 }
 
 std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows) {
-  std::vector<StepRow> all;
-  for (const StepRow& row : rows) {
-    StepRow& sum = sumOf<StepRow>(all, {.family = "all", .method = row.method},
-                                  [&](const StepRow& one) { return one.method == row.method; });
-    sum.steps += row.steps;
-    sum.flips += row.flips;
-    sum.excess = std::max(sum.excess, row.excess);
-  }
-  return all;
+  return sums(
+      rows, [](const StepRow& row) { return row.method; },
+      [](StepRow& sum, const StepRow& row) {
+        sum.steps += row.steps;
+        sum.flips += row.flips;
+        sum.excess = std::max(sum.excess, row.excess);
+      });
 }
 
-std::string csvOf(const std::vector<StabilityRow>& rows) {
-  std::string text =
-      "family,tier,resolution,cases,contacts,missed,false,brackets_violated,otherwise_wrong,late,early\n";
+Json tableOf(const std::vector<StabilityRow>& rows) {
+  Json table = Json::array();
   for (const StabilityRow& row : rows) {
     const Tally& t = row.tally;
-    text += print("%s,%s,%u,%llu,%llu,%llu,%llu,%llu,%llu,%.6g,%.6g\n", row.family.c_str(), nameOf(row.asked.method),
-                  row.asked.resolution, whole(t.queries), whole(t.contacts()), whole(row.missed()),
-                  whole(t[Fault::falseHit]), whole(t[Fault::bracket]), whole(otherFaults(t)), t.late, t.early);
+    const uint64_t other = t[Fault::unanswered] + t[Fault::wrongStatus] + t[Fault::wrongPair] + t[Fault::late] +
+                           t[Fault::point] + t[Fault::normal];
+    table.push_back({{"family", row.family},
+                     {"tier", nameOf(row.asked.method)},
+                     {"resolution", row.asked.resolution},
+                     {"cases", t.queries},
+                     {"contacts", t.contacts()},
+                     {"missed", row.missed()},
+                     {"false", t[Fault::falseHit]},
+                     {"brackets_violated", t[Fault::bracket]},
+                     {"otherwise_wrong", other},
+                     {"late", t.late},
+                     {"early", t.early}});
   }
-  return text;
+  return table;
 }
 
-std::string csvOf(const std::vector<StepRow>& rows) {
-  std::string text = "family,tier,steps,flips,excess\n";
+Json tableOf(const std::vector<StepRow>& rows) {
+  Json table = Json::array();
   for (const StepRow& row : rows) {
-    text += print("%s,%s,%llu,%llu,%.2g\n", row.family.c_str(), nameOf(row.method), whole(row.steps), whole(row.flips),
-                  row.excess);
+    table.push_back({{"family", row.family},
+                     {"tier", nameOf(row.method)},
+                     {"steps", row.steps},
+                     {"flips", row.flips},
+                     {"excess", row.excess}});
   }
-  return text;
+  return table;
 }
 
-std::string csvOf(const std::vector<ChangeRow>& rows) {
-  std::string text = "change,tier,cases,contacts,broken\n";
+Json tableOf(const std::vector<ChangeRow>& rows) {
+  Json table = Json::array();
   for (const ChangeRow& row : rows) {
-    text += print("%s,%s,%llu,%llu,%llu\n", nameOf(row.change), nameOf(row.method), whole(row.cases),
-                  whole(row.contacts), whole(row.broken));
+    table.push_back({{"change", nameOf(row.change)},
+                     {"tier", nameOf(row.method)},
+                     {"cases", row.cases},
+                     {"contacts", row.contacts},
+                     {"broken", row.broken}});
   }
-  return text;
+  return table;
 }
 
-std::string csvOf(const std::vector<HardFamily>& families) {
-  std::string text = "family,parameter,values\n";
+Json tableOf(const std::vector<HardFamily>& families) {
+  Json table = Json::array();
   for (const HardFamily& family : families) {
-    text += family.name + ",\"" + family.parameter + "\",";
-    for (const double& value : family.values) text += print(&value == &family.values.front() ? "%g" : " %g", value);
-    text += "\n";
+    std::string values;
+    for (const double& value : family.values)
+      values += (&value == &family.values.front() ? "" : " ") + print("%g", value);
+    table.push_back({{"family", family.name}, {"parameter", family.parameter}, {"values", values}});
   }
-  return text;
-}
-
-std::string tableOf(const std::vector<StabilityRow>& rows) {
-  std::string text = print("%-14s%9s%9s%9s%9s%9s%9s%9s%9s\n", "tier, pixels", "cases", "contacts", "missed", "false",
-                           "brackets", "other", "late", "early");
-  for (const StabilityRow& row : rows) {
-    const Tally& t = row.tally;
-    text += print("%-14s%9llu%9llu%9llu%9llu%9llu%9llu%9.2g%9.2g\n", row.asked.name().c_str(), whole(t.queries),
-                  whole(t.contacts()), whole(row.missed()), whole(t[Fault::falseHit]), whole(t[Fault::bracket]),
-                  whole(otherFaults(t)), t.late, t.early);
-  }
-  return text;
+  return table;
 }
 
 }  // namespace radar::tools

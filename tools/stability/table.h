@@ -1,9 +1,7 @@
 // What the stability suite found, as tables.
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "report/tables.h"
 #include "stability/changes.h"
 #include "stability/measure.h"
 #include "stability/steps.h"
@@ -15,14 +13,10 @@ namespace radar::tools {
 std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows);
 std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows);
 
-/// A header, then a line for each row.
-std::string csvOf(const std::vector<StabilityRow>& rows);
-std::string csvOf(const std::vector<StepRow>& rows);
-std::string csvOf(const std::vector<ChangeRow>& rows);
+Json tableOf(const std::vector<StabilityRow>& rows);
+Json tableOf(const std::vector<StepRow>& rows);
+Json tableOf(const std::vector<ChangeRow>& rows);
 /// What each family varies: its parameter and the values.
-std::string csvOf(const std::vector<HardFamily>& families);
-
-/// For the terminal.
-std::string tableOf(const std::vector<StabilityRow>& rows);
+Json tableOf(const std::vector<HardFamily>& families);
 
 }  // namespace radar::tools

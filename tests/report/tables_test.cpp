@@ -1,0 +1,21 @@
+#include "report/tables.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace radar::tools;
+
+TEST_CASE("a table is text with columns that line up, and comma-separated values that read back as the same") {
+  const Json table{{{"name", "a, \"b\""}, {"n", 12'345}, {"share", 1.0 / 3}, {"right", true}},
+                   {{"name", "c"}, {"n", 7}, {"share", NAN}, {"right", false}}};
+  CHECK(textOf(table, "  ") ==
+        "  name        n   share  right\n"
+        "  a, \"b\"  12345  0.3333  yes\n"
+        "  c           7          no\n");
+  const std::string csv = csvOf(table);
+  CHECK(csv == "name,n,share,right\n\"a, \"\"b\"\"\",12345,0.3333333333333333,yes\nc,7,,no\n");
+  CHECK(readCsv("file", "# head\n" + csv)[1] ==
+        std::vector<std::string>{"a, \"b\"", "12345", "0.3333333333333333", "yes"});
+  CHECK(textOf(Json::array()).empty());
+  CHECK(csvOf(Json::array()).empty());
+}

@@ -1,0 +1,119 @@
+#include "report/tables.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "import/input_error.h"
+
+namespace radar::tools {
+
+namespace {
+
+bool isNumber(const Json& value) {
+  return value.is_number() || value.is_null();
+}
+
+std::string cellOf(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (!value.is_number_float()) return value.dump();
+  const auto number = value.get<double>();
+  if (std::isnan(number)) return "";
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
+}
+
+std::string shortCellOf(const Json& value) {
+  if (!value.is_number_float() || std::isnan(value.get<double>())) return cellOf(value);
+  const auto number = value.get<double>();
+  return print(std::abs(number) < 10'000 ? "%.4g" : "%.0f", number);
+}
+
+}  // namespace
+
+std::string textOf(const Json& table, const std::string& indent) {
+  if (table.empty()) return "";
+  std::vector<std::vector<std::string>> lines(1);
+  for (const auto& [name, value] : table.front().items()) lines[0].push_back(name);
+  for (const Json& row : table) {
+    std::vector<std::string>& cells = lines.emplace_back();
+    for (const Json& value : row) cells.push_back(shortCellOf(value));
+  }
+  std::vector<size_t> widths(lines[0].size());
+  for (const std::vector<std::string>& cells : lines) {
+    for (size_t k = 0; k < cells.size(); ++k) widths[k] = std::max(widths[k], cells[k].size());
+  }
+  std::string text;
+  for (const std::vector<std::string>& cells : lines) {
+    std::string line = indent;
+    for (size_t k = 0; k < cells.size(); ++k) {
+      const std::string padding(widths[k] - cells[k].size(), ' ');
+      const bool isRight = isNumber(*std::next(table.front().begin(), static_cast<std::ptrdiff_t>(k)));
+      line += (k == 0 ? "" : "  ") + (isRight ? padding + cells[k] : cells[k] + padding);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string csvOf(const Json& table) {
+  if (table.empty()) return "";
+  Json names = Json::array();
+  for (const auto& [name, value] : table.front().items()) names.push_back(name);
+  std::string text = csvLine(names);
+  for (const Json& row : table) text += csvLine(row);
+  return text;
+}
+
+std::string csvLine(const Json& values) {
+  std::string line;
+  for (const Json& value : values) {
+    std::string cell = cellOf(value);
+    if (cell.find_first_of(",\"\n#") != std::string::npos) {
+      for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
+      cell = '"' + cell + '"';
+    }
+    line += (&value == &*values.begin() ? "" : ",") + cell;
+  }
+  return line + "\n";
+}
+
+std::vector<std::vector<std::string>> readCsv(const std::string& file, std::string_view text) {
+  std::vector<std::vector<std::string>> lines;
+  for (size_t at = 0, number = 1; at < text.size(); ++number) {
+    if (text[at] == '#') {
+      at = std::min(text.find('\n', at), text.size() - 1) + 1;
+      continue;
+    }
+    std::vector<std::string>& cells = lines.emplace_back(1);
+    bool isQuoted = false;
+    for (; at < text.size() && (isQuoted || text[at] != '\n'); ++at) {
+      const char c = text[at];
+      if (c == '"') {
+        // Of two quotes in a row within a quoted cell, one is meant.
+        if (!isQuoted && at > 0 && text[at - 1] == '"') cells.back() += c;
+        isQuoted = !isQuoted;
+      } else if (c == ',' && !isQuoted) {
+        cells.emplace_back();
+      } else {
+        cells.back() += c;
+      }
+    }
+    if (isQuoted) {
+      throw InputError(file, "table line " + std::to_string(number), "expected a closing quote, got the end");
+    }
+    ++at;
+  }
+  return lines;
+}
+
+void makeFolder(const char* option, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) throw InputError(option, folder, "expected a folder, or a place for one");
+}
+
+}  // namespace radar::tools

@@ -13,7 +13,6 @@ namespace {
 /// A report of made-up numbers: two devices of which the second is half as fast; 3 queries in 4 ms together.
 ScaleReport madeUp() {
   ScaleReport report;
-  report.devices = {{.name = "a"}, {.name = "b"}};
   report.numbers = {0, 1};
   report.sensors = {3};
   report.batches = {1};
@@ -70,8 +69,7 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
   }
   const ScaleSettings settings{.mode = Mode::contact, .repeats = 1};
   size_t steps = 0;
-  ScaleReport report = measureScale(devices, points, settings, [&] { ++steps; });
-  report.numbers = {0, 1};
+  const ScaleReport report = measureScale(devices, {0, 1}, points, settings, [&] { ++steps; });
   CHECK(steps == scaleSteps(2, 2, settings));
   CHECK(report.sameBits);
   REQUIRE(report.runs.size() == 6);

@@ -1,4 +1,4 @@
-#include "stability/steps.h"
+#include "stability/measure.h"
 
 #include <catch2/catch.hpp>
 

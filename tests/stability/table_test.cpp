@@ -1,4 +1,4 @@
-#include "stability/table.h"
+#include "stability/measure.h"
 
 #include <catch2/catch.hpp>
 
@@ -48,7 +48,7 @@ TEST_CASE("a row is a line of the table") {
   CHECK(csv.substr(csv.find('\n') + 1) == "thin,paper,64,10,7,2,0,0,0,0.5,0\n");
   CHECK(csvOf(tableOf(std::vector<StepRow>{{"slope", Method::sampled, 512, 1, 2.5e-6}})) ==
         "family,tier,steps,flips,excess\nslope,sampled,512,1,2.5e-06\n");
-  CHECK(csvOf(tableOf(std::vector<ChangeRow>{{Change::cut, Method::contact, 8, 5, 1}})) ==
+  CHECK(csvOf(tableOf(std::vector<ChangeRow>{{"triangles cut in two", Method::contact, 8, 5, 1}})) ==
         "change,tier,cases,contacts,broken\ntriangles cut in two,contact,8,5,1\n");
   const std::vector<HardFamily> family{{"far", "by the pose, in units", {0, 1e-6}, nullptr}};
   CHECK(csvOf(tableOf(family)) == "family,parameter,values\nfar,\"by the pose, in units\",0 1e-06\n");

@@ -41,12 +41,6 @@ Workload familyScenes(std::initializer_list<const char*> families, Extent extent
   return workload;
 }
 
-std::vector<uint32_t> resolutions(Extent extent) {
-  if (extent == Extent::full) return {16, 32, 64, 128, 256, 512, 1024};
-  if (extent == Extent::quick) return {16, 64, 256};
-  return {64, 256};
-}
-
 }  // namespace
 
 std::vector<Case> frontCases(Extent extent) {
@@ -115,21 +109,6 @@ std::vector<Case> growthCases(Extent extent) {
     add("triangles", triangles, makeWorkload(RandomPoses{.meshes = {ring}, .sensors = sensors}));
   }
   return cases;
-}
-
-std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32_t threads) {
-  std::vector<Method> methods;
-  if (section == "front") {
-    for (const uint32_t resolution : resolutions(extent)) methods.push_back({"sampled", resolution});
-  } else {
-    if (section == "table1") methods.push_back({"drawing all", kGrowthSize});
-    methods.push_back({"sampled", kGrowthSize});
-  }
-  methods.push_back({"contact"});
-  methods.push_back({"contact on device"});
-  methods.push_back({"reference", 0, 1});
-  if (threads > 1) methods.push_back({"reference", 0, threads});
-  return methods;
 }
 
 }  // namespace radar::tools

@@ -1,4 +1,4 @@
-// What is measured on what: the workloads of each section of the chart, and the methods beside each other.
+// The workloads of each section of the chart.
 #pragma once
 
 #include <string>
@@ -27,19 +27,5 @@ Case meshesCase(Extent extent, std::vector<MeshData> meshes);
 std::vector<Case> table1Cases(Extent extent);
 /// Section growth: x is the number of boxes, of sensors in a batch, of triangles of each mesh, as the name says.
 std::vector<Case> growthCases(Extent extent);
-
-/// Pixels, rays or steps outside of section front.
-inline constexpr uint32_t kGrowthSize = 64;
-
-struct Method {
-  std::string family;    ///< sampled, contact, reference, "drawing all", or a baseline's row
-  uint32_t size = 0;     ///< resolution or steps; 0: the family has one member
-  uint32_t threads = 0;  ///< 0: as many as the device takes
-
-  std::string name() const { return size == 0 ? family : family + " " + std::to_string(size); }
-};
-
-/// What a section measures, baselines not included. `threads`: of the processor.
-std::vector<Method> ownMethods(const std::string& section, Extent extent, uint32_t threads);
 
 }  // namespace radar::tools

@@ -1,15 +1,17 @@
-#include "chart/measure.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <thread>
 
+#include "bench/harness.h"
 #include "bench/statistics.h"
 #include "chart/in_child.h"
+#include "chart/run.h"
 #include "radar/cpu_sweeper.h"
 
 namespace radar::tools {
@@ -77,15 +79,6 @@ std::array<double*, 6> timesOf(Cell& cell) {
   return {&cell.prepareMs, &cell.us, &cell.usLow, &cell.usHigh, &cell.cpuUs, &cell.sceneUs};
 }
 
-template <class Searcher>
-bench::Method methodOf(ScenePlayer& player, Searcher& searcher) {
-  return {"", [&](std::span<const Query> queries) { return searcher.run(queries); },
-          [&](uint32_t scene) {
-            player.show(scene);
-            searcher.sync();
-          }};
-}
-
 // The whole question, whatever the file says of modes.
 std::vector<bench::Batch> batchesOf(const Workload& workload, Mode mode, uint32_t resolution) {
   std::vector<bench::Batch> batches = bench::batchesOf(workload, mode, resolution);
@@ -111,16 +104,35 @@ std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::spa
   return series.answers;
 }
 
-// The CPU's exact search, on cell.threads threads.
-std::vector<Result> searchOnCpu(Cell& cell, const Workload& workload, const bench::Repetition& repetition) {
-  cell.certified = true;
+// Ours. `make` makes what answers in a scene.
+template <class Make>
+std::vector<Result> search(Cell& cell, const Workload& workload, Mode mode, const bench::Repetition& repetition,
+                           const Make& make) {
   const bench::Stopwatch stopwatch;
   ScenePlayer player(workload);
-  player.show(0);
-  CpuSweeper exact(player.scene(), cell.threads);
-  exact.sync();
+  auto searcher = make(player.scene());
+  const auto show = [&](uint32_t scene) {
+    player.show(scene);
+    searcher.sync();
+  };
+  show(0);
   cell.prepareMs = 1e3 * stopwatch.lap().wall;
-  return timePasses(cell, methodOf(player, exact), batchesOf(workload, Mode::contact, 0), repetition);
+  cell.certified = mode != Mode::sampled;
+  const auto answer = [&](std::span<const Query> queries) { return searcher.run(queries); };
+  return timePasses(cell, {cell.method, answer, show}, batchesOf(workload, mode, cell.size), repetition);
+}
+
+std::vector<Result> searchOnCpu(Cell& cell, const Workload& workload, const bench::Repetition& repetition) {
+  return search(cell, workload, Mode::contact, repetition,
+                [&](const Scene& scene) { return CpuSweeper(scene, cell.threads); });
+}
+
+std::vector<Result> searchOnDevice(Cell& cell, const Workload& workload, const bench::Repetition& repetition,
+                                   const Device& device) {
+  const SweeperOptions options{.select = cell.family != "drawing all",
+                               .cpuBatch = cell.family == "contact on device" ? 0 : kNone};
+  return search(cell, workload, cell.family.starts_with("contact") ? Mode::contact : Mode::sampled, repetition,
+                [&](const Scene& scene) { return Sweeper(device, scene, options); });
 }
 
 // In cell.threads threads, each with a Baseline of its own.
@@ -172,13 +184,45 @@ std::vector<Result> castInChild(Cell& cell, const Workload& workload, const Base
   return results;
 }
 
+// The sensors' sizes, in the order of the batches.
+std::vector<double> sizesOf(const Workload& workload) {
+  ScenePlayer player(workload);
+  std::vector<double> sizes;
+  for (const bench::Batch& batch : batchesOf(workload, Mode::contact, 0)) {
+    for (const Query& query : batch.queries) {
+      const double size = sensorSize(player.scene(), query);
+      sizes.push_back(size > 0 ? size : 1);
+    }
+  }
+  return sizes;
+}
+
+Cell newCell(const Case& which, const ChartMethod& method) {
+  Cell cell;
+  cell.section = which.section;
+  cell.workload = which.name;
+  cell.x = which.x;
+  cell.method = method.name();
+  cell.family = method.family;
+  cell.size = method.size;
+  cell.threads = method.threads;
+  cell.queries = static_cast<uint32_t>(which.workload.queries.size());
+  return cell;
+}
+
+bench::Repetition repetitionOf(Extent extent) {
+  if (extent == Extent::full) return {.least = 5, .most = kNone, .seconds = 0.2};
+  if (extent == Extent::quick) return {.least = 3, .most = kNone, .seconds = 0.03};
+  return {.least = 1, .most = 1};
+}
+
 }  // namespace
 
-void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> truth, std::span<const double> sizes) {
+void judge(Cell& cell, std::span<const Result> results, std::span<const Result> truth, std::span<const double> sizes) {
   std::vector<double> errors, widths;
-  for (size_t i = 0; i < claims.size(); ++i) {
-    const Verdict verdict = judge(claims[i], truth[i], sizes[i]);
-    const bool isBounded = !std::isnan(claims[i].hi);
+  for (size_t i = 0; i < results.size(); ++i) {
+    const Verdict verdict = judge(results[i], truth[i], sizes[i]);
+    const bool isBounded = !std::isnan(results[i].hi);
     cell.contacts += meets(truth[i]);
     cell.found += verdict.found;
     cell.misses += verdict[Fault::missed] || verdict.unseen;
@@ -187,7 +231,7 @@ void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> tr
                        (verdict[Fault::missed] && cell.certified);
     if (!verdict.found) continue;
     errors.push_back(finite(verdict.error));
-    if (cell.certified) widths.push_back(finite((claims[i].hi - claims[i].lo) / sizes[i]));
+    if (cell.certified) widths.push_back(finite((results[i].hi - results[i].lo) / sizes[i]));
   }
   cell.errorMedian = quantile(errors, 0.5);
   cell.error99 = quantile(errors, 0.99);
@@ -195,68 +239,34 @@ void judge(Cell& cell, std::span<const Claim> claims, std::span<const Result> tr
   cell.widthWorst = quantile(widths, 1);
 }
 
-struct Bench::Engine {
-  Engine(const Workload& workload, const Device& device, const SweeperOptions& given)
-      : options(given), player(workload), sweeper(device, player.scene(), given) {
-    player.show(0);
-    sweeper.sync();
-    prepareMs = 1e3 * stopwatch.lap().wall;
-  }
-
-  bench::Stopwatch stopwatch;
-  double prepareMs = 0;
-  SweeperOptions options;
-  ScenePlayer player;
-  Sweeper sweeper;
-};
-
-Bench::Bench(const Case& which, const Device& device, const bench::Repetition& repetition)
-    : which_(which), device_(device), repetition_(repetition) {
-  ScenePlayer player(which.workload);
-  CpuSweeper exact(player.scene());
-  const std::vector<bench::Batch> batches = batchesOf(which.workload, Mode::contact, 0);
-  truth_ = bench::play(methodOf(player, exact), batches).answers;
-  for (const bench::Batch& batch : batches) {
-    for (const Query& query : batch.queries) {
-      const double size = sensorSize(player.scene(), query);
-      sizes_.push_back(size > 0 ? size : 1);
+Record measureAll(const RunSettings& settings, Record record, const Device& device, const std::filesystem::path& folder,
+                  const std::function<void()>& step) {
+  std::optional<Record> before = readRecord(folder);
+  if (before && before->values("run") == record.values("run")) record.cells = std::move(before->cells);
+  // A method that takes several times as long makes fewer passes than it should, but one.
+  const bench::Repetition repetition = repetitionOf(settings.extent);
+  size_t done = 0;
+  for (const Case& which : settings.cases) {
+    std::vector<Result> truth;
+    std::vector<double> sizes;
+    for (const ChartMethod& method : methodsOf(which.section, settings)) {
+      step();
+      if (done++ < record.cells.size()) continue;
+      if (truth.empty()) {
+        Cell exact = newCell(which, {});
+        truth = searchOnCpu(exact, which.workload, {.warmUps = 0, .least = 1, .most = 1});
+        sizes = sizesOf(which.workload);
+      }
+      Cell& cell = record.cells.emplace_back(newCell(which, method));
+      const std::vector<Result> results =
+          method.row != nullptr          ? castInChild(cell, which.workload, *method.row, repetition)
+          : method.family == "reference" ? searchOnCpu(cell, which.workload, repetition)
+                                         : searchOnDevice(cell, which.workload, repetition, device);
+      if (cell.failed.empty()) judge(cell, results, truth, sizes);
+      writeRecord(folder, record);
     }
   }
-}
-
-Bench::~Bench() = default;
-
-Cell Bench::measure(const Method& method, const BaselineRow* row) {
-  Cell cell;
-  cell.section = which_.section;
-  cell.workload = which_.name;
-  cell.x = which_.x;
-  cell.method = method.name();
-  cell.family = method.family;
-  cell.size = method.size;
-  cell.threads = method.threads;
-  cell.queries = static_cast<uint32_t>(which_.workload.queries.size());
-  const std::vector<Result> results = row != nullptr ? castInChild(cell, which_.workload, *row, repetition_)
-                                      : method.family == "reference" ? searchOnCpu(cell, which_.workload, repetition_)
-                                                                     : sweep(cell);
-  if (!cell.failed.empty()) return cell;
-  std::vector<Claim> claims(results.size());
-  std::transform(results.begin(), results.end(), claims.begin(), claimOf);
-  judge(cell, claims, truth_, sizes_);
-  return cell;
-}
-
-std::vector<Result> Bench::sweep(Cell& cell) {
-  const Mode mode = cell.family.starts_with("contact") ? Mode::contact : Mode::sampled;
-  cell.certified = mode != Mode::sampled;
-  const SweeperOptions options{.select = cell.family != "drawing all",
-                               .cpuBatch = cell.family == "contact on device" ? 0 : kNone};
-  if (!engine_ || engine_->options.select != options.select || engine_->options.cpuBatch != options.cpuBatch) {
-    engine_ = std::make_unique<Engine>(which_.workload, device_, options);
-  }
-  cell.prepareMs = engine_->prepareMs;
-  return timePasses(cell, methodOf(engine_->player, engine_->sweeper), batchesOf(which_.workload, mode, cell.size),
-                    repetition_);
+  return record;
 }
 
 }  // namespace radar::tools

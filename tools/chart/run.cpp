@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <memory>
 
 #include "report/tables.h"
 
@@ -40,8 +39,32 @@ void appendWorkload(std::string& bytes, const Workload& workload) {
   }
 }
 
+// Pixels, rays or steps outside of section front.
+constexpr uint32_t kGrowthSize = 64;
+
+std::vector<uint32_t> resolutions(Extent extent) {
+  if (extent == Extent::full) return {16, 32, 64, 128, 256, 512, 1024};
+  if (extent == Extent::quick) return {16, 64, 256};
+  return {64, 256};
+}
+
+std::vector<ChartMethod> ownMethods(const std::string& section, Extent extent, uint32_t threads) {
+  std::vector<ChartMethod> methods;
+  if (section == "front") {
+    for (const uint32_t resolution : resolutions(extent)) methods.push_back({"sampled", resolution});
+  } else {
+    if (section == "table1") methods.push_back({"drawing all", kGrowthSize});
+    methods.push_back({"sampled", kGrowthSize});
+  }
+  methods.push_back({"contact"});
+  methods.push_back({"contact on device"});
+  methods.push_back({"reference", 0, 1});
+  if (threads > 1) methods.push_back({"reference", 0, threads});
+  return methods;
+}
+
 // A full run measures all sizes, on one thread and on all; others three sizes, on all where the library can.
-std::vector<Method> peerMethods(const BaselineRow& row, const std::string& section, const RunSettings& settings) {
+std::vector<ChartMethod> peerMethods(const BaselineRow& row, const std::string& section, const RunSettings& settings) {
   const auto has = [](const auto& values, const auto& value) {
     return std::find(values.begin(), values.end(), value) != values.end();
   };
@@ -54,19 +77,13 @@ std::vector<Method> peerMethods(const BaselineRow& row, const std::string& secti
     sizes = {16, 64, 256};
   }
   if (settings.extent == Extent::least) sizes.resize(1);
-  std::vector<Method> methods;
+  std::vector<ChartMethod> methods;
   for (const uint32_t size : sizes) {
     const uint32_t most = row.threads ? settings.threads : 1;
-    if (full || most == 1) methods.push_back({row.family, size, 1});
-    if (most > 1) methods.push_back({row.family, size, most});
+    if (full || most == 1) methods.push_back({row.family, size, 1, &row});
+    if (most > 1) methods.push_back({row.family, size, most, &row});
   }
   return methods;
-}
-
-bench::Repetition repetitionOf(Extent extent) {
-  if (extent == Extent::full) return {.least = 5, .most = kNone, .seconds = 0.2};
-  if (extent == Extent::quick) return {.least = 3, .most = kNone, .seconds = 0.03};
-  return {.least = 1, .most = 1};
 }
 
 }  // namespace
@@ -83,36 +100,12 @@ std::string fingerprintOf(const RunSettings& settings, const std::string& origin
   return print("%016zx", std::hash<std::string>()(bytes));
 }
 
-std::vector<Planned> planOf(const RunSettings& settings, const std::vector<BaselineRow>& rows) {
-  std::vector<Planned> plan;
-  for (const Case& which : settings.cases) {
-    for (Method& method : ownMethods(which.section, settings.extent, settings.threads)) {
-      plan.push_back({&which, std::move(method), nullptr});
-    }
-    for (const BaselineRow& row : rows) {
-      for (Method& method : peerMethods(row, which.section, settings))
-        plan.push_back({&which, std::move(method), &row});
-    }
+std::vector<ChartMethod> methodsOf(const std::string& section, const RunSettings& settings) {
+  std::vector<ChartMethod> methods = ownMethods(section, settings.extent, settings.threads);
+  for (const BaselineRow& row : settings.baselines) {
+    for (ChartMethod& method : peerMethods(row, section, settings)) methods.push_back(std::move(method));
   }
-  return plan;
-}
-
-Record measureAll(const RunSettings& settings, const std::vector<Planned>& plan, Record record, const Device& device,
-                  const std::filesystem::path& folder, const std::function<void()>& step) {
-  std::optional<Record> before = readRecord(folder);
-  if (before && before->values("run") == record.values("run")) record.cells = std::move(before->cells);
-  std::unique_ptr<Bench> bench;
-  for (size_t i = 0; i < plan.size(); ++i) {
-    const Planned& planned = plan[i];
-    step();
-    if (i < record.cells.size()) continue;
-    if (!bench || &bench->which() != planned.which) {
-      bench = std::make_unique<Bench>(*planned.which, device, repetitionOf(settings.extent));
-    }
-    record.cells.push_back(bench->measure(planned.method, planned.row));
-    writeRecord(folder, record);
-  }
-  return record;
+  return methods;
 }
 
 }  // namespace radar::tools

@@ -100,8 +100,9 @@ Record measure(const Options& options) {
   record.add("machine", processorInWords());
   record.add("device", device.name() + ", " + device.driver());
   record.add("commit", commit());
-  const std::vector<BaselineRow> rows = peerRows();
-  for (const BaselineRow& row : rows) record.add("library", row.family + " (" + row.product + "): " + row.limits);
+  settings.baselines = peerRows();
+  for (const BaselineRow& row : settings.baselines)
+    record.add("library", row.family + " (" + row.product + "): " + row.limits);
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.add("workload", which.name + ": " + which.about);
   }
@@ -109,9 +110,10 @@ Record measure(const Options& options) {
   for (const std::string& line : record.head) origin += line;
   record.add("run", fingerprintOf(settings, origin));
   record.add("date", today());
-  const std::vector<Planned> plan = planOf(settings, rows);
-  Progress progress("measuring", plan.size());
-  return measureAll(settings, plan, record, device, options.out, [&] { progress.add(1); });
+  size_t cells = 0;
+  for (const Case& which : settings.cases) cells += methodsOf(which.section, settings).size();
+  Progress progress("measuring", cells);
+  return measureAll(settings, record, device, options.out, [&] { progress.add(1); });
 }
 
 void chart(Options options) {

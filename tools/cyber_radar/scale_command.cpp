@@ -28,7 +28,7 @@ trace.json, a timeline for ui.perfetto.dev.)";
 constexpr const char* kLegend = R"(
 The devices' time adds up to 100%: useful (each device as fast as alone), slower (because of the others), and idle: start (a
 batch's first chunk is encoded), gap (the next chunk is not encoded yet), tail (another device's last chunk), scene (it is
-edited). encode: time encoding over time with the device. cores: in use by this process. machine: all cores in use, by anyone.
+edited). encode: time encoding over time with the device. cores: processor cores in use by this process.
 
 Stages of the most sensors, milliseconds of a pass with timestamps, summed over devices:
 )";
@@ -78,14 +78,13 @@ std::vector<ScalePoint> filePoints(const Options& options) {
   return points;
 }
 
-std::vector<uint32_t> numbersOf(const std::string& text, size_t devices) {
-  std::vector<uint32_t> numbers = devicesFrom(text);
-  if (!numbers.empty()) return numbers;
+std::vector<uint32_t> numbersOf(std::vector<uint32_t> asked) {
+  if (!asked.empty()) return asked;
   const std::vector<DeviceReport> reports = listDevices();
-  for (uint32_t i = 0; i < reports.size() && numbers.size() < devices; ++i) {
-    if (reports[i].usable()) numbers.push_back(i);
+  for (uint32_t i = 0; i < reports.size(); ++i) {
+    if (reports[i].usable()) asked.push_back(i);
   }
-  return numbers;
+  return asked;
 }
 
 int scale(Options options) {
@@ -112,9 +111,8 @@ int scale(Options options) {
   ScaleReport report;
   {
     Progress progress("measuring", scaleSteps(devices.size(), points.size(), settings));
-    report = measureScale(devices, points, settings, [&] { progress.add(1); });
+    report = measureScale(devices, numbersOf(asked), points, settings, [&] { progress.add(1); });
   }
-  report.numbers = numbersOf(options.device, devices.size());
   const std::string title =
       (options.file.empty() ? print("Teapots among %u boxes, %u steps, resolution ", options.boxes, options.steps) +
                                   options.engine.resolution

@@ -7,7 +7,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/failure_pictures.h"
 #include "cyber_radar/progress.h"
-#include "stability/table.h"
+#include "stability/measure.h"
 
 namespace radar::tools {
 

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "plot/scripts.h"
-
 namespace radar::tools {
+
+/// The gnuplot scripts of this folder, as text. Their first lines name their arguments.
+extern const char *const kStyleScript, *const kFrontScript, *const kTimesScript, *const kScaleScript;
 
 /// The SVG file that a script draws from a CSV file. `texts`: the script's further arguments, taken literally.
 /// Throws std::runtime_error if gnuplot is missing or too old, or if the script fails.

@@ -15,21 +15,33 @@ bool isNumber(const Json& value) {
   return value.is_number() || value.is_null();
 }
 
-std::string cellOf(const Json& value) {
+// Digits of fractions; exact: as many as it takes to read them back as the same.
+constexpr int kText = 4, kCsv = 6, kExact = 0;
+
+std::string cellOf(const Json& value, int digits) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (!value.is_number_float()) return value.dump();
   const auto number = value.get<double>();
   if (std::isnan(number)) return "";
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
+  const bool isLarge = std::abs(number) >= std::pow(10, digits);
+  if (digits != kExact) return isLarge ? print("%.0f", number) : print("%.*g", digits, number);
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-std::string shortCellOf(const Json& value) {
-  if (!value.is_number_float() || std::isnan(value.get<double>())) return cellOf(value);
-  const auto number = value.get<double>();
-  return print(std::abs(number) < 10'000 ? "%.4g" : "%.0f", number);
+std::string lineOf(const Json& values, int digits) {
+  std::string line;
+  for (const Json& value : values) {
+    std::string cell = cellOf(value, digits);
+    if (cell.find_first_of(",\"\n#") != std::string::npos) {
+      for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
+      cell = '"' + cell + '"';
+    }
+    line += (&value == &*values.begin() ? "" : ",") + cell;
+  }
+  return line + "\n";
 }
 
 }  // namespace
@@ -40,7 +52,7 @@ std::string textOf(const Json& table, const std::string& indent) {
   for (const auto& [name, value] : table.front().items()) lines[0].push_back(name);
   for (const Json& row : table) {
     std::vector<std::string>& cells = lines.emplace_back();
-    for (const Json& value : row) cells.push_back(shortCellOf(value));
+    for (const Json& value : row) cells.push_back(cellOf(value, kText));
   }
   std::vector<size_t> widths(lines[0].size());
   for (const std::vector<std::string>& cells : lines) {
@@ -63,22 +75,13 @@ std::string csvOf(const Json& table) {
   if (table.empty()) return "";
   Json names = Json::array();
   for (const auto& [name, value] : table.front().items()) names.push_back(name);
-  std::string text = csvLine(names);
-  for (const Json& row : table) text += csvLine(row);
+  std::string text = lineOf(names, kCsv);
+  for (const Json& row : table) text += lineOf(row, kCsv);
   return text;
 }
 
 std::string csvLine(const Json& values) {
-  std::string line;
-  for (const Json& value : values) {
-    std::string cell = cellOf(value);
-    if (cell.find_first_of(",\"\n#") != std::string::npos) {
-      for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
-      cell = '"' + cell + '"';
-    }
-    line += (&value == &*values.begin() ? "" : ",") + cell;
-  }
-  return line + "\n";
+  return lineOf(values, kExact);
 }
 
 std::vector<std::vector<std::string>> readCsv(const std::string& file, std::string_view text) {

@@ -24,11 +24,12 @@ std::string print(const char* format, Values... values) {
 /// Columns that line up, under their names. Fractions have four digits. Empty for a table without rows.
 std::string textOf(const Json& table, const std::string& indent = "");
 
-/// A line for the names of the columns, then one for each row. Empty for a table without rows.
+/// A line for the names of the columns, then one for each row, as csvLine(). Fractions have six digits. Empty for a
+/// table without rows.
 std::string csvOf(const Json& table);
 
-/// A line with the values of an array or an object. Numbers read back as the same; "yes" or "no" for a boolean, nothing
-/// for null and NaN.
+/// A line with the values of an array or an object. Numbers read back as the same; "yes" or "no" for a boolean,
+/// nothing for null and NaN.
 std::string csvLine(const Json& values);
 
 /// The cells of each line. Lines that begin with # are left out. Throws InputError that names the line where a quote is

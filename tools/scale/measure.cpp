@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -11,24 +10,6 @@
 namespace radar::tools {
 
 namespace {
-
-// Of all processor cores, in one unit: in use, and altogether. Zero where the system does not say.
-struct MachineTime {
-  double used = 0, all = 0;
-};
-
-MachineTime machineTime() {
-  MachineTime time;
-  std::ifstream stat("/proc/stat");
-  std::string name;
-  stat >> name;
-  double value = 0;
-  for (int i = 0; i < 8 && stat >> value; ++i) {
-    time.all += value;
-    if (i != 3 && i != 4) time.used += value;  // idle, waiting for a disk
-  }
-  return time;
-}
 
 // The devices' places: the first 1, 2, ... of them, then the second, third, ... alone.
 std::vector<std::vector<uint32_t>> setsOf(size_t devices) {
@@ -44,7 +25,6 @@ std::vector<std::vector<uint32_t>> setsOf(size_t devices) {
 
 struct Pass {
   bench::Lap lap;
-  MachineTime machine;
   std::vector<Result> results;
   std::vector<PoolAnswers> batches;  // without results
 };
@@ -79,10 +59,7 @@ class Pools {
       return std::move(answers.results);
     };
     const auto show = [&](uint32_t scene) { pool.edit([&] { player_->show(scene); }); };
-    const MachineTime before = machineTime();
     bench::Pass played = bench::play({"", answer, show}, batches_);
-    const MachineTime after = machineTime();
-    pass.machine = {after.used - before.used, after.all - before.all};
     (pass.lap = played.prepare) += played.answer;
     pass.results = std::move(played.answers);
     return pass;
@@ -123,14 +100,8 @@ void addShare(DeviceShare& share, const PoolAnswers& batch, uint32_t device) {
 
 void summarize(ScaleRun& run, std::vector<Pass> passes) {
   bench::Lap all;
-  MachineTime machine;
-  for (const Pass& pass : passes) {
-    all += pass.lap;
-    machine.used += pass.machine.used;
-    machine.all += pass.machine.all;
-  }
+  for (const Pass& pass : passes) all += pass.lap;
   run.cores = all.process / all.wall;
-  run.machine = machine.all > 0 ? machine.used / machine.all : 0;
   std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.lap.wall < b.lap.wall; });
   run.least = 1e3 * passes.front().lap.wall;
   run.most = 1e3 * passes.back().lap.wall;
@@ -161,11 +132,11 @@ void addStages(std::vector<StageTime>& stages, const Pass& pass) {
 }  // namespace
 
 const ScaleRun& ScaleReport::run(size_t point, size_t deviceCount) const {
-  return runs[point * (2 * devices.size() - 1) + deviceCount - 1];
+  return runs[point * (2 * numbers.size() - 1) + deviceCount - 1];
 }
 
 const ScaleRun& ScaleReport::alone(size_t point, uint32_t device) const {
-  return device == 0 ? run(point, 1) : runs[point * (2 * devices.size() - 1) + devices.size() + device - 1];
+  return device == 0 ? run(point, 1) : runs[point * (2 * numbers.size() - 1) + numbers.size() + device - 1];
 }
 
 double ScaleReport::speedUp(const ScaleRun& of) const {
@@ -182,10 +153,11 @@ size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings) 
   return setsOf(devices).size() * (points * (settings.repeats + 1) + 2);
 }
 
-ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
-                         const ScaleSettings& settings, const std::function<void()>& step) {
+ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint32_t>& numbers,
+                         const std::vector<ScalePoint>& points, const ScaleSettings& settings,
+                         const std::function<void()>& step) {
   ScaleReport report;
-  for (const Device& device : devices) report.devices.push_back({.name = device.name(), .driver = device.driver()});
+  report.numbers = numbers;
   const auto sets = setsOf(devices.size());
   Pools pools(devices, points.front().workload, settings);
   for (size_t p = 0; p < points.size(); ++p) {

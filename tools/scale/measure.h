@@ -36,11 +36,10 @@ struct DeviceShare {
 
 /// One set of devices on one point.
 struct ScaleRun {
-  std::vector<uint32_t> devices;  ///< places in ScaleReport::devices
+  std::vector<uint32_t> devices;  ///< places in ScaleReport::numbers
   size_t point = 0;
   double ms = 0, least = 0, most = 0;  ///< of a pass over all batches: the median, and the range
   double cores = 0;                    ///< processor time of this process over the time passed
-  double machine = 0;                  ///< share of all processor cores in use, by anyone; 0 where it is not known
   double scene = 0;                    ///< between batches: the scene is edited
   // Of the pass whose time is the median:
   std::vector<DeviceShare> shares;
@@ -49,7 +48,6 @@ struct ScaleRun {
 };
 
 struct ScaleReport {
-  std::vector<PoolDevice> devices;
   std::vector<uint32_t> numbers;  ///< of the devices, as the program lists them
   std::vector<double> sensors;    ///< by point
   std::vector<size_t> batches, queries;
@@ -64,8 +62,9 @@ struct ScaleReport {
 
 /// `step` is called before each of scaleSteps() passes. Throws Error where a query is not answered: a time without its
 /// answers says nothing.
-ScaleReport measureScale(std::span<const Device> devices, const std::vector<ScalePoint>& points,
-                         const ScaleSettings& settings, const std::function<void()>& step);
+ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint32_t>& numbers,
+                         const std::vector<ScalePoint>& points, const ScaleSettings& settings,
+                         const std::function<void()>& step);
 size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings);
 
 }  // namespace radar::tools

@@ -42,8 +42,7 @@ Json runTable(const ScaleReport& report) {
                      {"tail_%", 100 * sum.tail / all},
                      {"scene_%", 100 * run.scene / run.ms},
                      {"encode_%", sum.busy > 0 ? 100 * sum.encode / sum.busy : 0},
-                     {"cores", run.cores},
-                     {"machine_%", 100 * run.machine}});
+                     {"cores", run.cores}});
   }
   return table;
 }

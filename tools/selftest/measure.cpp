@@ -17,6 +17,8 @@ namespace radar::tools {
 
 namespace {
 
+using bench::Deadline;
+
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 constexpr uint32_t kDistinct = 16'384;  // queries that are not repeated in a batch, where it is that large
 
@@ -172,10 +174,8 @@ bool addLanes(const std::vector<bench::Method>& lanes, const bench::Batch& batch
   return !deadline.isOver();
 }
 
-}  // namespace
-
-bool measureArithmetic(const NumberedDevice& device, const Deadline&, Json& rows) {
-  for (const ArithmeticCheck& check : checkArithmetic(device.device)) {
+bool measureArithmetic(const Device& device, uint32_t, const Deadline&, Json& rows) {
+  for (const ArithmeticCheck& check : checkArithmetic(device)) {
     rows.push_back({{"operation", check.operation},
                     {"passed", check.passed()},
                     {"tried", check.tried},
@@ -188,20 +188,22 @@ bool measureArithmetic(const NumberedDevice& device, const Deadline&, Json& rows
   return true;
 }
 
-bool measureExactness(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
+// Random queries of all families in turn, with doubles where the device has them and without, until the time is up.
+// Returns true once every family has been asked.
+bool measureExactness(const Device& device, uint32_t number, const Deadline& deadline, Json& rows) {
   constexpr uint64_t kAtOnce = 64;
   const std::vector<std::string> families = runFamilies();
   std::optional<Device> withoutDoubles;
-  std::vector<std::unique_ptr<CaseRun>> variants(device.device.doubles() ? 2 : 1);
+  std::vector<std::unique_ptr<CaseRun>> variants(device.doubles() ? 2 : 1);
   for (uint64_t round = 0;; ++round) {
     for (size_t v = 0; v < variants.size(); ++v) {
       if (!variants[v]) {
-        if (v == 1) withoutDoubles.emplace(Device::open({.index = device.number, .doubles = false}));
-        variants[v] = std::make_unique<CaseRun>(v == 0 ? device.device : *withoutDoubles);
+        if (v == 1) withoutDoubles.emplace(Device::open({.index = number, .doubles = false}));
+        variants[v] = std::make_unique<CaseRun>(v == 0 ? device : *withoutDoubles);
       }
       for (size_t f = 0; f < families.size(); ++f) {
         if (deadline.isOver() && !rows.empty()) return round > 0;
-        if (round == 0) rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.device.doubles()}});
+        if (round == 0) rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.doubles()}});
         const Tally tally = variants[v]->run(
             {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const Approach&, const std::string&) {},
             [](uint64_t) {});
@@ -217,38 +219,53 @@ bool measureExactness(const NumberedDevice& device, const Deadline& deadline, Js
   }
 }
 
-bool measureThroughput(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
+// Batches of 1 to 10^6 small sensors among 30,000 boxes (light), of teapots (heavy), and of teapots that all move from
+// batch to batch (moving; D 15, the scene's changes in the time).
+bool measureThroughput(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
   // What one workload does not use is left to the next.
   const Deadline first(deadline.left() / 3);
-  bool whole = measureStanding(device.device, "light", lightWorkload(), first, rows);
+  bool whole = measureStanding(device, "light", lightWorkload(), first, rows);
   const Deadline second(deadline.left() / 2);
-  whole &= measureStanding(device.device, "heavy", heavyWorkload(), second, rows);
-  return measureMoving(device.device, deadline, rows) && whole;
+  whole &= measureStanding(device, "heavy", heavyWorkload(), second, rows);
+  return measureMoving(device, deadline, rows) && whole;
 }
 
-bool measureStages(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
-  const bool light = addStages(device.device, "light", lightWorkload(), Mode::contact, deadline, rows);
-  return addStages(device.device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
+// Where the time of batches of 16,384 goes in the exact search.
+bool measureStages(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
+  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, rows);
+  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
 }
 
-bool measurePasses(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
-  return addStages(device.device, "256 teapots among 10,000 boxes",
+// Where the time goes in the paper's method.
+bool measurePasses(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
+  return addStages(device, "256 teapots among 10,000 boxes",
                    makeWorkload(Table1{.boxes = 10'000, .sensors = 256, .shape = SensorShape::teapot}), Mode::sampled,
                    deadline, rows);
 }
 
-bool measureLanes(const NumberedDevice& device, const Deadline& deadline, Json& rows) {
+// One batch after the other, beside two in flight.
+bool measureLanes(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
-  Sweeper sweeper(device.device, standing.scene(), kOnDevice);
-  Pool pool({&device.device, 1}, standing.scene(), kOnDevice);
+  Sweeper sweeper(device, standing.scene(), kOnDevice);
+  Pool pool({&device, 1}, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
     return sweeper.run(queries);
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
                   standing.batch, deadline, rows);
+}
+
+constexpr SelftestPart kParts[] = {{"arithmetic", 0.02, measureArithmetic}, {"exactness", 0.3, measureExactness},
+                                   {"throughput", 0.45, measureThroughput}, {"stages", 0.05, measureStages},
+                                   {"lanes", 0.08, measureLanes},           {"passes", 0.1, measurePasses, true}};
+
+}  // namespace
+
+std::span<const SelftestPart> selftestParts() {
+  return kParts;
 }
 
 bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,

@@ -11,17 +11,7 @@ namespace radar::tools {
 
 namespace {
 
-struct Step {
-  const char* part;
-  double weight;  // share of the device's time that is left
-  bool (*measure)(const NumberedDevice& device, const Deadline& deadline, Json& rows);
-};
-
-constexpr Step kSteps[] = {
-    {"arithmetic", 0.02, measureArithmetic}, {"exactness", 0.3, measureExactness},
-    {"throughput", 0.45, measureThroughput}, {"stages", 0.05, measureStages},
-    {"lanes", 0.08, measureLanes},           {"passes", 0.1, measurePasses},
-};
+using bench::Deadline;
 
 Json newPart() {
   return {{"state", "not begun"}, {"note", ""}, {"seconds", 0.0}, {"rows", Json::array()}};
@@ -41,7 +31,7 @@ Json newDevice(uint32_t number, const DeviceReport& facts) {
                                 {"needed", limit.needed},
                                 {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
   }
-  for (const Step& step : kSteps) device["parts"][step.part] = newPart();
+  for (const SelftestPart& part : selftestParts()) device["parts"][part.name] = newPart();
   return device;
 }
 
@@ -66,24 +56,24 @@ void run(Json& part, const std::function<bool(Json&)>& work, const std::function
 
 void testDevice(Json& test, double seconds, const std::function<void()>& onChange) {
   const Deadline end(seconds);
-  std::optional<NumberedDevice> device;
+  std::optional<Device> device;
   double weights = 1;
-  for (const Step& step : kSteps) {
-    const Deadline deadline(end.left() * step.weight / weights);
-    weights -= step.weight;
-    Json& part = test["parts"][step.part];
-    if (step.measure == measurePasses && !test["sampled_reasons"].empty()) {
-      part["state"] = "impossible";
-      part["note"] = test["sampled_reasons"].front();
+  for (const SelftestPart& part : selftestParts()) {
+    const Deadline deadline(end.left() * part.weight / weights);
+    weights -= part.weight;
+    Json& report = test["parts"][part.name];
+    if (part.sampled && !test["sampled_reasons"].empty()) {
+      report["state"] = "impossible";
+      report["note"] = test["sampled_reasons"].front();
       continue;
     }
     const auto work = [&](Json& rows) {
       const uint32_t number = test["number"];
-      if (!device) device.emplace(NumberedDevice{Device::open({.index = number}), number});
-      test["uses_doubles"] = device->device.doubles();
-      return step.measure(*device, deadline, rows);
+      if (!device) device.emplace(Device::open({.index = number}));
+      test["uses_doubles"] = device->doubles();
+      return part.measure(*device, number, deadline, rows);
     };
-    run(part, work, onChange);
+    run(report, work, onChange);
     if (!device) return;  // it could not be opened; the part says why
   }
 }

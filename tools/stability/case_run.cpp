@@ -22,7 +22,7 @@ uint32_t strideOf(uint32_t resolution) {
 
 Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
   if (method != Method::paper) return judge(scene, query, result, exact);
-  return judge(claimOf(paperAnswer(query, result)), exact, unitOf(scene, query, exact));
+  return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
 }
 
 }  // namespace

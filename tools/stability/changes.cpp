@@ -1,4 +1,4 @@
-#include "stability/changes.h"
+#include "stability/measure.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,17 @@ namespace radar::tools {
 namespace {
 
 constexpr std::array kAsked{Method::sampled, Method::contact};
+
+struct Change {
+  const char* name;
+  HardCase (*apply)(const HardCase& hard, Random& random);  // null: D is split in two
+};
+constexpr Change kChanges[] = {
+    {"everything moved together", movedTogether},
+    {"sensor and object swapped", [](const HardCase& hard, Random&) { return changedPlaces(hard); }},
+    {"triangles cut in two", cutInTwo},
+    {"far objects added", withFarObjects},
+    {"D split in two", nullptr}};
 
 /// The answer to a way from the answers to its two parts, `first` long the first.
 Result joined(const Result& one, const Result& two, double first) {
@@ -50,20 +61,19 @@ class Comparing {
     return answers;
   }
 
-  Answers answerChanged(Change change, const std::vector<HardCase>& cases, Random& random) {
+  Answers answerChanged(const Change& change, const std::vector<HardCase>& cases, Random& random) {
     std::vector<HardCase> changed, rest;
     for (const HardCase& hard : cases) {
-      if (change == Change::moved) changed.push_back(movedTogether(hard, random));
-      if (change == Change::swapped) changed.push_back(changedPlaces(hard));
-      if (change == Change::cut) changed.push_back(cutInTwo(hard, random));
-      if (change == Change::farObjects) changed.push_back(withFarObjects(hard, random));
-      if (change != Change::split) continue;
+      if (change.apply != nullptr) {
+        changed.push_back(change.apply(hard, random));
+        continue;
+      }
       const std::array<HardCase, 2> parts = splitWay(hard, random);
       changed.push_back(parts[0]);
       rest.push_back(parts[1]);
     }
     Answers answers = answer(changed);
-    if (change != Change::split) return answers;
+    if (rest.empty()) return answers;
     const Answers second = answer(rest);
     for (size_t m = 0; m < kAsked.size(); ++m) {
       for (size_t i = 0; i < cases.size(); ++i) {
@@ -81,12 +91,6 @@ class Comparing {
 
 }  // namespace
 
-const char* nameOf(Change change) {
-  constexpr std::array<const char*, kChanges> kNames{"everything moved together", "sensor and object swapped",
-                                                     "triangles cut in two", "far objects added", "D split in two"};
-  return kNames[static_cast<size_t>(change)];
-}
-
 bool agree(const Result& one, const Result& other) {
   if (meets(one) && meets(other)) return one.lo <= other.hi && other.lo <= one.hi;
   if (meets(one) || meets(other)) {
@@ -102,8 +106,8 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
                                       const std::function<void(uint64_t)>& onProgress) {
   Comparing comparing(device, settings);
   std::vector<ChangeRow> rows;
-  for (size_t c = 0; c < kChanges; ++c) {
-    for (const Method method : kAsked) rows.push_back({static_cast<Change>(c), method, 0, 0, 0});
+  for (const Change& change : kChanges) {
+    for (const Method method : kAsked) rows.push_back({change.name, method, 0, 0, 0});
   }
   for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
     std::vector<HardCase> cases;
@@ -114,8 +118,8 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
     }
     Random random(settings.seed * 7'919 + next);
     const Comparing::Answers before = comparing.answer(cases);
-    for (size_t c = 0; c < kChanges; ++c) {
-      const Comparing::Answers after = comparing.answerChanged(static_cast<Change>(c), cases, random);
+    for (size_t c = 0; c < std::size(kChanges); ++c) {
+      const Comparing::Answers after = comparing.answerChanged(kChanges[c], cases, random);
       for (size_t m = 0; m < kAsked.size(); ++m) {
         ChangeRow& row = rows[c * kAsked.size() + m];
         for (size_t i = 0; i < cases.size(); ++i) {
@@ -124,7 +128,7 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
           const bool undecided = kAsked[m] == Method::contact && after[m][i].status == Status::undecided;
           if (agree(before[m][i], after[m][i]) && !undecided) continue;
           ++row.broken;
-          onBroken(std::string(nameOf(row.change)) + ", " + nameOf(row.method) + ", case " + std::to_string(next + i));
+          onBroken(row.change + ", " + nameOf(row.method) + ", case " + std::to_string(next + i));
         }
       }
     }

@@ -145,31 +145,17 @@ std::string Verdict::words() const {
   return list;
 }
 
-Claim claimOf(const Result& result) {
-  switch (result.status) {
-    case Status::hit:
-    case Status::overlap:
-      return {Claim::Kind::contact, result.t, result.lo, result.hi};
-    case Status::clear:
-      return {Claim::Kind::none, NAN, NAN, NAN};
-    case Status::undecided:
-      return {Claim::Kind::unseen, NAN, NAN, NAN};
-    case Status::invalid:
-      break;
-  }
-  throw Error("a query was not answered");
-}
-
-Verdict judge(const Claim& claim, const Result& exact, double unit) {
+Verdict judge(const Result& result, const Result& exact, double unit) {
+  if (result.status == Status::invalid) throw Error("a query was not answered");
   Verdict verdict;
   const bool contact = meets(exact);
-  verdict.set(Fault::missed, contact && claim.kind == Claim::Kind::none);
-  verdict.set(Fault::falseHit, !contact && claim.kind == Claim::Kind::contact);
-  verdict.unseen = contact && claim.kind == Claim::Kind::unseen;
-  verdict.found = contact && claim.kind == Claim::Kind::contact;
+  verdict.set(Fault::missed, contact && result.status == Status::clear);
+  verdict.set(Fault::falseHit, !contact && meets(result));
+  verdict.unseen = contact && result.status == Status::undecided;
+  verdict.found = contact && meets(result);
   if (!verdict.found) return verdict;
-  verdict.set(Fault::bracket, claim.lo > exact.hi || claim.hi < exact.lo);
-  if (claim.t != exact.t && !std::isnan(claim.t)) verdict.error = (claim.t - exact.t) / unit;
+  verdict.set(Fault::bracket, result.lo > exact.hi || result.hi < exact.lo);
+  if (result.t != exact.t && !std::isnan(result.t)) verdict.error = (result.t - exact.t) / unit;
   return verdict;
 }
 
@@ -184,7 +170,7 @@ Verdict judge(const Scene& scene, const Query& query, const Result& result, cons
     return verdict;
   }
   const double unit = unitOf(scene, query, exact);
-  verdict = judge(claimOf(result), exact, unit);
+  verdict = judge(result, exact, unit);
   const bool sampled = query.mode == Mode::sampled;
   if (result.status == Status::clear) {
     verdict.set(Fault::bracket, !sampled && !(std::isnan(result.t) && std::isnan(result.lo) && std::isnan(result.hi)));

@@ -48,22 +48,9 @@ class Verdict {
   std::bitset<kFaults> faults_;
 };
 
-/// What any method says of one query.
-struct Claim {
-  enum class Kind {
-    contact,  ///< at t
-    none,     ///< not within D
-    unseen    ///< nothing was seen, and nothing is promised
-  };
-  Kind kind = Kind::none;
-  double t = NAN, lo = NAN, hi = NAN;  ///< bounds that it vouches for; NaN: it does not
-};
-
-/// The engine's word. Throws Error if the query is invalid.
-Claim claimOf(const Result& result);
-
-/// Missed, false hit and bracket are judged. Errors are in units of `unit`.
-Verdict judge(const Claim& claim, const Result& exact, double unit);
+/// Missed, false hit and bracket are judged; NaN: no bound. Errors are in units of `unit`. Throws Error if the query
+/// was not answered.
+Verdict judge(const Result& result, const Result& exact, double unit);
 
 /// What errors are relative to: max(size of the sensor, t*).
 double unitOf(const Scene& scene, const Query& query, const Result& exact);

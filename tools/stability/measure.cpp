@@ -1,6 +1,27 @@
 #include "stability/measure.h"
 
+#include <algorithm>
+
 namespace radar::tools {
+
+namespace {
+
+/// Rows of one key become one row of the family `all`.
+template <class Row, class KeyOf, class Add>
+std::vector<Row> sums(const std::vector<Row>& rows, const KeyOf& keyOf, const Add& add) {
+  std::vector<Row> all;
+  for (const Row& row : rows) {
+    const auto sum = std::find_if(all.begin(), all.end(), [&](const Row& one) { return keyOf(one) == keyOf(row); });
+    if (sum != all.end()) {
+      add(*sum, row);
+    } else {
+      all.emplace_back(row).family = "all";
+    }
+  }
+  return all;
+}
+
+}  // namespace
 
 std::vector<StabilityRow> measureStability(const Device& device, const StabilitySettings& settings,
                                            const std::function<void(const std::string&)>& onWrong,
@@ -28,6 +49,78 @@ std::vector<StabilityRow> measureStability(const Device& device, const Stability
     for (size_t i = 0; i < asked.size(); ++i) rows.push_back({family, asked[i], tallies[i]});
   }
   return rows;
+}
+
+std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows) {
+  return sums(
+      rows, [](const StabilityRow& row) { return row.asked.name(); },
+      [](StabilityRow& sum, const StabilityRow& row) { sum.tally.add(row.tally); });
+}
+
+std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows) {
+  return sums(
+      rows, [](const StepRow& row) { return row.method; },
+      [](StepRow& sum, const StepRow& row) {
+        sum.steps += row.steps;
+        sum.flips += row.flips;
+        sum.excess = std::max(sum.excess, row.excess);
+      });
+}
+
+Json tableOf(const std::vector<StabilityRow>& rows) {
+  Json table = Json::array();
+  for (const StabilityRow& row : rows) {
+    const Tally& t = row.tally;
+    const uint64_t other = t[Fault::unanswered] + t[Fault::wrongStatus] + t[Fault::wrongPair] + t[Fault::late] +
+                           t[Fault::point] + t[Fault::normal];
+    table.push_back({{"family", row.family},
+                     {"tier", nameOf(row.asked.method)},
+                     {"resolution", row.asked.resolution},
+                     {"cases", t.queries},
+                     {"contacts", t.contacts()},
+                     {"missed", row.missed()},
+                     {"false", t[Fault::falseHit]},
+                     {"brackets_violated", t[Fault::bracket]},
+                     {"otherwise_wrong", other},
+                     {"late", t.late},
+                     {"early", t.early}});
+  }
+  return table;
+}
+
+Json tableOf(const std::vector<StepRow>& rows) {
+  Json table = Json::array();
+  for (const StepRow& row : rows) {
+    table.push_back({{"family", row.family},
+                     {"tier", nameOf(row.method)},
+                     {"steps", row.steps},
+                     {"flips", row.flips},
+                     {"excess", row.excess}});
+  }
+  return table;
+}
+
+Json tableOf(const std::vector<ChangeRow>& rows) {
+  Json table = Json::array();
+  for (const ChangeRow& row : rows) {
+    table.push_back({{"change", row.change},
+                     {"tier", nameOf(row.method)},
+                     {"cases", row.cases},
+                     {"contacts", row.contacts},
+                     {"broken", row.broken}});
+  }
+  return table;
+}
+
+Json tableOf(const std::vector<HardFamily>& families) {
+  Json table = Json::array();
+  for (const HardFamily& family : families) {
+    std::string values;
+    for (const double& value : family.values)
+      values += (&value == &family.values.front() ? "" : " ") + print("%g", value);
+    table.push_back({{"family", family.name}, {"parameter", family.parameter}, {"values", values}});
+  }
+  return table;
 }
 
 }  // namespace radar::tools

@@ -4,6 +4,7 @@
 #include "chart/charts.h"
 #include "chart/in_child.h"
 #include "chart/run.h"
+#include "support/answer.h"
 #include "support/scratch_folder.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -102,17 +103,10 @@ TEST_CASE("of one method's rows the fastest number of threads is shown, and none
 TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
   const std::vector<Result> truth{truthAt(2), truthAt(2), truthAt(NAN), truthAt(4), truthAt(4), truthAt(2)};
   const std::vector<double> sizes(6, 2);
-  const auto answer = [](Status status, double t, double lo, double hi) {
-    Result result;
-    result.status = status;
-    result.t = t;
-    result.lo = lo;
-    result.hi = hi;
-    return result;
-  };
-  const std::vector<Result> answers{answer(Status::hit, 2.5, 1.5, 2.5),     truthAt(NAN),
-                                    answer(Status::hit, 1, 0, 1),           answer(Status::hit, 3, 3, 4),
-                                    answer(Status::undecided, NAN, 0, NAN), answer(Status::hit, 2.5, 2.25, 2.75)};
+  const std::vector<Result> answers{
+      test::madeUpAnswer(Status::hit, 2.5, 1.5, 2.5),     truthAt(NAN),
+      test::madeUpAnswer(Status::hit, 1, 0, 1),           test::madeUpAnswer(Status::hit, 3, 3, 4),
+      test::madeUpAnswer(Status::undecided, NAN, 0, NAN), test::madeUpAnswer(Status::hit, 2.5, 2.25, 2.75)};
   Cell cell;
   cell.certified = true;
   cell.queries = 6;

@@ -13,11 +13,7 @@ using namespace radar::tools;
 namespace {
 
 Result answered(Status status, double lo, double hi) {
-  Result result;
-  result.status = status;
-  result.lo = lo;
-  result.hi = hi;
-  return result;
+  return test::madeUpAnswer(status, NAN, lo, hi);
 }
 
 Result exactAnswer(const HardCase& hard) {

@@ -100,20 +100,12 @@ TEST_CASE("a tally adds up verdicts and keeps the largest errors") {
   clear.status = Status::clear;
   exact.status = Status::hit;
   exact.t = exact.lo = exact.hi = 2;
-  const auto answer = [](Status status, double t, double lo, double hi) {
-    Result result;
-    result.status = status;
-    result.t = t;
-    result.lo = lo;
-    result.hi = hi;
-    return result;
-  };
   Tally tally, other;
-  tally.add(judge(answer(Status::hit, 3, NAN, NAN), exact, 2), exact);
-  tally.add(judge(answer(Status::hit, 1.5, 1, 1.75), exact, 2), exact);
-  other.add(judge(answer(Status::clear, NAN, NAN, NAN), exact, 2), exact);
-  other.add(judge(answer(Status::undecided, NAN, NAN, NAN), exact, 2), exact);
-  other.add(judge(answer(Status::hit, 1, NAN, NAN), clear, 2), clear);
+  tally.add(judge(test::madeUpAnswer(Status::hit, 3, NAN, NAN), exact, 2), exact);
+  tally.add(judge(test::madeUpAnswer(Status::hit, 1.5, 1, 1.75), exact, 2), exact);
+  other.add(judge(test::madeUpAnswer(Status::clear, NAN, NAN, NAN), exact, 2), exact);
+  other.add(judge(test::madeUpAnswer(Status::undecided, NAN, NAN, NAN), exact, 2), exact);
+  other.add(judge(test::madeUpAnswer(Status::hit, 1, NAN, NAN), clear, 2), clear);
   tally.add(other);
   CHECK(tally.queries == 5);
   CHECK(tally.contacts() == 4);

@@ -1,4 +1,4 @@
-// Answers a single query on the CPU.
+// Answers for tests: of the CPU to a single query, and made-up ones.
 #pragma once
 
 #include "radar/cpu_sweeper.h"
@@ -13,6 +13,16 @@ inline Result answer(CpuSweeper& sweeper, const Query& query) {
 inline Result answer(const Scene& scene, const Query& query) {
   CpuSweeper sweeper(scene, 1);
   return answer(sweeper, query);
+}
+
+/// An answer that is made up.
+inline Result madeUpAnswer(Status status, double t, double lo, double hi) {
+  Result result;
+  result.status = status;
+  result.t = t;
+  result.lo = lo;
+  result.hi = hi;
+  return result;
 }
 
 }  // namespace radar::test

@@ -40,12 +40,12 @@ std::pair<double, double> rankOf(const Cell& cell) {
   return {cell.wrongShare(), flooredError(cell)};
 }
 
-struct Workload {
+struct WorkloadNote {
   std::string name, about;
 };
 
-std::vector<Workload> workloadsOf(const Record& record) {
-  std::vector<Workload> workloads;
+std::vector<WorkloadNote> workloadsOf(const Record& record) {
+  std::vector<WorkloadNote> workloads;
   for (const std::string& value : record.values("workload")) {
     const size_t end = std::min(value.find(": "), value.size());
     workloads.push_back({value.substr(0, end), value.substr(std::min(end + 2, value.size()))});
@@ -99,7 +99,7 @@ Json pointsOf(const Record& record) {
   std::for_each(kOurFamilies.begin(), kOurFamilies.end(), number);
   for (const Cell& cell : record.cells) number(cell.family);
   Json points = Json::array();
-  for (const Workload& workload : workloadsOf(record)) {
+  for (const WorkloadNote& workload : workloadsOf(record)) {
     const std::string chart = "front-" + workload.name;
     const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
     for (const Cell* cell : cells) points.push_back(frontPoint(chart, cell->family, linetypes[cell->family], *cell));
@@ -166,7 +166,7 @@ Json methodTable(const Record& record) {
     uint32_t queries = 0, wrong = 0;
     double worstShare = 0, worstError = NAN, least = NAN, most = NAN;
     std::string fails;
-    for (const Workload& workload : workloadsOf(record)) {
+    for (const WorkloadNote& workload : workloadsOf(record)) {
       const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
       const auto cell =
           std::find_if(cells.begin(), cells.end(), [&](const Cell* one) { return one->method == method; });
@@ -194,7 +194,7 @@ Json methodTable(const Record& record) {
 
 Json workloadTable(const Record& record) {
   Json table = Json::array();
-  for (const Workload& workload : workloadsOf(record)) {
+  for (const WorkloadNote& workload : workloadsOf(record)) {
     const std::vector<const Cell*> cells = shownCells(record, "front", workload.name);
     if (cells.empty()) continue;
     Json row{{"workload", workload.name}, {"queries", cells[0]->queries}, {"contacts", cells[0]->contacts}};
@@ -250,8 +250,8 @@ void writeCharts(const std::filesystem::path& folder, const Record& record) {
     const char* script = xLabel.empty() ? kFrontScript : kTimesScript;
     writeAtomically(folder / (chart + ".svg"), plot(script, file, {chart, title, xLabel}));
   };
-  const std::vector<Workload> workloads = workloadsOf(record);
-  for (const Workload& workload : workloads) draw("front-" + workload.name, workload.about, "");
+  const std::vector<WorkloadNote> workloads = workloadsOf(record);
+  for (const WorkloadNote& workload : workloads) draw("front-" + workload.name, workload.about, "");
   for (const Axis& axis : kAxes) draw(axis.chart, axis.title, axis.xLabel);
   if (workloads.empty()) return;
   draw(kResolutionChart, "Time against resolution: " + workloads[0].about, "pixels, or rays, of the longer side");

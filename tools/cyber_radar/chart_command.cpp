@@ -27,7 +27,8 @@ constexpr const char* kExamples = R"(Examples:
 
 DIR receives chart.csv with all measurements; methods.csv, workloads.csv and growth.csv, which sum them up; points.csv with
 what the charts show; and the charts as SVG files. Every measurement is saved at once: the same command continues where it
-was interrupted, if program and device are the same. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also measures other libraries.)";
+was interrupted, if program and device are the same. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart)
+also measures other libraries.)";
 
 struct Options {
   std::vector<std::string> files, meshes;
@@ -101,8 +102,9 @@ Record measure(const Options& options) {
   record.add("device", device.name() + ", " + device.driver());
   record.add("commit", commit());
   settings.baselines = peerRows();
-  for (const BaselineRow& row : settings.baselines)
+  for (const BaselineRow& row : settings.baselines) {
     record.add("library", row.family + " (" + row.product + "): " + row.limits);
+  }
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.add("workload", which.name + ": " + which.about);
   }

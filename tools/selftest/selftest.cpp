@@ -82,7 +82,7 @@ void testDevice(Json& test, double seconds, const std::function<void()>& onChang
 std::string fieldsText(const Json& object, const std::string& indent) {
   std::string text;
   for (const auto& [name, value] : object.items()) {
-    if (value.is_object() || value == "") continue;
+    if (value.is_object() || (value.is_string() && value.get<std::string>().empty())) continue;
     const Json values = value.is_array() ? value : Json::array({value});
     for (const Json& one : values) {
       if (one.is_object()) continue;

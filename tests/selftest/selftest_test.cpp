@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/program.h"
 
@@ -22,14 +24,28 @@ Json madeUp() {
   Json report = lookAtDevices({0});
   report["command"] = "cyber-radar selftest";
   Json& device = report["devices"][0];
-  device["name"] = "A device";
+  device["number"] = 3;
+  device["name"] = "A <device>";
   device["limits"] = {{{"limit", "maxThings"}, {"has", 7}, {"needed", 5}, {"mode", "sampled"}}};
   Json& parts = device["parts"];
   for (Json& part : parts) part["state"] = "done";
-  parts["arithmetic"]["rows"] = {{{"operation", "float addition"}, {"worst_ulps", NAN}, {"found", "rounded up"}}};
+  parts["arithmetic"]["rows"] = {{{"operation", "float addition"}, {"worst_ulps", 0.5}, {"found", "rounded up"}},
+                                 {{"operation", "float copies"}, {"worst_ulps", NAN}, {"found", "the \"same\", all"}}};
   parts["exactness"]["rows"] = {{{"family", "convex"}, {"doubles", true}, {"queries", 64}, {"wrong", 0}}};
-  parts["throughput"]["rows"] = {{{"workload", "light"}, {"batch", 1}, {"differ", 0}},
-                                 {{"workload", "light"}, {"batch", 1000}, {"differ", 0}}};
+  const auto throughput = [](uint64_t batch, double deviceUs, double cpuUs) -> Json {
+    return {{"workload", "light"},
+            {"batch", batch},
+            {"device_us_per_query", deviceUs},
+            {"cpu_us_per_query", cpuUs},
+            {"cpu_over_device", cpuUs / deviceUs},
+            {"differ", 0}};
+  };
+  parts["throughput"]["rows"] = {throughput(1, 20, 10), throughput(1000, 0.5, 5)};
+  parts["stages"]["rows"] = {{{"workload", "light"}, {"stage", "search"}, {"us_per_query", 0.25}},
+                             {{"workload", "light"}, {"stage", "solve"}, {"us_per_query", 0.1}}};
+  parts["lanes"]["rows"] = {{{"way", "one"}, {"us_per_query", 2.0}, {"times_as_fast", 1.0}},
+                            {{"way", "two"}, {"us_per_query", 1.0}, {"times_as_fast", 2.0}}};
+  parts["passes"]["rows"] = {{{"workload", "teapots"}, {"stage", "mask"}, {"us_per_query", 7.0}}};
   return report;
 }
 
@@ -39,17 +55,35 @@ bool isUnderWay(const Json& part) {
 
 }  // namespace
 
-TEST_CASE("a selftest's report tells every number as text") {
+TEST_CASE("a selftest's report tells every number as text, JSON, tables and a page") {
   Json report = madeUp();
   conclude(report);
   CHECK(report["right"] == true);
   const std::string text = selftestText(report);
-  for (const char* said : {"command: cyber-radar selftest\n", "device 0: A device\n", "maxThings", "rounded up",
+  for (const char* said : {"command: cyber-radar selftest\n", "device 3: A <device>\n", "maxThings", "rounded up",
                            "    convex  yes           64      0\n", "exactness: done", "lanes: done",
                            "1065 answers checked, 0 wrong: nothing is wrong", "all devices together: not begun"}) {
     CHECK_THAT(text, Contains(said));
   }
-  CHECK(nlohmann::json::parse(report.dump())["devices"][0]["parts"]["arithmetic"]["rows"][0]["worst_ulps"].is_null());
+  const std::map<std::string, std::string> files = selftestFiles(report);
+  CHECK(files.at("report.txt") == text);
+  const nlohmann::json json = nlohmann::json::parse(files.at("report.json"));
+  CHECK(json["devices"][0]["parts"]["arithmetic"]["rows"][1]["worst_ulps"].is_null());
+  CHECK(files.at("arithmetic.csv") ==
+        "device,operation,worst_ulps,found\n3,float addition,0.5,rounded up\n3,float copies,,\"the \"\"same\"\", "
+        "all\"\n");
+  CHECK(files.at("exactness.csv") == "device,family,doubles,queries,wrong\n3,convex,yes,64,0\n");
+  CHECK_THAT(files.at("throughput.csv"), Catch::EndsWith("\n3,light,1000,0.5,5,10,0\n"));
+  CHECK(files.at("stages.csv") ==
+        "device,mode,workload,stage,us_per_query\n3,contact,light,search,0.25\n3,contact,light,solve,0.1\n"
+        "3,sampled,teapots,mask,7\n");
+  const std::string& page = files.at("index.html");
+  CHECK_THAT(page, Contains("A &lt;device") && Contains("maxThings") && Contains("rounded up") && Contains("</html>"));
+  // A rate of 50,000 beside 2,000,000, a stage of 0.1 beside 0.25, and a lane of half the speed.
+  for (const char* bar :
+       {"--share:2.5%\">50000<", "--share:40.0%\">0.1<", "--share:50.0%\">1<", "--share:100.0%\">7<"}) {
+    CHECK_THAT(page, Contains(bar));
+  }
 }
 
 TEST_CASE("a wrong answer, an answer that differs and a part that failed make the report say so") {
@@ -57,6 +91,7 @@ TEST_CASE("a wrong answer, an answer that differs and a part that failed make th
     conclude(report);
     CHECK(report["right"] == false);
     CHECK_THAT(selftestText(report), Contains("SOMETHING IS WRONG"));
+    CHECK_THAT(selftestFiles(report).at("index.html"), Contains("SOMETHING IS WRONG"));
   };
   Json report = madeUp();
   report["devices"][0]["parts"]["exactness"]["rows"][0]["wrong"] = 1;
@@ -78,6 +113,9 @@ TEST_CASE("a selftest can be read whenever it is interrupted, and every part has
   std::vector<std::string> begun, parts;
   // So little time that every part is over when it begins: what is measured does not depend on the machine.
   runSelftest(report, 1e-6, [&] {
+    const std::map<std::string, std::string> files = selftestFiles(report);
+    CHECK(nlohmann::json::parse(files.at("report.json"))["together"].is_object());
+    CHECK_THAT(files.at("index.html"), Contains("</html>"));
     for (const auto& [name, part] : device["parts"].items()) {
       if (!isUnderWay(part)) continue;
       begun.push_back(name);
@@ -113,7 +151,13 @@ TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
   CHECK_THAT(run.out, Contains("device 1: ") && Contains("nothing is wrong"));
   CHECK_THAT(run.out, Catch::StartsWith(folder.read("report/report.txt")));
   CHECK(nlohmann::json::parse(folder.read("report/report.json"))["right"] == true);
-  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "report"), {}) == 2);
+  for (const char* file : {"index.html", "arithmetic.csv", "exactness.csv", "throughput.csv", "stages.csv"}) {
+    CAPTURE(file);
+    CHECK_FALSE(folder.read(std::string("report/") + file).empty());
+  }
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "report"), {}) == 7);
+  std::istringstream text(folder.read("report/report.txt"));
+  for (std::string line; std::getline(text, line);) CHECK(line.size() <= 120);
 
   folder.write("file", "taken");
   const auto refused = [&](const std::string& arguments, const std::string& what) {

@@ -15,11 +15,11 @@ namespace radar::tools {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
-  cyber-radar selftest --out report                  all devices, five minutes
+  cyber-radar selftest --out report                  all devices, five minutes: open report/index.html
   cyber-radar selftest --minutes 1 --device 0 --out report
 
-DIR receives report.txt and, for programs, report.json. Both are on disk whenever a part ends, also if the run is
-interrupted. Exit status 1 if anything is wrong.)";
+DIR receives index.html, a page with charts, report.txt and, for programs, report.json and tables as .csv. All are on
+disk whenever a part ends, also if the run is interrupted. Exit status 1 if anything is wrong.)";
 
 struct Options {
   std::string device = "all", out;
@@ -49,11 +49,10 @@ int selftest(const Options& options) {
   const std::filesystem::path folder = options.out;
   runSelftest(report, options.minutes, [&] {
     tellProgress(report);
-    writeAtomically(folder / "report.txt", selftestText(report));
-    writeAtomically(folder / "report.json", report.dump(2) + "\n");
+    for (const auto& [name, content] : selftestFiles(report)) writeAtomically(folder / name, content);
   });
   std::cout << selftestText(report) << "\nIn " << std::filesystem::absolute(folder).string()
-            << ": report.txt, report.json\n";
+            << ": index.html, report.txt, report.json, and tables as .csv\n";
   return report["right"] ? 0 : 1;
 }
 

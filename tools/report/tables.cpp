@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "import/input_error.h"
 
@@ -17,6 +18,7 @@ bool isNumber(const Json& value) {
 
 // Digits of fractions; exact: as many as it takes to read them back as the same.
 constexpr int kText = 4, kCsv = 6, kExact = 0;
+constexpr size_t kWidth = 120;  // of lines of text
 
 std::string cellOf(const Json& value, int digits) {
   if (value.is_null()) return "";
@@ -44,7 +46,27 @@ std::string lineOf(const Json& values, int digits) {
   return line + "\n";
 }
 
+// The cells from `first` on, with their names, in lines that are as full as they may be.
+std::string linesBelow(const std::vector<std::string>& names, const std::vector<std::string>& cells, size_t first,
+                       const std::string& indent) {
+  std::string text, line;
+  for (size_t k = first; k < cells.size(); ++k) {
+    if (cells[k].empty()) continue;
+    const std::string item = names[k] + ": " + cells[k];
+    if (!line.empty() && indent.size() + line.size() + 2 + item.size() > kWidth) {
+      text += indent + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : "; ") + item;
+  }
+  return line.empty() ? text : text + indent + line + "\n";
+}
+
 }  // namespace
+
+std::string cellText(const Json& value) {
+  return cellOf(value, kText);
+}
 
 std::string textOf(const Json& table, const std::string& indent) {
   if (table.empty()) return "";
@@ -52,21 +74,27 @@ std::string textOf(const Json& table, const std::string& indent) {
   for (const auto& [name, value] : table.front().items()) lines[0].push_back(name);
   for (const Json& row : table) {
     std::vector<std::string>& cells = lines.emplace_back();
-    for (const Json& value : row) cells.push_back(cellOf(value, kText));
+    for (const Json& value : row) cells.push_back(cellText(value));
   }
   std::vector<size_t> widths(lines[0].size());
   for (const std::vector<std::string>& cells : lines) {
     for (size_t k = 0; k < cells.size(); ++k) widths[k] = std::max(widths[k], cells[k].size());
   }
+  const auto isRight = [&](size_t k) {
+    return isNumber(*std::next(table.front().begin(), static_cast<std::ptrdiff_t>(k)));
+  };
+  size_t inLine = widths.size();
+  size_t width = std::accumulate(widths.begin(), widths.end(), indent.size() + 2 * (inLine - 1));
+  for (; width > kWidth && inLine > 1 && !isRight(inLine - 1); --inLine) width -= widths[inLine - 1] + 2;
   std::string text;
   for (const std::vector<std::string>& cells : lines) {
     std::string line = indent;
-    for (size_t k = 0; k < cells.size(); ++k) {
+    for (size_t k = 0; k < inLine; ++k) {
       const std::string padding(widths[k] - cells[k].size(), ' ');
-      const bool isRight = isNumber(*std::next(table.front().begin(), static_cast<std::ptrdiff_t>(k)));
-      line += (k == 0 ? "" : "  ") + (isRight ? padding + cells[k] : cells[k] + padding);
+      line += (k == 0 ? "" : "  ") + (isRight(k) ? padding + cells[k] : cells[k] + padding);
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    if (&cells != &lines[0]) text += linesBelow(lines[0], cells, inLine, indent + "  ");
   }
   return text;
 }

@@ -78,27 +78,6 @@ void testDevice(Json& test, double seconds, const std::function<void()>& onChang
   }
 }
 
-// The single values, a line each.
-std::string fieldsText(const Json& object, const std::string& indent) {
-  std::string text;
-  for (const auto& [name, value] : object.items()) {
-    if (value.is_object() || (value.is_string() && value.get<std::string>().empty())) continue;
-    const Json values = value.is_array() ? value : Json::array({value});
-    for (const Json& one : values) {
-      if (one.is_object()) continue;
-      text += indent + name + ": " + (one.is_string() ? one.get<std::string>() : one.dump()) + "\n";
-    }
-  }
-  return text;
-}
-
-std::string partText(const std::string& name, const Json& part) {
-  const std::string state = part["state"], note = part["note"];
-  return print("\n  %s: %s, %.1f s%s\n", name.c_str(), state.c_str(), part["seconds"].get<double>(),
-               note.empty() ? "" : (": " + note).c_str()) +
-         textOf(part["rows"], "    ");
-}
-
 }  // namespace
 
 Json lookAtDevices(const std::vector<uint32_t>& asked) {
@@ -179,20 +158,6 @@ void runSelftest(Json& report, double minutes, const std::function<void()>& onCh
   }
   run(
       together, [&](Json& rows) { return measureTogether(openDevices(numbers), numbers, end, rows); }, tell);
-}
-
-std::string selftestText(const Json& report) {
-  std::string text = "Cyber Radar selftest\n" + fieldsText(report, "");
-  for (const Json& device : report["devices"]) {
-    const std::string title = "\ndevice " + device["number"].dump() + ": ";
-    text +=
-        title + device["name"].get<std::string>() + "\n" + fieldsText(device, "  ") + textOf(device["limits"], "    ");
-    if (!device["usable"]) continue;
-    for (const auto& [name, part] : device["parts"].items()) text += partText(name, part);
-    text += title + device["answers_checked"].dump() + " answers checked, " + device["answers_wrong"].dump() +
-            " wrong: " + (device["right"] ? "nothing is wrong" : "SOMETHING IS WRONG") + "\n";
-  }
-  return text + partText("all devices together", report["together"]);
 }
 
 }  // namespace radar::tools

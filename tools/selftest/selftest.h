@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,10 @@ void runSelftest(Json& report, double minutes, const std::function<void()>& onCh
 /// Sums up the parts: sets "answers_checked", "answers_wrong" and "right".
 void conclude(Json& report);
 
-/// The report for people.
+/// The report as text.
 std::string selftestText(const Json& report);
+
+/// The files of a report, by name: text, JSON, tables as CSV, and a page with charts that loads nothing else.
+std::map<std::string, std::string> selftestFiles(const Json& report);
 
 }  // namespace radar::tools

@@ -40,13 +40,13 @@ unsigned lanesOf(const gpu::MeshNode& a, const gpu::MeshNode& b) {
   return ofA & ((b.link & gpu::kLinkPair) != 0 ? 0b1111 : 0b0011);
 }
 
-/// Three times the error of an axis; and the speed to which lower ones are raised, which changes positions by at most
-/// the error within the duration.
+/// Three times the error of an axis, and the clearance; and the speed to which lower ones are raised, which changes
+/// positions by at most the error within the duration.
 template <class Real>
 struct Margin {
   Lanes<Real> width, speed;
-  Margin(const Lanes<Real>& error, Real duration)
-      : width(Lanes<Real>(3) * error), speed(error * Lanes<Real>(1 / duration)) {}
+  Margin(const Lanes<Real>& error, const Lanes<Real>& clearance, Real duration)
+      : width(Lanes<Real>(3) * error + clearance), speed(error * Lanes<Real>(1 / duration)) {}
 };
 
 /// Intersects the intervals of the axes. A NaN leaves the result unchanged.
@@ -89,17 +89,19 @@ Lanes<Real> rounded(const Lanes<double>& x) {
 template <class Real>
 LeafTest<Real>::LeafTest(const Mesh& meshA, const Mesh& meshB, const RelativePlacement& relative)
     : meshA_(meshA), meshB_(meshB), matrix_(relative.matrix), offset_(relative.offset), travel_(relative.travel) {
-  double position = 0, edge = 0, travelSize = 0;
+  double position = 0, edge = 0, travelSize = 0, clearance = 0;
   for (int k = 0; k < 3; ++k) {
     travelSize += std::abs(travel_[k]);
-    edge = std::max(edge, 2 * relative.slack[k]);
-    position = std::max(position, 2 * relative.slack[k] + 16 * kUnit * relative.magnitude[k]);
+    edge = std::max(edge, 2 * relative.rounding[k]);
+    clearance = std::max(clearance, relative.slack[k] - relative.rounding[k]);
+    position = std::max(position, 2 * relative.rounding[k] + 16 * kUnit * relative.magnitude[k]);
     usable_ = usable_ && relative.magnitude[k] + relative.slack[k] < kMostMagnitude<Real>;
   }
   if (!usable_) return;  // the numbers may not fit a float
   travelSize_ = static_cast<Real>(travelSize);
   positionError_ = static_cast<Real>(1.01 * position);
   edgeError_ = static_cast<Real>(1.01 * edge);
+  clearance_ = static_cast<Real>(1.01 * clearance);
 }
 
 template <class Real>
@@ -165,17 +167,20 @@ LeafTimes<Real> LeafTest<Real>::operator()(const gpu::MeshNode& a, const gpu::Me
   Collected<Real> collected;
   const L zero = Real(0), half = Real(0.5);
   const L lowB = min(zero, min(alpha[0], -alpha[2])), highB = max(zero, max(alpha[0], -alpha[2]));
-  const Margin<Real> marginA(L(a_.size) * (L(a_.size) * error + L(2 * edgeError_) * reach), duration);
+  const Margin<Real> marginA(L(a_.size) * (L(a_.size) * error + L(2 * edgeError_) * reach),
+                             L(a_.size * a_.size * clearance_), duration);
   collected.add(dot<Real>(a_.normal, gap) + half * (lowB + highB), half * (highB - lowB), dot<Real>(a_.normal, travel),
                 marginA, 0);
   const L lowA = min(zero, min(beta[0], -beta[2])), highA = max(zero, max(beta[0], -beta[2]));
-  const Margin<Real> marginB(L(b_.size) * (L(b_.size) * error + L(2 * edgeError_) * reach), duration);
+  const Margin<Real> marginB(L(b_.size) * (L(b_.size) * error + L(2 * edgeError_) * reach),
+                             L(b_.size * b_.size * clearance_), duration);
   collected.add(dot<Real>(b_.normal, gap) - half * (lowA + highA), half * (highA - lowA), dot<Real>(b_.normal, travel),
                 marginB, 1);
   out.possible &= collected.possible(duration);
   if (out.possible == 0) return out;
 
-  const Margin<Real> margin(L(a_.size * b_.size) * error + L(edgeError_ * (a_.size + b_.size)) * reach, duration);
+  const Margin<Real> margin(L(a_.size * b_.size) * error + L(edgeError_ * (a_.size + b_.size)) * reach,
+                            L(a_.size * b_.size * clearance_), duration);
   for (int i = 0; i < 3; ++i) {
     LaneVec<Real> gapAcross, travelAcross;
     cross<Real>(gap, a_.edge[i], gapAcross);

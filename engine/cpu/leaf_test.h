@@ -45,6 +45,7 @@ class LeafTest {
   Matrix matrix_;
   Vector offset_, travel_;
   Real travelSize_ = 0;     // sum over the axes
+  Real clearance_ = 0;      // along any axis
   Real positionError_ = 0;  // error of a corner of A relative to one of B, along any axis
   Real edgeError_ = 0;      // error of an edge, except its own rounding
   bool usable_ = true;

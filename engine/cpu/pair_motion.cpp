@@ -18,7 +18,8 @@ double sizeAlong(const Vector& p, const Vector& sizes) {
 
 }  // namespace
 
-PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest) : span(latest) {
+PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double c, double latest)
+    : clearance(c), span(latest) {
   const Vector& unit = motion.unit;
   int fastest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -27,7 +28,7 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
   }
   // Once A has passed B along this axis, they do not meet any more.
   const int f = fastest;
-  const double way = std::abs(gap[f]) + a.extent[f] + b.extent[f] + a.error[f] + b.error[f];
+  const double way = std::abs(gap[f]) + a.extent[f] + b.extent[f] + a.error[f] + b.error[f] + clearance;
   if (const double passed = 1.01 * way / std::abs(unit[f]); passed < span) span = passed;
   for (int k = 0; k < 3; ++k) {
     travel[k] = span * unit[k];
@@ -41,7 +42,8 @@ RelativePlacement::RelativePlacement(const MeshAxes& own, const Placement& other
     const Vector& n = own.rows[k];
     offset[k] = side * dot(n, motion.gap);
     travel[k] = side * dot(n, motion.travel);
-    slack[k] = sizeAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;
+    rounding[k] = sizeAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;
+    slack[k] = rounding[k] + (motion.clearance > 0 ? 1.01 * std::hypot(n[0], n[1], n[2]) * motion.clearance : 0);
     magnitude[k] = 2 + std::abs(offset[k]) + std::abs(travel[k]);
     for (int j = 0; j < 3; ++j) {
       matrix[k][j] = n[0] * other.linear[0][j] + n[1] * other.linear[1][j] + n[2] * other.linear[2][j];

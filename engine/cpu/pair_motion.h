@@ -7,23 +7,24 @@ namespace radar::cpu {
 
 /// The motion of A past B. Time runs from 0 to 1; time 1 is distance `span`.
 struct PairMotion {
-  Vector gap;       ///< from B's origin to A's
-  Vector travel;    ///< of A per unit of time
-  Vector rounding;  ///< per world axis: bound on the error of a position or a displacement
-  double span;      ///< world units; no contact that matters comes later
+  Vector gap;        ///< from B's origin to A's
+  Vector travel;     ///< of A per unit of time
+  Vector rounding;   ///< per world axis: bound on the error of a position or a displacement
+  double clearance;  ///< world units: meshes meet when they come this near
+  double span;       ///< world units; no contact that matters comes later
 
   /// Contacts later than `latest` do not matter.
-  PairMotion(const Placement& a, const Placement& b, const Motion& motion, double latest);
+  PairMotion(const Placement& a, const Placement& b, const Motion& motion, double clearance, double latest);
 
   /// `distance` in units of time, rounded up; 1 at most.
   double timeOf(double distance) const { return span > 0 ? std::min((1 + 8 * kUnit) * (distance / span), 1.0) : 1.0; }
 };
 
 /// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error
-/// of at most `slack` along each axis.
+/// of at most `rounding` along each axis. With the motion's clearance, along each axis, that is `slack`.
 struct RelativePlacement {
   Matrix matrix;
-  Vector offset, travel, slack;
+  Vector offset, travel, rounding, slack;
   Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on the terms summed to place it
 
   /// `side`: 1 if the other mesh is the one in motion, else -1.

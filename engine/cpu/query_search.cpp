@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cpu/first_contact.h"
+#include "cpu/clearance.h"
 #include "cpu/swept_box.h"
 
 namespace radar::cpu {
@@ -15,6 +15,11 @@ Vector middleOf(const Mesh& mesh, const Placement& placement) {
     for (int k = 0; k < 3; ++k) middle[i] += placement.linear[i][k] * mesh.tree.nodes[0].centre[k];
   }
   return middle;
+}
+
+/// The longest side of a placed sensor's box.
+double longestSide(const Box& box) {
+  return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
 /// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
@@ -79,20 +84,24 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
   const Task task(query, scene, skipped);
   const Vector& extent = task.placement.extent;
-  FirstContact first(query, task.motion, middleOf(task.sensor, task.placement),
-                     std::max({extent[0], extent[1], extent[2]}));
-  forObjects(task, tree, first, [&](ObjectId id) {
-    first.beginObject(task.ruleFor(id));
-    searchObject(task, id, first);
-    first.endObject();
-  });
-  if (lists != nullptr) *lists = {first.nearest(), std::move(skipped)};
-  return first.first();
+  const double size = std::max({extent[0], extent[1], extent[2]});
+  const auto find = [&](auto&& finder) {
+    forObjects(task, tree, finder, [&](ObjectId id) {
+      finder.beginObject(task.ruleFor(id));
+      searchObject(task, id, finder);
+      finder.endObject();
+    });
+    if (lists != nullptr) *lists = {finder.nearest(), std::move(skipped)};
+    return finder.first();
+  };
+  if (query.clearance > 0)
+    return find(ClearanceContact(query, task.motion, longestSide(boxOf(task.sensor, query.worldFromMesh.m))));
+  return find(FirstContact(query, task.motion, middleOf(task.sensor, task.placement), size));
 }
 
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
   Query still = query;
-  still.distance = 0;
+  still.distance = still.clearance = 0;
   const Task task(still, scene, {});
   std::vector<ObjectId> found;
   CrossingTest test;
@@ -116,7 +125,12 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
   }
   const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
   if (nodes.empty()) return;
-  const SweptBox meets(boxOf(task.sensor, task.query.worldFromMesh.m), task.motion, tree);
+  Box box = boxOf(task.sensor, task.query.worldFromMesh.m);
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= task.query.clearance;
+    box.hi[k] += task.query.clearance;
+  }
+  const SweptBox meets(box, task.motion, tree);
   open_.resize(size_t{tree.depth()} + 2);
   Open* top = open_.data();
   const auto push = [&](double near, const gpu::ObjectNode& node) {
@@ -150,7 +164,7 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, PairVisitor& visit
   const gpu::MeshNode &rootA = task.sensor.tree.nodes[0], &rootB = mesh.tree.nodes[0];
   ++stats_.nodes;
   const Placement placement(mesh, object.worldFromMesh);
-  const PairMotion motion(task.placement, placement, task.motion, visitor.latest());
+  const PairMotion motion(task.placement, placement, task.motion, task.query.clearance, visitor.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
   const RelativePlacement fromSensor(task.axes, placement, motion, -1);

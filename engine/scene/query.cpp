@@ -47,10 +47,16 @@ std::string validate(const Query& query, const Scene& scene) {
   if (query.slack && !(std::isfinite(*query.slack) && *query.slack >= 0)) {
     return "slack: expected a finite number of 0 or more, got " + std::to_string(*query.slack);
   }
+  if (!std::isfinite(query.clearance) || query.clearance < 0) {
+    return "clearance: expected a finite number of 0 or more, got " + std::to_string(query.clearance);
+  }
+  if (query.tolerance && !(std::isfinite(*query.tolerance) && *query.tolerance >= 0)) {
+    return "tolerance: expected a finite number of 0 or more, got " + std::to_string(*query.tolerance);
+  }
   if (query.hits == 0) return "hits: expected 1 or more, got 0";
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
-  if (query.mode == Mode::sampled && (query.ignoreLeaving || hasLists(query))) {
-    return "mode: expected contact with ignoreLeaving, skipOverlapping or several hits, got sampled";
+  if (query.mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
+    return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
   }
   if (query.resolution > kMaxResolution) {
     return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);

@@ -95,7 +95,7 @@ void ContactTier::run(std::span<const size_t> which) {
   std::vector<size_t> onlyCpu;  // floats cannot hold them, or the device's search does not offer what they ask
   Clock::time_point start = Clock::now();
   for (const size_t i : which) {
-    if (hasLists(batch_.asked[i])) {
+    if (hasLists(batch_.asked[i]) || batch_.asked[i].clearance > 0) {
       onlyCpu.push_back(i);
       continue;
     }

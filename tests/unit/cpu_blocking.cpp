@@ -352,3 +352,81 @@ TEST_CASE("equal boxes stacked exactly let each other go upwards only") {
     REQUIRE(room.move(direction).status == status);
   }
 }
+
+namespace {
+
+/// The six rods of a burr, 2 x 2 x 6 cells each, in pairs along the axes. Each lacks what the rods before it have.
+std::vector<voxels::Solid> burr() {
+  std::vector<voxels::Solid> pieces;
+  std::set<voxels::Cell> taken;
+  for (int side : {-2, 0}) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      voxels::Solid& piece = pieces.emplace_back();
+      for (int along = -3; along < 3; ++along) {
+        for (int across : {side, side + 1}) {
+          for (int up : {-1, 0}) {
+            voxels::Cell cell;
+            cell[axis] = along;
+            cell[(axis + 1) % 3] = across;
+            cell[(axis + 2) % 3] = up;
+            if (taken.insert(cell).second) piece.insert(cell);
+          }
+        }
+      }
+    }
+  }
+  return pieces;
+}
+
+const std::vector<std::array<int, 3>>& directions26() {
+  static const std::vector<std::array<int, 3>> all = [] {
+    std::vector<std::array<int, 3>> list;
+    for (int i = 0; i < 27; ++i) {
+      if (i != 13) list.push_back({i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1});
+    }
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the blocking graph of a burr puzzle is the known one, and peeling takes the puzzle apart") {
+  const std::vector<voxels::Solid> pieces = burr();
+  Random random(1);
+  Scene scene;
+  std::vector<MeshId> meshes;
+  for (const voxels::Solid& piece : pieces) meshes.push_back(soups::add(scene, voxels::boundary(piece, random)));
+  for (const MeshId mesh : meshes) scene.addObject({mesh, Transform()});
+  CpuSweeper sweeper(scene, 2);
+  std::vector<ObjectId> removed;
+  for (size_t key = 0; key < pieces.size(); ++key) {
+    std::set<size_t> free;
+    for (size_t piece = 0; piece < pieces.size(); ++piece) {
+      if (std::find(removed.begin(), removed.end(), piece) != removed.end()) continue;
+      for (const std::array<int, 3>& direction : directions26()) {
+        Query query{.mesh = meshes[piece], .distance = 100, .exclude = removed};
+        for (size_t k = 0; k < 3; ++k) query.direction[k] = direction[k];
+        query.exclude.push_back(static_cast<ObjectId>(piece));
+        query.ignoreLeaving = true;
+        query.hits = kAllHits;
+        const Result first = sweeper.run({&query, 1})[0];
+        if (first.status == Status::clear) free.insert(piece);
+        std::map<ObjectId, double> expected, found;
+        for (ObjectId other = 0; other < pieces.size(); ++other) {
+          if (std::find(query.exclude.begin(), query.exclude.end(), other) != query.exclude.end()) continue;
+          const Rational s = voxels::begins(pieces[piece], pieces[other], direction);
+          const double length = std::hypot(direction[0], direction[1], direction[2]);
+          if (s >= 0) expected[other] = s.convert_to<double>() * length;
+        }
+        for (const Result& hit : sweeper.lists().hitsOf(0)) found[hit.object] = hit.t;
+        INFO("step " << key << ", piece " << piece << ", direction " << direction[0] << direction[1] << direction[2]);
+        REQUIRE(found.size() == expected.size());
+        for (const auto& [object, t] : expected) REQUIRE(found.at(object) == Approx(t).epsilon(1e-14));
+      }
+    }
+    REQUIRE(free.contains(key));
+    if (key == 0) REQUIRE(free.size() < 3);
+    removed.push_back(static_cast<ObjectId>(key));
+  }
+}

@@ -39,7 +39,7 @@ struct Pair {
         motion(query),
         placementA(a, poseA),
         placementB(b, poseB),
-        pairMotion(placementA, placementB, motion, query.distance),
+        pairMotion(placementA, placementB, motion, 0, query.distance),
         fromA(MeshAxes(placementA.linear), placementB, pairMotion, -1),
         fromB(MeshAxes(placementB.linear), placementA, pairMotion, 1) {}
 };

@@ -140,7 +140,8 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/0/hits", "\"some\"", "queries[0].hits: ", "or \"all\""},
       {"/queries/1/hits", "2", "queries[1].hits: ", "1 beside \"decide\""},
       {"/queries/1/ignore_leaving", "true", "queries[1].mode: ", "contact or reference"},
-      {"/queries/0/clearance", "1", "queries[0].clearance: ", "not available in this version"},
+      {"/queries/0/clearance", "-1", "queries[0].clearance: ", "a number of 0 or more"},
+      {"/queries/1/clearance", "1", "queries[1].mode: ", "contact or reference"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.pointer, c.value);
@@ -270,7 +271,8 @@ TEST_CASE("a query may ask what counts as a contact and for how many, and is wri
   Files files;
   nlohmann::json file = goodFile();
   file["queries"][0].update(
-      nlohmann::json::parse(R"({"ignore_leaving": true, "slack": 1e-9, "skip_overlapping": true, "hits": "all"})"));
+      nlohmann::json::parse(R"({"ignore_leaving": true, "slack": 1e-9, "skip_overlapping": true, "hits": "all",
+                              "clearance": 0.5})"));
   const Workload workload = files.read(file.dump());
   std::vector<std::string> warnings;
   const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
@@ -279,6 +281,7 @@ TEST_CASE("a query may ask what counts as a contact and for how many, and is wri
     CHECK(query.slack == 1e-9);
     CHECK(query.skipOverlapping);
     CHECK(query.hits == radar::kAllHits);
+    CHECK(query.clearance == 0.5);
   }
   CHECK_FALSE((workload.queries[1].ignoreLeaving || workload.queries[1].slack || workload.queries[1].skipOverlapping));
   CHECK(workload.queries[1].hits == 1);

@@ -24,7 +24,7 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
 /// Whether a query asks for what mode sampled does not offer; and what to use instead.
 bool needsExactMode(const QuerySpec& query);
 inline constexpr const char* kExactModes =
-    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\" and several \"hits\" need";
+    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\", \"clearance\" and several \"hits\" need";
 
 /// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them.
 const char* nameOf(AnswerMode mode);

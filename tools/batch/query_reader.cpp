@@ -16,7 +16,7 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "clearance", "top", "rotation"};
+constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "top", "rotation"};
 
 std::string readWhole(const std::filesystem::path& file, const char* kind) {
   std::error_code error;
@@ -180,7 +180,7 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 
 void Reader::readQuery(const JsonValue& query) {
   requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "decide", "mode", "speed",
-                           "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits"});
+                           "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits", "clearance"});
   QuerySpec spec;
   const JsonValue id = query.member("id");
   spec.id = id.string();
@@ -208,6 +208,7 @@ void Reader::readQuery(const JsonValue& query) {
     spec.hits = hits.json() == "all" ? kAllHits : hits.wholeNumberFrom1("\"all\"");
     if (spec.hits > 1 && spec.anyHit) hits.expected("1 beside \"decide\"");
   });
+  query.ifHas("clearance", [&](const JsonValue& clearance) { spec.clearance = clearance.numberFrom0(); });
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
@@ -228,7 +229,7 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 }
 
 bool needsExactMode(const QuerySpec& query) {
-  return query.ignoreLeaving || query.skipOverlapping || query.hits > 1;
+  return query.ignoreLeaving || query.skipOverlapping || query.hits > 1 || query.clearance > 0;
 }
 
 const char* nameOf(AnswerMode mode) {

@@ -84,6 +84,7 @@ std::string queryText(const QuerySpec& query) {
   if (query.slack) object.addNumber("slack", *query.slack);
   if (query.skipOverlapping) object.add("skip_overlapping", "true");
   if (query.hits != 1) object.add("hits", query.hits == kAllHits ? "\"all\"" : std::to_string(query.hits));
+  if (query.clearance > 0) object.addNumber("clearance", query.clearance);
   if (query.tolerance) object.addNumber("tolerance", *query.tolerance);
   return object.text();
 }

@@ -156,10 +156,13 @@ Workload SweepOptions::load() const {
   query.speed = speed;
   query.ignoreLeaving = ignoreLeaving;
   query.skipOverlapping = skipOverlapping;
-  if (slack && !(*slack >= 0 && std::isfinite(*slack))) {
-    throw InputError("--slack", "", "expected a finite number of 0 or more, got " + std::to_string(*slack));
+  for (const auto& [option, value] : {std::pair{"--slack", slack}, std::pair{"--clearance", clearance}}) {
+    if (value && !(*value >= 0 && std::isfinite(*value))) {
+      throw InputError(option, "", "expected a finite number of 0 or more, got " + std::to_string(*value));
+    }
   }
   query.slack = slack;
+  query.clearance = clearance.value_or(0);
   query.sensor = {1, poseFrom(at, rotate)};
 
   std::vector<std::string> warnings;

@@ -28,7 +28,7 @@ struct EngineOptions {
 struct SweepOptions {
   std::string scene, sensor;
   std::vector<double> direction, at, rotate;
-  std::optional<double> distance, speed, slack;
+  std::optional<double> distance, speed, slack, clearance;
   bool ignoreLeaving = false, skipOverlapping = false;
 
   /// All but the two files.

@@ -71,6 +71,10 @@ void addSweepCommand(CLI::App& app, int& status) {
                    "With these two: how far surfaces that touch may sink into each other, for rounding; else derived "
                    "from the coordinates")
       ->type_name("W");
+  command
+      ->add_option("--clearance", options->sweep.clearance,
+                   "Counts as contact when the surfaces come within this distance of each other")
+      ->type_name("C");
   options->engine.addTo(*command);
   command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
   command->callback([options, &status] { status = sweep(*options); });

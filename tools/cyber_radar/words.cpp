@@ -42,9 +42,11 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
   const std::string distance = inDigits(query.distance);
   switch (result.status) {
     case Status::hit:
-      return "hit: first contact after " + inDigits(result.t) + " of " + distance + " (" +
-             inDigits(100 * result.fraction) + "% of the way)\n  how     " +
+      return "hit: " + std::string(query.clearance > 0 ? "within " + inDigits(query.clearance) : "first contact") +
+             " after " + inDigits(result.t) + " of " + distance + " (" + inDigits(100 * result.fraction) +
+             "% of the way)\n  how     " +
              (result.tier == Tier::sampled ? "certainly no later; mode sampled does not say how much earlier"
+              : query.clearance > 0        ? "no earlier; certainly by " + inDigits(result.hi)
                                            : "exact, to rounding") +
              "\n" + contactInWords(workload, query, result);
     case Status::overlap:
@@ -52,6 +54,10 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
     case Status::clear:
       return "clear: certainly no contact within " + distance + "\n";
     case Status::undecided:
+      if (query.clearance > 0) {
+        return "undecided: passes at a distance of " + inDigits(query.clearance) + ", to rounding, after " +
+               inDigits(result.lo) + "\n";
+      }
       return std::string("undecided: ") +
              (result.detected == Detected::no ? "no pixel saw anything in the way" : "no pixel found a contact") +
              " within " + distance +

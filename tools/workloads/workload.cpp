@@ -58,6 +58,8 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.skipOverlapping = spec.skipOverlapping;
   query.slack = spec.slack;
   query.hits = spec.hits;
+  query.clearance = spec.clearance;
+  query.tolerance = spec.tolerance;
   query.resolution = resolution;
   return query;
 }

@@ -56,9 +56,10 @@ struct QuerySpec {
   bool ignoreLeaving = false, skipOverlapping = false;
   std::optional<double> slack;
   uint32_t hits = 1;
+  double clearance = 0;
   std::optional<AnswerMode> mode;   ///< overrides the command's
   std::optional<double> speed;      ///< units per second
-  std::optional<double> tolerance;  ///< world units; every exact answer meets it
+  std::optional<double> tolerance;  ///< world units; without a clearance every exact answer meets it
 };
 
 struct Workload {

@@ -147,7 +147,7 @@ class RADAR_API Scene {
 /// Which method answers a query.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
-  contact   ///< the exact search, on the device or on the CPU: never undecided
+  contact   ///< the exact search, on the device or on the CPU: never undecided, unless Query::clearance is above 0
 };
 
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
@@ -174,6 +174,13 @@ struct Query {
   /// touching. It is for rounding: far below the size of triangles. Without a value: 2^-48 times the greatest
   /// coordinate of the two shapes as placed (its terms' absolute values summed), which covers poses rounded once.
   std::optional<double> slack;
+  /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
+  /// is a lower bound on t*, and hi - lo at most `tolerance`, if rounding allows: surfaces that pass each other at the
+  /// clearance to within rounding are Status::undecided. `point` is of the touched surface. With `ignoreLeaving`, pairs
+  /// that do not block take no part, however near they come.
+  double clearance = 0;
+  /// With `clearance`, world units, at least 0. Without a value: 1e-6 of the longest side of the sensor's box.
+  std::optional<double> tolerance;
   /// Mode contact: lists the first contacts with this many nearest objects (Lists::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.
   uint32_t hits = 1;

@@ -1,0 +1,40 @@
+// Finds when a query's sensor comes within its clearance of an object: first, or of each of the nearest objects.
+#pragma once
+
+#include <vector>
+
+#include "cpu/approach.h"
+#include "cpu/first_contact.h"
+
+namespace radar::cpu {
+
+class ClearanceContact final : public PairVisitor {
+ public:
+  /// `size`: the sensor's, world units. `query` and `motion` must outlive this.
+  ClearanceContact(const Query& query, const Motion& motion, double size);
+
+  /// As of FirstContact.
+  void beginObject(const PairRule& rule) { rule_ = rule; }
+  void endObject();
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
+  Result first() const;
+  std::vector<Result> nearest() const;
+
+ private:
+  struct Near {
+    exact::PairName name;
+    Approach approach;
+    double lo;  ///< nothing considered together with this pair is within the clearance before this
+    bool precedes(const Near& other) const;
+  };
+  Result answer(const Near& near) const;
+
+  const Query& query_;
+  const Motion& motion_;
+  double tolerance_;
+  PairRule rule_;
+  std::vector<Near> best_;     // at most one: of all objects, or of the current one if several are asked for
+  std::vector<Near> nearest_;  // one per object, earliest first
+};
+
+}  // namespace radar::cpu

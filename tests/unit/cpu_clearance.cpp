@@ -1,0 +1,259 @@
+// Queries with a clearance: compares the CPU's answers with distances in long double, by brute force.
+#include "radar/cpu_sweeper.h"
+#include "soups.h"
+
+using namespace radar;
+using soups::Random;
+
+namespace {
+
+using Real = long double;
+using Point = std::array<Real, 3>;
+using Points = std::array<Point, 3>;
+
+Point operator-(const Point& p, const Point& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+Point operator+(const Point& p, const Point& q) {
+  return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
+}
+Point operator*(Real f, const Point& p) {
+  return {f * p[0], f * p[1], f * p[2]};
+}
+Real dot(const Point& p, const Point& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+
+Point crossProduct(const Point& p, const Point& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// Distance of a point and a segment; of two segments that are nearest at inner points; of a point and a face above it.
+Real fromSegment(const Point& p, const Point& from, const Point& to) {
+  const Point way = to - from;
+  const Real square = dot(way, way), at = square > 0 ? std::clamp<Real>(dot(p - from, way) / square, 0, 1) : 0;
+  const Point gap = p - (from + at * way);
+  return std::sqrt(dot(gap, gap));
+}
+Real acrossLines(const Point& a0, const Point& a1, const Point& b0, const Point& b1) {
+  const Point x = a1 - a0, y = b1 - b0, r = b0 - a0, n = crossProduct(x, y);
+  const Real nn = dot(n, n);
+  if (nn == 0) return INFINITY;
+  const Real s = dot(crossProduct(r, y), n) / nn, t = dot(crossProduct(r, x), n) / nn;
+  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? std::abs(dot(r, n)) / std::sqrt(nn) : INFINITY;
+}
+Real aboveFace(const Point& p, const Points& face) {
+  const Point x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = crossProduct(x, y);
+  const Real nn = dot(n, n);
+  if (nn == 0) return INFINITY;
+  const Real v = dot(crossProduct(r, y), n) / nn, w = dot(crossProduct(x, r), n) / nn;
+  return v >= 0 && w >= 0 && v + w <= 1 ? std::abs(dot(r, n)) / std::sqrt(nn) : INFINITY;
+}
+bool crosses(const Point& p, const Point& q, const Points& face) {
+  const Point n = crossProduct(face[1] - face[0], face[2] - face[0]);
+  const Real before = dot(n, p - face[0]), after = dot(n, q - face[0]);
+  return before * after < 0 && aboveFace(p + before / (before - after) * (q - p), face) < INFINITY;
+}
+
+Real distance(const Points& a, const Points& b) {
+  Real least = INFINITY;
+  for (size_t i = 0; i < 3; ++i) {
+    const Point &a0 = a[i], &a1 = a[(i + 1) % 3], &b0 = b[i], &b1 = b[(i + 1) % 3];
+    if (crosses(a0, a1, b) || crosses(b0, b1, a)) return 0;
+    least = std::min({least, aboveFace(a0, b), aboveFace(b0, a)});
+    for (size_t k = 0; k < 3; ++k) {
+      least = std::min({least, fromSegment(a0, b[k], b[(k + 1) % 3]), fromSegment(b0, a[k], a[(k + 1) % 3]),
+                        acrossLines(a0, a1, b[k], b[(k + 1) % 3])});
+    }
+  }
+  return least;
+}
+
+struct Pair {
+  Points a, b;
+  ObjectId object;
+};
+
+/// All pairs of a query that counts every object, relative to a point near them.
+std::vector<Pair> pairsOf(const Scene& scene, const Query& query) {
+  std::vector<Pair> pairs;
+  const MeshView sensor = scene.mesh(query.mesh);
+  const oracle::Corners first = oracle::corners(sensor, query.worldFromMesh, 0);
+  const auto relative = [&](const oracle::Corners& corners) {
+    Points out;
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t k = 0; k < 3; ++k) out[i][k] = Real{corners[i][k]} - Real{first[0][k]};
+    }
+    return out;
+  };
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    const MeshView mesh = scene.mesh(scene.object(id).mesh);
+    for (uint32_t triA = 0; triA < sensor.triangleCount(); ++triA) {
+      for (uint32_t triB = 0; triB < mesh.triangleCount(); ++triB) {
+        pairs.push_back({relative(oracle::corners(sensor, query.worldFromMesh, triA)),
+                         relative(oracle::corners(mesh, scene.object(id).worldFromMesh, triB)), id});
+      }
+    }
+  }
+  return pairs;
+}
+
+Real distanceAt(const Pair& pair, const Point& unit, Real t) {
+  Points moved;
+  for (size_t i = 0; i < 3; ++i) moved[i] = pair.a[i] + t * unit;
+  return distance(moved, pair.b);
+}
+
+/// The least distance for 0 <= t <= end: it is convex in t.
+Real leastDistance(const Pair& pair, const Point& unit, Real end) {
+  Real from = 0, to = end;
+  for (int i = 0; i < 80; ++i) {
+    const Real p = from + 0.382L * (to - from), q = from + 0.618L * (to - from);
+    if (distanceAt(pair, unit, p) < distanceAt(pair, unit, q)) {
+      to = q;
+    } else {
+      from = p;
+    }
+  }
+  return distanceAt(pair, unit, 0.5L * (from + to));
+}
+
+struct Counts {
+  int hit = 0, clear = 0, overlap = 0, undecided = 0;
+};
+
+void check(const Scene& scene, const Query& query, const Result& result, double size, Counts& counts) {
+  const auto& d = query.direction;
+  const Real length = std::sqrt(Real{d[0]} * d[0] + Real{d[1]} * d[1] + Real{d[2]} * d[2]);
+  const Point unit{d[0] / length, d[1] / length, d[2] / length};
+  const std::vector<Pair> pairs = pairsOf(scene, query);
+  const Real room = 1e-12L * size;  // for the rounding of both sides
+  const auto nothingBefore = [&](double end) {
+    for (const Pair& pair : pairs) REQUIRE(leastDistance(pair, unit, end) >= query.clearance - room);
+  };
+  const auto contactBy = [&](double t) {
+    Real least = INFINITY;
+    for (const Pair& pair : pairs) least = std::min(least, distanceAt(pair, unit, t));
+    REQUIRE(least <= query.clearance + room);
+  };
+  switch (result.status) {
+    case Status::clear:
+      ++counts.clear;
+      nothingBefore(query.distance);
+      break;
+    case Status::overlap:
+      ++counts.overlap;
+      contactBy(0);
+      break;
+    case Status::hit:
+      ++counts.hit;
+      REQUIRE((0 <= result.lo && result.lo <= result.t && result.t <= result.hi && result.hi <= query.distance));
+      REQUIRE(result.hi - result.lo <= query.tolerance.value_or(1e-5 * size) + 1e-12 * size);
+      nothingBefore(result.lo);
+      contactBy(result.hi);
+      REQUIRE(std::abs(std::hypot(result.normal[0], result.normal[1], result.normal[2]) - 1) <= 1e-14);
+      break;
+    default:
+      REQUIRE(result.status == Status::undecided);
+      ++counts.undecided;
+      nothingBefore(result.lo);
+  }
+}
+
+void runSoup(uint64_t seed, double scale, double far, Counts& counts) {
+  Random random(seed);
+  Scene scene;
+  const std::array<double, 3> centre{far * random.uniform(-1, 1), far * random.uniform(-1, 1), far};
+  const auto near = [&](double spread) {
+    auto p = random.inBall();
+    for (size_t k = 0; k < 3; ++k) p[k] = centre[k] + scale * spread * p[k];
+    return p;
+  };
+  std::vector<MeshId> meshes;
+  for (int m = 0; m < 2; ++m) {
+    meshes.push_back(soups::add(scene, soups::soup(random, random.integer(1, 6), random.uniform(0.05, 0.7), 0.2)));
+  }
+  for (int i = random.integer(1, 3); i-- > 0;) {
+    scene.addObject({meshes[1], random.pose(scale * random.uniform(0.3, 2), near(4))});
+  }
+  std::vector<Query> queries(3);
+  for (Query& query : queries) {
+    query.mesh = meshes[0];
+    query.worldFromMesh = random.pose(scale * random.uniform(0.3, 1), near(4));
+    const auto aim = random.inBall();
+    for (size_t k = 0; k < 3; ++k) {
+      query.direction[k] =
+          scene.object(0).worldFromMesh.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3] + scale * aim[k];
+    }
+    query.distance = scale * random.uniform(0, 12);
+    query.clearance = scale * std::exp(random.uniform(-7, 1));
+    if (random.chance(0.5)) query.tolerance = scale * std::exp(random.uniform(-20, -3));
+  }
+  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries);
+  for (size_t q = 0; q < queries.size(); ++q) {
+    INFO("seed " << seed << " scale " << scale << " far " << far << " query " << q);
+    check(scene, queries[q], results[q], 8 * scale, counts);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("contact with a clearance begins when the surfaces come that near") {
+  Counts counts;
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    runSoup(seed, 1, 0, counts);
+    runSoup(1000 + seed, 1e-4, 1, counts);
+    runSoup(2000 + seed, 1e4, 1e6, counts);
+  }
+  REQUIRE(counts.hit > 60);
+  REQUIRE(counts.clear > 60);
+  REQUIRE(counts.overlap > 20);
+  REQUIRE(counts.undecided == 0);
+}
+
+TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
+  Scene scene;
+  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
+  scene.addObject({box, soups::at(5, 0, 0)});
+  Query query{.mesh = box, .direction = {3, 0, 0}, .distance = 10};
+  query.clearance = 0.25;
+  const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1})[0]; };
+  CHECK(move().t == Approx(3.75).epsilon(1e-6));
+  CHECK(move().hi - move().lo <= 1e-6);
+  query.tolerance = 0;
+  CHECK(move().t == Approx(3.75).epsilon(1e-12));
+  CHECK(move().hi - move().lo <= 1e-12);
+  // Past the edge at a height of 0.15: the distance is that of the edges, sqrt(0.15^2 + x^2).
+  query.worldFromMesh = soups::at(0, 1.15, 0);
+  CHECK(move().t == Approx(4 - 0.2).epsilon(1e-12));
+  // Past the corner, 0.15 and 0.12 beside it.
+  query.worldFromMesh = soups::at(0, 1.15, 1.12);
+  CHECK(move().t == Approx(4 - std::sqrt(0.25 * 0.25 - 0.15 * 0.15 - 0.12 * 0.12)).epsilon(1e-12));
+  query.worldFromMesh = soups::at(0, 1.15, 1.24);
+  CHECK(move().status == Status::clear);
+  query.worldFromMesh = soups::at(3.9, 0, 0);
+  CHECK(move().status == Status::overlap);
+}
+
+TEST_CASE("with a clearance, contacts are listed for each object, and what does not block takes no part") {
+  Scene scene;
+  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
+  for (double x : {7.0, 5.0, 3.0}) scene.addObject({box, soups::at(x, 0, 0)});
+  const ObjectId beside = scene.addObject({box, soups::at(0, 1, 0)});
+  Query query{.mesh = box, .direction = {1, 0, 0}, .distance = 10};
+  query.clearance = 0.5;
+  query.hits = kAllHits;
+  CpuSweeper sweeper(scene, 1);
+  REQUIRE(sweeper.run({&query, 1})[0].object == beside);
+  REQUIRE(sweeper.lists().hitsOf(0).size() == 4);
+  query.ignoreLeaving = true;
+  const Result first = sweeper.run({&query, 1})[0];
+  CHECK(first.object == 2);
+  CHECK(first.t == Approx(1.5).epsilon(1e-6));
+  const auto hits = sweeper.lists().hitsOf(0);
+  REQUIRE(hits.size() == 3);
+  CHECK((hits[0].object == 2 && hits[1].object == 1 && hits[2].object == 0));
+  query.hits = 2;
+  sweeper.run({&query, 1});
+  CHECK(sweeper.lists().hitsOf(0).size() == 2);
+}

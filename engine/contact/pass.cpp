@@ -17,10 +17,11 @@
 //                                                the other list of tasks
 // After the last round:                                                                 computeWriteToIndirect
 // filter    states, counts, candidates           counts, refined pairs                  computeWriteToComputeReadWrite
-// block     scene, sweeps, counts                refined pairs                          computeWriteToComputeReadWrite
-//             (only with doubles, and if a query ignores what does not block)
 // refine    scene, sweeps, counts                refined pairs, states                  computeWriteToComputeReadWrite
 //             (only with doubles)
+// block     scene, sweeps, counts,               refined pairs, states                  computeWriteToComputeReadWrite
+//             refined pairs
+//             (only with doubles, and if a query ignores what does not block)
 // link      states, counts                       refined pairs, heads                   computeWriteToComputeReadWrite
 // resolve   scene, sweeps, states, heads,        counts, results, unresolved            (the caller's)
 //           refined pairs
@@ -186,7 +187,8 @@ void ContactPass::setArguments() {
                {kSlotCandidatePairs, candidates_},
                {kSlotRefinedPairs, refinedPairs_}});
   if (block_) {
-    block_->set({{kSlotCounts, counts_},
+    block_->set({{kSlotStates, states_},
+                 {kSlotCounts, counts_},
                  {kSlotRefinedPairs, refinedPairs_},
                  {kSlotVertices, scene.vertices},
                  {kSlotTriangles, scene.triangles},
@@ -239,12 +241,12 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   gpu::computeWriteToIndirect(commands);
   filter_.dispatchIndirect(commands, counts_, 0, gpu::FilterPush{candidateRoom_});
   gpu::computeWriteToComputeReadWrite(commands);
-  if (block_ && ignoresLeaving_) {
-    block_->dispatchIndirect(commands, counts_, 0);
-    gpu::computeWriteToComputeReadWrite(commands);
-  }
   if (refine_) {
     refine_->dispatchIndirect(commands, counts_, 0);
+    gpu::computeWriteToComputeReadWrite(commands);
+  }
+  if (block_ && ignoresLeaving_) {
+    block_->dispatchIndirect(commands, counts_, 0);
     gpu::computeWriteToComputeReadWrite(commands);
   }
   link_.dispatchIndirect(commands, counts_, 0);

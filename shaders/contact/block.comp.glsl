@@ -1,5 +1,6 @@
-// Decides which refined pairs block, for the sensors that ignore all others (docs/exact.md, "Pairs that block"). The decisions
-// are those of engine/exact/blocking.cpp, in doubles with error bounds; what they leave open is left to the CPU.
+// Decides which refined pairs block, for the sensors that ignore all others (docs/exact.md, "Pairs that block"), and lowers
+// their upper bounds. The decisions are those of engine/exact/blocking.cpp, in doubles with error bounds; what they leave open
+// is left to the CPU.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,11 +12,14 @@
 
 layout(local_size_x = kContactGroup) in;
 
+layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
 layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+
+#include "lower_hi.glsl"
 
 // ---- numbers with error bounds -----------------------------------------------------------------------------------------
 
@@ -165,22 +169,19 @@ double magnitudeOf(PreciseRows pose, MeshRecord mesh) {
   return greatest;
 }
 
-int blocks(Sweep sweep, RefinedPair c) {
-  dvec3 a[3], b[3];
-  cornersInOrder(sweep.pose, c.slotA, a);
-  cornersInOrder(objects[c.object].pose, c.slotB, b);
+Bounded slackOf(Sweep sweep, RefinedPair c) {
+  if (sweep.slack >= 0.0LF) return Bounded(sweep.slack, 0.0LF);
+  const double magnitude = max(sweep.magnitude, magnitudeOf(objects[c.object].pose, meshes[objects[c.object].mesh]));
+  const double value = 3.552713678800501e-15LF * magnitude;  // 2^-48
+  return Bounded(value, 3.8e-6LF * value);                   // more than the rounding of a box to floats
+}
+
+int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
   for (int i = 0; i < 3; ++i) {
     cornersA[i] = difference(a[i], a[0]);
     cornersB[i] = difference(b[i], a[0]);
     edgesA[i] = difference(a[(i + 1) % 3], a[i]);
     edgesB[i] = difference(b[(i + 1) % 3], b[i]);
-  }
-  direction = exactly(dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
-  slack = Bounded(sweep.slack, 0.0LF);
-  if (sweep.slack < 0.0LF) {
-    const double magnitude = max(sweep.magnitude, magnitudeOf(objects[c.object].pose, meshes[objects[c.object].mesh]));
-    slack.value = 3.552713678800501e-15LF * magnitude;  // 2^-48
-    slack.error = 3.8e-6LF * slack.value;               // more than the rounding of a box to floats
   }
   const BoundedVector normalA = crossProduct(edgesA[0], edgesA[1]), normalB = crossProduct(edgesB[0], edgesB[1]);
   const int mirroredA = sweep.isMirrored != 0 ? kYes : kNo, mirroredB = isMirroring(objects[c.object].pose);
@@ -191,11 +192,61 @@ int blocks(Sweep sweep, RefinedPair c) {
   return flush == kOpen ? kOpen : areInseparable(normalA, normalB);
 }
 
+// -1 or 1: the side of the plane through the origin with the normal x cross y on which w is, if w is certainly farther from it
+// than the slack; else 0.
+int sideBeyond(dvec3 w, dvec3 x, dvec3 y) {
+  const BoundedVector n = crossProduct(difference(x, dvec3(0.0LF)), difference(y, dvec3(0.0LF)));
+  const Bounded at = inner(difference(w, dvec3(0.0LF)), n);
+  const dvec3 sizes = abs(n.value) + n.error;
+  const double margin = at.error + 1.001LF * (slack.value + slack.error) * max(sizes.x, max(sizes.y, sizes.z));
+  return at.value > margin ? 1 : at.value < -margin ? -1 : 0;
+}
+
+// Whether contact at a certain feature ahead certainly blocks, because everything within the slack of it is inside both parts,
+// as seen along the direction: certainlyBlocks of engine/cpu/certificate.cpp. Corners are sorted.
+bool certainlyBlocks(uint feature, dvec3 a[3], dvec3 b[3]) {
+  const dvec3 d = direction.value;
+  if (feature < kFeatureEdges) {
+    const bool ofA = feature >= 3;
+    const dvec3 corner = ofA ? b[feature - 3] : a[feature];
+    const dvec3 f0 = ofA ? a[0] : b[0], f1 = ofA ? a[1] : b[1], f2 = ofA ? a[2] : b[2];
+    const int sides = sideBeyond(f0 - corner, d, f1 - f0) + sideBeyond(f1 - corner, d, f2 - f1) +
+                      sideBeyond(f2 - corner, d, f0 - f2);
+    return abs(sides) == 3 && sideBeyond(f0 - corner, f1 - f0, f2 - f0) != 0;
+  }
+  const uint i = (feature - kFeatureEdges) / 3, k = (feature - kFeatureEdges) % 3;
+  const dvec3 a0 = i == 1 ? a[1] : a[0], a1 = i == 0 ? a[1] : a[2], b0 = k == 1 ? b[1] : b[0], b1 = k == 0 ? b[1] : b[2];
+  const dvec3 x = a1 - a0, y = b1 - b0, w = b0 - a0, z = b[k == 0 ? 2 : k == 1 ? 0 : 1] - b0;
+  // Triangles in one plane, up to the slack, are judged by another rule.
+  if (sideBeyond(w, y, z) == 0 && sideBeyond(b0 - a1, y, z) == 0) return false;
+  return sideBeyond(w, d, x) * sideBeyond(b1 - a0, d, x) < 0 && sideBeyond(w, d, y) * sideBeyond(b0 - a1, d, y) < 0 &&
+         sideBeyond(w, x, y) != 0;
+}
+
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (i >= counts.refinedPairs) return;
   const RefinedPair c = refinedPairs[i];
-  if (sweeps[c.sensor].ignoreLeaving == 0) return;
-  const int answer = blocks(sweeps[c.sensor], c);
-  refinedPairs[i].flags = answer == kYes ? 0 : answer == kNo ? kPairPasses : kPairMayPass;
+  const Sweep sweep = sweeps[c.sensor];
+  if (sweep.ignoreLeaving == 0 || c.first > uintBitsToFloat(states[c.sensor].hi)) return;
+  dvec3 a[3], b[3];
+  cornersInOrder(sweep.pose, c.slotA, a);
+  cornersInOrder(objects[c.object].pose, c.slotB, b);
+  direction = exactly(dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  slack = slackOf(sweep, c);
+  bool isCertain = false;
+  if ((c.flags & kPairMeets) != 0 && c.at > c.error) {
+    dvec3 sortedA[3] = a, sortedB[3] = b;
+    sortCorners(sortedA);
+    sortCorners(sortedB);
+    isCertain = certainlyBlocks(c.flags & 0xffu, sortedA, sortedB);
+  }
+  const int answer = isCertain ? kYes : blocks(sweep, c, a, b);
+  if (answer == kNo) {
+    refinedPairs[i].low = 1.0e200LF;
+    refinedPairs[i].first = 1e38;
+  }
+  // Nothing is certain of a pair that may not block.
+  if (answer != kYes) refinedPairs[i].flags = 0;
+  if (answer == kYes && (c.flags & kPairMeets) != 0) lowerHi(c.sensor, sweep, c.at + c.error);
 }

@@ -88,8 +88,6 @@ struct RefinedPair {
   float first;   // `low`, scaled, rounded down
   uint padding;
 };
-INTEROP_CONST kPairMayPass = 0x1000; // may not block, so nothing else about it is certain
-INTEROP_CONST kPairPasses = 0x800;   // does not block, so it does not count
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
 INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier

@@ -15,9 +15,8 @@ void cornersInOrder(PreciseRows pose, uint slot, out dvec3 p[3]) {
   }
 }
 
-// Sorted, so that an edge shared by two triangles has the same bits in both.
-void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
-  cornersInOrder(pose, slot, p);
+// So that an edge shared by two triangles has the same bits in both.
+void sortCorners(inout dvec3 p[3]) {
   for (int pass = 0; pass < 3; ++pass) {
     const int i = pass & 1;
     const bool swap = before(p[i + 1], p[i]);
@@ -25,4 +24,9 @@ void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
     p[i] = lower;
     p[i + 1] = upper;
   }
+}
+
+void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
+  cornersInOrder(pose, slot, p);
+  sortCorners(p);
 }

@@ -17,10 +17,7 @@ layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { Refin
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
 
-// Lower bounds are lowered and upper bounds raised by this, relative to their value: products may round them inwards.
-const double kRounded = 8.881784197001252e-16LF;
-// The same for a float.
-const double kRoundedFloat = 2.4e-7LF;
+#include "lower_hi.glsl"
 
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
@@ -30,20 +27,17 @@ void main() {
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
-  Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
-  m.ahead = m.ahead && (c.flags & (kPairPasses | kPairMayPass)) == 0;
+  const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
   // A contact that ends before the start counts as never.
-  const bool isPossible = m.latest >= 0.0LF && (c.flags & kPairPasses) == 0;
-  const double low = isPossible ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
+  const double low = m.latest >= 0.0LF ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;
   refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && m.by < 0.0LF ? kPairPierces : 0) |
                         (sharp ? kPairSharp : 0) | (m.feature & 0xffu);
-  const double scale = double(sweep.scale), by = max(m.at + m.error, 0.0LF) * sweep.directionLength * scale;
+  const double scale = double(sweep.scale);
   refinedPairs[i].first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
-  if (m.ahead && by < double(uintBitsToFloat(states[c.sensor].hi))) {
-    atomicMin(states[c.sensor].hi, floatBitsToUint(float(by * (1.0LF + kRoundedFloat)) + 1e-37));
-  }
+  // Whether a pair counts that may not block is decided next.
+  if (m.ahead && sweep.ignoreLeaving == 0) lowerHi(c.sensor, sweep, m.at + m.error);
 }

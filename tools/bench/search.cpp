@@ -1,6 +1,7 @@
 // The exact searches beside each other: on the device, on the processor with one thread and with all, and what mode
 // contact makes of both.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -95,22 +96,61 @@ std::vector<Batch> cut(const Batch& all, uint32_t size) {
   return parts;
 }
 
+/// The sweepers of one workload.
+struct Searches {
+  Sweeper contact, onDevice;
+  CpuSweeper cpu, oneThread;
+  Searches(const Device& device, const Scene& scene, unsigned threads)
+      : contact(device, scene), onDevice(device, scene, {.cpuBatch = 0}), cpu(scene, threads), oneThread(scene, 1) {
+    for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
+  }
+};
+
+template <class AnySweeper>
+Method plain(const char* name, AnySweeper& sweeper) {
+  return {name, [&](auto queries) { return sweeper.run(queries); }};
+}
+
+/// Asks each query changed by `change`, once and for all before the passes that count.
+template <class AnySweeper, class Change>
+Method changed(const char* name, AnySweeper& sweeper, const Change& change) {
+  auto kept = std::make_shared<std::map<const Query*, std::vector<Query>>>();
+  return {name, [&sweeper, change, kept](std::span<const Query> queries) {
+            std::vector<Query>& asked = (*kept)[queries.data()];
+            if (asked.empty()) {
+              asked.assign(queries.begin(), queries.end());
+              for (Query& query : asked) change(query);
+            }
+            return sweeper.run(asked);
+          }};
+}
+
+std::vector<Method> exactSearches(Searches& by) {
+  return {plain("cpu", by.cpu), plain("cpu 1 thread", by.oneThread), plain("contact", by.contact),
+          plain("device", by.onDevice)};
+}
+
+// What counts as a contact, and how many are listed. Where nothing touches at the start, the answers are the same.
+std::vector<Method> kindsOfContact(Searches& by) {
+  const auto leaving = [](Query& query) { query.ignoreLeaving = true; };
+  return {plain("cpu 1 thread", by.oneThread), changed("leaving ignored", by.oneThread, leaving),
+          changed("all hits", by.oneThread, [](Query& query) { query.hits = kAllHits; }), plain("device", by.onDevice),
+          changed("device, leaving ignored", by.onDevice, leaving)};
+}
+
 // Where there are several scenes they are the steps of a motion: the trees and the device's copy follow the scene
 // within the time measured.
-void run(const Device& device, const Case& one, const Settings& settings, int& status) {
+void run(const Device& device, const Case& one, const Settings& settings, std::vector<Method> methodsOf(Searches&),
+         int& status) {
   const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
   const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
   const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
   tools::ScenePlayer player(workload);
   const auto show = [&](uint32_t scene) { player.show(scene); };
   show(batches[0].scene);
-  Sweeper contact(device, player.scene()), onDevice(device, player.scene(), {.cpuBatch = 0});
-  CpuSweeper cpu(player.scene(), settings.threads), oneThread(player.scene(), 1);
-  for (Sweeper* sweeper : {&contact, &onDevice}) sweeper->sync();
-  const std::vector<Method> methods{{"cpu", [&](auto queries) { return cpu.run(queries); }, show},
-                                    {"cpu 1 thread", [&](auto queries) { return oneThread.run(queries); }, show},
-                                    {"contact", [&](auto queries) { return contact.run(queries); }, show},
-                                    {"device", [&](auto queries) { return onDevice.run(queries); }, show}};
+  Searches searches(device, player.scene(), settings.threads);
+  std::vector<Method> methods = methodsOf(searches);
+  for (Method& method : methods) method.prepare = show;
   const Repetition repetition{.seconds = settings.seconds};
   if (batches.size() > 1) {
     printRows(one.name, methods, batches, repetition, status);
@@ -124,10 +164,12 @@ void run(const Device& device, const Case& one, const Settings& settings, int& s
 
 }  // namespace
 
-void addSearch(CLI::App& app, int& status) {
+namespace {
+
+void add(CLI::App& app, const char* name, const char* about, std::vector<Method> methodsOf(Searches&), int& status) {
   std::vector<std::string> names;
   for (const Case& one : allCases()) names.push_back(one.name);
-  CLI::App* command = app.add_subcommand("search", "The exact searches, on the device and on the processor");
+  CLI::App* command = app.add_subcommand(name, about);
   auto settings = std::make_shared<Settings>();
   command->add_option("workload", settings->cases, "Which; all, where none is named")->check(CLI::IsMember(names));
   command
@@ -136,14 +178,23 @@ void addSearch(CLI::App& app, int& status) {
   command->add_option("--seconds", settings->seconds, "For each batch size, once there are 3 rounds")
       ->capture_default_str();
   command->add_option("--threads", settings->threads, "Of the processor's search")->capture_default_str();
-  command->callback([settings, &status] {
+  command->callback([settings, methodsOf, &status] {
     const Device device = Device::open();
     printHead({&device, 1});
     for (const Case& one : allCases()) {
       const auto& wanted = settings->cases;
-      if (wanted.empty() || std::count(wanted.begin(), wanted.end(), one.name) > 0) run(device, one, *settings, status);
+      if (!wanted.empty() && std::count(wanted.begin(), wanted.end(), one.name) == 0) continue;
+      run(device, one, *settings, methodsOf, status);
     }
   });
+}
+
+}  // namespace
+
+void addSearch(CLI::App& app, int& status) {
+  add(app, "search", "The exact searches, on the device and on the processor", exactSearches, status);
+  add(app, "contacts", "What counts as a contact, and lists of contacts, against the first contact", kindsOfContact,
+      status);
 }
 
 }  // namespace radar::bench

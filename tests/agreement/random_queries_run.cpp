@@ -38,7 +38,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
-  bool withoutDoubles = false, composedDivision = false;
+  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false;
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
   const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
@@ -49,6 +49,7 @@ int main(int argc, char** argv) try {
   app.add_option("--device", index, "As `cyber-radar devices` numbers them");
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
   app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
+  app.add_flag("--ignore-leaving", ignoreLeaving, "Every query counts only pairs of triangles that block");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = known;
 
@@ -72,7 +73,9 @@ int main(int argc, char** argv) try {
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),
                    static_cast<unsigned long long>(each));
     };
-    const Tally tally = run.run({family, seed, first, each}, onWrong, onProgress);
+    const Tally tally =
+        run.run({.family = family, .seed = seed, .first = first, .cases = each, .ignoreLeaving = ignoreLeaving},
+                onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);
     all.add(tally);

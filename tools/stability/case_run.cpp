@@ -102,6 +102,7 @@ struct CaseRun::Stage {
     const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
     std::vector<Query> queries;
     for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size], Mode::contact));
+    for (Query& query : queries) query.ignoreLeaving = range.ignoreLeaving;
     if (range.family == kAtDistance) moveDistances(queries, next);
     return queries;
   }

@@ -46,6 +46,7 @@ struct CaseRange {
   std::string family;
   uint64_t seed = 1, first = 0, cases = 0;
   Company company = Company::mixed;  ///< meshes are always mixed
+  bool ignoreLeaving = false;        ///< of every query
 };
 
 class CaseRun {

@@ -43,15 +43,22 @@ exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query
   return placed;
 }
 
-bool blocks(const gpu::UnresolvedPair& pair, const exact::PlacedPair& placed, const Query& query,
-            const Vector& direction, const GpuScene& scene) {
+// Considers a pair by the rule of a query that ignores what does not block.
+void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& inOrder,
+                      const exact::PlacedPair& sorted, const Query& query, const Vector& direction,
+                      const GpuScene& scene, exact::EarliestContact& earliest) {
   const Transform worldFromObject = poseOf(pair);
   const double slack =
       query.slack ? *query.slack
                   : exact::defaultSlack(std::max(placedMagnitude(scene.farthest(query.mesh), query.worldFromMesh),
                                                  placedMagnitude(scene.farthest(pair.mesh), worldFromObject)));
-  return exact::blocks(placed.a, placed.b, direction, slack,
-                       {exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)});
+  const exact::Mirrored mirrored{exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)};
+  const exact::PairName name{pair.object, pair.triB, pair.triA};
+  if (exact::arePressed(inOrder.a, inOrder.b, direction, slack, mirrored)) {
+    earliest.considerPressed(name, sorted);
+  } else if (exact::blocks(inOrder.a, inOrder.b, direction, slack, mirrored)) {
+    earliest.consider(name, sorted);
+  }
 }
 
 }  // namespace
@@ -61,12 +68,16 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
   const Motion motion(query);
   exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {
-    exact::PlacedPair placed = placedPair(*pair, query);
-    if (query.ignoreLeaving && !blocks(*pair, placed, query, motion.direction, scene)) continue;
+    const exact::PlacedPair inOrder = placedPair(*pair, query);
     // Sorted, so that the device's numbering of corners does not matter.
-    std::sort(placed.a.begin(), placed.a.end());
-    std::sort(placed.b.begin(), placed.b.end());
-    earliest.consider({pair->object, pair->triB, pair->triA}, placed);
+    exact::PlacedPair sorted = inOrder;
+    std::sort(sorted.a.begin(), sorted.a.end());
+    std::sort(sorted.b.begin(), sorted.b.end());
+    if (query.ignoreLeaving) {
+      considerBlocking(*pair, inOrder, sorted, query, motion.direction, scene, earliest);
+    } else {
+      earliest.consider({pair->object, pair->triB, pair->triA}, sorted);
+    }
     if (query.anyHit && earliest.found()) break;
   }
   if (!earliest.found() && found.detected == Detected::yes) {

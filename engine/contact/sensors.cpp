@@ -56,8 +56,15 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   const Mesh& mesh = scene.meshes[query.mesh];
   gpu::Sensor sensor{};
   sensor.placement = placementOf(mesh, query.worldFromMesh);
+  Box box = boxOf(mesh, query.worldFromMesh.m);
+  if (query.ignoreLeaving && query.slack) {
+    sensor.placement.error = roundUp(sensor.placement.error + 2 * *query.slack);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] -= 2 * *query.slack;
+      box.hi[k] += 2 * *query.slack;
+    }
+  }
   if (!isInRange(sensor.placement)) return Planned::outOfRange;
-  const Box box = boxOf(mesh, query.worldFromMesh.m);
   const Vector centre{box.middle(0), box.middle(1), box.middle(2)};
   const double farthest = farthestOf(tree.worldBox(), centre);
   const double size = std::max(double{sensor.placement.size}, kLeastShare * farthest);
@@ -75,9 +82,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sensor.scale = static_cast<float>(scale);
   sensor.unscale = static_cast<float>(1 / scale);
   // A contact that is certain wherever the slack moves a corner blocks. Twice the slack, since it may also tilt planes:
-  // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block").
-  if (query.ignoreLeaving && query.slack) sensor.frame[3] = roundUp(std::min(2 * *query.slack * scale, kMostDistance));
-  // By default the slack is at most a sixteenth of either placement's error.
+  // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block"). By default the slack is at most
+  // a sixteenth of either placement's error.
   if (query.ignoreLeaving && !query.slack) sensor.frame[7] = 0.125f;
   sensor.distance = roundUp(distance);
   sensor.stopBefore = query.anyHit ? roundDown(distance) : -1.0f;

@@ -66,22 +66,27 @@ std::optional<Vector> onFace(const Vector& p, const exact::Triangle& face) {
   return face[0] + v * x + w * y;
 }
 
-/// Where an edge crosses a face; none if it does not.
-std::optional<Vector> crossing(const Vector& p, const Vector& q, const exact::Triangle& face) {
+/// Where an edge crosses a face: the points of both, which rounding may keep apart.
+struct Crossing {
+  Vector onEdge, onFace;
+};
+std::optional<Crossing> crossing(const Vector& p, const Vector& q, const exact::Triangle& face) {
   const Vector n = crossProduct(face[1] - face[0], face[2] - face[0]);
   const double before = dot(n, p - face[0]), after = dot(n, q - face[0]);
   if (!(before * after < 0)) return std::nullopt;
-  return onFace(p + (before / (before - after)) * (q - p), face);
+  const Vector at = p + std::clamp(before / (before - after), 0.0, 1.0) * (q - p);
+  const auto above = onFace(at, face);
+  return above ? std::optional(Crossing{at, *above}) : std::nullopt;
 }
 
 Nearest nearestPoints(const exact::Triangle& a, const exact::Triangle& b) {
-  Nearest nearest;
+  Nearest nearest{a[0], b[0]};
   for (size_t i = 0; i < 3; ++i) {
     for (size_t k = 0; k < 3; ++k) offerEdges(nearest, a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]);
     if (const auto p = onFace(a[i], b)) nearest.offer(a[i], *p);
     if (const auto p = onFace(b[i], a)) nearest.offer(*p, b[i]);
-    if (const auto p = crossing(a[i], a[(i + 1) % 3], b)) nearest.offer(*p, *p);
-    if (const auto p = crossing(b[i], b[(i + 1) % 3], a)) nearest.offer(*p, *p);
+    if (const auto at = crossing(a[i], a[(i + 1) % 3], b)) nearest.offer(at->onEdge, at->onFace);
+    if (const auto at = crossing(b[i], b[(i + 1) % 3], a)) nearest.offer(at->onFace, at->onEdge);
   }
   return nearest;
 }
@@ -119,22 +124,40 @@ Moment momentAt(const exact::Triangle& edges, const exact::Triangle& gaps, const
   return m;
 }
 
-/// Sets point and normal. `corner`: corner 0 of the moving triangle.
-void describe(Approach& found, const Moment& m, const Vector& corner) {
-  found.point = corner + m.nearest.b;
+/// Sets point, relative to corner 0 of the moving triangle, and normal.
+void describe(Approach& found, const Moment& m) {
+  found.point = m.nearest.b;
   const Vector gap = m.nearest.a - m.nearest.b;
   if (m.least > 0) found.normal = (1 / std::sqrt(dot(gap, gap))) * gap;
+}
+
+/// Scales back. `corner`: corner 0 of the moving triangle, at the start.
+Approach inWorld(Approach found, const Vector& corner, const Vector& unit, double unscale) {
+  found.lo *= unscale;
+  found.hi *= unscale;
+  found.point = corner + found.lo * unit + unscale * found.point;
+  return found;
 }
 
 }  // namespace
 
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& unit,
-                                 double clearance, double distance, double tolerance) {
+                                 double givenClearance, double givenDistance, double givenTolerance) {
   exact::Triangle edges, gaps;
+  double size = givenClearance;
   for (size_t i = 0; i < 3; ++i) {
     edges[i] = a[i] - a[0];
     gaps[i] = b[i] - a[0];
+    size = std::max({size, norm1(edges[i]), norm1(gaps[i])});
   }
+  // Scaled by a power of two to about 1, so that products neither overflow nor underflow.
+  const int exponent = std::clamp(std::ilogb(size), -1000, 1000);
+  const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
+  for (size_t i = 0; i < 3; ++i) {
+    edges[i] = scale * edges[i];
+    gaps[i] = scale * gaps[i];
+  }
+  const double clearance = scale * givenClearance, distance = scale * givenDistance, tolerance = scale * givenTolerance;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Approach found{0, kInfinity, {kNan, kNan, kNan}, {kNan, kNan, kNan}};
   // The distance is convex in t. So contact fills one interval, which lies between found.lo and `end`.
@@ -144,8 +167,8 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
     const double least = std::max(0.5 * tolerance, 4 * m.error);
     if (m.most <= clearance) {
       found.hi = t;
-      describe(found, t == 0 ? m : momentAt(edges, gaps, unit, found.lo), a[0] + found.lo * unit);
-      return found;
+      describe(found, t == 0 ? m : momentAt(edges, gaps, unit, found.lo));
+      return inWorld(found, a[0], unit, unscale);
     }
     if (m.least > clearance) {
       // No contact while the plane, which moves at a constant rate, is farther than the clearance.
@@ -158,23 +181,23 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
       } else if (to >= end || std::isinf(to)) {
         end = std::min(end, from * (1 + 4 * kUnit));
       } else {
-        return found;
+        return inWorld(found, a[0], unit, unscale);
       }
       if (found.lo > distance || found.lo >= end) return std::nullopt;
       step = least;
       const double next = std::min({found.lo + step, 0.5 * found.lo + 0.5 * end, distance});
       // A motion along the plane leaves no room for another step.
-      if (next == t) return found;
+      if (next == t) return inWorld(found, a[0], unit, unscale);
       t = next;
     } else {
       // Rounding leaves open whether the triangles are within the clearance now.
       step = std::max(2 * step, least);
       const double next = std::min({t + step, 0.5 * t + 0.5 * end, distance});
-      if (m.rate + kRateError <= 0 || next <= t) return found;
+      if (m.rate + kRateError <= 0 || next <= t) return inWorld(found, a[0], unit, unscale);
       t = next;
     }
   }
-  return found;
+  return inWorld(found, a[0], unit, unscale);
 }
 
 }  // namespace radar::cpu

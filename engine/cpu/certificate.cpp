@@ -91,10 +91,20 @@ int sideBeyond(const Vector& w, const Vector& x, const Vector& y, double slack) 
   return std::abs(rough.value) > rough.error + margin ? exact::signOf(rough.value) : 0;
 }
 
+/// Whether some corner is certainly farther than `slack` from the plane of a face.
+bool leavesPlane(const exact::Triangle& face, const exact::Triangle& corners, double slack) {
+  const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
+  return sideBeyond(minus(corners[0], face[0]), x, y, slack) != 0 ||
+         sideBeyond(minus(corners[1], face[0]), x, y, slack) != 0 ||
+         sideBeyond(minus(corners[2], face[0]), x, y, slack) != 0;
+}
+
 }  // namespace
 
 bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
                      double slack) {
+  // Triangles in one plane, up to the slack, are judged by another rule.
+  if (!leavesPlane(a, b, slack) || !leavesPlane(b, a, slack)) return false;
   if (feature < 6) {
     const bool ofA = feature >= 3;
     const exact::Triangle& face = ofA ? a : b;
@@ -109,9 +119,6 @@ bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Tri
   const int i = (feature - 6) / 3, k = (feature - 6) % 3;
   const Vector &a0 = a[i], &a1 = a[(i + 1) % 3], &b0 = b[k], &b1 = b[(k + 1) % 3];
   const Vector x = minus(a1, a0), y = minus(b1, b0), w = minus(b0, a0);
-  // Triangles in one plane, up to the slack, are judged by another rule.
-  const Vector z = minus(b[(k + 2) % 3], b0);
-  if (sideBeyond(w, y, z, slack) == 0 && sideBeyond(minus(b0, a1), y, z, slack) == 0) return false;
   return sideBeyond(w, d, x, slack) * sideBeyond(minus(b1, a0), d, x, slack) < 0 &&
          sideBeyond(w, d, y, slack) * sideBeyond(minus(b0, a1), d, y, slack) < 0 && sideBeyond(w, x, y, slack) != 0;
 }

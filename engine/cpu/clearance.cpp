@@ -17,12 +17,17 @@ ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, dou
     : PairVisitor(motion.distance),
       query_(query),
       motion_(motion),
-      tolerance_(query.tolerance.value_or(kTolerance * size)) {}
+      tolerance_(query.tolerance.value_or(kTolerance * size)),
+      lo_(std::numeric_limits<double>::infinity()) {}
+
+bool ClearanceContact::Near::isCertain() const {
+  return !std::isinf(approach.hi);
+}
 
 // Certain approaches come before open ones.
 bool ClearanceContact::Near::precedes(const Near& other) const {
   if (approach.hi != other.approach.hi) return approach.hi < other.approach.hi;
-  if (std::isinf(approach.hi) && approach.lo != other.approach.lo) return approach.lo < other.approach.lo;
+  if (!isCertain() && approach.lo != other.approach.lo) return approach.lo < other.approach.lo;
   return name < other.name;
 }
 
@@ -31,6 +36,7 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
   if (query_.ignoreLeaving && !exact::blocks(pair.a, pair.b, motion_.direction, rule_.slack, rule_.mirrored)) return;
   const auto found = approach(pair.a, pair.b, motion_.unit, query_.clearance, motion_.distance, tolerance_);
   if (!found) return;
+  lo_ = std::min(lo_, found->lo);
   Near near{name, *found, found->lo};
   if (best_.empty()) {
     best_.push_back(near);
@@ -39,7 +45,7 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
     if (!near.precedes(best_[0])) return;
     best_[0] = near;
   }
-  decided_ = query_.anyHit && !std::isinf(near.approach.hi);
+  decided_ = query_.anyHit && near.isCertain();
   atStart_ = near.approach.hi == 0;
   first_ = name;
   latest_ = std::min(latest_, near.approach.hi);
@@ -47,9 +53,13 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
 
 void ClearanceContact::endObject() {
   if (query_.hits == 1 || best_.empty()) return;
-  const auto isBefore = [](const Near& p, const Near& q) { return p.precedes(q); };
-  nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), best_[0], isBefore), best_[0]);
-  if (nearest_.size() > query_.hits) nearest_.pop_back();
+  if (best_[0].isCertain()) {
+    const auto isBefore = [](const Near& p, const Near& q) { return p.precedes(q); };
+    nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), best_[0], isBefore), best_[0]);
+    if (nearest_.size() > query_.hits) nearest_.pop_back();
+  } else {
+    open_.push_back(best_[0]);
+  }
   latest_ = motion_.distance;
   if (nearest_.size() == query_.hits) latest_ = std::min(latest_, nearest_.back().approach.hi);
   atStart_ = false;
@@ -58,24 +68,17 @@ void ClearanceContact::endObject() {
 
 Result ClearanceContact::answer(const Near& near) const {
   Result result;
-  const double hi = near.approach.hi;
   result.lo = near.lo;
-  if (std::isinf(hi)) {
+  result.object = near.name.object;
+  if (!near.isCertain()) {
     result.status = Status::undecided;
     return result;
   }
   result.detected = Detected::yes;
-  if (query_.anyHit) {
-    result.status = Status::hit;
-    result.lo = 0;
-    result.hi = motion_.distance;
-    return result;
-  }
-  result.status = hi == 0 ? Status::overlap : Status::hit;
-  result.hi = hi;
-  result.t = near.approach.lo;
+  result.status = near.approach.hi == 0 ? Status::overlap : Status::hit;
+  result.t = near.lo;
+  result.hi = near.approach.hi;
   result.fraction = motion_.distance > 0 ? result.t / motion_.distance : 0;
-  result.object = near.name.object;
   result.triB = near.name.triB;
   result.triA = near.name.triA;
   result.point = exact::withoutZeroSigns(near.approach.point);
@@ -84,25 +87,30 @@ Result ClearanceContact::answer(const Near& near) const {
 }
 
 Result ClearanceContact::first() const {
-  const std::vector<Near>& found = nearest_.empty() ? best_ : nearest_;
-  if (found.empty()) {
-    Result clear;
-    clear.status = Status::clear;
-    return clear;
-  }
+  const std::vector<Near>& found = !nearest_.empty() ? nearest_ : !best_.empty() ? best_ : open_;
+  Result result;
+  result.status = Status::clear;
+  if (found.empty()) return result;
   Near first = found[0];
-  for (const Near& near : found) first.lo = std::min(first.lo, near.lo);
-  return answer(first);
+  first.lo = lo_;
+  if (first.isCertain() && !query_.anyHit) return answer(first);
+  // No ids, as of any decision and of what is undecided.
+  result.status = first.isCertain() ? Status::hit : Status::undecided;
+  result.lo = first.isCertain() ? 0 : lo_;
+  if (first.isCertain()) result.hi = motion_.distance;
+  if (first.isCertain()) result.detected = Detected::yes;
+  return result;
 }
 
 std::vector<Result> ClearanceContact::nearest() const {
   std::vector<Result> results;
-  results.reserve(nearest_.size());
+  const bool isFull = nearest_.size() == query_.hits;
   for (const Near& near : nearest_) results.push_back(answer(near));
-  const auto place = [](const Result& result) {
-    return std::pair(std::isnan(result.t) ? result.lo : result.t, result.object);
-  };
-  std::sort(results.begin(), results.end(), [&](const Result& p, const Result& q) { return place(p) < place(q); });
+  for (const Near& near : open_) {
+    if (!isFull || near.lo <= nearest_.back().approach.hi) results.push_back(answer(near));
+  }
+  std::sort(results.begin(), results.end(),
+            [](const Result& p, const Result& q) { return p.lo != q.lo ? p.lo < q.lo : p.object < q.object; });
   return results;
 }
 

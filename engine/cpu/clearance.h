@@ -25,6 +25,8 @@ class ClearanceContact final : public PairVisitor {
     exact::PairName name;
     Approach approach;
     double lo;  ///< nothing considered together with this pair is within the clearance before this
+
+    bool isCertain() const;
     bool precedes(const Near& other) const;
   };
   Result answer(const Near& near) const;
@@ -33,8 +35,10 @@ class ClearanceContact final : public PairVisitor {
   const Motion& motion_;
   double tolerance_;
   PairRule rule_;
+  double lo_;                  // nothing is within the clearance before this
   std::vector<Near> best_;     // at most one: of all objects, or of the current one if several are asked for
   std::vector<Near> nearest_;  // one per object, earliest first
+  std::vector<Near> open_;     // of objects that rounding leaves open
 };
 
 }  // namespace radar::cpu

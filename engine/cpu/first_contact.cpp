@@ -29,6 +29,9 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
       return earliest_.considerKnown(name, pair, event);
     }
   }
+  if (query_.ignoreLeaving && exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
+    return earliest_.considerPressed(name, pair);
+  }
   if (!mayMeet(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_)) return false;
   return doesBlock() && earliest_.consider(name, pair);
 }
@@ -51,7 +54,7 @@ void FirstContact::limit(const exact::EarliestContact& contact) {
     const double s = rough ? exact::parameter(first) : first.s + first.error;
     latest = s * motion_.length * (1 + 8 * kUnit);
   }
-  latest_ = std::min(motion_.distance, latest);
+  latest_ = std::min(latest_, latest);
 }
 
 void FirstContact::endObject() {
@@ -73,9 +76,6 @@ std::vector<Result> FirstContact::nearest() const {
   std::vector<Result> results;
   results.reserve(nearest_.size());
   for (const exact::EarliestContact& contact : nearest_) results.push_back(contact.answer(false));
-  // Times that differ by less than their rounding may be equal as doubles.
-  std::sort(results.begin(), results.end(),
-            [](const Result& p, const Result& q) { return p.t != q.t ? p.t < q.t : p.object < q.object; });
   return results;
 }
 

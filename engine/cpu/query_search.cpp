@@ -126,9 +126,11 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
   const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
   if (nodes.empty()) return;
   Box box = boxOf(task.sensor, task.query.worldFromMesh.m);
+  // Boxes have room for the default slack.
+  const double room = std::max(task.query.clearance, 2 * task.query.slack.value_or(0));
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= task.query.clearance;
-    box.hi[k] += task.query.clearance;
+    box.lo[k] -= room;
+    box.hi[k] += room;
   }
   const SweptBox meets(box, task.motion, tree);
   open_.resize(size_t{tree.depth()} + 2);
@@ -164,7 +166,10 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, PairVisitor& visit
   const gpu::MeshNode &rootA = task.sensor.tree.nodes[0], &rootB = mesh.tree.nodes[0];
   ++stats_.nodes;
   const Placement placement(mesh, object.worldFromMesh);
-  const PairMotion motion(task.placement, placement, task.motion, task.query.clearance, visitor.latest());
+  // Faces that are pressed together may have passed each other by the slack.
+  const double room = task.query.ignoreLeaving ? 2 * task.ruleFor(id).slack : 0;
+  const PairMotion motion(task.placement, placement, task.motion, std::max(task.query.clearance, room),
+                          visitor.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
   const RelativePlacement fromSensor(task.axes, placement, motion, -1);

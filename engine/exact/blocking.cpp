@@ -95,7 +95,7 @@ class Pair {
     const Number facing = inner(normalA_, normalB_);
     Answer flush = isPositive(mirrored.a == mirrored.b ? Number(0) - facing : facing);
     if (flush == Answer::no) return flush;
-    flush = both(flush, both(isThin(normalA_), isThin(normalB_)));
+    flush = both(flush, either(isThin(normalA_), isThin(normalB_)));
     for (size_t i = 0; i < 3 && flush != Answer::no; ++i) {
       flush = both(flush, overlapAlong(crossProduct(normalA_, edgesA_[i])));
       flush = both(flush, overlapAlong(crossProduct(normalB_, edgesB_[i])));
@@ -185,6 +185,13 @@ Answer decideBlocks(const Triangle& a, const Triangle& b, const Vector& directio
 }
 
 template <class Number>
+Answer decidePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
+  const Pair<Number> pair(a, b, &direction, slack);
+  const Answer flush = pair.areFlush(mirrored);
+  return flush == Answer::no ? flush : both(flush, pair.isAgainstB(mirrored.b));
+}
+
+template <class Number>
 Answer decideCross(const Triangle& a, const Triangle& b, double slack) {
   return Pair<Number>(a, b, nullptr, slack).areInseparable();
 }
@@ -202,6 +209,13 @@ bool blocks(const Triangle& a, const Triangle& b, const Vector& direction, doubl
   if (rough != Answer::open) return rough == Answer::yes;
   countExactDecision();
   return decideBlocks<Dyadic>(a, b, direction, slack, mirrored) == Answer::yes;
+}
+
+bool arePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
+  const Answer rough = decidePressed<Bounded>(a, b, direction, slack, mirrored);
+  if (rough != Answer::open) return rough == Answer::yes;
+  countExactDecision();
+  return decidePressed<Dyadic>(a, b, direction, slack, mirrored) == Answer::yes;
 }
 
 bool cross(const Triangle& a, const Triangle& b, double slack) {

@@ -28,9 +28,13 @@ struct Mirrored {
 };
 
 /// Whether triangle a, in motion along `direction`, is blocked by b. Corners are as placed at the start, in the order
-/// of their meshes. In one plane, up to the slack, triangles that face each other and overlap by more than the slack
-/// are pressed together: they block exactly if the direction goes against the normal of b.
+/// of their meshes. Triangles in the plane of either, up to the slack, that face each other and overlap by more than
+/// the slack are pressed together: they block exactly if the direction goes against the normal of b.
 bool blocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored);
+
+/// Whether they block because they are pressed together. They then touch at the start, up to the slack, even if
+/// rounding has let them pass each other.
+bool arePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored);
 
 /// Whether the triangles cross by more than the slack: no n has n . (a - b) >= -slack for all corners.
 bool cross(const Triangle& a, const Triangle& b, double slack);

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "exact/common_point.h"
+#include "exact/determinant.h"
+#include "exact/event.h"
 
 namespace radar::exact {
 
@@ -11,6 +13,14 @@ bool EarliestContact::consider(const PairName& name, const PlacedPair& pair) {
   const auto interval = contact(pair.a, pair.b, motion_->direction);
   if (!interval || sign(interval->last) < 0) return false;
   return keep(name, pair, interval->first, sign(interval->first) <= 0);
+}
+
+bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pair) {
+  const auto interval = contact(pair.a, pair.b, motion_->direction);
+  if (interval && sign(interval->last) >= 0) return keep(name, pair, interval->first, sign(interval->first) <= 0);
+  // Any event before the start will do.
+  const Vector& d = motion_->direction;
+  return keep(name, pair, vertexVertex(d, d, kOrigin), true);
 }
 
 bool EarliestContact::considerKnown(const PairName& name, const PlacedPair& pair, const Event& first) {

@@ -31,11 +31,15 @@ class EarliestContact {
   /// The same for a contact that is known to begin at `first`, not before the start.
   bool considerKnown(const PairName& name, const PlacedPair& pair, const Event& first);
 
+  /// The same for a pair that touches at the start, up to the slack of a query, if it has not met before: see
+  /// arePressed().
+  bool considerPressed(const PairName& name, const PlacedPair& pair);
+
   bool found() const { return found_; }
   /// Whether the earliest contact is at the start.
   bool overlaps() const { return overlap_; }
   const PairName& name() const { return name_; }
-  /// Where contact of the pair begins; before the start if overlaps().
+  /// Where contact of the pair begins; not after the start, or unknown, if overlaps().
   const Event& event() const { return event_; }
   /// Whether this contact comes before another one, by (time, name). Both are found, for the same motion.
   bool precedes(const EarliestContact& other) const;

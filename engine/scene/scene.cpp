@@ -118,8 +118,8 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
   }
   Box box = boxOfLocal(mesh, parentFromLocal);
   for (int row = 0; row < 3; ++row) {
-    box.lo[row] -= 0x1p-48 * magnitude;
-    box.hi[row] += 0x1p-48 * magnitude;
+    box.lo[row] -= 0x1p-47 * magnitude;
+    box.hi[row] += 0x1p-47 * magnitude;
   }
   return box;
 }

@@ -141,7 +141,7 @@ int overlapAlong(BoundedVector n) {
 // negative.
 int areFlush(int facing, BoundedVector normalA, BoundedVector normalB) {
   int flush = facing;
-  if (flush != kNo) flush = min(flush, min(isThin(normalA), isThin(normalB)));
+  if (flush != kNo) flush = min(flush, max(isThin(normalA), isThin(normalB)));
   for (int i = 0; i < 3 && flush != kNo; ++i) {
     flush = min(flush, min(overlapAlong(crossProduct(normalA, edgesA[i])), overlapAlong(crossProduct(normalB, edgesB[i]))));
   }
@@ -189,7 +189,9 @@ int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
   const int facing = signed(isPositive(inner(normalA, normalB)), -signed(mirroredA, mirroredB));
   const int flush = areFlush(facing, normalA, normalB);
   if (flush == kYes) return signed(isPositive(inner(direction, normalB)), mirroredB);
-  return flush == kOpen ? kOpen : areInseparable(normalA, normalB);
+  // A pair that has parted can only be pressed together.
+  const bool parted = (c.flags & kPairParted) != 0;
+  return flush == kOpen ? kOpen : parted ? kNo : areInseparable(normalA, normalB);
 }
 
 // -1 or 1: the side of the plane through the origin with the normal x cross y on which w is, if w is certainly farther from it
@@ -202,10 +204,19 @@ int sideBeyond(dvec3 w, dvec3 x, dvec3 y) {
   return at.value > margin ? 1 : at.value < -margin ? -1 : 0;
 }
 
+// Whether some corner is certainly farther than the slack from the plane of a face.
+bool leavesPlane(dvec3 face[3], dvec3 corners[3]) {
+  const dvec3 x = face[1] - face[0], y = face[2] - face[0];
+  return sideBeyond(corners[0] - face[0], x, y) != 0 || sideBeyond(corners[1] - face[0], x, y) != 0 ||
+         sideBeyond(corners[2] - face[0], x, y) != 0;
+}
+
 // Whether contact at a certain feature ahead certainly blocks, because everything within the slack of it is inside both parts,
 // as seen along the direction: certainlyBlocks of engine/cpu/certificate.cpp. Corners are sorted.
 bool certainlyBlocks(uint feature, dvec3 a[3], dvec3 b[3]) {
   const dvec3 d = direction.value;
+  // Triangles in the plane of either, up to the slack, are judged by another rule.
+  if (!leavesPlane(a, b) || !leavesPlane(b, a)) return false;
   if (feature < kFeatureEdges) {
     const bool ofA = feature >= 3;
     const dvec3 corner = ofA ? b[feature - 3] : a[feature];
@@ -216,9 +227,7 @@ bool certainlyBlocks(uint feature, dvec3 a[3], dvec3 b[3]) {
   }
   const uint i = (feature - kFeatureEdges) / 3, k = (feature - kFeatureEdges) % 3;
   const dvec3 a0 = i == 1 ? a[1] : a[0], a1 = i == 0 ? a[1] : a[2], b0 = k == 1 ? b[1] : b[0], b1 = k == 0 ? b[1] : b[2];
-  const dvec3 x = a1 - a0, y = b1 - b0, w = b0 - a0, z = b[k == 0 ? 2 : k == 1 ? 0 : 1] - b0;
-  // Triangles in one plane, up to the slack, are judged by another rule.
-  if (sideBeyond(w, y, z) == 0 && sideBeyond(b0 - a1, y, z) == 0) return false;
+  const dvec3 x = a1 - a0, y = b1 - b0, w = b0 - a0;
   return sideBeyond(w, d, x) * sideBeyond(b1 - a0, d, x) < 0 && sideBeyond(w, d, y) * sideBeyond(b0 - a1, d, y) < 0 &&
          sideBeyond(w, x, y) != 0;
 }
@@ -246,7 +255,8 @@ void main() {
     refinedPairs[i].low = 1.0e200LF;
     refinedPairs[i].first = 1e38;
   }
-  // Nothing is certain of a pair that may not block.
-  if (answer != kYes) refinedPairs[i].flags = 0;
-  if (answer == kYes && (c.flags & kPairMeets) != 0) lowerHi(c.sensor, sweep, c.at + c.error);
+  // Nothing is certain of a pair that may not block, and only the CPU answers one that has parted and is pressed together.
+  const bool meets = answer == kYes && (c.flags & kPairMeets) != 0, touches = answer == kYes && (c.flags & kPairParted) != 0;
+  if (answer != kYes || touches) refinedPairs[i].flags = 0;
+  if (meets || touches) lowerHi(c.sensor, sweep, touches ? 0.0LF : c.at + c.error);
 }

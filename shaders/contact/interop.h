@@ -15,9 +15,8 @@ namespace gpu {
 // The input of a search.
 struct Sensor {
   Placement placement;
-  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the first two rows:
-                   // by how much the slack of a query that ignores what does not block may move a corner, scaled, as a
-                   // number and as a share of both placements' errors
+  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the second row: by how much
+                   // a default slack may move a corner, as a share of both placements' errors
   Point direction; // unit, world
   float scale;
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
@@ -88,6 +87,7 @@ struct RefinedPair {
   float first;   // `low`, scaled, rounded down
   uint padding;
 };
+INTEROP_CONST kPairParted = 0x800;   // certainly does not meet at or after the start
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
 INTEROP_CONST kPairSharp = 0x100;    // certainly begins at `at`, no earlier

@@ -29,13 +29,15 @@ void main() {
   placedCorners(objects[c.object].pose, c.slotB, b);
   const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
-  // A contact that ends before the start counts as never.
-  const double low = m.latest >= 0.0LF ? max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded) : kNever;
+  // A contact that ends before the start counts as never, unless the pair may be pressed together (block.comp).
+  const bool parted = m.latest < 0.0LF;
+  const double begins = max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded);
+  const double low = !parted ? begins : sweep.ignoreLeaving != 0 ? 0.0LF : kNever;
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;
   refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && m.by < 0.0LF ? kPairPierces : 0) |
-                        (sharp ? kPairSharp : 0) | (m.feature & 0xffu);
+                        (sharp ? kPairSharp : 0) | (parted ? kPairParted : 0) | (m.feature & 0xffu);
   const double scale = double(sweep.scale);
   refinedPairs[i].first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
   // Whether a pair counts that may not block is decided next.

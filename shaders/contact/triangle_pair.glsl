@@ -49,7 +49,7 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const mat3 frame = rows(sensorTexel(sensor, kTexelFrame).xyz, sensorTexel(sensor, kTexelFrame + 1).xyz,
                           sensorTexel(sensor, kTexelFrame + 2).xyz);
   const float scale = sensorTexel(sensor, kTexelDirection).w;
-  const float slack = sensorTexel(sensor, kTexelFrame).w + sensorTexel(sensor, kTexelFrame + 1).w * scale *
+  const float slack = sensorTexel(sensor, kTexelFrame + 1).w * scale *
                       (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
   PairFrame f;
   f.originA = originA.xyz;

@@ -92,6 +92,36 @@ TEST_CASE("the device's answers to queries that ignore what does not block have 
   REQUIRE(later > 150);
 }
 
+TEST_CASE("boxes pressed together, though rounding has let them pass each other, have the CPU's bits") {
+  Random random(5);
+  for (int scene = 0; scene < 20; ++scene) {
+    Batch batch;
+    const MeshId box = soups::add(batch.scene, soups::box(0.5, 0.5, 0.5));
+    const Transform rest = scene % 2 == 0 ? soups::at(0, 0, random.uniform(-9, 9)) : random.pose(1, {1, 2, 3});
+    batch.scene.addObject({box, rest});
+    for (int i = 0; i < 40; ++i) {
+      Query query{.mesh = box, .worldFromMesh = rest, .distance = random.chance(0.5) ? 0.5 : 5};
+      const double sunk = i % 4 == 0 ? random.uniform(0, 1e-3) : random.integer(-2, 2) * 0x1p-52;
+      for (size_t k : {0, 1, 2}) {
+        query.worldFromMesh.m[4 * k + 3] += (1 - sunk) * rest.m[4 * k + 2];
+        query.direction[k] = -rest.m[4 * k + 2] + (i % 3 == 0 ? random.uniform(-1, 1) : 0);
+      }
+      query.ignoreLeaving = true;
+      if (i % 4 == 0) query.slack = 1e-3;
+      query.anyHit = i % 5 == 0;
+      batch.queries.push_back(query);
+    }
+    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+    Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
+    const std::vector<Result> results = sweeper.run(batch.queries);
+    for (size_t i = 0; i < results.size(); ++i) {
+      INFO("scene " << scene << " query " << i);
+      expected[i].tier = results[i].tier;
+      REQUIRE(test::sameBits(results[i], expected[i]));
+    }
+  }
+}
+
 TEST_CASE("a body on a fine floor is answered by the device alone") {
   if (!test::device().doubles()) return;
   // Two floors of 20 x 20 squares: 800 triangles each, in one plane, under a box of 4 x 4 squares.

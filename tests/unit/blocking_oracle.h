@@ -82,16 +82,18 @@ inline Faced faced(const Corners& corners, bool mirrored) {
   return out;
 }
 
-/// Whether the planes are one and the triangles face each other and overlap, all up to the slack.
+/// Whether the triangles are in the plane of either, face each other and overlap, all up to the slack.
 inline bool areFlush(const Faced& a, const Faced& b, const Rational& slack) {
   if (dot(a.normal, b.normal) >= 0) return false;
-  for (const RationalVec* n : {&a.normal, &b.normal}) {
+  const auto isThin = [&](const RationalVec& n) {
     for (const RationalVec& p : a.corners) {
       for (const RationalVec& q : b.corners) {
-        if (abs(dot(*n, minus(p, q))) > slack * detail::largest(*n)) return false;
+        if (abs(dot(n, minus(p, q))) > slack * detail::largest(n)) return false;
       }
     }
-  }
+    return true;
+  };
+  if (!isThin(a.normal) && !isThin(b.normal)) return false;
   for (const Faced* face : {&a, &b}) {
     for (int i = 0; i < 3; ++i) {
       const RationalVec n = cross(face->normal, minus(face->corners[(i + 1) % 3], face->corners[i]));
@@ -113,6 +115,13 @@ inline std::vector<RationalVec> differences(const Faced& a, const Faced& b) {
     for (const RationalVec& q : b.corners) out.push_back(minus(p, q));
   }
   return out;
+}
+
+/// Whether they are flush, and the direction goes against the normal of b.
+inline bool arePressed(const Corners& a, bool mirroredA, const Corners& b, bool mirroredB, const Corner& direction,
+                       double slack) {
+  const Faced p = faced(a, mirroredA), q = faced(b, mirroredB);
+  return areFlush(p, q, Rational(slack)) && dot(rationals(direction), q.normal) < 0;
 }
 
 /// Whether triangle a, in motion along `direction`, is blocked by b.

@@ -1,4 +1,5 @@
 // Queries with a clearance: compares the CPU's answers with distances in long double, by brute force.
+#include "cpu/approach.h"
 #include "radar/cpu_sweeper.h"
 #include "soups.h"
 
@@ -256,4 +257,58 @@ TEST_CASE("with a clearance, contacts are listed for each object, and what does 
   query.hits = 2;
   sweeper.run({&query, 1});
   CHECK(sweeper.lists().hitsOf(0).size() == 2);
+}
+
+TEST_CASE("needles that pass by a hair are not certified as within a smaller clearance") {
+  // Each 1e8 times as long as wide; 2.2e-9 apart.
+  const exact::Triangle a{{{0x1.aa51c62c6ad3ep-5, 0x1.3897dc1b0c184p-1, -0x1.3e93f252e8b33p-1},
+                           {0x1.aa4d94e6ab9b4p-1, 0x1.dad18ed17d042p-3, -0x1.ffb43ec88ae9fp-4},
+                           {0x1.ac8e94f82e196p-2, 0x1.16235818f9b22p+0, 0x1.84960350bfb79p-2}}};
+  const exact::Triangle b{{{0, 0, 0},
+                           {0x1.3c51124454f07p-1, 0x1.2d32801c4f815p-1, -0x1.0b25d7eda9225p-1},
+                           {0x1.182d76eb6f728p-1, 0x1.0ac91a8e403e8p-1, -0x1.d940a4fe60dcap-2}}};
+  for (const double clearance : {1e-9, 1e-11, 2e-14}) {
+    const auto found = cpu::approach(a, b, {1, 0, 0}, clearance, 0, 0);
+    CHECK((!found || std::isinf(found->hi)));
+  }
+}
+
+TEST_CASE("a clearance works at every scale") {
+  for (const double scale : {1e-160, 1e-30, 1e30, 1e150}) {
+    const exact::Triangle a{{{0, 0, 0}, {0, scale, 0}, {0, 0, scale}}};
+    exact::Triangle b = a;
+    for (Vector& corner : b) corner[0] = 4 * scale;
+    const auto found = cpu::approach(a, b, {1, 0, 0}, scale, 10 * scale, 1e-6 * scale);
+    REQUIRE(found);
+    CHECK(found->lo / scale == Approx(3).epsilon(1e-5));
+    CHECK(found->hi / scale == Approx(3).epsilon(1e-5));
+    CHECK((found->lo <= 3 * scale && 3 * scale <= found->hi));
+  }
+}
+
+TEST_CASE("an object that passes at the clearance, to rounding, widens the bracket and is listed") {
+  Scene scene;
+  // The cube [0, 1]^3.
+  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
+  scene.addObject({box, soups::at(5, 0, 0)});
+  scene.addObject({box, soups::at(6, 0.2, 0)});
+  const ObjectId beside = scene.addObject({box, soups::at(2.5, 1.25, 0)});
+  Query query{.mesh = box, .direction = {1, 0, 0}, .distance = 10};
+  query.clearance = 0.25;
+  CpuSweeper sweeper(scene, 1);
+  for (const uint32_t hits : {1u, 2u, 3u, kAllHits}) {
+    query.hits = hits;
+    const Result result = sweeper.run({&query, 1})[0];
+    CAPTURE(hits);
+    CHECK(result.object == 0);
+    CHECK(result.lo <= 1.5);
+    CHECK(result.lo >= 1.4999);
+    CHECK(result.t == result.lo);
+    CHECK(result.hi == Approx(3.75));
+    if (hits == 1) continue;
+    const auto listed = sweeper.lists().hitsOf(0);
+    REQUIRE(listed.size() == 3);
+    CHECK((listed[0].object == beside && listed[0].status == Status::undecided && std::isnan(listed[0].hi)));
+    CHECK((listed[1].object == 0 && listed[2].object == 1));
+  }
 }

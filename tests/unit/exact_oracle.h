@@ -173,9 +173,10 @@ inline Corners corners(const radar::MeshView& mesh, const radar::Transform& pose
   return out;
 }
 
-/// Brute force over all pairs. `counts` tells of a placed pair, of the sensor and of the object, whether it counts.
-template <class Counts>
-Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts& counts) {
+/// Brute force over all pairs. `counts` and `touches` tell of a placed pair, of the sensor and of the object, whether
+/// it counts, and whether it touches at the start though it has parted.
+template <class Counts, class Touches>
+Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts& counts, const Touches& touches) {
   Answer best;
   const radar::MeshView sensor = scene.mesh(query.mesh);
   for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
@@ -186,13 +187,16 @@ Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts
       const Corners b = corners(mesh, scene.object(id).worldFromMesh, triB);
       for (uint32_t triA = 0; triA < sensor.triangleCount(); ++triA) {
         auto interval = contact(corners(sensor, query.worldFromMesh, triA), b, query.direction);
-        if (!interval || interval->last.sign() < 0) continue;
-        Fraction s = interval->first;
+        const Corners a = corners(sensor, query.worldFromMesh, triA);
+        const bool parted = !interval || interval->last.sign() < 0;
+        if (parted && (best.found && best.s.sign() == 0)) continue;
+        if (parted && !touches(id, a, b)) continue;
+        Fraction s = parted ? Fraction{} : interval->first;
         if (s.sign() < 0) s = {};
         // The loops visit ids in increasing order, so the first of equals stays.
         if (best.found && compare(s, best.s) >= 0) continue;
         if (compareToDistance(s, query.direction, query.distance) > 0) continue;
-        if (!counts(id, corners(sensor, query.worldFromMesh, triA), b)) continue;
+        if (!parted && !counts(id, a, b)) continue;
         best = {true, s, id, triB, triA};
       }
     }
@@ -201,7 +205,8 @@ Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts
 }
 
 inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
-  return answer(scene, query, [](radar::ObjectId, const Corners&, const Corners&) { return true; });
+  const auto always = [](radar::ObjectId, const Corners&, const Corners&) { return true; };
+  return answer(scene, query, always, [](radar::ObjectId, const Corners&, const Corners&) { return false; });
 }
 
 }  // namespace oracle

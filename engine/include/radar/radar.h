@@ -170,14 +170,16 @@ struct Query {
   /// Mode contact: objects whose surfaces cross the sensor's at the start, by more than the slack, take no part and are
   /// listed (Lists::overlapping). Whether a motion deepens an interpenetration cannot be told from surfaces.
   bool skipOverlapping = false;
-  /// With the two above, world units: how far surfaces may sink into each other at the start and still count as
-  /// touching. It is for rounding: far below the size of triangles. Without a value: 2^-48 times the greatest
-  /// coordinate of the two shapes as placed (its terms' absolute values summed), which covers poses rounded once.
+  /// With the two above, world units: by how much rounding may have let surfaces that touch sink into each other. Faces
+  /// pressed together block even so, at t = 0; crossings no deeper are no overlap. It is for rounding: far below the
+  /// size of triangles. Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms'
+  /// absolute values summed), which covers poses rounded once.
   std::optional<double> slack;
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
-  /// is a lower bound on t*, and hi - lo at most `tolerance`, if rounding allows: surfaces that pass each other at the
-  /// clearance to within rounding are Status::undecided. `point` is of the touched surface. With `ignoreLeaving`, pairs
-  /// that do not block take no part, however near they come.
+  /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
+  /// rounding leaves the answer undecided, or lowers lo. `point` is of the touched surface, and `normal` may point
+  /// along the motion if they are in contact at the start. With `ignoreLeaving`, pairs that do not block take no part,
+  /// however near they come.
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value: 1e-6 of the longest side of the sensor's box.
   std::optional<double> tolerance;
@@ -244,8 +246,9 @@ static_assert(sizeof(Result) == 120);
 
 /// What the queries of a batch list besides their first contacts. All vectors are empty if no query lists anything.
 struct RADAR_API Lists {
-  /// Of queries with `hits` above 1: the first contact with each object, by (t, object). Those of query i begin at
-  /// hitOffsets[i] and end before hitOffsets[i + 1].
+  /// Of queries with `hits` above 1: the first contact with each object, by (t, object), t being exact and not rounded.
+  /// Those of query i begin at hitOffsets[i] and end before hitOffsets[i + 1]. With a clearance, by (lo, object), and
+  /// beside as many objects as were asked for those that are undecided: they have a lo, but no hi.
   std::vector<Result> hits;
   std::vector<size_t> hitOffsets;
   /// Of queries with `skipOverlapping`: the objects left out, ascending. Offsets as above.

@@ -101,10 +101,14 @@ bool leavesPlane(const exact::Triangle& face, const exact::Triangle& corners, do
 
 }  // namespace
 
+bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double slack) {
+  return !leavesPlane(a, b, slack) || !leavesPlane(b, a, slack);
+}
+
 bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
                      double slack) {
   // Triangles in one plane, up to the slack, are judged by another rule.
-  if (!leavesPlane(a, b, slack) || !leavesPlane(b, a, slack)) return false;
+  if (mayShareAPlane(a, b, slack)) return false;
   if (feature < 6) {
     const bool ofA = feature >= 3;
     const exact::Triangle& face = ofA ? a : b;

@@ -20,6 +20,9 @@ Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const
 /// The contact by features that certainlyFirst certified. It has the bits of exact::contact's `first`.
 exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction);
 
+/// Whether the triangles may be in the plane of either, up to `slack`, in the sense of exact/blocking.h.
+bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double slack);
+
 /// Whether a contact by features that certainlyFirst certified certainly blocks: everything within `slack` of the point
 /// of contact, as seen along `direction`, is inside both features.
 bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,

@@ -29,7 +29,8 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
       return earliest_.considerKnown(name, pair, event);
     }
   }
-  if (query_.ignoreLeaving && exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
+  if (query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack) &&
+      exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
     return earliest_.considerPressed(name, pair);
   }
   if (!mayMeet(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_)) return false;

@@ -85,7 +85,7 @@ class Pair {
       edgesA_[i] = minus(a_[(i + 1) % 3], a_[i]);
       edgesB_[i] = minus(b_[(i + 1) % 3], b_[i]);
     }
-    if (moves_) direction_ = numbers<Number>(*direction);
+    if (direction != nullptr) direction_ = numbers<Number>(*direction);
     normalA_ = crossProduct(edgesA_[0], edgesA_[1]);
     normalB_ = crossProduct(edgesB_[0], edgesB_[1]);
   }

@@ -44,7 +44,8 @@ std::vector<Query> disassembly(const Scene& scene) {
     for (int i = 0; i < 27; ++i) {
       if (i == 13) continue;
       Query query{.mesh = scene.object(id).mesh, .worldFromMesh = scene.object(id).worldFromMesh, .distance = 1e4};
-      query.direction = {double(i % 3 - 1), double(i / 3 % 3 - 1), double(i / 9 - 1)};
+      const std::array<int, 3> direction{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      std::copy(direction.begin(), direction.end(), query.direction.begin());
       query.exclude = {id};
       query.ignoreLeaving = true;
       queries.push_back(query);

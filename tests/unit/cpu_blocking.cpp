@@ -402,6 +402,7 @@ TEST_CASE("the blocking graph of a burr puzzle is the known one, and peeling tak
   Random random(1);
   Scene scene;
   std::vector<MeshId> meshes;
+  meshes.reserve(pieces.size());
   for (const voxels::Solid& piece : pieces) meshes.push_back(soups::add(scene, voxels::boundary(piece, random)));
   for (const MeshId mesh : meshes) scene.addObject({mesh, Transform()});
   CpuSweeper sweeper(scene, 2);

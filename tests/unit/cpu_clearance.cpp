@@ -171,6 +171,7 @@ void runSoup(uint64_t seed, double scale, double far, Counts& counts) {
     return p;
   };
   std::vector<MeshId> meshes;
+  meshes.reserve(2);
   for (int m = 0; m < 2; ++m) {
     meshes.push_back(soups::add(scene, soups::soup(random, random.integer(1, 6), random.uniform(0.05, 0.7), 0.2)));
   }

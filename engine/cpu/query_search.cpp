@@ -87,8 +87,9 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   const double size = std::max({extent[0], extent[1], extent[2]});
   const auto find = [&](auto&& finder) {
     forObjects(task, tree, finder, [&](ObjectId id) {
-      finder.beginObject(task.ruleFor(id));
-      searchObject(task, id, finder);
+      const PairRule rule = task.ruleFor(id);
+      finder.beginObject(rule);
+      searchObject(task, id, rule, finder);
       finder.endObject();
     });
     if (lists != nullptr) *lists = {finder.nearest(), std::move(skipped)};
@@ -106,8 +107,9 @@ std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::
   std::vector<ObjectId> found;
   CrossingTest test;
   forObjects(task, tree, test, [&](ObjectId id) {
-    test.beginObject(task.ruleFor(id));
-    searchObject(task, id, test);
+    const PairRule rule = task.ruleFor(id);
+    test.beginObject(rule);
+    searchObject(task, id, rule, test);
     if (test.endObject()) found.push_back(id);
   });
   std::sort(found.begin(), found.end());
@@ -158,7 +160,7 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
   }
 }
 
-void QuerySearch::searchObject(const Task& task, ObjectId id, PairVisitor& visitor) {
+void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& rule, PairVisitor& visitor) {
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (visitor.isBefore({id, mesh.tree.below[0].least, 0})) return;
@@ -167,7 +169,7 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, PairVisitor& visit
   ++stats_.nodes;
   const Placement placement(mesh, object.worldFromMesh);
   // Faces that are pressed together may have passed each other by the slack.
-  const double room = task.query.ignoreLeaving ? 2 * task.ruleFor(id).slack : 0;
+  const double room = task.query.ignoreLeaving ? 2 * rule.slack : 0;
   const PairMotion motion(task.placement, placement, task.motion, std::max(task.query.clearance, room),
                           visitor.latest());
   TimeSpan times;

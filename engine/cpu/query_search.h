@@ -8,6 +8,8 @@
 
 namespace radar::cpu {
 
+struct PairRule;
+
 /// Reuses its memory between queries. For one thread at a time.
 class QuerySearch {
  public:
@@ -28,7 +30,7 @@ class QuerySearch {
   /// Calls `search` with each eligible object in reach of the visitor.
   template <class SearchObject>
   void forObjects(const Task& task, const ObjectTree& tree, const PairVisitor& visitor, const SearchObject& search);
-  void searchObject(const Task& task, ObjectId id, PairVisitor& visitor);
+  void searchObject(const Task& task, ObjectId id, const PairRule& rule, PairVisitor& visitor);
 
   std::vector<Open> open_;
   MeshSearch meshes_;

@@ -89,8 +89,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
 }
 
 Result clearAnswer() {
-  Result result;
-  result.status = Status::clear;
+  Result result(Status::clear);
   result.tier = Tier::contact;
   return result;
 }

@@ -132,12 +132,11 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   stateList_.clear();
   taskList_.clear();
-  const uint32_t root = sensorCount_ == 0 ? 0 : scene.objectTree().nodes()[0].link;
   for (uint32_t i = 0; i < sensorCount_; ++i) {
     gpu::Sensor& sensor = batch.sensors[i];
     sensor.placement.root = scene_.record(sensor.placement.mesh).firstNode;
     stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
-    taskList_.push_back({i, gpu::kNobody, gpu::kNobody, root, 0.0f});
+    taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
   }
   gpu::SearchCounts counts{};
   counts.rounds[0].tasks = sensorCount_;

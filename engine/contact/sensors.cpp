@@ -42,11 +42,12 @@ void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farth
 void SensorBatch::clear() {
   sensors.clear();
   sweeps.clear();
+  starts.clear();
   excluded.clear();
 }
 
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
-                  const ObjectTree& tree) {
+                  const ObjectTree& tree, ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;
   if (tree.nodes().empty()) return Planned::clear;
   const Vector direction = scaledDirection(query.direction);
@@ -111,6 +112,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   }
   batch.sensors.push_back(sensor);
   batch.sweeps.push_back(sweep);
+  batch.starts.push_back(object == kNone ? tree.nodes()[0].link : gpu::kLinkLeaf | object);
   return Planned::added;
 }
 

@@ -12,6 +12,7 @@ namespace radar {
 struct SensorBatch {
   std::vector<gpu::Sensor> sensors;  ///< without Placement::root, which depends on the device's copy of the scene
   std::vector<gpu::Sweep> sweeps;
+  std::vector<uint32_t> starts;  ///< link of the tree over objects at which each search starts
   std::vector<uint32_t> excluded;
 
   uint32_t count() const { return static_cast<uint32_t>(sensors.size()); }
@@ -24,8 +25,8 @@ enum class Planned {
   outOfRange  ///< floats cannot hold the sensor, the scene, the distance or their ratios
 };
 
-/// Adds a valid query; its answer gets the index `result`.
+/// Adds a valid query; its answer gets the index `result`. `object`: the only one to search, or kNone: all.
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
-                  const ObjectTree& tree);
+                  const ObjectTree& tree, ObjectId object = kNone);
 
 }  // namespace radar

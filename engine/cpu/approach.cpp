@@ -35,13 +35,19 @@ double norm1(const Vector& v) {
 /// The nearest pair of points found so far.
 struct Nearest {
   Vector a{}, b{};
+  exact::Features features{Feature::vertex, Feature::vertex};
   double squared = kInfinity;
 
-  void offer(const Vector& p, const Vector& q) {
+  void offer(const Vector& p, const Vector& q, const exact::Features& on) {
     const Vector gap = q - p;
-    if (const double d = dot(gap, gap); d < squared) *this = {p, q, d};
+    if (const double d = dot(gap, gap); d < squared) *this = {p, q, on, d};
   }
 };
+
+/// The feature on which the point at a share of an edge is.
+Feature featureAt(double share) {
+  return share > 0 && share < 1 ? Feature::edge : Feature::vertex;
+}
 
 // The points need not be the nearest: any will do for the bounds, but these make them tight. Cross products lose far
 // fewer digits than the squares of a Gram matrix if a triangle is a needle.
@@ -53,7 +59,7 @@ void offerEdges(Nearest& nearest, const Vector& a0, const Vector& a1, const Vect
   double t = yy > 0 ? std::clamp(dot(a0 + s * x - b0, y) / yy, 0.0, 1.0) : 0;
   s = xx > 0 ? std::clamp(dot(b0 + t * y - a0, x) / xx, 0.0, 1.0) : 0;
   t = yy > 0 ? std::clamp(dot(a0 + s * x - b0, y) / yy, 0.0, 1.0) : 0;
-  nearest.offer(a0 + s * x, b0 + t * y);
+  nearest.offer(a0 + s * x, b0 + t * y, {featureAt(s), featureAt(t)});
 }
 
 /// The point of a face at `p`, as seen along its normal; none if it is outside.
@@ -83,10 +89,14 @@ Nearest nearestPoints(const exact::Triangle& a, const exact::Triangle& b) {
   Nearest nearest{a[0], b[0]};
   for (size_t i = 0; i < 3; ++i) {
     for (size_t k = 0; k < 3; ++k) offerEdges(nearest, a[i], a[(i + 1) % 3], b[k], b[(k + 1) % 3]);
-    if (const auto p = onFace(a[i], b)) nearest.offer(a[i], *p);
-    if (const auto p = onFace(b[i], a)) nearest.offer(*p, b[i]);
-    if (const auto at = crossing(a[i], a[(i + 1) % 3], b)) nearest.offer(at->onEdge, at->onFace);
-    if (const auto at = crossing(b[i], b[(i + 1) % 3], a)) nearest.offer(at->onFace, at->onEdge);
+    if (const auto p = onFace(a[i], b)) nearest.offer(a[i], *p, {Feature::vertex, Feature::face});
+    if (const auto p = onFace(b[i], a)) nearest.offer(*p, b[i], {Feature::face, Feature::vertex});
+    if (const auto at = crossing(a[i], a[(i + 1) % 3], b)) {
+      nearest.offer(at->onEdge, at->onFace, {Feature::edge, Feature::face});
+    }
+    if (const auto at = crossing(b[i], b[(i + 1) % 3], a)) {
+      nearest.offer(at->onFace, at->onEdge, {Feature::face, Feature::edge});
+    }
   }
   return nearest;
 }
@@ -127,6 +137,7 @@ Moment momentAt(const exact::Triangle& edges, const exact::Triangle& gaps, const
 /// Sets point, relative to corner 0 of the moving triangle, and normal.
 void describe(Approach& found, const Moment& m) {
   found.point = m.nearest.b;
+  found.features = m.nearest.features;
   const Vector gap = m.nearest.a - m.nearest.b;
   if (m.least > 0) found.normal = (1 / std::sqrt(dot(gap, gap))) * gap;
 }
@@ -159,7 +170,7 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
   }
   const double clearance = scale * givenClearance, distance = scale * givenDistance, tolerance = scale * givenTolerance;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  Approach found{0, kInfinity, {kNan, kNan, kNan}, {kNan, kNan, kNan}};
+  Approach found{0, kInfinity, {kNan, kNan, kNan}, {kNan, kNan, kNan}, {}};
   // The distance is convex in t. So contact fills one interval, which lies between found.lo and `end`.
   double t = 0, end = kInfinity, step = 0;
   for (int i = 0; i < kMostSteps; ++i) {

@@ -8,10 +8,11 @@
 namespace radar::cpu {
 
 struct Approach {
-  double lo;      ///< world units: the triangles are farther apart before this
-  double hi;      ///< they certainly are within the distance by this; infinite if rounding leaves it open
-  Vector point;   ///< of the resting triangle, nearest to the moving one at `lo`
-  Vector normal;  ///< unit, from the resting triangle towards the moving one at `lo`; NaN if they touch
+  double lo;                 ///< world units: the triangles are farther apart before this
+  double hi;                 ///< they certainly are within the distance by this; infinite if rounding leaves it open
+  Vector point;              ///< of the resting triangle, nearest to the moving one at `lo`
+  Vector normal;             ///< unit, from the resting triangle towards the moving one at `lo`; NaN if they touch
+  exact::Features features;  ///< on which the nearest points at `lo` are
 };
 
 /// When triangle a, moved by t * unit, comes within `clearance` > 0 of b; none if it certainly does not for 0 <= t <=

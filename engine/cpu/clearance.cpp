@@ -67,20 +67,18 @@ void ClearanceContact::endObject() {
 }
 
 Result ClearanceContact::answer(const Near& near) const {
-  Result result;
+  Result result(!near.isCertain() ? Status::undecided : near.approach.hi == 0 ? Status::overlap : Status::hit);
   result.lo = near.lo;
   result.object = near.name.object;
-  if (!near.isCertain()) {
-    result.status = Status::undecided;
-    return result;
-  }
+  if (!near.isCertain()) return result;
   result.detected = Detected::yes;
-  result.status = near.approach.hi == 0 ? Status::overlap : Status::hit;
   result.t = near.lo;
   result.hi = near.approach.hi;
   result.fraction = motion_.distance > 0 ? result.t / motion_.distance : 0;
   result.triB = near.name.triB;
   result.triA = near.name.triA;
+  result.featureB = near.approach.features.b;
+  result.featureA = near.approach.features.a;
   result.point = exact::withoutZeroSigns(near.approach.point);
   result.normal = exact::withoutZeroSigns(near.approach.normal);
   return result;
@@ -88,14 +86,12 @@ Result ClearanceContact::answer(const Near& near) const {
 
 Result ClearanceContact::first() const {
   const std::vector<Near>& found = !nearest_.empty() ? nearest_ : !best_.empty() ? best_ : open_;
-  Result result;
-  result.status = Status::clear;
-  if (found.empty()) return result;
+  if (found.empty()) return Result(Status::clear);
   Near first = found[0];
   first.lo = lo_;
   if (first.isCertain() && !query_.anyHit) return answer(first);
   // No ids, as of any decision and of what is undecided.
-  result.status = first.isCertain() ? Status::hit : Status::undecided;
+  Result result(first.isCertain() ? Status::hit : Status::undecided);
   result.lo = first.isCertain() ? 0 : lo_;
   if (first.isCertain()) result.hi = motion_.distance;
   if (first.isCertain()) result.detected = Detected::yes;

@@ -1,6 +1,7 @@
 #include "cpu/first_contact.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "cpu/certificate.h"
 #include "cpu/swept_overlap.h"
@@ -20,19 +21,21 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
   const auto doesBlock = [&] {
     return !query_.ignoreLeaving || exact::blocks(pair.a, pair.b, d, rule_.slack, rule_.mirrored);
   };
+  std::optional<exact::Event> certain;
   if (const Feature feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
     const exact::Event event = eventOf(feature, pair.a, pair.b, d);
     if (event.s > event.error) {
-      if (query_.ignoreLeaving && !certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack) && !doesBlock()) {
-        return false;
+      if (!query_.ignoreLeaving || certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack)) {
+        return earliest_.considerKnown(name, pair, event);
       }
-      return earliest_.considerKnown(name, pair, event);
+      certain = event;
     }
   }
   if (query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack) &&
       exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
     return earliest_.considerPressed(name, pair);
   }
+  if (certain) return doesBlock() && earliest_.considerKnown(name, pair, *certain);
   if (!mayMeet(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_)) return false;
   return doesBlock() && earliest_.consider(name, pair);
 }

@@ -48,7 +48,8 @@ class FirstContact final : public PairVisitor {
 /// Finds out whether surfaces cross at the start.
 class CrossingTest final : public PairVisitor {
  public:
-  CrossingTest() : PairVisitor(0) {}
+  /// `latest`: no object farther than this is looked at.
+  explicit CrossingTest(double latest) : PairVisitor(latest) {}
 
   /// Call before and after the pairs of one object.
   void beginObject(const PairRule& rule) { rule_ = rule; }

@@ -100,12 +100,19 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   return find(FirstContact(query, task.motion, middleOf(task.sensor, task.placement), size));
 }
 
+std::vector<ObjectId> QuerySearch::inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
+  const Task task(query, scene, {});
+  std::vector<ObjectId> found;
+  forObjects(task, tree, CrossingTest(query.distance), [&](ObjectId id) { found.push_back(id); });
+  return found;
+}
+
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
   Query still = query;
   still.distance = still.clearance = 0;
   const Task task(still, scene, {});
   std::vector<ObjectId> found;
-  CrossingTest test;
+  CrossingTest test(0);
   forObjects(task, tree, test, [&](ObjectId id) {
     const PairRule rule = task.ruleFor(id);
     test.beginObject(rule);

@@ -16,6 +16,8 @@ class QuerySearch {
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
   /// the query asks for none.
   Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
+  /// The eligible objects whose boxes the sensor may meet within D.
+  std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
   const SearchStats& stats() const { return stats_; }
 
  private:

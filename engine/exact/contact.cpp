@@ -1,5 +1,6 @@
 #include "exact/contact.h"
 
+#include <bit>
 #include <cmath>
 
 #include "exact/determinant.h"
@@ -14,23 +15,43 @@ constexpr int next(int i) {
   return i == 2 ? 0 : i + 1;
 }
 
+/// The corners of two triangles that span a point of contact: bit i is set if corner i has a positive weight.
+struct Span {
+  unsigned a = 0, b = 0;
+  Span operator|(const Span& other) const { return {a | other.a, b | other.b}; }
+  Features features() const { return {static_cast<Feature>(std::popcount(a)), static_cast<Feature>(std::popcount(b))}; }
+};
+
+/// The ends of an edge, less the one that has no weight because the other is at the point.
+unsigned edgeSpan(int from, int sideOfFrom, int sideOfTo) {
+  return (sideOfTo != 0 ? 1u << from : 0) | (sideOfFrom != 0 ? 1u << next(from) : 0);
+}
+
 /// Keeps the first and the last of the events added. If several events share an end, the choice depends on the events
-/// only, not on their order.
+/// only, not on their order; the span of the end is that of all.
 class Ends {
  public:
-  void add(const Event& event) {
+  void add(const Event& event, const Span& span) {
     const int own = count_++;
     events_[own] = event;
     hasRatio_[own] = false;
-    if (own == 0) return;
+    between_ = between_ | span;
+    if (own == 0) {
+      atFirst_ = atLast_ = span;
+      return;
+    }
     const int first = order(own, first_), last = isPoint_ ? first : order(own, last_);
     isPoint_ = isPoint_ && first == 0;
     if (first < 0 || (first == 0 && precedes(event, events_[first_]))) first_ = own;
     if (last > 0 || (last == 0 && precedes(event, events_[last_]))) last_ = own;
+    if (first <= 0) atFirst_ = first < 0 ? span : atFirst_ | span;
+    if (last >= 0) atLast_ = last > 0 ? span : atLast_ | span;
   }
   std::optional<Interval> interval() const {
     if (count_ == 0) return std::nullopt;
-    return Interval{events_[first_], events_[last_]};
+    // The points of contact at any parameter are a polytope, with the events at its corners. Those at a parameter
+    // between the ends include points inside it, which all corners span.
+    return Interval{events_[first_], events_[last_], atFirst_.features(), atLast_.features(), between_.features()};
   }
 
  private:
@@ -47,6 +68,7 @@ class Ends {
   static constexpr int kMost = 18;  // planar: 9 vertices on edges each way; otherwise 3 + 3 + 9
   int count_ = 0, first_ = 0, last_ = 0;
   bool isPoint_ = true;  // all events so far have the same parameter
+  Span atFirst_, atLast_, between_;
   std::array<Event, kMost> events_;
   std::array<bool, kMost> hasRatio_;
   std::array<Ratio, kMost> ratios_;  // large, rarely touched
@@ -82,6 +104,12 @@ class Signs {
   /// Whether vertex i of a is over the closed face b, which is not edge-on; and vice versa.
   bool vertexOverFace(int i) const { return oneSided(edgeOfB[0][i], edgeOfB[1][i], edgeOfB[2][i]); }
   bool faceOverVertex(int k) const { return oneSided(edgeOfA[0][k], edgeOfA[1][k], edgeOfA[2][k]); }
+  /// The spans of the events in which they meet.
+  Span vertexFaceSpan(int i) const { return {1u << i, faceSpan(edgeOfB[0][i], edgeOfB[1][i], edgeOfB[2][i])}; }
+  Span faceVertexSpan(int k) const { return {faceSpan(edgeOfA[0][k], edgeOfA[1][k], edgeOfA[2][k]), 1u << k}; }
+  Span edgesSpan(int i, int k) const {
+    return {edgeSpan(i, edgeOfB[k][i], edgeOfB[k][next(i)]), edgeSpan(k, edgeOfA[i][k], edgeOfA[i][next(k)])};
+  }
   /// Whether edge i of a crosses edge k of b, not in parallel, and not where a vertex over a face is the same event.
   bool edgesCross(int i, int k) const {
     const int p = edgeOfA[i][k], q = edgeOfA[i][next(k)], r = edgeOfB[k][i], s = edgeOfB[k][next(i)];
@@ -91,6 +119,10 @@ class Signs {
   }
 
  private:
+  /// A point on the line of an edge has no share of the corner across.
+  static unsigned faceSpan(int side0, int side1, int side2) {
+    return (side1 != 0 ? 1u : 0) | (side2 != 0 ? 2u : 0) | (side0 != 0 ? 4u : 0);
+  }
   static bool oneSided(int p, int q, int r) {
     return (p != 0 || q != 0 || r != 0) && ((p >= 0 && q >= 0 && r >= 0) || (p <= 0 && q <= 0 && r <= 0));
   }
@@ -132,16 +164,20 @@ void addPlanar(const Triangle& a, const Triangle& b, const Vector& direction, En
     if (any) break;
   }
   if (across == 3) {
-    for (const Vector& p : a) {
-      for (const Vector& q : b) ends.add(vertexVertex(direction, p, q));
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) ends.add(vertexVertex(direction, a[i], b[k]), {1u << i, 1u << k});
     }
     return;
   }
   const auto over = [](int p, int q) { return p * q <= 0 && (p | q) != 0; };
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
-      if (over(side[i][k], side[i][next(k)])) ends.add(vertexEdge(direction, a[i], b[k], b[next(k)], across));
-      if (over(side[i][k], side[next(i)][k])) ends.add(edgeVertex(direction, a[i], a[next(i)], b[k], across));
+      if (const int p = side[i][k], q = side[i][next(k)]; over(p, q)) {
+        ends.add(vertexEdge(direction, a[i], b[k], b[next(k)], across), {1u << i, edgeSpan(k, p, q)});
+      }
+      if (const int p = side[i][k], q = side[next(i)][k]; over(p, q)) {
+        ends.add(edgeVertex(direction, a[i], a[next(i)], b[k], across), {edgeSpan(i, p, q), 1u << k});
+      }
     }
   }
 }
@@ -157,13 +193,32 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
   }
   // These include every basic solution of the linear programme: least s at which a point of a, moved, is a point of b.
   for (int i = 0; i < 3; ++i) {
-    if (signs.vertexOverFace(i)) ends.add(vertexFace(direction, a[i], b));
-    if (signs.faceOverVertex(i)) ends.add(faceVertex(direction, a, b[i]));
+    if (signs.vertexOverFace(i)) ends.add(vertexFace(direction, a[i], b), signs.vertexFaceSpan(i));
+    if (signs.faceOverVertex(i)) ends.add(faceVertex(direction, a, b[i]), signs.faceVertexSpan(i));
     for (int k = 0; k < 3; ++k) {
-      if (signs.edgesCross(i, k)) ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]));
+      if (!signs.edgesCross(i, k)) continue;
+      ends.add(edgeEdge(direction, a[i], a[next(i)], b[k], b[next(k)]), signs.edgesSpan(i, k));
     }
   }
   return ends.interval();
+}
+
+Features featuresOf(const Event& event) {
+  switch (event.kind) {
+    case Kind::vertexFace:
+      return {Feature::vertex, Feature::face};
+    case Kind::faceVertex:
+      return {Feature::face, Feature::vertex};
+    case Kind::edgeEdge:
+      return {Feature::edge, Feature::edge};
+    case Kind::vertexEdge:
+      return {Feature::vertex, Feature::edge};
+    case Kind::edgeVertex:
+      return {Feature::edge, Feature::vertex};
+    case Kind::vertexVertex:
+      break;
+  }
+  return {Feature::vertex, Feature::vertex};
 }
 
 }  // namespace radar::exact

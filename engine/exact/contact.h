@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "math/vector.h"
+#include "radar/radar.h"
 
 namespace radar::exact {
 
@@ -40,8 +41,14 @@ struct Event {
   double error;  ///< bound on |s - exact parameter|; may be infinite
 };
 
+/// The smallest features of two triangles that contain every point at which they touch.
+struct Features {
+  Feature a = Feature::none, b = Feature::none;
+};
+
 struct Interval {
   Event first, last;
+  Features atFirst, atLast, between;  ///< `between` first and last, at any parameter
 };
 
 /// The interval of contact; none if the triangles do not meet for any s. `direction` is not zero.
@@ -64,6 +71,9 @@ Vector point(const Event& event, double s);
 /// Unit normal of the contact with normal . direction <= 0: of the face, or across both edges. NaN if the features do
 /// not determine it (the last three kinds).
 Vector normal(const Event& event);
+
+/// The features that touch at an event which is the only one of its pair at this time, and inside both features.
+Features featuresOf(const Event& event);
 
 /// Number of decisions on this thread that needed exact integers, because no floating-point filter sufficed.
 uint64_t exactDecisions();

@@ -11,20 +11,27 @@ namespace radar::exact {
 
 bool EarliestContact::consider(const PairName& name, const PlacedPair& pair) {
   const auto interval = contact(pair.a, pair.b, motion_->direction);
-  if (!interval || sign(interval->last) < 0) return false;
-  return keep(name, pair, interval->first, sign(interval->first) <= 0);
+  if (!interval) return false;
+  const int last = sign(interval->last);
+  if (last < 0) return false;
+  const int first = sign(interval->first);
+  const Features features = first >= 0 ? interval->atFirst : last == 0 ? interval->atLast : interval->between;
+  return keep(name, pair, interval->first, first <= 0, features);
 }
 
 bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pair) {
+  constexpr Features kFaces{Feature::face, Feature::face};
   const auto interval = contact(pair.a, pair.b, motion_->direction);
-  if (interval && sign(interval->last) >= 0) return keep(name, pair, interval->first, sign(interval->first) <= 0);
+  if (interval && sign(interval->last) >= 0) {
+    return keep(name, pair, interval->first, sign(interval->first) <= 0, kFaces);
+  }
   // Any event before the start will do.
   const Vector& d = motion_->direction;
-  return keep(name, pair, vertexVertex(d, d, kOrigin), true);
+  return keep(name, pair, vertexVertex(d, d, kOrigin), true, kFaces);
 }
 
 bool EarliestContact::considerKnown(const PairName& name, const PlacedPair& pair, const Event& first) {
-  return keep(name, pair, first, false);
+  return keep(name, pair, first, false, featuresOf(first));
 }
 
 // -1, 0 or 1: the event comes before, at or after D.
@@ -42,7 +49,8 @@ bool EarliestContact::precedes(const EarliestContact& other) const {
   return order < 0 || (order == 0 && name_ < other.name_);
 }
 
-bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap) {
+bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap,
+                           Features features) {
   if (!overlap && compareToEnd(first) > 0) return false;
   if (found_) {
     const int order = compareTimes(overlap, first, *this);
@@ -53,13 +61,13 @@ bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const E
   name_ = name;
   pair_ = pair;
   event_ = first;
+  features_ = features;
   return true;
 }
 
 Result EarliestContact::answer(bool anyHit) const {
+  if (!found_) return Result(Status::clear);
   Result result;
-  result.status = Status::clear;
-  if (!found_) return result;
   result.detected = Detected::yes;
   if (anyHit) {
     result.status = Status::hit;
@@ -76,6 +84,8 @@ void EarliestContact::describe(Result& result) const {
   result.object = name_.object;
   result.triB = name_.triB;
   result.triA = name_.triA;
+  result.featureB = features_.b;
+  result.featureA = features_.a;
   const double s = overlap_ ? 0 : parameter(event_);
   if (!overlap_ || sign(event_) == 0) {
     result.point = point(event_, s);

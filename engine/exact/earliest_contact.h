@@ -47,7 +47,7 @@ class EarliestContact {
   Result answer(bool anyHit) const;
 
  private:
-  bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap);
+  bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap, Features features);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
   int compareToEnd(const Event& event) const;
   void describe(Result& result) const;
@@ -59,6 +59,7 @@ class EarliestContact {
   PairName name_;
   PlacedPair pair_{};
   Event event_{};
+  Features features_;
 };
 
 }  // namespace radar::exact

@@ -42,12 +42,17 @@ void describe(Result& result, uint32_t feature, const Corners& a, const Corners&
   const double length = lengthOf(direction);
   const Vector unit{direction[0] / length, direction[1] / length, direction[2] / length};
   if (feature < 3) {
+    result.featureA = Feature::vertex;
+    result.featureB = Feature::face;
     result.point = plus(a[feature], unit, result.t);
     result.normal = normalOf(minus(b[1], b[0]), minus(b[2], b[0]), unit);
   } else if (feature < gpu::kFeatureEdges) {
+    result.featureA = Feature::face;
+    result.featureB = Feature::vertex;
     result.point = b[feature - 3];
     result.normal = normalOf(minus(a[1], a[0]), minus(a[2], a[0]), unit);
   } else {
+    result.featureA = result.featureB = Feature::edge;
     const uint32_t i = (feature - gpu::kFeatureEdges) / 3, j = (feature - gpu::kFeatureEdges) % 3;
     const Vector x = minus(a[kEdgeTo[i]], a[kEdgeFrom[i]]), y = minus(b[kEdgeTo[j]], b[kEdgeFrom[j]]);
     result.point = crossing(a[kEdgeFrom[i]], x, b[kEdgeFrom[j]], y, unit);

@@ -10,7 +10,7 @@ using Corners = std::array<Vector, 3>;
 /// End corners of each edge of a triangle.
 inline constexpr int kEdgeFrom[] = {0, 1, 0}, kEdgeTo[] = {1, 2, 2};
 
-/// Sets the result's point and normal, given its t and the `feature` that touches (shaders/shared/interop.h,
+/// Sets the result's features, point and normal, given its t and the `feature` that touches (shaders/shared/interop.h,
 /// "Features"). `sensor`: the triangle at the start.
 void describe(Result& result, uint32_t feature, const Corners& sensor, const Corners& scene, const Vector& direction);
 

@@ -17,8 +17,7 @@ exact::Triangle sortedTriangle(const Mesh& mesh, const Transform& worldFromMesh,
 
 // Reduces an answer to the decision whether contact is within D.
 Result decisionOf(const Result& found) {
-  Result result;
-  result.status = found.status == Status::overlap ? Status::hit : found.status;
+  Result result(found.status == Status::overlap ? Status::hit : found.status);
   result.tier = found.tier;
   result.detected = found.detected;
   result.resolution = found.resolution;
@@ -45,8 +44,7 @@ void setFound(Result& result, const gpu::Answer& answer, const Query& query, con
 }  // namespace
 
 Result decodeClear() {
-  Result result;
-  result.status = Status::clear;
+  Result result(Status::clear);
   result.tier = Tier::select;
   result.detected = Detected::no;
   return result;
@@ -54,11 +52,10 @@ Result decodeClear() {
 
 Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> unresolved, const Query& query,
                      const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs) {
-  Result result;
+  Result result(Status::undecided);
   result.tier = Tier::sampled;
   result.resolution = resolution;
   result.lo = 0;
-  result.status = Status::undecided;
   if (answer.object != kNone) setFound(result, answer, query, scene);
   // An unresolved pair matters only if it may meet before that contact.
   const Motion motion(query);

@@ -99,4 +99,10 @@ Result::Result() {
   normal.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
+Result::Result(Status noContact) : Result() {
+  status = noContact;
+  if (status != Status::clear && status != Status::undecided) return;
+  t = lo = hi = fraction = std::numeric_limits<double>::infinity();
+}
+
 }  // namespace radar

@@ -88,32 +88,51 @@ void ContactTier::run(std::span<const size_t> which) {
   // An exception may have left some of the last batch.
   planned_.clear();
   sensors_.clear();
-  const Scene::Impl& scene = scene_.impl();
   const Clock::time_point begun = Clock::now();
-  const ObjectTree& tree = scene.objectTree();
+  scene_.impl().objectTree();
   batch_.addCpuTime("select", msSince(begun));
-  std::vector<size_t> onlyCpu;  // floats cannot hold them, or the device's search does not offer what they ask
-  Clock::time_point start = Clock::now();
+  std::vector<size_t> onlyCpu;
+  encoding_ = Clock::now();
   for (const size_t i : which) {
-    if (hasLists(batch_.asked[i]) || batch_.asked[i].clearance > 0) {
-      onlyCpu.push_back(i);
-      continue;
-    }
-    const Planned planned = addSensor(sensors_, batch_.asked[i], static_cast<uint32_t>(planned_.size()), scene, tree);
-    if (planned == Planned::added) planned_.push_back(i);
-    if (planned == Planned::clear) batch_.answers[i] = clearAnswer();
-    if (planned == Planned::outOfRange) onlyCpu.push_back(i);
-    if (planned_.size() < mostSensors_) continue;
-    batch_.addCpuTime("encode", msSince(start));
-    submit();
-    start = Clock::now();
+    if (!plan(i)) onlyCpu.push_back(i);
   }
-  batch_.addCpuTime("encode", msSince(start));
   submit();
   answerOnCpu(onlyCpu);
 }
 
+bool ContactTier::plan(size_t query) {
+  const Query& asked = batch_.asked[query];
+  if (asked.clearance > 0) return false;
+  const Scene::Impl& scene = scene_.impl();
+  const ObjectTree& tree = scene.objectTree();
+  if (asked.hits == 1) {
+    const Planned planned = planOne(query, kNone);
+    if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
+    return planned != Planned::outOfRange;
+  }
+  if (!tree.inRange()) return false;
+  lists_.begin(query);
+  for (const ObjectId object : reach_.inReach(asked, scene, tree)) {
+    // Whether floats suffice does not depend on the object.
+    if (planOne(query, object) == Planned::outOfRange) {
+      lists_.giveUp(query);
+      break;
+    }
+  }
+  return true;
+}
+
+Planned ContactTier::planOne(size_t query, ObjectId object) {
+  const Scene::Impl& scene = scene_.impl();
+  const Planned planned = addSensor(sensors_, batch_.asked[query], static_cast<uint32_t>(planned_.size()), scene,
+                                    scene.objectTree(), object);
+  if (planned == Planned::added) planned_.push_back(query);
+  if (planned_.size() == mostSensors_) submit();
+  return planned;
+}
+
 void ContactTier::submit() {
+  batch_.addCpuTime("encode", msSince(encoding_));
   if (planned_.empty()) return;
   collect();
   pending_.submit(std::exchange(planned_, {}), [&](std::span<const size_t> queries) {
@@ -127,6 +146,7 @@ void ContactTier::submit() {
     }
   });
   sensors_.clear();
+  encoding_ = Clock::now();
 }
 
 void ContactTier::finish() {
@@ -136,6 +156,35 @@ void ContactTier::finish() {
     run(again);
     collect();
   }
+  finishLists();
+}
+
+void ContactTier::finishLists() {
+  std::vector<size_t> onlyCpu;
+  lists_.finish(
+      batch_.asked,
+      [&](size_t query, std::vector<Result> hits) {
+        if (batch_.reasons.contains(query)) return;
+        batch_.answers[query] = hits.empty() ? clearAnswer() : hits.front();
+        batch_.lists[query].hits = std::move(hits);
+      },
+      [&](size_t query) {
+        if (!batch_.reasons.contains(query)) onlyCpu.push_back(query);
+      });
+  answerOnCpu(onlyCpu);
+}
+
+bool ContactTier::keep(size_t query, const Result& found) {
+  const Query& asked = batch_.asked[query];
+  // What meets at the start may cross, and then takes no part.
+  const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
+  if (asked.skipOverlapping && mayCross) return false;
+  if (asked.hits > 1) {
+    lists_.add(query, found);
+  } else {
+    batch_.answers[query] = found;
+  }
+  return true;
 }
 
 void ContactTier::collect() {
@@ -155,28 +204,38 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
   const UnresolvedPairs unresolved(found.unresolved);
   std::vector<uint32_t> open;
   std::vector<size_t> left;
+  const auto leave = [&](size_t query) {
+    if (batch_.asked[query].hits > 1) {
+      lists_.giveUp(query);
+    } else {
+      left.push_back(query);
+    }
+  };
   for (uint32_t i = 0; i < queries.size(); ++i) {
     const Result& result = found.results[i];
     if (result.flags == 0 && result.status != Status::invalid) {
-      batch_.answers[queries[i]] = result;
+      if (!keep(queries[i], result)) leave(queries[i]);
     } else if (result.flags == 0) {
       throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
-    } else if (found.roomier && result.flags == kFlagCandidates) {
+    } else if (found.roomier && result.flags == kFlagCandidates && batch_.asked[queries[i]].hits == 1) {
       cramped_.push_back(queries[i]);
     } else {
-      left.push_back(queries[i]);
+      leave(queries[i]);
     }
   }
+  std::vector<Result> decided(open.size());
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
-      const size_t query = queries[open[k]];
-      batch_.answers[query] =
-          decideUnresolved(found.results[open[k]], unresolved.of(open[k]), batch_.asked[query], resident_);
+      const uint32_t i = open[k];
+      decided[k] = decideUnresolved(found.results[i], unresolved.of(i), batch_.asked[queries[i]], resident_);
     }
   });
-  for (const uint32_t i : open) batch_.stats.cpuPairs += unresolved.of(i).size();
+  for (size_t k = 0; k < open.size(); ++k) {
+    batch_.stats.cpuPairs += unresolved.of(open[k]).size();
+    if (!keep(queries[open[k]], decided[k])) leave(queries[open[k]]);
+  }
   answerOnCpu(left);
 }
 

@@ -4,6 +4,7 @@
 
 #include "contact/submitter.h"
 #include "cpu/search.h"
+#include "sweep/hit_lists.h"
 #include "sweep/query_batch.h"
 
 namespace radar {
@@ -22,9 +23,15 @@ class ContactTier {
   void finish();
 
  private:
+  /// Adds the searches of a query; returns false if the device cannot answer it.
+  bool plan(size_t query);
+  Planned planOne(size_t query, ObjectId object);
   void submit();
   void collect();
   void decode(const SearchAnswers& found, std::span<const size_t> queries);
+  /// Keeps what a search found, unless only the CPU can tell what it means; returns whether it did.
+  bool keep(size_t query, const Result& found);
+  void finishLists();
   void answerOnCpu(std::span<const size_t> which);
 
   const Device::Impl& device_;
@@ -38,7 +45,10 @@ class ContactTier {
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   SensorBatch sensors_;
-  std::vector<size_t> planned_;  ///< the queries in `sensors_`
+  std::vector<size_t> planned_;  ///< the queries in `sensors_`: one with several hits once for each object in reach
+  cpu::QuerySearch reach_;
+  HitLists lists_;
+  Clock::time_point encoding_;  ///< since when the next submission is being planned
   PendingQueries pending_;
   std::vector<size_t> cramped_;  ///< queries to repeat, now that the device has room for them
 };

@@ -79,24 +79,28 @@ uvec2 unscaled(float x, float scale) {
 // Compares the bits of non-negative doubles.
 bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
 
-RadarResult nothing(uint status) {
-  const uvec2 n = uvec2(0, 0x7ff80000u);  // no number
-  return RadarResult(status, RADAR_TIER_CONTACT, RADAR_NOT_LOOKED, 0, n, n, n, n, kNobody, kNobody, kNobody, 0,
-                     uvec2[3](n, n, n), uvec2[3](n, n, n), n);
+const uvec2 kNoNumber = uvec2(0, 0x7ff80000u);
+
+// A result without a contact, with `distances` in place of all of them.
+RadarResult nothing(uint status, uvec2 distances) {
+  const uvec2 n = kNoNumber;
+  return RadarResult(status, RADAR_TIER_CONTACT, RADAR_NOT_LOOKED, 0, distances, distances, distances, distances, kNobody,
+                     kNobody, kNobody, 0, RADAR_NO_FEATURE, RADAR_NO_FEATURE, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
 }
+RadarResult free(uint status) { return nothing(status, uvec2(0, 0x7ff00000u)); }
 
 RadarResult invalid(uint flags) {
-  RadarResult r = nothing(RADAR_INVALID);
+  RadarResult r = nothing(RADAR_INVALID, kNoNumber);
   r.flags = flags;
   return r;
 }
 
 // No pair is left: the answer is clear, unless the search found a certain contact.
-RadarResult noContact(bool met) { return nothing(met ? RADAR_INVALID : RADAR_CLEAR); }
+RadarResult noContact(bool met) { return met ? invalid(0) : free(RADAR_CLEAR); }
 
 // The answer to an `anyHit` query: the same bits, whichever contact was found.
 RadarResult within() {
-  RadarResult r = nothing(RADAR_HIT);
+  RadarResult r = nothing(RADAR_HIT, kNoNumber);
   r.detected = RADAR_DETECTED;
   r.lo = uvec2(0);
   r.hi = bitsOf(sweeps[s].distance);
@@ -104,7 +108,7 @@ RadarResult within() {
 }
 
 RadarResult undecided(bool met, uvec2 low) {
-  RadarResult r = nothing(RADAR_UNDECIDED);
+  RadarResult r = free(RADAR_UNDECIDED);
   r.flags = RADAR_UNRESOLVED;
   if (met) r.detected = RADAR_DETECTED;
   const uvec2 distance = bitsOf(sweeps[s].distance);
@@ -148,7 +152,9 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   const double distance = sweeps[s].distance;
   const double first = min(t, distance);
   precise double below = t - slack, above = t + slack;
-  r.status = RADAR_HIT;
+  // The pair's only contact then is inside both features: others certainly begin later.
+  r.featureA = feature < 3 ? RADAR_VERTEX : feature < kFeatureEdges ? RADAR_FACE : RADAR_EDGE;
+  r.featureB = feature < 3 ? RADAR_FACE : feature < kFeatureEdges ? RADAR_VERTEX : RADAR_EDGE;
   r.t = bitsOf(first);
   r.lo = bitsOf(min(max(below, 0.0LF), first));
   r.hi = bitsOf(min(above, distance));
@@ -163,6 +169,8 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
 void setOverlap(Corners corners, inout RadarResult r) {
   dvec3 point;
   r.status = RADAR_OVERLAP;
+  // The contact certainly begins before the start and ends after it.
+  r.featureA = r.featureB = RADAR_FACE;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
   if (commonPoint(corners.a, corners.b, point)) r.point = bitsOf(point);
 }
@@ -232,7 +240,7 @@ RadarResult answer(SearchState state) {
   const PairSummary pairs = summarise(heads[s], hiOf(state));
   if (pairs.least.w == kNobody) return noContact(met);
   if (pairs.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
-  RadarResult r = nothing(RADAR_UNDECIDED);
+  RadarResult r = nothing(RADAR_HIT, kNoNumber);
   if (setCertainAnswer(heads[s], pairs, r)) return r;
   uint at = reserveUnresolved(pairs.possible);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {

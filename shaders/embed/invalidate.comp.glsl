@@ -20,5 +20,5 @@ void main() {
   if (i >= push.count || (violation.mesh == kNobody && violation.object == kNobody)) return;
   const uvec2 n = uvec2(0, 0x7ff80000u);
   results[i] = RadarResult(RADAR_INVALID, RADAR_TIER_SELECT, RADAR_NOT_LOOKED, 0, n, n, n, n, kNobody, kNobody, kNobody,
-                           RADAR_OUT_OF_BOUNDS, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
+                           RADAR_OUT_OF_BOUNDS, RADAR_NO_FEATURE, RADAR_NO_FEATURE, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
 }

@@ -68,6 +68,11 @@ Batch batchOf(uint64_t seed) {
   return batch;
 }
 
+Result withTier(Result result, Tier tier) {
+  result.tier = tier;
+  return result;
+}
+
 }  // namespace
 
 TEST_CASE("the device's answers to queries that ignore what does not block have the CPU's bits") {
@@ -120,6 +125,39 @@ TEST_CASE("boxes pressed together, though rounding has let them pass each other,
       REQUIRE(test::sameBits(results[i], expected[i]));
     }
   }
+}
+
+TEST_CASE("lists of the nearest objects, and of those that cross at the start, are the CPU's") {
+  size_t listed = 0, crossing = 0, onDevice = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    Batch batch = batchOf(seed);
+    for (size_t i = 0; i < batch.queries.size(); ++i) {
+      Query& query = batch.queries[i];
+      if (!query.anyHit && i % 3 != 0) query.hits = i % 3 == 1 ? kAllHits : 2;
+      query.skipOverlapping = i % 2 == 0;
+    }
+    CpuSweeper cpu(batch.scene, 1);
+    const std::vector<Result> expected = cpu.run(batch.queries);
+    Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
+    const std::vector<Result> results = sweeper.run(batch.queries);
+    onDevice += results.size() - sweeper.stats().cpuQueries;
+    for (size_t i = 0; i < results.size(); ++i) {
+      INFO("seed " << seed << " query " << i);
+      REQUIRE(test::sameBits(results[i], withTier(expected[i], results[i].tier)));
+      const auto ours = sweeper.lists().hitsOf(i), theirs = cpu.lists().hitsOf(i);
+      REQUIRE(ours.size() == theirs.size());
+      for (size_t k = 0; k < ours.size(); ++k) {
+        REQUIRE(test::sameBits(ours[k], withTier(theirs[k], ours[k].tier)));
+      }
+      const auto skipped = sweeper.lists().overlappingOf(i);
+      REQUIRE(std::ranges::equal(skipped, cpu.lists().overlappingOf(i)));
+      listed += ours.size();
+      crossing += skipped.size();
+    }
+  }
+  REQUIRE(listed > 500);
+  REQUIRE(crossing > 20);
+  REQUIRE(onDevice > 300);
 }
 
 TEST_CASE("a body on a fine floor is answered by the device alone") {

@@ -36,8 +36,8 @@ Outcomes checkAnswers(std::span<const Query> queries, const std::vector<Result>&
       continue;
     }
     CHECK((read[i].flags & ~flags) == 0);
-    CHECK(std::isnan(read[i].t));
-    CHECK(std::isnan(read[i].hi));
+    CHECK_FALSE(std::isfinite(read[i].t));
+    CHECK_FALSE(std::isfinite(read[i].hi));
     CHECK(read[i].object == kNone);
     if (read[i].flags == kFlagUnresolved) {
       ++outcomes.unresolved;

@@ -273,7 +273,7 @@ TEST_CASE("an object that covers no pixel centre is not detected, and the answer
   CHECK(result.detected == Detected::no);
   CHECK(result.status == Status::undecided);
   CHECK(result.tier == Tier::sampled);
-  CHECK(std::isnan(result.hi));
+  CHECK(result.hi == INFINITY);
   CHECK(result.lo == 0);
 }
 

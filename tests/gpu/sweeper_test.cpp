@@ -146,7 +146,7 @@ TEST_CASE("an empty batch and a query over an empty scene are answered") {
   const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
   const Result result = sweeper.run({&query, 1})[0];
   CHECK(result.status == Status::clear);
-  CHECK(std::isnan(result.t));
+  CHECK(result.t == INFINITY);
   const Scopes scopes = sweeper.scopes(query);
   CHECK(std::isnan(scopes.R[scopes.R.size() / 2]));
   CHECK(scopes.M[scopes.M.size() / 2] == Approx(5));

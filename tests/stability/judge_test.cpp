@@ -40,7 +40,7 @@ TEST_CASE("the exact answer keeps every promise, and whatever is changed in it b
   CHECK(judged([](Result&) {}).empty());
   CHECK(judged([](Result& r) {
           r.status = Status::clear;
-          r.t = r.lo = r.hi = NAN;
+          r.t = r.lo = r.hi = INFINITY;
         }) == "missed");
   CHECK(judged([](Result& r) { r.status = Status::undecided; }) == "not answered");
   CHECK(judged([](Result& r) { r.status = Status::overlap; }).starts_with("wrong status"));
@@ -82,12 +82,10 @@ TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a cl
   result.lo = 0;
   result.t = result.hi = 1.9;
   CHECK(judged(result, boxes.exact)[Fault::bracket]);
-  Result clear;
-  clear.status = Status::clear;
+  const Result clear(Status::clear);
   CHECK(judged(clear, boxes.exact)[Fault::missed]);
   CHECK(judged(boxes.exact, clear)[Fault::falseHit]);
-  Result undecided;
-  undecided.status = Status::undecided;
+  Result undecided(Status::undecided);
   undecided.lo = 0;
   CHECK(judged(undecided, boxes.exact).words().empty());
   CHECK(judged(undecided, boxes.exact).unseen);
@@ -96,8 +94,8 @@ TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a cl
 }
 
 TEST_CASE("a tally adds up verdicts and keeps the largest errors") {
-  Result exact, clear;
-  clear.status = Status::clear;
+  const Result clear(Status::clear);
+  Result exact;
   exact.status = Status::hit;
   exact.t = exact.lo = exact.hi = 2;
   Tally tally, other;

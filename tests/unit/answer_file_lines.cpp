@@ -22,6 +22,8 @@ Result hit() {
   result.object = 7;
   result.triB = 4294967294u;
   result.triA = 0;
+  result.featureA = Feature::vertex;
+  result.featureB = Feature::face;
   result.point = {1, -2.5, 1e22};
   result.normal = {0, 0, -1};
   result.paperMinL = -0.25;
@@ -37,19 +39,20 @@ QuerySpec queryWithId(const std::string& id) {
 }  // namespace
 
 TEST_CASE("an answer line has every key in order and the shortest numbers that read back the same") {
-  CHECK(answerLine(queryWithId("ring/0"), {.result = hit(), .mode = AnswerMode::sampled}) ==
-        R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
-        R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
-        R"("point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
+  CHECK(
+      answerLine(queryWithId("ring/0"), {.result = hit(), .mode = AnswerMode::sampled}) ==
+      R"({"id": "ring/0", "status": "hit", "t": 0.30000000000000004, "lo": 0, "hi": 0.30000000000000004, )"
+      R"("fraction": 1e-300, "detected": true, "object": 7, "tri_a": 0, "tri_b": 4294967294, )"
+      R"("feature_a": "vertex", "feature_b": "face", "point": [1, -2.5, 1e+22], "normal": [0, 0, -1], "tier": "sampled", "paper_min_l": -0.25})");
 }
 
 TEST_CASE("values that an answer does not have are null") {
-  Result clear;
-  clear.status = Status::clear;
+  Result clear(Status::clear);
   clear.detected = Detected::no;
   CHECK(answerLine(queryWithId("a"), {.result = clear}) ==
         R"({"id": "a", "status": "clear", "t": null, "lo": null, "hi": null, "fraction": null, "detected": false, )"
-        R"("object": null, "tri_a": null, "tri_b": null, "point": null, "normal": null, "tier": "select"})");
+        R"("object": null, "tri_a": null, "tri_b": null, "feature_a": null, "feature_b": null, "point": null, )"
+        R"("normal": null, "tier": "select"})");
 }
 
 TEST_CASE("time appears only with a speed, paper_min_l only in mode sampled, and reason only if invalid") {
@@ -77,7 +80,8 @@ TEST_CASE("hits and overlapping objects appear only where the query asks for the
   CHECK(line["overlapping"] == nlohmann::json::parse("[3, 5]"));
   REQUIRE(line["hits"].size() == 2);
   CHECK(line["hits"][1] == nlohmann::json::parse(R"({"object": 7, "t": 0.30000000000000004, "lo": 0,
-      "hi": 0.30000000000000004, "tri_a": 0, "tri_b": 4294967294, "point": [1, -2.5, 1e22], "normal": [0, 0, -1]})"));
+      "hi": 0.30000000000000004, "tri_a": 0, "tri_b": 4294967294, "feature_a": "vertex", "feature_b": "face",
+      "point": [1, -2.5, 1e22], "normal": [0, 0, -1]})"));
   const auto none = nlohmann::json::parse(answerLine(query, {}));
   CHECK((none["hits"].empty() && none["hits"].is_array() && none["overlapping"].is_array()));
   const auto plain = nlohmann::json::parse(answerLine(queryWithId("a"), answer));

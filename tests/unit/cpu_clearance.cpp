@@ -309,7 +309,7 @@ TEST_CASE("an object that passes at the clearance, to rounding, widens the brack
     if (hits == 1) continue;
     const auto listed = sweeper.lists().hitsOf(0);
     REQUIRE(listed.size() == 3);
-    CHECK((listed[0].object == beside && listed[0].status == Status::undecided && std::isnan(listed[0].hi)));
+    CHECK((listed[0].object == beside && listed[0].status == Status::undecided && listed[0].hi == INFINITY));
     CHECK((listed[1].object == 0 && listed[2].object == 1));
   }
 }

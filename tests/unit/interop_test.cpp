@@ -213,8 +213,8 @@ const Expected& publicResult() {
       sizeof(Result),
       {MEMBER(Result, status), MEMBER(Result, tier), MEMBER(Result, detected), MEMBER(Result, resolution),
        MEMBER(Result, t), MEMBER(Result, lo), MEMBER(Result, hi), MEMBER(Result, fraction), MEMBER(Result, object),
-       MEMBER(Result, triB), MEMBER(Result, triA), MEMBER(Result, flags), MEMBER(Result, point), MEMBER(Result, normal),
-       MEMBER(Result, paperMinL)}};
+       MEMBER(Result, triB), MEMBER(Result, triA), MEMBER(Result, flags), MEMBER(Result, featureB),
+       MEMBER(Result, featureA), MEMBER(Result, point), MEMBER(Result, normal), MEMBER(Result, paperMinL)}};
   return result;
 }
 

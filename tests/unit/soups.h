@@ -201,7 +201,7 @@ inline void check(const radar::Scene& scene, const radar::Query& query, const ra
   REQUIRE(result.tier == radar::Tier::reference);
   checkTruth(scene, query, result);
   if (result.status == radar::Status::clear) {
-    REQUIRE(std::isnan(result.t));
+    REQUIRE(result.t == std::numeric_limits<double>::infinity());
     return;
   }
   if (result.status == radar::Status::overlap) REQUIRE(result.t == 0);

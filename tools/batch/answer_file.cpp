@@ -14,6 +14,10 @@ std::string vectorText(const std::array<double, 3>& vector) {
   return std::isnan(vector[0]) ? "null" : listOf(vector, ", ", appendNumber);
 }
 
+std::string featureText(Feature feature) {
+  return feature == Feature::none ? "null" : "\"" + std::string(nameOf(feature)) + "\"";
+}
+
 const char* wordFor(Detected detected) {
   return detected == Detected::no ? "false" : detected == Detected::yes ? "true" : "null";
 }
@@ -26,6 +30,8 @@ std::string hitText(const Result& hit) {
   object.addNumber("hi", hit.hi);
   object.add("tri_a", idText(hit.triA));
   object.add("tri_b", idText(hit.triB));
+  object.add("feature_a", featureText(hit.featureA));
+  object.add("feature_b", featureText(hit.featureB));
   object.add("point", vectorText(hit.point));
   object.add("normal", vectorText(hit.normal));
   return object.text();
@@ -43,6 +49,11 @@ const char* nameOf(Tier tier) {
   return kNames[static_cast<size_t>(tier)];
 }
 
+const char* nameOf(Feature feature) {
+  constexpr std::array<const char*, 4> kNames{"none", "vertex", "edge", "face"};
+  return kNames[static_cast<size_t>(feature)];
+}
+
 std::string answerLine(const QuerySpec& query, const Answer& answer) {
   const Result& result = answer.result;
   JsonObject line;
@@ -58,6 +69,8 @@ std::string answerLine(const QuerySpec& query, const Answer& answer) {
   line.add("object", idText(result.object));
   line.add("tri_a", idText(result.triA));
   line.add("tri_b", idText(result.triB));
+  line.add("feature_a", featureText(result.featureA));
+  line.add("feature_b", featureText(result.featureB));
   line.add("point", vectorText(result.point));
   line.add("normal", vectorText(result.normal));
   line.addString("tier", nameOf(result.tier));

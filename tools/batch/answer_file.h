@@ -24,5 +24,6 @@ std::string answerLine(const QuerySpec& query, const Answer& answer);
 
 const char* nameOf(Status status);
 const char* nameOf(Tier tier);
+const char* nameOf(Feature feature);
 
 }  // namespace radar::tools

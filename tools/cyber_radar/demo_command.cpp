@@ -31,7 +31,7 @@ struct Row {
 };
 
 std::string number(double value, const char* format) {
-  if (std::isnan(value)) return "-";
+  if (!std::isfinite(value)) return "-";
   char text[32];
   std::snprintf(text, sizeof text, format, value);
   return text;

@@ -8,12 +8,17 @@ namespace radar::tools {
 
 namespace {
 
+std::string triangleInWords(uint32_t triangle, Feature feature) {
+  const std::string name = "triangle " + std::to_string(triangle);
+  return feature == Feature::none || feature == Feature::face ? name : nameOf(feature) + (" of " + name);
+}
+
 std::string contactInWords(const Workload& workload, const QuerySpec& query, const Result& result) {
   const Instance& touched = workload.instance(query.scene, result.object);
-  std::string text = "  what    triangle " + std::to_string(result.triB) + " of object " +
-                     std::to_string(result.object) + " (" + workload.meshes[touched.mesh].name +
-                     "), by the sensor's triangle " + std::to_string(result.triA) + " (" +
-                     workload.meshes[query.sensor.mesh].name + ")\n";
+  std::string text = "  what    " + triangleInWords(result.triB, result.featureB) + " of object " +
+                     std::to_string(result.object) + " (" + workload.meshes[touched.mesh].name + "), by the sensor's " +
+                     triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.sensor.mesh].name +
+                     ")\n";
   if (!std::isnan(result.point[0])) text += "  where   " + inDigits(result.point) + "\n";
   if (!std::isnan(result.normal[0])) {
     text += "  normal  " + inDigits(result.normal) + ", from the touched surface towards the sensor\n";

@@ -96,6 +96,7 @@ void judgeWhole(const Scene& scene, const Query& query, const Result& result, co
   verdict.set(Fault::wrongStatus, result.status != exact.status);
   verdict.set(Fault::wrongPair, result.object != exact.object || result.triB != exact.triB ||
                                     result.triA != exact.triA || result.resolution != 0);
+  verdict.set(Fault::wrongPair, result.featureA != exact.featureA || result.featureB != exact.featureB);
   // The exact answer's own bracket is a few roundings wide.
   verdict.set(Fault::bracket,
               !(result.lo <= result.t && result.t <= result.hi && result.hi - result.lo <= 1e-9 * unit));
@@ -113,6 +114,7 @@ void judgeDecision(const Result& result, Verdict& verdict) {
   verdict.set(Fault::wrongStatus, result.status == Status::overlap);
   verdict.set(Fault::late, !std::isnan(result.t) || !std::isnan(result.fraction));
   verdict.set(Fault::wrongPair, result.object != kNone || result.triA != kNone || result.triB != kNone);
+  verdict.set(Fault::wrongPair, result.featureA != Feature::none || result.featureB != Feature::none);
   verdict.set(Fault::point, !std::isnan(result.point[0]));
   verdict.set(Fault::normal, !std::isnan(result.normal[0]));
 }
@@ -120,7 +122,7 @@ void judgeDecision(const Result& result, Verdict& verdict) {
 void judgeSampled(const Query& query, const Result& result, const Result& exact, Verdict& verdict) {
   if (result.status == Status::clear) return;
   verdict.set(Fault::bracket, result.lo != 0);
-  if (!meets(result)) return verdict.set(Fault::bracket, !std::isnan(result.hi));
+  if (!meets(result)) return verdict.set(Fault::bracket, result.hi != INFINITY);
   verdict.set(Fault::wrongStatus, result.status == Status::overlap && exact.status != Status::overlap);
   verdict.set(Fault::bracket, !query.anyHit && result.t != result.hi);
 }
@@ -173,7 +175,7 @@ Verdict judge(const Scene& scene, const Query& query, const Result& result, cons
   verdict = judge(result, exact, unit);
   const bool sampled = query.mode == Mode::sampled;
   if (result.status == Status::clear) {
-    verdict.set(Fault::bracket, !sampled && !(std::isnan(result.t) && std::isnan(result.lo) && std::isnan(result.hi)));
+    verdict.set(Fault::bracket, !sampled && std::min({result.t, result.lo, result.hi}) != INFINITY);
   }
   if (!sampled) verdict.set(Fault::unanswered, result.status == Status::undecided);
   if (verdict.found) {

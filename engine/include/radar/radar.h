@@ -198,7 +198,7 @@ enum class Status : uint32_t {
   hit,        ///< certain contact within D: t*, the exact distance, lies in [lo, hi], hi <= D
   clear,      ///< certainly no contact within D
   overlap,    ///< certain contact at the start: t = lo = hi = 0
-  undecided,  ///< no contact before lo; later contact is possible (hi is NaN)
+  undecided,  ///< no contact before lo; later contact is possible
   invalid     ///< not answered; Sweeper::reason gives the reason
 };
 
@@ -212,6 +212,9 @@ enum class Detected : uint32_t {
   notLooked  ///< not determined
 };
 
+/// A part of a triangle; the value is the number of its corners.
+enum class Feature : uint32_t { none, vertex, edge, face };
+
 /// Bits of Result::flags: why a Recorder (radar/recorder.h) gave no answer.
 inline constexpr uint32_t kFlagUnresolved =
     1;  ///< pairs of triangles too close for the device: Recorder::read() decides
@@ -220,35 +223,42 @@ inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was too sm
 inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene, or the sensor or D relative to it
 inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of HostGeometry has left its declared bounds
 
-/// An answer. Absent numbers are NaN, absent ids kNone. Layout version 2: 120 bytes, natural alignment.
+/// An answer. Layout version 3: 128 bytes, natural alignment. Absent ids are kNone. Where no contact within D is
+/// certain, t, hi and fraction are +infinity, and if the answer is clear, lo is, too: distances of any answers compare.
+/// Other absent numbers, and all of an invalid answer, are NaN.
 ///
-/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; t, fraction, ids, point and
-/// normal are absent; for a hit, lo is 0 and hi at most D (in mode contact: D).
+/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; ids, features, point and
+/// normal are absent, and for a hit t and fraction are; then lo is 0 and hi at most D (in mode contact: D).
 struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
-  uint32_t resolution = 0;       ///< pixels along the window's longer side; 0 if no picture was drawn
-  double t;                      ///< best estimate of t*, world units; tier sampled: hi
-  double lo, hi;                 ///< the certified bracket, world units
-  double fraction;               ///< t / D (0 if D is 0)
-  ObjectId object = kNone;       ///< the object touched
-  uint32_t triB = kNone;         ///< its triangle
-  uint32_t triA = kNone;         ///< the sensor's triangle
-  uint32_t flags = 0;            ///< kFlag*: why a Recorder gave no answer; else 0
+  uint32_t resolution = 0;  ///< pixels along the window's longer side; 0 if no picture was drawn
+  double t;                 ///< best estimate of t*, world units; tier sampled: hi
+  double lo, hi;            ///< the certified bracket, world units
+  double fraction;          ///< t / D (0 if D is 0)
+  ObjectId object = kNone;  ///< the object touched
+  uint32_t triB = kNone;    ///< its triangle
+  uint32_t triA = kNone;    ///< the sensor's triangle
+  uint32_t flags = 0;       ///< kFlag*: why a Recorder gave no answer; else 0
+  /// The smallest features of the two triangles that contain every point at which they touch then, exactly; with a
+  /// clearance, of the nearest points. Tier sampled: those that were found, none at the start.
+  Feature featureB = Feature::none, featureA = Feature::none;
   std::array<double, 3> point;   ///< world position of the contact at the moment of contact
   std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
   double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
+  /// An answer without a contact: clear or undecided, with lo to be set. Others as above.
+  explicit Result(Status status);
 };
-inline constexpr uint32_t kResultVersion = 2;
-static_assert(sizeof(Result) == 120);
+inline constexpr uint32_t kResultVersion = 3;
+static_assert(sizeof(Result) == 128);
 
 /// What the queries of a batch list besides their first contacts. All vectors are empty if no query lists anything.
 struct RADAR_API Lists {
   /// Of queries with `hits` above 1: the first contact with each object, by (t, object), t being exact and not rounded.
   /// Those of query i begin at hitOffsets[i] and end before hitOffsets[i + 1]. With a clearance, by (lo, object), and
-  /// beside as many objects as were asked for those that are undecided: they have a lo, but no hi.
+  /// beside as many objects as were asked for those that are undecided: they have a lo, but no finite hi.
   std::vector<Result> hits;
   std::vector<size_t> hitOffsets;
   /// Of queries with `skipOverlapping`: the objects left out, ascending. Offsets as above.

@@ -1,5 +1,5 @@
 // The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/radar.h explains the members.
-// Absent numbers are NaN, absent ids RADAR_NONE.
+// Absent numbers are infinite or NaN, absent ids RADAR_NONE.
 //
 //     #extension GL_EXT_scalar_block_layout : require
 //     #extension GL_GOOGLE_include_directive : require
@@ -30,6 +30,8 @@ struct RadarResult {
   uint triB;
   uint triA;
   uint flags;       // RADAR_UNRESOLVED ...: why there is no answer; else 0
+  uint featureB;    // RADAR_VERTEX ...
+  uint featureA;
   RADAR_DOUBLE point[3];
   RADAR_DOUBLE normal[3];
   RADAR_DOUBLE paperMinL;
@@ -49,6 +51,11 @@ const uint RADAR_DETECTED = 1;
 const uint RADAR_NOT_LOOKED = 2;
 
 const uint RADAR_NONE = 0xffffffffu;
+
+const uint RADAR_NO_FEATURE = 0;
+const uint RADAR_VERTEX = 1;
+const uint RADAR_EDGE = 2;
+const uint RADAR_FACE = 3;
 
 const uint RADAR_UNRESOLVED = 1;
 const uint RADAR_TOO_MANY_CANDIDATES = 2;

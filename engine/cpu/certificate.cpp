@@ -107,8 +107,6 @@ bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double s
 
 bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
                      double slack) {
-  // Triangles in one plane, up to the slack, are judged by another rule.
-  if (mayShareAPlane(a, b, slack)) return false;
   if (feature < 6) {
     const bool ofA = feature >= 3;
     const exact::Triangle& face = ofA ? a : b;

@@ -24,7 +24,8 @@ exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Tri
 bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double slack);
 
 /// Whether a contact by features that certainlyFirst certified certainly blocks: everything within `slack` of the point
-/// of contact, as seen along `direction`, is inside both features.
+/// of contact, as seen along `direction`, is inside both features. Not for triangles that mayShareAPlane(): those are
+/// judged by another rule.
 bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
                      double slack);
 

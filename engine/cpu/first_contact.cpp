@@ -21,22 +21,28 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
   const auto doesBlock = [&] {
     return !query_.ignoreLeaving || exact::blocks(pair.a, pair.b, d, rule_.slack, rule_.mirrored);
   };
+  const bool mayBePressed = query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack);
   std::optional<exact::Event> certain;
   if (const Feature feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
     const exact::Event event = eventOf(feature, pair.a, pair.b, d);
     if (event.s > event.error) {
-      if (!query_.ignoreLeaving || certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack)) {
-        return earliest_.considerKnown(name, pair, event);
+      if (!mayBePressed) {
+        return earliest_.considerKnown(name, pair, event, [&] {
+          return !query_.ignoreLeaving || certainlyBlocks(feature, pair.a, pair.b, d, rule_.slack) || doesBlock();
+        });
       }
       certain = event;
     }
   }
-  if (query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack) &&
-      exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
+  if (mayBePressed && exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
     return earliest_.considerPressed(name, pair);
   }
-  if (certain) return doesBlock() && earliest_.considerKnown(name, pair, *certain);
-  if (!mayMeet(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_)) return false;
+  if (certain) return earliest_.considerKnown(name, pair, *certain, doesBlock);
+  const Meeting meeting =
+      meetingOf(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_);
+  if (meeting == Meeting::never) return false;
+  // Most pairs that meet ahead block, most that touch at the start do not.
+  if (meeting == Meeting::ahead) return earliest_.consider(name, pair, doesBlock);
   return doesBlock() && earliest_.consider(name, pair);
 }
 

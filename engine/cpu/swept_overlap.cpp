@@ -112,22 +112,23 @@ Span spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& se
 }  // namespace
 
 // The bounds are derived in docs/exact.md.
-bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
-  // Also true if the error is NaN.
-  if (!(a.error + b.error < kMostError)) return true;
+Meeting meetingOf(const ViewedTriangle& a, const ViewedTriangle& b, double latest) {
+  // Also if the error is NaN.
+  if (!(a.error + b.error < kMostError)) return Meeting::unknown;
   Vector below, above;  // bounds on differences b - a
   for (int k = 0; k < 3; ++k) {
     below[k] = b.lo[k] - a.hi[k];
     above[k] = b.hi[k] - a.lo[k];
   }
   const double width = std::max({above[0], -below[0], above[1], -below[1]});
-  if (width < kLeastWidth) return true;
-  if (below[0] > 0 || below[1] > 0 || above[0] < 0 || above[1] < 0) return false;
-  if (below[2] > latest || above[2] < 0) return false;
+  if (width < kLeastWidth) return Meeting::unknown;
+  if (below[0] > 0 || below[1] > 0 || above[0] < 0 || above[1] < 0) return Meeting::never;
+  if (below[2] > latest || above[2] < 0) return Meeting::never;
   Outlines seen;
-  if (!outline(a, b, width, seen)) return false;
+  if (!outline(a, b, width, seen)) return Meeting::never;
   const Span span = spanOf(a, b, seen);
-  return span.first <= latest && span.last >= 0;
+  if (span.first > latest || span.last < 0) return Meeting::never;
+  return span.first > 0 ? Meeting::ahead : Meeting::unknown;
 }
 
 }  // namespace radar::cpu

@@ -5,7 +5,9 @@
 
 namespace radar::cpu {
 
-/// False if this pair certainly has no contact in [0, latest], in the view's unit; true is inconclusive.
-bool mayMeet(const ViewedTriangle& a, const ViewedTriangle& b, double latest);
+/// What doubles know of a pair's contact in [0, latest], in the view's unit: there is none, or none at the start, or
+/// nothing.
+enum class Meeting { never, ahead, unknown };
+Meeting meetingOf(const ViewedTriangle& a, const ViewedTriangle& b, double latest);
 
 }  // namespace radar::cpu

@@ -1,5 +1,7 @@
 #include "exact/blocking.h"
 
+#include <algorithm>
+
 #include "exact/bounded.h"
 #include "exact/determinant.h"
 
@@ -39,6 +41,10 @@ Dyadic max(const Dyadic& p, const Dyadic& q) {
   return (p - q).sign() < 0 ? q : p;
 }
 
+Dyadic minor(const Dyadic& p, const Dyadic& q, const Dyadic& r, const Dyadic& s) {
+  return p * q - r * s;
+}
+
 template <class Number>
 using Three = std::array<Number, 3>;
 
@@ -52,14 +58,13 @@ Three<Number> minus(const Three<Number>& p, const Three<Number>& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
-template <class Number>
-Three<Number> crossProduct(const Three<Number>& p, const Three<Number>& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+Dyadic inner(const Three<Dyadic>& p, const Three<Dyadic>& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
 template <class Number>
-Number inner(const Three<Number>& p, const Three<Number>& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+Three<Number> crossProduct(const Three<Number>& p, const Three<Number>& q) {
+  return {minor(p[1], q[2], p[2], q[1]), minor(p[2], q[0], p[0], q[2]), minor(p[0], q[1], p[1], q[0])};
 }
 
 /// How far two triangles reach past each other along a normal n.
@@ -88,6 +93,8 @@ class Pair {
     if (direction != nullptr) direction_ = numbers<Number>(*direction);
     normalA_ = crossProduct(edgesA_[0], edgesA_[1]);
     normalB_ = crossProduct(edgesB_[0], edgesB_[1]);
+    depthsA_ = depthsAlong(normalA_);
+    depthsB_ = depthsAlong(normalB_);
   }
 
   /// Whether the triangles lie in one plane, face each other and overlap.
@@ -95,7 +102,7 @@ class Pair {
     const Number facing = inner(normalA_, normalB_);
     Answer flush = isPositive(mirrored.a == mirrored.b ? Number(0) - facing : facing);
     if (flush == Answer::no) return flush;
-    flush = both(flush, either(isThin(normalA_), isThin(normalB_)));
+    flush = both(flush, either(isThin(depthsA_), isThin(depthsB_)));
     for (size_t i = 0; i < 3 && flush != Answer::no; ++i) {
       flush = both(flush, overlapAlong(crossProduct(normalA_, edgesA_[i])));
       flush = both(flush, overlapAlong(crossProduct(normalB_, edgesB_[i])));
@@ -113,19 +120,21 @@ class Pair {
   /// - a or, with a direction, b - a - s * direction for all s >= 0.
   Answer areInseparable() const {
     Answer exists = Answer::no, apart = Answer::no;
-    const auto tryNormal = [&](const Three<Number>& n, bool isAcross) {
-      if (apart == Answer::yes) return;
+    const auto tryNormal = [&](const Three<Number>& n, const Depths<Number>& depths, bool isAcross) {
       const Answer isNormal = isNotZero(n);
       exists = either(exists, isNormal);
-      if (isNormal != Answer::no) apart = either(apart, both(isNormal, separates(n, isAcross)));
+      if (isNormal != Answer::no) apart = either(apart, both(isNormal, separates(n, depths, isAcross)));
+      return apart == Answer::yes;
     };
-    tryNormal(normalA_, false);
-    tryNormal(normalB_, false);
-    for (size_t i = 0; i < 3 && moves_; ++i) {
-      tryNormal(crossProduct(direction_, edgesA_[i]), true);
-      tryNormal(crossProduct(direction_, edgesB_[i]), true);
+    if (tryNormal(normalA_, depthsA_, false) || tryNormal(normalB_, depthsB_, false)) return Answer::no;
+    for (size_t i = 0; i < 6 && moves_; ++i) {
+      const Three<Number> n = crossProduct(direction_, i < 3 ? edgesA_[i] : edgesB_[i - 3]);
+      if (tryNormal(n, depthsAlong(n), true)) return Answer::no;
     }
-    for (size_t i = 0; i < 9; ++i) tryNormal(crossProduct(edgesA_[i / 3], edgesB_[i % 3]), false);
+    for (size_t i = 0; i < 9; ++i) {
+      const Three<Number> n = crossProduct(edgesA_[i / 3], edgesB_[i % 3]);
+      if (tryNormal(n, depthsAlong(n), false)) return Answer::no;
+    }
     return both(exists, !apart);
   }
 
@@ -137,19 +146,15 @@ class Pair {
   }
 
   Depths<Number> depthsAlong(const Three<Number>& n) const {
-    const Number a[3] = {inner(n, a_[0]), inner(n, a_[1]), inner(n, a_[2])};
-    const Number b[3] = {inner(n, b_[0]), inner(n, b_[1]), inner(n, b_[2])};
-    const auto greatest = [](const Number(&p)[3]) { return max(max(p[0], p[1]), p[2]); };
-    const auto least = [](const Number(&p)[3]) {
-      const Number zero(0);
-      return zero - max(max(zero - p[0], zero - p[1]), zero - p[2]);
-    };
-    return {greatest(b) - least(a), greatest(a) - least(b), slack_ * max(max(abs(n[0]), abs(n[1])), abs(n[2]))};
+    const Number zero(0), a1 = inner(n, a_[1]), a2 = inner(n, a_[2]);
+    const Number b0 = inner(n, b_[0]), b1 = inner(n, b_[1]), b2 = inner(n, b_[2]);
+    return {max(max(b0, b1), b2) + max(max(zero, zero - a1), zero - a2),
+            max(max(zero, a1), a2) + max(max(zero - b0, zero - b1), zero - b2),
+            slack_ * max(max(abs(n[0]), abs(n[1])), abs(n[2]))};
   }
 
   /// Whether n or -n keeps the triangles apart. `isAcross`: n is orthogonal to the direction.
-  Answer separates(const Three<Number>& n, bool isAcross) const {
-    const Depths<Number> depths = depthsAlong(n);
+  Answer separates(const Three<Number>& n, const Depths<Number>& depths, bool isAcross) const {
     Answer forward = !isPositive(depths.forward - depths.allowed);
     Answer backward = !isPositive(depths.backward - depths.allowed);
     if (moves_ && !isAcross && (forward != Answer::no || backward != Answer::no)) {
@@ -160,8 +165,7 @@ class Pair {
     return either(forward, backward);
   }
 
-  Answer isThin(const Three<Number>& n) const {
-    const Depths<Number> depths = depthsAlong(n);
+  static Answer isThin(const Depths<Number>& depths) {
     return both(!isPositive(depths.forward - depths.allowed), !isPositive(depths.backward - depths.allowed));
   }
 
@@ -174,26 +178,28 @@ class Pair {
   Number slack_;
   Three<Number> a_[3], b_[3], edgesA_[3], edgesB_[3];  // corners relative to corner 0 of a
   Three<Number> direction_, normalA_, normalB_;
+  Depths<Number> depthsA_, depthsB_;
 };
 
-template <class Number>
-Answer decideBlocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  const Pair<Number> pair(a, b, &direction, slack);
-  const Answer flush = pair.areFlush(mirrored);
-  if (flush == Answer::open) return flush;
-  return flush == Answer::yes ? pair.isAgainstB(mirrored.b) : pair.areInseparable();
+/// Whether doubles with error bounds may compute with these numbers.
+bool haveSafeRange(const Triangle& a, const Triangle& b, const Vector* direction, double slack) {
+  bool safe = hasSafeRange(slack);
+  for (size_t k = 0; k < 3; ++k) {
+    safe &= hasSafeRange(a[1][k] - a[0][k]) & hasSafeRange(a[2][k] - a[0][k]);
+    for (size_t i = 0; i < 3; ++i) safe &= hasSafeRange(b[i][k] - a[0][k]);
+    if (direction != nullptr) safe &= hasSafeRange((*direction)[k]);
+  }
+  return safe;
 }
 
-template <class Number>
-Answer decidePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  const Pair<Number> pair(a, b, &direction, slack);
-  const Answer flush = pair.areFlush(mirrored);
-  return flush == Answer::no ? flush : both(flush, pair.isAgainstB(mirrored.b));
-}
-
-template <class Number>
-Answer decideCross(const Triangle& a, const Triangle& b, double slack) {
-  return Pair<Number>(a, b, nullptr, slack).areInseparable();
+template <class Decide>
+bool decided(const Triangle& a, const Triangle& b, const Vector* direction, double slack, const Decide& decide) {
+  if (haveSafeRange(a, b, direction, slack)) {
+    const Answer rough = decide(Pair<Bounded>(a, b, direction, slack));
+    if (rough != Answer::open) return rough == Answer::yes;
+  }
+  countExactDecision();
+  return decide(Pair<Dyadic>(a, b, direction, slack)) == Answer::yes;
 }
 
 }  // namespace
@@ -205,24 +211,22 @@ bool isMirroring(const Transform& pose) {
 }
 
 bool blocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  const Answer rough = decideBlocks<Bounded>(a, b, direction, slack, mirrored);
-  if (rough != Answer::open) return rough == Answer::yes;
-  countExactDecision();
-  return decideBlocks<Dyadic>(a, b, direction, slack, mirrored) == Answer::yes;
+  return decided(a, b, &direction, slack, [&](const auto& pair) {
+    const Answer flush = pair.areFlush(mirrored);
+    if (flush == Answer::open) return flush;
+    return flush == Answer::yes ? pair.isAgainstB(mirrored.b) : pair.areInseparable();
+  });
 }
 
 bool arePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  const Answer rough = decidePressed<Bounded>(a, b, direction, slack, mirrored);
-  if (rough != Answer::open) return rough == Answer::yes;
-  countExactDecision();
-  return decidePressed<Dyadic>(a, b, direction, slack, mirrored) == Answer::yes;
+  return decided(a, b, &direction, slack, [&](const auto& pair) {
+    const Answer flush = pair.areFlush(mirrored);
+    return flush == Answer::no ? flush : both(flush, pair.isAgainstB(mirrored.b));
+  });
 }
 
 bool cross(const Triangle& a, const Triangle& b, double slack) {
-  const Answer rough = decideCross<Bounded>(a, b, slack);
-  if (rough != Answer::open) return rough == Answer::yes;
-  countExactDecision();
-  return decideCross<Dyadic>(a, b, slack) == Answer::yes;
+  return decided(a, b, nullptr, slack, [](const auto& pair) { return pair.areInseparable(); });
 }
 
 }  // namespace radar::exact

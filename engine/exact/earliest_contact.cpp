@@ -9,29 +9,22 @@
 
 namespace radar::exact {
 
-bool EarliestContact::consider(const PairName& name, const PlacedPair& pair) {
+std::optional<EarliestContact::Beginning> EarliestContact::beginningOf(const PlacedPair& pair) const {
   const auto interval = contact(pair.a, pair.b, motion_->direction);
-  if (!interval) return false;
+  if (!interval) return std::nullopt;
   const int last = sign(interval->last);
-  if (last < 0) return false;
+  if (last < 0) return std::nullopt;
   const int first = sign(interval->first);
   const Features features = first >= 0 ? interval->atFirst : last == 0 ? interval->atLast : interval->between;
-  return keep(name, pair, interval->first, first <= 0, features);
+  return Beginning{interval->first, first <= 0, features};
 }
 
 bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pair) {
-  constexpr Features kFaces{Feature::face, Feature::face};
-  const auto interval = contact(pair.a, pair.b, motion_->direction);
-  if (interval && sign(interval->last) >= 0) {
-    return keep(name, pair, interval->first, sign(interval->first) <= 0, kFaces);
-  }
   // Any event before the start will do.
   const Vector& d = motion_->direction;
-  return keep(name, pair, vertexVertex(d, d, kOrigin), true, kFaces);
-}
-
-bool EarliestContact::considerKnown(const PairName& name, const PlacedPair& pair, const Event& first) {
-  return keep(name, pair, first, false, featuresOf(first));
+  Beginning beginning = beginningOf(pair).value_or(Beginning{vertexVertex(d, d, kOrigin), true, {}});
+  beginning.features = {Feature::face, Feature::face};
+  return precedes(name, beginning) && keep(name, pair, beginning);
 }
 
 // -1, 0 or 1: the event comes before, at or after D.
@@ -49,19 +42,20 @@ bool EarliestContact::precedes(const EarliestContact& other) const {
   return order < 0 || (order == 0 && name_ < other.name_);
 }
 
-bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap,
-                           Features features) {
-  if (!overlap && compareToEnd(first) > 0) return false;
-  if (found_) {
-    const int order = compareTimes(overlap, first, *this);
-    if (order > 0 || (order == 0 && name_ < name)) return false;
-  }
+bool EarliestContact::precedes(const PairName& name, const Beginning& beginning) const {
+  if (!beginning.overlap && compareToEnd(beginning.first) > 0) return false;
+  if (!found_) return true;
+  const int order = compareTimes(beginning.overlap, beginning.first, *this);
+  return order < 0 || (order == 0 && !(name_ < name));
+}
+
+bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning) {
   found_ = true;
-  overlap_ = overlap;
+  overlap_ = beginning.overlap;
   name_ = name;
   pair_ = pair;
-  event_ = first;
-  features_ = features;
+  event_ = beginning.first;
+  features_ = beginning.features;
   return true;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 
 #include "exact/contact.h"
 #include "exact/motion.h"
@@ -26,11 +27,23 @@ class EarliestContact {
   /// `motion` must outlive this.
   explicit EarliestContact(const Motion& motion) : motion_(&motion) {}
 
-  /// Computes the pair's contact exactly, and keeps it if it is the earliest so far. Returns whether it was kept.
-  bool consider(const PairName& name, const PlacedPair& pair);
+  /// Computes the pair's contact exactly, and keeps it if it is the earliest so far and `counts()`, which is asked
+  /// last. Returns whether it was kept.
+  template <class Counts>
+  bool consider(const PairName& name, const PlacedPair& pair, const Counts& counts) {
+    const std::optional<Beginning> beginning = beginningOf(pair);
+    return beginning && precedes(name, *beginning) && counts() && keep(name, pair, *beginning);
+  }
   /// The same for a contact that is known to begin at `first`, not before the start.
-  bool considerKnown(const PairName& name, const PlacedPair& pair, const Event& first);
-
+  template <class Counts>
+  bool considerKnown(const PairName& name, const PlacedPair& pair, const Event& first, const Counts& counts) {
+    const Beginning beginning{first, false, featuresOf(first)};
+    return precedes(name, beginning) && counts() && keep(name, pair, beginning);
+  }
+  /// The same for a pair that counts.
+  bool consider(const PairName& name, const PlacedPair& pair) {
+    return consider(name, pair, [] { return true; });
+  }
   /// The same for a pair that touches at the start, up to the slack of a query, if it has not met before: see
   /// arePressed().
   bool considerPressed(const PairName& name, const PlacedPair& pair);
@@ -47,7 +60,15 @@ class EarliestContact {
   Result answer(bool anyHit) const;
 
  private:
-  bool keep(const PairName& name, const PlacedPair& pair, const Event& first, bool overlap, Features features);
+  /// How contact at or after the start begins.
+  struct Beginning {
+    Event first;
+    bool overlap;  ///< at the start
+    Features features;
+  };
+  std::optional<Beginning> beginningOf(const PlacedPair& pair) const;
+  bool precedes(const PairName& name, const Beginning& beginning) const;
+  bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
   int compareToEnd(const Event& event) const;
   void describe(Result& result) const;

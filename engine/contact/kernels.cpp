@@ -41,8 +41,10 @@ ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& sh
           device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
           "resolve", device.divisionConstants()) {
   if (!device.doubles) return;
+  const uint32_t divides = device.divisionConstants()[0];
+  refine.emplace(device, k_contact_refine_comp, "refine", std::array{divides, 0u});
+  refineLeaving.emplace(device, k_contact_refine_comp, "refine, leaving ignored", std::array{divides, 1u});
   block.emplace(device, k_contact_block_comp, "block");
-  refine.emplace(device, k_contact_refine_comp, "refine", device.divisionConstants());
 }
 
 }  // namespace radar

@@ -19,7 +19,7 @@ struct ContactKernels {
   uint32_t lanes;  ///< per workgroup of the search, which is one subgroup
   uint32_t stack;
   gpu::Kernel search, collect, filter, link, resolve;
-  std::optional<gpu::Kernel> block, refine;  ///< if the device has doubles
+  std::optional<gpu::Kernel> refine, refineLeaving, block;  ///< if the device has doubles
 };
 
 }  // namespace radar

@@ -17,7 +17,7 @@
 //                                                the other list of tasks
 // After the last round:                                                                 computeWriteToIndirect
 // filter    states, counts, candidates           counts, refined pairs                  computeWriteToComputeReadWrite
-// refine    scene, sweeps, counts                refined pairs, states                  computeWriteToComputeReadWrite
+// refine    scene, sweeps                        refined pairs, states, counts          computeWriteToIndirect
 //             (only with doubles)
 // block     scene, sweeps, counts,               refined pairs, states                  computeWriteToComputeReadWrite
 //             refined pairs
@@ -80,8 +80,10 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
     room_.width =
         runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
   }
-  if (kernels_->block) block_.emplace(*kernels_->block);
-  if (kernels_->refine) refine_.emplace(*kernels_->refine);
+  if (!device.doubles) return;
+  refine_.emplace(*kernels_->refine);
+  refineLeaving_.emplace(*kernels_->refineLeaving);
+  block_.emplace(*kernels_->block);
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
@@ -139,6 +141,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
     taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
   }
   gpu::SearchCounts counts{};
+  counts.blockGroups[2] = 1;
   counts.rounds[0].tasks = sensorCount_;
   upload_.begin(sceneBytes + reservedBytes_);
   scene_.upload(scene, upload_);
@@ -154,7 +157,8 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
 
 void ContactPass::stageMore(const gpu::SearchCounts& before) {
   gpu::SearchCounts counts = before;
-  counts.refinedPairs = counts.unresolved = 0;
+  counts.refinedPairs = counts.openPairs = counts.unresolved = 0;
+  counts.blockGroups[0] = counts.blockGroups[1] = 0;
   const uint32_t tasks = tasksLeft(before);
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;
@@ -185,24 +189,17 @@ void ContactPass::setArguments() {
                {kSlotCounts, counts_},
                {kSlotCandidatePairs, candidates_},
                {kSlotRefinedPairs, refinedPairs_}});
-  if (block_) {
-    block_->set({{kSlotStates, states_},
-                 {kSlotCounts, counts_},
-                 {kSlotRefinedPairs, refinedPairs_},
-                 {kSlotVertices, scene.vertices},
-                 {kSlotTriangles, scene.triangles},
-                 {kSlotSweeps, sweeps_},
-                 {kSlotObjects, scene.objects},
-                 {kSlotMeshes, scene.meshes}});
-  }
-  if (refine_) {
-    refine_->set({{kSlotStates, states_},
-                  {kSlotCounts, counts_},
-                  {kSlotRefinedPairs, refinedPairs_},
-                  {kSlotVertices, scene.vertices},
-                  {kSlotTriangles, scene.triangles},
-                  {kSlotSweeps, sweeps_},
-                  {kSlotObjects, scene.objects}});
+  for (auto* arguments : {&refine_, &refineLeaving_, &block_}) {
+    if (!*arguments) continue;
+    (*arguments)
+        ->set({{kSlotStates, states_},
+               {kSlotCounts, counts_},
+               {kSlotRefinedPairs, refinedPairs_},
+               {kSlotVertices, scene.vertices},
+               {kSlotTriangles, scene.triangles},
+               {kSlotSweeps, sweeps_},
+               {kSlotObjects, scene.objects},
+               {kSlotMeshes, scene.meshes}});
   }
   link_.set({{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
   resolve_.set({{kSlotStates, states_},
@@ -240,12 +237,14 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   gpu::computeWriteToIndirect(commands);
   filter_.dispatchIndirect(commands, counts_, 0, gpu::FilterPush{candidateRoom_});
   gpu::computeWriteToComputeReadWrite(commands);
-  if (refine_) {
+  if (refine_ && !ignoresLeaving_) {
     refine_->dispatchIndirect(commands, counts_, 0);
     gpu::computeWriteToComputeReadWrite(commands);
   }
-  if (block_ && ignoresLeaving_) {
-    block_->dispatchIndirect(commands, counts_, 0);
+  if (refine_ && ignoresLeaving_) {
+    refineLeaving_->dispatchIndirect(commands, counts_, 0);
+    gpu::computeWriteToIndirect(commands);
+    block_->dispatchIndirect(commands, counts_, offsetof(gpu::SearchCounts, blockGroups));
     gpu::computeWriteToComputeReadWrite(commands);
   }
   link_.dispatchIndirect(commands, counts_, 0);

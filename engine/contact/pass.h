@@ -77,7 +77,7 @@ class ContactPass {
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
   // Rounds alternate between the two lists of tasks.
   gpu::KernelArguments search_[2], collect_[2], filter_, link_, resolve_;
-  std::optional<gpu::KernelArguments> block_, refine_;
+  std::optional<gpu::KernelArguments> refine_, refineLeaving_, block_;
   std::vector<gpu::SearchState> stateList_;
   std::vector<gpu::SearchTask> taskList_;
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;

@@ -35,6 +35,8 @@ struct BoundedVector {
   dvec3 value, error;
 };
 
+#include "slack.glsl"
+
 Bounded minus(Bounded p, Bounded q) {
   const double value = p.value - q.value;
   return Bounded(value, (p.error + q.error + kHalfUlp * abs(value)) * kMore);
@@ -160,22 +162,6 @@ int isMirroring(PreciseRows pose) {
   return isPositive(negative(inner(rowOf(pose, 0), crossProduct(rowOf(pose, 1), rowOf(pose, 2)))));
 }
 
-// radar::placedMagnitude.
-double magnitudeOf(PreciseRows pose, MeshRecord mesh) {
-  const dvec3 origin = dvec3(mesh.origin);
-  const dvec3 most = max(abs(origin + dvec3(mesh.lo)), abs(origin + dvec3(mesh.hi)));
-  double greatest = 0.0LF;
-  for (int row = 0; row < 3; ++row) greatest = max(greatest, dot(abs(pose[row].xyz), most) + abs(pose[row].w));
-  return greatest;
-}
-
-Bounded slackOf(Sweep sweep, RefinedPair c) {
-  if (sweep.slack >= 0.0LF) return Bounded(sweep.slack, 0.0LF);
-  const double magnitude = max(sweep.magnitude, magnitudeOf(objects[c.object].pose, meshes[objects[c.object].mesh]));
-  const double value = 3.552713678800501e-15LF * magnitude;  // 2^-48
-  return Bounded(value, 3.8e-6LF * value);                   // more than the rounding of a box to floats
-}
-
 int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
   for (int i = 0; i < 3; ++i) {
     cornersA[i] = difference(a[i], a[0]);
@@ -194,63 +180,19 @@ int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
   return flush == kOpen ? kOpen : parted ? kNo : areInseparable(normalA, normalB);
 }
 
-// -1 or 1: the side of the plane through the origin with the normal x cross y on which w is, if w is certainly farther from it
-// than the slack; else 0.
-int sideBeyond(dvec3 w, dvec3 x, dvec3 y) {
-  const BoundedVector n = crossProduct(difference(x, dvec3(0.0LF)), difference(y, dvec3(0.0LF)));
-  const Bounded at = inner(difference(w, dvec3(0.0LF)), n);
-  const dvec3 sizes = abs(n.value) + n.error;
-  const double margin = at.error + 1.001LF * (slack.value + slack.error) * max(sizes.x, max(sizes.y, sizes.z));
-  return at.value > margin ? 1 : at.value < -margin ? -1 : 0;
-}
-
-// Whether some corner is certainly farther than the slack from the plane of a face.
-bool leavesPlane(dvec3 face[3], dvec3 corners[3]) {
-  const dvec3 x = face[1] - face[0], y = face[2] - face[0];
-  return sideBeyond(corners[0] - face[0], x, y) != 0 || sideBeyond(corners[1] - face[0], x, y) != 0 ||
-         sideBeyond(corners[2] - face[0], x, y) != 0;
-}
-
-// Whether contact at a certain feature ahead certainly blocks, because everything within the slack of it is inside both parts,
-// as seen along the direction: certainlyBlocks of engine/cpu/certificate.cpp. Corners are sorted.
-bool certainlyBlocks(uint feature, dvec3 a[3], dvec3 b[3]) {
-  const dvec3 d = direction.value;
-  // Triangles in the plane of either, up to the slack, are judged by another rule.
-  if (!leavesPlane(a, b) || !leavesPlane(b, a)) return false;
-  if (feature < kFeatureEdges) {
-    const bool ofA = feature >= 3;
-    const dvec3 corner = ofA ? b[feature - 3] : a[feature];
-    const dvec3 f0 = ofA ? a[0] : b[0], f1 = ofA ? a[1] : b[1], f2 = ofA ? a[2] : b[2];
-    const int sides = sideBeyond(f0 - corner, d, f1 - f0) + sideBeyond(f1 - corner, d, f2 - f1) +
-                      sideBeyond(f2 - corner, d, f0 - f2);
-    return abs(sides) == 3 && sideBeyond(f0 - corner, f1 - f0, f2 - f0) != 0;
-  }
-  const uint i = (feature - kFeatureEdges) / 3, k = (feature - kFeatureEdges) % 3;
-  const dvec3 a0 = i == 1 ? a[1] : a[0], a1 = i == 0 ? a[1] : a[2], b0 = k == 1 ? b[1] : b[0], b1 = k == 0 ? b[1] : b[2];
-  const dvec3 x = a1 - a0, y = b1 - b0, w = b0 - a0;
-  return sideBeyond(w, d, x) * sideBeyond(b1 - a0, d, x) < 0 && sideBeyond(w, d, y) * sideBeyond(b0 - a1, d, y) < 0 &&
-         sideBeyond(w, x, y) != 0;
-}
-
 void main() {
-  const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
-  if (i >= counts.refinedPairs) return;
+  const uint place = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
+  if (place >= counts.openPairs) return;
+  const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
-  if (sweep.ignoreLeaving == 0 || c.first > uintBitsToFloat(states[c.sensor].hi)) return;
+  if (c.first > uintBitsToFloat(states[c.sensor].hi)) return;
   dvec3 a[3], b[3];
   cornersInOrder(sweep.pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
   direction = exactly(dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   slack = slackOf(sweep, c);
-  bool isCertain = false;
-  if ((c.flags & kPairMeets) != 0 && c.at > c.error) {
-    dvec3 sortedA[3] = a, sortedB[3] = b;
-    sortCorners(sortedA);
-    sortCorners(sortedB);
-    isCertain = certainlyBlocks(c.flags & 0xffu, sortedA, sortedB);
-  }
-  const int answer = isCertain ? kYes : blocks(sweep, c, a, b);
+  const int answer = blocks(sweep, c, a, b);
   if (answer == kNo) {
     refinedPairs[i].low = 1.0e200LF;
     refinedPairs[i].first = 1e38;

@@ -85,7 +85,7 @@ struct RefinedPair {
   uint flags;    // kPair*, and the feature that attains `at` in the low bits
   uint next;
   float first;   // `low`, scaled, rounded down
-  uint padding;
+  uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block
 };
 INTEROP_CONST kPairParted = 0x800;   // certainly does not meet at or after the start
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
@@ -116,8 +116,10 @@ INTEROP_CONST kMostRounds = 64;
 // Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
+  uint blockGroups[3];   // the same for the pairs that may not block
   uint candidates;       // found; stored up to the capacity
   uint refinedPairs;
+  uint openPairs;        // that may not block
   uint unresolved;       // found; stored up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups
   uint nodePairs;        // tested; low word

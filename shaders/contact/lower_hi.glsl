@@ -6,9 +6,13 @@ const double kRounded = 8.881784197001252e-16LF;
 const double kRoundedFloat = 2.4e-7LF;
 
 // `by`: the pair certainly meets by this multiple of the direction.
+double scaledHi(Sweep sweep, double by) { return max(by, 0.0LF) * sweep.directionLength * double(sweep.scale); }
+
+bool wouldLowerHi(uint sensor, Sweep sweep, double by) {
+  return scaledHi(sweep, by) < double(uintBitsToFloat(states[sensor].hi));
+}
+
 void lowerHi(uint sensor, Sweep sweep, double by) {
-  const double scaled = max(by, 0.0LF) * sweep.directionLength * double(sweep.scale);
-  if (scaled < double(uintBitsToFloat(states[sensor].hi))) {
-    atomicMin(states[sensor].hi, floatBitsToUint(float(scaled * (1.0LF + kRoundedFloat)) + 1e-37));
-  }
+  if (!wouldLowerHi(sensor, sweep, by)) return;
+  atomicMin(states[sensor].hi, floatBitsToUint(float(scaledHi(sweep, by) * (1.0LF + kRoundedFloat)) + 1e-37));
 }

@@ -10,14 +10,28 @@
 #include "shared/workgroup.glsl"
 
 layout(local_size_x = kContactGroup) in;
+// Whether any query ignores what does not block. Constant, because some devices execute what they skip.
+layout(constant_id = 1) const bool kIgnoresLeaving = false;
 
 layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
+layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
 layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
 layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 
+#include "certificate.glsl"
 #include "lower_hi.glsl"
+#include "slack.glsl"
+
+// Leaves it to block.comp whether a pair blocks.
+void leaveOpen(uint pair) {
+  const uint place = atomicAdd(counts.openPairs, 1), group = place / kContactGroup;
+  refinedPairs[place].open = pair;
+  if (place % kContactGroup != 0) return;
+  atomicMax(counts.blockGroups[0], min(group + 1, kMostWorkgroups));
+  atomicMax(counts.blockGroups[1], group / kMostWorkgroups + 1);
+}
 
 void main() {
   const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
@@ -27,19 +41,27 @@ void main() {
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);
-  const Impact m = impactOf(a, b, dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  const dvec3 direction = dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]);
+  const Impact m = impactOf(a, b, direction);
+  const bool ignoresLeaving = kIgnoresLeaving && sweep.ignoreLeaving != 0;
+  bool blocks = !ignoresLeaving;
+  if (ignoresLeaving && m.ahead && m.at > m.error && wouldLowerHi(c.sensor, sweep, m.at + m.error)) {
+    const Bounded slack = slackOf(sweep, c);
+    blocks = certainlyBlocks(m.feature, a, b, direction, slack.value + slack.error);
+  }
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
   // A contact that ends before the start counts as never, unless the pair may be pressed together (block.comp).
   const bool parted = m.latest < 0.0LF;
   const double begins = max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded);
-  const double low = !parted ? begins : sweep.ignoreLeaving != 0 ? 0.0LF : kNever;
+  const double low = !parted ? begins : ignoresLeaving ? 0.0LF : kNever;
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;
   refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && m.by < 0.0LF ? kPairPierces : 0) |
                         (sharp ? kPairSharp : 0) | (parted ? kPairParted : 0) | (m.feature & 0xffu);
   const double scale = double(sweep.scale);
-  refinedPairs[i].first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
-  // Whether a pair counts that may not block is decided next.
-  if (m.ahead && sweep.ignoreLeaving == 0) lowerHi(c.sensor, sweep, m.at + m.error);
+  const float first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
+  refinedPairs[i].first = first;
+  if (m.ahead && blocks) lowerHi(c.sensor, sweep, m.at + m.error);
+  if (!blocks && first <= uintBitsToFloat(states[c.sensor].hi)) leaveOpen(i);
 }

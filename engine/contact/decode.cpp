@@ -56,8 +56,8 @@ void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& 
   const exact::PairName name{pair.object, pair.triB, pair.triA};
   if (exact::arePressed(inOrder.a, inOrder.b, direction, slack, mirrored)) {
     earliest.considerPressed(name, sorted);
-  } else if (exact::blocks(inOrder.a, inOrder.b, direction, slack, mirrored)) {
-    earliest.consider(name, sorted);
+  } else {
+    earliest.consider(name, sorted, [&] { return exact::blocks(inOrder.a, inOrder.b, direction, slack, mirrored); });
   }
 }
 

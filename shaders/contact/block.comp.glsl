@@ -162,7 +162,8 @@ int isMirroring(PreciseRows pose) {
   return isPositive(negative(inner(rowOf(pose, 0), crossProduct(rowOf(pose, 1), rowOf(pose, 2)))));
 }
 
-int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
+// `isLate`: the pair counts only if it is pressed together.
+int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3], bool isLate, out bool mayBePressed) {
   for (int i = 0; i < 3; ++i) {
     cornersA[i] = difference(a[i], a[0]);
     cornersB[i] = difference(b[i], a[0]);
@@ -174,10 +175,9 @@ int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3]) {
   // Without mirroring, and with both mirrored, faces that face each other have normals of negative product.
   const int facing = signed(isPositive(inner(normalA, normalB)), -signed(mirroredA, mirroredB));
   const int flush = areFlush(facing, normalA, normalB);
+  mayBePressed = flush != kNo;
   if (flush == kYes) return signed(isPositive(inner(direction, normalB)), mirroredB);
-  // A pair that has parted can only be pressed together.
-  const bool parted = (c.flags & kPairParted) != 0;
-  return flush == kOpen ? kOpen : parted ? kNo : areInseparable(normalA, normalB);
+  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable(normalA, normalB);
 }
 
 void main() {
@@ -186,16 +186,23 @@ void main() {
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
-  if (c.first > uintBitsToFloat(states[c.sensor].hi)) return;
+  const float hi = uintBitsToFloat(states[c.sensor].hi);
+  if (c.first > hi) return;
   dvec3 a[3], b[3];
   cornersInOrder(sweep.pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
   direction = exactly(dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
   slack = slackOf(sweep, c);
-  const int answer = blocks(sweep, c, a, b);
+  // Too late, or never because it has parted.
+  const bool isLate = scaledDown(c.low, sweep) > hi;
+  bool mayBePressed;
+  const int answer = blocks(sweep, c, a, b, isLate, mayBePressed);
   if (answer == kNo) {
     refinedPairs[i].low = 1.0e200LF;
     refinedPairs[i].first = 1e38;
+  } else if (mayBePressed && (c.flags & kPairMeets) == 0) {
+    // Rounding may have let the triangles part, or slide past each other, but they count from the start.
+    refinedPairs[i].low = 0.0LF;
   }
   // Nothing is certain of a pair that may not block, and only the CPU answers one that has parted and is pressed together.
   const bool meets = answer == kYes && (c.flags & kPairMeets) != 0, touches = answer == kYes && (c.flags & kPairParted) != 0;

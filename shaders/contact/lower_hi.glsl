@@ -1,9 +1,14 @@
-// Lowers a sensor's upper bound of first contact to that of a pair in doubles.
+// Bounds of pairs in doubles as floats: lowers a sensor's upper bound of first contact to that of a pair.
 
 // Lower bounds are lowered and upper bounds raised by this, relative to their value: products may round them inwards.
 const double kRounded = 8.881784197001252e-16LF;
 // The same for a float.
 const double kRoundedFloat = 2.4e-7LF;
+
+// A lower bound, scaled, rounded down.
+float scaledDown(double low, Sweep sweep) {
+  return float(min(low * double(sweep.scale), 1e38LF) * (1.0LF - kRoundedFloat));
+}
 
 // `by`: the pair certainly meets by this multiple of the direction.
 double scaledHi(Sweep sweep, double by) { return max(by, 0.0LF) * sweep.directionLength * double(sweep.scale); }

@@ -50,17 +50,17 @@ void main() {
     blocks = certainlyBlocks(m.feature, a, b, direction, slack.value + slack.error);
   }
   const bool sharp = m.ahead && m.at - m.error > 0.0LF && min(m.others, m.unknown) > m.by;
-  // A contact that ends before the start counts as never, unless the pair may be pressed together (block.comp).
+  // A contact that ends before the start counts as never.
   const bool parted = m.latest < 0.0LF;
-  const double begins = max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded);
-  const double low = !parted ? begins : ignoresLeaving ? 0.0LF : kNever;
+  const double low =
+      parted ? kNever : max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded);
   refinedPairs[i].low = low;
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;
   refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && m.by < 0.0LF ? kPairPierces : 0) |
                         (sharp ? kPairSharp : 0) | (parted ? kPairParted : 0) | (m.feature & 0xffu);
-  const double scale = double(sweep.scale);
-  const float first = max(c.first, float(min(low * scale, 1e38LF) * (1.0LF - kRoundedFloat)));
+  // A pair that may not meet may yet be pressed together, and then counts from the start (block.comp).
+  const float first = m.ahead || !ignoresLeaving ? max(c.first, scaledDown(low, sweep)) : c.first;
   refinedPairs[i].first = first;
   if (m.ahead && blocks) lowerHi(c.sensor, sweep, m.at + m.error);
   if (!blocks && first <= uintBitsToFloat(states[c.sensor].hi)) leaveOpen(i);

@@ -160,6 +160,38 @@ TEST_CASE("lists of the nearest objects, and of those that cross at the start, a
   REQUIRE(onDevice > 300);
 }
 
+TEST_CASE("boxes that slide along each other but for a rounding, and so never touch, have the CPU's bits") {
+  Random random(6);
+  Batch batch;
+  const MeshId box = soups::add(batch.scene, soups::box(0.5, 0.5, 0.5)),
+               longBox = soups::add(batch.scene, soups::box(1.25, 0.5, 0.5));
+  for (uint32_t i = 0; i < 30; ++i) {
+    const Transform rest = random.pose(std::exp(random.uniform(-9, 1)), random.inBall());
+    batch.scene.addObject({box, rest, 1u << i});
+    for (int k = 0; k < 300; ++k) {
+      Query query{.mesh = longBox, .worldFromMesh = rest, .distance = random.uniform(0, 5), .mask = 1u << i};
+      const double along = random.uniform(-1.5, 1.5), down = std::exp(random.uniform(-37, -29)),
+                   way = k % 2 == 0 ? 1 : -1;
+      for (size_t row : {0, 1, 2}) {
+        query.worldFromMesh.m[4 * row + 3] += rest.m[4 * row + 2] + along * rest.m[4 * row];
+        query.direction[row] = way * rest.m[4 * row] - down * rest.m[4 * row + 2];
+      }
+      query.ignoreLeaving = true;
+      batch.queries.push_back(query);
+    }
+  }
+  const std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+  Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
+  const std::vector<Result> results = sweeper.run(batch.queries);
+  size_t blocked = 0;
+  for (size_t i = 0; i < results.size(); ++i) {
+    INFO("query " << i);
+    REQUIRE(test::sameBits(results[i], withTier(expected[i], results[i].tier)));
+    blocked += results[i].status == Status::overlap;
+  }
+  REQUIRE(blocked > 100);
+}
+
 TEST_CASE("a body on a fine floor is answered by the device alone") {
   if (!test::device().doubles()) return;
   // Two floors of 20 x 20 squares: 800 triangles each, in one plane, under a box of 4 x 4 squares.

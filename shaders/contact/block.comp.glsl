@@ -204,8 +204,13 @@ void main() {
     // Rounding may have let the triangles part, or slide past each other, but they count from the start.
     refinedPairs[i].low = 0.0LF;
   }
-  // Nothing is certain of a pair that may not block, and only the CPU answers one that has parted and is pressed together.
+  // Nothing is certain of a pair that may not block. Only the CPU answers one that is pressed together and has parted, or touches
+  // a little ahead: then the faces touch, whatever features come first.
   const bool meets = answer == kYes && (c.flags & kPairMeets) != 0, touches = answer == kYes && (c.flags & kPairParted) != 0;
-  if (answer != kYes || touches) refinedPairs[i].flags = 0;
+  if (answer != kYes || touches) {
+    refinedPairs[i].flags = 0;
+  } else if (mayBePressed) {
+    refinedPairs[i].flags &= ~kPairSharp;
+  }
   if (meets || touches) lowerHi(c.sensor, sweep, touches ? 0.0LF : c.at + c.error);
 }

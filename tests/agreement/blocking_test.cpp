@@ -192,6 +192,38 @@ TEST_CASE("boxes that slide along each other but for a rounding, and so never to
   REQUIRE(blocked > 100);
 }
 
+TEST_CASE("faces pressed together that touch a rounding ahead are faces, as on the CPU") {
+  Random random(7);
+  Batch batch;
+  const MeshId large = batch.scene.addMesh(std::vector<float>{-1, -1, 0, 3, -1, 0, -1, 3, 0}, std::vector{0u, 1u, 2u});
+  const MeshId small = batch.scene.addMesh(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector{0u, 2u, 1u});
+  for (uint32_t i = 0; i < 20; ++i) {
+    const Transform rest = random.pose(1, {random.uniform(-1e5, 1e5), 3, 5});
+    batch.scene.addObject({large, rest, 1u << i});
+    for (int k = 0; k < 20; ++k) {
+      Query query{.mesh = small, .worldFromMesh = rest, .distance = 5, .mask = 1u << i};
+      const double above = random.uniform(0, 1e-10), aside = random.uniform(-1, 1);
+      for (size_t row : {0, 1, 2}) {
+        query.worldFromMesh.m[4 * row + 3] += above * rest.m[4 * row + 2];
+        query.direction[row] = aside * rest.m[4 * row] - rest.m[4 * row + 2];
+      }
+      query.ignoreLeaving = true;
+      batch.queries.push_back(query);
+    }
+  }
+  CpuSweeper cpu(batch.scene, 1);
+  const std::vector<Result> expected = cpu.run(batch.queries);
+  Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
+  const std::vector<Result> results = sweeper.run(batch.queries);
+  size_t ahead = 0;
+  for (size_t i = 0; i < results.size(); ++i) {
+    INFO("query " << i);
+    REQUIRE(test::sameBits(results[i], withTier(expected[i], results[i].tier)));
+    ahead += results[i].status == Status::hit && results[i].featureA == Feature::face;
+  }
+  REQUIRE(ahead > 50);
+}
+
 TEST_CASE("a body on a fine floor is answered by the device alone") {
   if (!test::device().doubles()) return;
   // Two floors of 20 x 20 squares: 800 triangles each, in one plane, under a box of 4 x 4 squares.

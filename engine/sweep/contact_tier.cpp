@@ -236,6 +236,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
     batch_.stats.cpuPairs += unresolved.of(open[k]).size();
     if (!keep(queries[open[k]], decided[k])) leave(queries[open[k]]);
   }
+  std::sort(left.begin(), left.end());
   answerOnCpu(left);
 }
 

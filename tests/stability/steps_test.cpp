@@ -10,7 +10,9 @@ using namespace radar::tools;
 
 TEST_CASE("in steps of a millionth the answers of mode contact move with the geometry") {
   const std::vector<StepRow> rows = measureSteps(test::device(), {.cases = 16, .steps = 4, .seed = 3}, [](uint64_t) {});
-  CHECK(rows.size() == hardFamilies().size() * kMethods);
+  size_t expected = 0;
+  for (const HardFamily& family : hardFamilies()) expected += canAnswer(Method::sampled, family) ? kMethods : 1;
+  CHECK(rows.size() == expected);
   for (const StepRow& row : rows) {
     CAPTURE(row.family, nameOf(row.method));
     CHECK(row.steps >= 8);

@@ -1,4 +1,4 @@
-// The oracle for pairs of triangles that block: the definition, in exact rationals and by another method than the
+// The oracle for pairs of triangles that block: the definition, in exact integers and by another method than the
 // engine's. The engine tries the normals of a polyhedron's faces. The oracle looks for any normal whose largest
 // component is 1 or -1: on each face of the cube of such normals it clips the face by the conditions on the normal.
 #pragma once
@@ -7,88 +7,70 @@
 
 namespace oracle {
 
-using RationalVec = std::array<Rational, 3>;
-
-inline RationalVec rationals(const Corner& p) {
-  return {Rational(p[0]), Rational(p[1]), Rational(p[2])};
-}
-
-inline RationalVec minus(const RationalVec& p, const RationalVec& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
-inline RationalVec cross(const RationalVec& p, const RationalVec& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-inline Rational dot(const RationalVec& p, const RationalVec& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
 namespace detail {
 
-using Flat = std::array<Rational, 2>;
+/// A corner (x/w, y/w) of a polygon, w > 0, and the line on which the side to the next corner lies.
+struct PolygonCorner {
+  IntVec xyw;
+  IntVec line;
+};
 
-/// The part of a convex polygon, which may be a segment or a point, where f[0] x + f[1] y + f[2] >= 0.
-inline std::vector<Flat> clipped(const std::vector<Flat>& polygon, const RationalVec& f) {
-  const auto value = [&](const Flat& p) -> Rational { return f[0] * p[0] + f[1] * p[1] + f[2]; };
-  std::vector<Flat> out;
+/// Removes from a convex polygon, which may be a segment or a point, all points where f[0] x + f[1] y + f[2] < 0.
+inline void clip(std::vector<PolygonCorner>& polygon, const IntVec& f) {
+  std::vector<PolygonCorner> out;
   for (size_t i = 0; i < polygon.size(); ++i) {
-    const Flat &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const Rational u = value(p), v = value(q);
-    if (u >= 0) out.push_back(p);
-    if (u.sign() * v.sign() < 0) {
-      const Rational w = u / (u - v);
-      out.push_back({p[0] + w * (q[0] - p[0]), p[1] + w * (q[1] - p[1])});
-    }
+    const PolygonCorner& p = polygon[i];
+    const int u = dot(f, p.xyw).sign(), v = dot(f, polygon[(i + 1) % polygon.size()].xyw).sign();
+    if (u >= 0) out.push_back({p.xyw, u == 0 && v < 0 ? f : p.line});
+    if (u * v >= 0) continue;
+    IntVec between = cross(p.line, f);
+    if (between[2] < 0) between = {-between[0], -between[1], -between[2]};
+    out.push_back({between, u > 0 ? f : p.line});
   }
-  return out;
+  polygon = std::move(out);
 }
 
 /// Whether some n with a largest component of 1 or -1 has n . c >= -slack for all c of `differences` and n . d >= 0 for
 /// all d of `directions`.
-inline bool hasNormal(const std::vector<RationalVec>& differences, const std::vector<RationalVec>& directions,
-                      const Rational& slack) {
+inline bool hasNormal(const std::vector<IntVec>& differences, const std::vector<IntVec>& directions,
+                      const Integer& slack) {
   for (int face = 0; face < 6; ++face) {
     const int k = face / 2, x = (k + 1) % 3, y = (k + 2) % 3;
     const int side = face % 2 == 0 ? 1 : -1;
-    std::vector<Flat> normals{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    for (const RationalVec& c : differences) normals = clipped(normals, {c[x], c[y], side * c[k] + slack});
-    for (const RationalVec& d : directions) normals = clipped(normals, {d[x], d[y], side * d[k]});
+    std::vector<PolygonCorner> normals{
+        {{-1, -1, 1}, {0, 1, 1}}, {{1, -1, 1}, {-1, 0, 1}}, {{1, 1, 1}, {0, -1, 1}}, {{-1, 1, 1}, {1, 0, 1}}};
+    for (const IntVec& d : directions) clip(normals, {d[x], d[y], side * d[k]});
+    for (const IntVec& c : differences) clip(normals, {c[x], c[y], side * c[k] + slack});
     if (!normals.empty()) return true;
   }
   return false;
 }
 
-inline Rational largest(const RationalVec& n) {
-  return std::max({Rational(abs(n[0])), Rational(abs(n[1])), Rational(abs(n[2]))});
+inline Integer largest(const IntVec& n) {
+  return std::max({Integer(abs(n[0])), Integer(abs(n[1])), Integer(abs(n[2]))});
 }
 
 }  // namespace detail
 
 /// A triangle and its normal, which points outwards.
 struct Faced {
-  std::array<RationalVec, 3> corners;
-  RationalVec normal;
+  IntTriangle corners;
+  IntVec normal;
 };
 
-inline Faced faced(const Corners& corners, bool mirrored) {
-  Faced out;
-  for (int i = 0; i < 3; ++i) out.corners[i] = rationals(corners[i]);
-  out.normal = cross(minus(out.corners[1], out.corners[0]), minus(out.corners[2], out.corners[0]));
-  if (mirrored) {
-    for (Rational& c : out.normal) c = -c;
-  }
-  return out;
+inline Faced faced(const IntTriangle& corners, bool isMirrored) {
+  const IntVec normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+  return {corners, isMirrored ? IntVec{-normal[0], -normal[1], -normal[2]} : normal};
 }
 
 /// Whether the triangles are in the plane of either, face each other and overlap, all up to the slack.
-inline bool areFlush(const Faced& a, const Faced& b, const Rational& slack) {
+inline bool areFlush(const Faced& a, const Faced& b, const Integer& slack) {
   if (dot(a.normal, b.normal) >= 0) return false;
-  const auto isThin = [&](const RationalVec& n) {
-    for (const RationalVec& p : a.corners) {
-      for (const RationalVec& q : b.corners) {
-        if (abs(dot(n, minus(p, q))) > slack * detail::largest(n)) return false;
+  const auto isThin = [&](const IntVec& n) {
+    const Integer allowed = slack * detail::largest(n);
+    for (const IntVec& p : a.corners) {
+      for (const IntVec& q : b.corners) {
+        if (abs(dot(n, minus(p, q))) > allowed) return false;
       }
     }
     return true;
@@ -96,11 +78,11 @@ inline bool areFlush(const Faced& a, const Faced& b, const Rational& slack) {
   if (!isThin(a.normal) && !isThin(b.normal)) return false;
   for (const Faced* face : {&a, &b}) {
     for (int i = 0; i < 3; ++i) {
-      const RationalVec n = cross(face->normal, minus(face->corners[(i + 1) % 3], face->corners[i]));
+      const IntVec n = cross(face->normal, minus(face->corners[(i + 1) % 3], face->corners[i]));
       for (int side : {-1, 1}) {
-        Rational depth = -1;
-        for (const RationalVec& p : a.corners) {
-          for (const RationalVec& q : b.corners) depth = std::max(depth, Rational(side * dot(n, minus(p, q))));
+        Integer depth = -1;
+        for (const IntVec& p : a.corners) {
+          for (const IntVec& q : b.corners) depth = std::max(depth, Integer(side * dot(n, minus(p, q))));
         }
         if (depth <= slack * detail::largest(n)) return false;
       }
@@ -109,33 +91,44 @@ inline bool areFlush(const Faced& a, const Faced& b, const Rational& slack) {
   return true;
 }
 
-inline std::vector<RationalVec> differences(const Faced& a, const Faced& b) {
-  std::vector<RationalVec> out;
-  for (const RationalVec& p : a.corners) {
-    for (const RationalVec& q : b.corners) out.push_back(minus(p, q));
+inline std::vector<IntVec> differences(const Faced& a, const Faced& b) {
+  std::vector<IntVec> out;
+  for (const IntVec& p : a.corners) {
+    for (const IntVec& q : b.corners) out.push_back(minus(p, q));
   }
   return out;
 }
 
 /// Whether they are flush, and the direction goes against the normal of b.
-inline bool arePressed(const Corners& a, bool mirroredA, const Corners& b, bool mirroredB, const Corner& direction,
-                       double slack) {
-  const Faced p = faced(a, mirroredA), q = faced(b, mirroredB);
-  return areFlush(p, q, Rational(slack)) && dot(rationals(direction), q.normal) < 0;
+inline bool arePressed(const Faced& a, const Faced& b, const IntVec& direction, const Integer& slack) {
+  return dot(direction, b.normal) < 0 && areFlush(a, b, slack);
 }
 
 /// Whether triangle a, in motion along `direction`, is blocked by b.
-inline bool blocks(const Corners& a, bool mirroredA, const Corners& b, bool mirroredB, const Corner& direction,
-                   double slack) {
-  const Faced p = faced(a, mirroredA), q = faced(b, mirroredB);
-  const RationalVec d = rationals(direction);
-  if (areFlush(p, q, Rational(slack))) return dot(d, q.normal) < 0;
-  return !detail::hasNormal(differences(p, q), {d}, Rational(slack));
+inline bool blocks(const Faced& a, const Faced& b, const IntVec& direction, const Integer& slack) {
+  if (areFlush(a, b, slack)) return dot(direction, b.normal) < 0;
+  return !detail::hasNormal(differences(a, b), {direction}, slack);
 }
 
 /// Whether the triangles cross by more than the slack.
-inline bool cross(const Corners& a, const Corners& b, double slack) {
-  return !detail::hasNormal(differences(faced(a, false), faced(b, false)), {}, Rational(slack));
+inline bool cross(const Faced& a, const Faced& b, const Integer& slack) {
+  return !detail::hasNormal(differences(a, b), {}, slack);
 }
+
+/// Two triangles and the slack on one scale, for the questions above.
+struct ScaledPair {
+  ScaledPair(const Corners& first, bool mirroredA, const Corners& second, bool mirroredB, double room) {
+    std::vector<double> all{room};
+    for (const Corners* t : {&first, &second}) {
+      for (const Corner& c : *t) all.insert(all.end(), c.begin(), c.end());
+    }
+    const int scale = leastExponent(all.data(), all.size());
+    a = faced(scaled(first, scale), mirroredA);
+    b = faced(scaled(second, scale), mirroredB);
+    slack = scaled(room, scale);
+  }
+  Faced a, b;
+  Integer slack;
+};
 
 }  // namespace oracle

@@ -1,4 +1,4 @@
-// Compares the decisions on pairs that block or cross with the definition in exact rationals.
+// Compares the decisions on pairs that block or cross with the definition in exact integers.
 #include <catch2/catch.hpp>
 
 #include "blocking_oracle.h"
@@ -18,12 +18,15 @@ struct Counts {
 void check(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Counts& counts) {
   for (const bool mirroredA : {false, true}) {
     const bool mirroredB = a[0][0] > b[0][0];
-    const bool truth = oracle::blocks(a, mirroredA, b, mirroredB, direction, slack);
+    const oracle::ScaledPair pair(a, mirroredA, b, mirroredB, slack);
+    const oracle::IntVec scaled = oracle::scaled(direction, oracle::leastExponent(direction.data(), 3));
+    const bool truth = oracle::blocks(pair.a, pair.b, scaled, pair.slack);
     REQUIRE(radar::exact::blocks(a, b, direction, slack, {mirroredA, mirroredB}) == truth);
     ++(truth ? counts.blocking : counts.passing);
-    counts.flush += oracle::areFlush(oracle::faced(a, mirroredA), oracle::faced(b, mirroredB), slack);
+    counts.flush += oracle::areFlush(pair.a, pair.b, pair.slack);
   }
-  const bool truth = oracle::cross(a, b, slack);
+  const oracle::ScaledPair pair(a, false, b, false, slack);
+  const bool truth = oracle::cross(pair.a, pair.b, pair.slack);
   REQUIRE(radar::exact::cross(a, b, slack) == truth);
   counts.crossing += truth;
 }

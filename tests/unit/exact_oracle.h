@@ -15,8 +15,10 @@
 
 namespace oracle {
 
-using Integer = boost::multiprecision::cpp_int;
-using Rational = boost::multiprecision::cpp_rational;
+// As long as needed; most fit the 768 bits that cost no allocation.
+using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<768>>;
+using Rational =
+    boost::multiprecision::number<boost::multiprecision::rational_adaptor<boost::multiprecision::cpp_int_backend<768>>>;
 using Corner = std::array<double, 3>;
 using Corners = std::array<Corner, 3>;
 
@@ -67,13 +69,47 @@ inline bool isZero(const IntVec& v) {
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
+using IntTriangle = std::array<IntVec, 3>;
+
+inline IntVec scaled(const Corner& p, int exponent) {
+  return {scaled(p[0], exponent), scaled(p[1], exponent), scaled(p[2], exponent)};
+}
+
+inline IntTriangle scaled(const Corners& corners, int exponent) {
+  return {scaled(corners[0], exponent), scaled(corners[1], exponent), scaled(corners[2], exponent)};
+}
+
+/// Makes of a parameter between scaled positions, along a scaled direction, that between unscaled ones.
+inline void unscale(Fraction& s, int scale, int directionScale) {
+  (scale >= directionScale ? s.num : s.den) <<= std::abs(scale - directionScale);
+}
+
 struct Interval {
   Fraction first, last;
 };
 
+/// Keeps the s of the interval with lo <= s * speed <= hi; no interval: all s. Returns whether any are left.
+inline bool allow(std::optional<Interval>& interval, Integer lo, Integer hi, Integer speed) {
+  if (speed == 0) return lo <= 0 && hi >= 0;
+  if (speed < 0) {
+    speed = -speed;
+    std::swap(lo, hi);
+    lo = -lo;
+    hi = -hi;
+  }
+  const Fraction from{lo, speed}, to{hi, speed};
+  if (!interval) {
+    interval = Interval{from, to};
+  } else {
+    if (compare(from, interval->first) > 0) interval->first = from;
+    if (compare(to, interval->last) < 0) interval->last = to;
+  }
+  return compare(interval->first, interval->last) <= 0;
+}
+
 namespace detail {
 
-inline std::vector<IntVec> axesFor(const std::array<IntVec, 3>& a, const std::array<IntVec, 3>& b) {
+inline std::vector<IntVec> axesFor(const IntTriangle& a, const IntTriangle& b) {
   std::vector<IntVec> edges, axes;
   for (int i = 0; i < 3; ++i) edges.push_back(minus(a[(i + 1) % 3], a[i]));
   for (int i = 0; i < 3; ++i) edges.push_back(minus(b[(i + 1) % 3], b[i]));
@@ -101,6 +137,19 @@ inline std::vector<IntVec> axesFor(const std::array<IntVec, 3>& a, const std::ar
 
 }  // namespace detail
 
+/// The interval of s in which a + s * direction meets b, all scaled.
+inline std::optional<Interval> contact(const IntTriangle& a, const IntTriangle& b, const IntVec& direction) {
+  std::optional<Interval> out;
+  for (const IntVec& n : detail::axesFor(a, b)) {
+    std::array<Integer, 3> onA{dot(n, a[0]), dot(n, a[1]), dot(n, a[2])};
+    std::array<Integer, 3> onB{dot(n, b[0]), dot(n, b[1]), dot(n, b[2])};
+    std::sort(onA.begin(), onA.end());
+    std::sort(onB.begin(), onB.end());
+    if (!allow(out, onB[0] - onA[2], onB[2] - onA[0], dot(n, direction))) return std::nullopt;
+  }
+  return out;
+}
+
 /// The interval of s in which a + s * direction meets b.
 inline std::optional<Interval> contact(const Corners& a, const Corners& b, const Corner& direction) {
   std::vector<double> all;
@@ -108,105 +157,26 @@ inline std::optional<Interval> contact(const Corners& a, const Corners& b, const
     for (const Corner& c : *t) all.insert(all.end(), c.begin(), c.end());
   }
   const int scale = leastExponent(all.data(), all.size()), dirScale = leastExponent(direction.data(), 3);
-  std::array<IntVec, 3> p, q;
-  IntVec d;
-  for (int k = 0; k < 3; ++k) {
-    d[k] = scaled(direction[k], dirScale);
-    for (int i = 0; i < 3; ++i) {
-      p[i][k] = scaled(a[i][k], scale);
-      q[i][k] = scaled(b[i][k], scale);
-    }
-  }
-  std::optional<Interval> out;
-  for (const IntVec& n : detail::axesFor(p, q)) {
-    std::array<Integer, 3> pa{dot(n, p[0]), dot(n, p[1]), dot(n, p[2])}, pb{dot(n, q[0]), dot(n, q[1]), dot(n, q[2])};
-    std::sort(pa.begin(), pa.end());
-    std::sort(pb.begin(), pb.end());
-    Integer lo = pb[0] - pa[2], hi = pb[2] - pa[0], speed = dot(n, d);
-    if (speed == 0) {
-      if (lo > 0 || hi < 0) return std::nullopt;
-      continue;
-    }
-    if (speed < 0) {
-      speed = -speed;
-      std::swap(lo, hi);
-      lo = -lo;
-      hi = -hi;
-    }
-    const Fraction from{lo, speed}, to{hi, speed};
-    if (!out) {
-      out = Interval{from, to};
-      continue;
-    }
-    if (compare(from, out->first) > 0) out->first = from;
-    if (compare(to, out->last) < 0) out->last = to;
-  }
-  if (!out || compare(out->first, out->last) > 0) return std::nullopt;
-  for (Fraction* f : {&out->first, &out->last}) {
-    if (scale >= dirScale) {
-      f->num <<= scale - dirScale;
-    } else {
-      f->den <<= dirScale - scale;
-    }
-  }
+  std::optional<Interval> out = contact(scaled(a, scale), scaled(b, scale), scaled(direction, dirScale));
+  if (!out) return out;
+  for (Fraction* f : {&out->first, &out->last}) unscale(*f, scale, dirScale);
   return out;
 }
 
 /// Sign of s * |direction| - distance, for s >= 0 and distance >= 0.
 inline int compareToDistance(const Fraction& s, const Corner& direction, double distance) {
-  Rational dd = 0;
-  for (double c : direction) dd += Rational(c) * Rational(c);
-  const Rational t(s.num, s.den);
-  return Rational(t * t * dd).compare(Rational(distance) * Rational(distance));
+  const int dirScale = leastExponent(direction.data(), 3), scale = leastExponent(&distance, 1);
+  const IntVec d = scaled(direction, dirScale);
+  const Integer whole = scaled(distance, scale);
+  Integer left = s.num * s.num * dot(d, d), right = s.den * s.den * whole * whole;
+  (dirScale >= scale ? left : right) <<= 2 * std::abs(dirScale - scale);
+  return left.compare(right);
 }
-
-struct Answer {
-  bool found = false;
-  Fraction s;  ///< least parameter, 0 for overlap
-  radar::ObjectId object = radar::kNone;
-  uint32_t triB = radar::kNone, triA = radar::kNone;
-};
 
 inline Corners corners(const radar::MeshView& mesh, const radar::Transform& pose, uint32_t triangle) {
   Corners out;
   for (int i = 0; i < 3; ++i) out[i] = radar::transformPoint(pose, &mesh.positions[3 * mesh.indices[3 * triangle + i]]);
   return out;
-}
-
-/// Brute force over all pairs. `counts` and `touches` tell of a placed pair, of the sensor and of the object, whether
-/// it counts, and whether it touches at the start though it has parted.
-template <class Counts, class Touches>
-Answer answer(const radar::Scene& scene, const radar::Query& query, const Counts& counts, const Touches& touches) {
-  Answer best;
-  const radar::MeshView sensor = scene.mesh(query.mesh);
-  for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
-    if (!scene.hasObject(id) || (scene.object(id).mask & query.mask) == 0) continue;
-    if (std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end()) continue;
-    const radar::MeshView mesh = scene.mesh(scene.object(id).mesh);
-    for (uint32_t triB = 0; triB < mesh.triangleCount(); ++triB) {
-      const Corners b = corners(mesh, scene.object(id).worldFromMesh, triB);
-      for (uint32_t triA = 0; triA < sensor.triangleCount(); ++triA) {
-        auto interval = contact(corners(sensor, query.worldFromMesh, triA), b, query.direction);
-        const Corners a = corners(sensor, query.worldFromMesh, triA);
-        const bool parted = !interval || interval->last.sign() < 0;
-        if (parted && (best.found && best.s.sign() == 0)) continue;
-        if (parted && !touches(id, a, b)) continue;
-        Fraction s = parted ? Fraction{} : interval->first;
-        if (s.sign() < 0) s = {};
-        // The loops visit ids in increasing order, so the first of equals stays.
-        if (best.found && compare(s, best.s) >= 0) continue;
-        if (compareToDistance(s, query.direction, query.distance) > 0) continue;
-        if (!parted && !counts(id, a, b)) continue;
-        best = {true, s, id, triB, triA};
-      }
-    }
-  }
-  return best;
-}
-
-inline Answer answer(const radar::Scene& scene, const radar::Query& query) {
-  const auto always = [](radar::ObjectId, const Corners&, const Corners&) { return true; };
-  return answer(scene, query, always, [](radar::ObjectId, const Corners&, const Corners&) { return false; });
 }
 
 }  // namespace oracle

@@ -19,8 +19,9 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar stability --family thin --first 17 --cases 1  one case again
 
 Needles and plates edge-on, steep faces, exact touching, gaps of one rounding, 10^7 units from the origin, rings on
-pegs and the like: every tier is asked, and each answer is compared with the exact one. Then the answers are followed in
-tiny steps of the pose, and through changes that leave the contact where it is. Exit status 1 if a promise is broken.)";
+pegs, bodies at rest and the like: every tier is asked that offers what the query asks for, and each answer is compared
+with the exact one. Then the answers are followed in tiny steps of the pose, and through changes that leave the contact
+where it is. Exit status 1 if a promise is broken.)";
 
 struct Options {
   StabilitySettings settings;

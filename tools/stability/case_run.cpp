@@ -7,6 +7,7 @@
 #include "bench/clock.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/generate.h"
+#include "workloads/same_answer.h"
 
 namespace radar::tools {
 
@@ -43,6 +44,10 @@ Result paperAnswer(const Query& query, const Result& sampled) {
   paper.t = hit ? std::max(sampled.paperMinL, 0.0) : NAN;
   paper.lo = paper.hi = NAN;
   return paper;
+}
+
+bool canAnswer(Method method, const HardFamily& family) {
+  return method == Method::contact || !(family.ignoresLeaving || family.skipsOverlapping);
 }
 
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
@@ -93,6 +98,13 @@ struct CaseRun::Stage {
     }
   }
 
+  /// Whether the device lists for a query what the CPU does.
+  bool sameLists(size_t query) const {
+    const Lists &ours = sweeper.lists(), &exact = cpu.lists();
+    return std::ranges::equal(ours.overlappingOf(query), exact.overlappingOf(query)) &&
+           std::ranges::equal(ours.hitsOf(query), exact.hitsOf(query), sameAnswer);
+  }
+
   /// The cases of the range from number `next` on that are in one scene with it.
   std::vector<Query> show(const CaseRange& range, uint64_t next, uint32_t size) {
     const Workload workload = sceneOf(range, next / size, size);
@@ -102,7 +114,10 @@ struct CaseRun::Stage {
     const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
     std::vector<Query> queries;
     for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size], Mode::contact));
-    for (Query& query : queries) query.ignoreLeaving = range.ignoreLeaving;
+    for (Query& query : queries) {
+      if (range.ignoreLeaving) query.ignoreLeaving = true;
+      if (range.allHits) query.hits = kAllHits;
+    }
     if (range.family == kAtDistance) moveDistances(queries, next);
     return queries;
   }
@@ -139,7 +154,8 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       tally.pairs += stage_->sweeper.stats().pairs;
       tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
       for (size_t i = 0; i < put.size(); ++i) {
-        const Verdict verdict = judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
+        Verdict verdict = judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
+        verdict.set(Fault::wrongList, !stage_->sameLists(i));
         tally.add(verdict, exact[i]);
         if (asked[a].method == Method::paper || verdict.right()) continue;
         onWrong(next + i, asked[a], verdict.words() + " " + stage_->sweeper.reason(i));

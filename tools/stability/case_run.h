@@ -31,6 +31,9 @@ struct Approach {
 /// negative. It vouches for no bounds.
 Result paperAnswer(const Query& query, const Result& sampled);
 
+/// Whether it offers what the family's queries ask for.
+bool canAnswer(Method method, const HardFamily& family);
+
 /// The queries in the mode and at the resolution that are asked.
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);
@@ -46,7 +49,8 @@ struct CaseRange {
   std::string family;
   uint64_t seed = 1, first = 0, cases = 0;
   Company company = Company::mixed;  ///< meshes are always mixed
-  bool ignoreLeaving = false;        ///< of every query
+  bool ignoreLeaving = false;        ///< every query ignores what it leaves, not only those of bodies at rest
+  bool allHits = false;              ///< every query lists the contacts with all objects
 };
 
 class CaseRun {

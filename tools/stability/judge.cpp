@@ -134,8 +134,9 @@ bool meets(const Result& result) {
 }
 
 const char* nameOf(Fault fault) {
-  constexpr std::array<const char*, kFaults> kNames{
-      "missed", "false hit", "not answered", "wrong status", "wrong pair", "bracket", "late", "point", "normal"};
+  constexpr std::array<const char*, kFaults> kNames{"missed",     "false hit",  "not answered", "wrong status",
+                                                    "wrong pair", "wrong list", "bracket",      "late",
+                                                    "point",      "normal"};
   return kNames[static_cast<size_t>(fault)];
 }
 

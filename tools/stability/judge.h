@@ -21,12 +21,13 @@ enum class Fault {
   unanswered,   ///< invalid; undecided in mode contact
   wrongStatus,  ///< hit for overlap or the other way, or not detected
   wrongPair,    ///< the object or a triangle
+  wrongList,    ///< the objects that are skipped, or the contacts listed
   bracket,      ///< t* is not in [lo, hi], t is not, or hi is beyond D; in mode contact, wider than 1e-9 units
   late,         ///< in mode contact: t is off by more than 1e-9 units, or the fraction by 1e-9
   point,        ///< not on both surfaces at the moment of contact, or missing
   normal        ///< not a unit vector against the motion, or present where the exact answer has none
 };
-inline constexpr size_t kFaults = 9;
+inline constexpr size_t kFaults = 10;
 const char* nameOf(Fault fault);
 
 class Verdict {

@@ -1,6 +1,7 @@
 #include "stability/measure.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace radar::tools {
 
@@ -30,16 +31,19 @@ std::vector<StabilityRow> measureStability(const Device& device, const Stability
   if (families.empty()) {
     for (const HardFamily& family : hardFamilies()) families.push_back(family.name);
   }
-  std::vector<Approach> asked;
+  std::vector<Approach> all;
   for (const uint32_t resolution : settings.resolutions) {
-    asked.push_back({Method::paper, resolution});
-    asked.push_back({Method::sampled, resolution});
+    all.push_back({Method::paper, resolution});
+    all.push_back({Method::sampled, resolution});
   }
-  asked.push_back({Method::contact, 0});
+  all.push_back({Method::contact, 0});
   const uint64_t each = (settings.cases + families.size() - 1) / families.size();
   CaseRun run(device);
   std::vector<StabilityRow> rows;
   for (const std::string& family : families) {
+    std::vector<Approach> asked;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(asked),
+                 [&](const Approach& one) { return canAnswer(one.method, hardFamily(family)); });
     const auto tell = [&](uint64_t number, const Approach& who, const std::string& words) {
       onWrong(who.name() + ": " + words + "; --family \"" + family + "\" --seed " + std::to_string(settings.seed) +
               " --first " + std::to_string(number) + " --cases 1");
@@ -71,8 +75,8 @@ Json tableOf(const std::vector<StabilityRow>& rows) {
   Json table = Json::array();
   for (const StabilityRow& row : rows) {
     const Tally& t = row.tally;
-    const uint64_t other = t[Fault::unanswered] + t[Fault::wrongStatus] + t[Fault::wrongPair] + t[Fault::late] +
-                           t[Fault::point] + t[Fault::normal];
+    const uint64_t other = t[Fault::unanswered] + t[Fault::wrongStatus] + t[Fault::wrongPair] + t[Fault::wrongList] +
+                           t[Fault::late] + t[Fault::point] + t[Fault::normal];
     table.push_back({{"family", row.family},
                      {"tier", nameOf(row.asked.method)},
                      {"resolution", row.asked.resolution},

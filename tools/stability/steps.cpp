@@ -38,8 +38,10 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
   CpuSweeper cpu(scene);
   std::vector<StepRow> rows;
   for (const HardFamily& family : hardFamilies()) {
-    const size_t firstRow = rows.size();
-    for (size_t m = 0; m < kMethods; ++m) rows.push_back({family.name, static_cast<Method>(m), 0, 0, 0});
+    std::vector<StepRow> own;
+    for (const Method method : {Method::paper, Method::sampled, Method::contact}) {
+      if (canAnswer(method, family)) own.push_back({family.name, method, 0, 0, 0});
+    }
     for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
       const uint32_t cases = std::min(settings.cases - next, kIsolatedCases);
       const Workload workload = hardScene(family, settings.seed, next, cases, Company::isolated);
@@ -52,17 +54,17 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
         appendSteps(queries, query, step, settings.steps);
       }
       const std::vector<Result> exact = cpu.run(queries);
-      for (size_t m = 0; m < kMethods; ++m) {
-        const auto method = static_cast<Method>(m);
-        const uint32_t resolution = method == Method::contact ? 0 : settings.resolution;
-        const std::vector<Result> results = answersBy({method, resolution}, sweeper, queries);
+      for (StepRow& row : own) {
+        const uint32_t resolution = row.method == Method::contact ? 0 : settings.resolution;
+        const std::vector<Result> results = answersBy({row.method, resolution}, sweeper, queries);
         for (size_t i = 1; i < queries.size(); ++i) {
           if (i % (settings.steps + 1) == 0) continue;
-          count(rows[firstRow + m], results[i - 1], results[i], exact[i - 1], exact[i], sensorSize(scene, queries[i]));
+          count(row, results[i - 1], results[i], exact[i - 1], exact[i], sensorSize(scene, queries[i]));
         }
       }
       onProgress(cases);
     }
+    rows.insert(rows.end(), own.begin(), own.end());
   }
   return rows;
 }

@@ -44,6 +44,14 @@ void place(HardCase& hard, const Rotation& frame, const Vec3& origin) {
   hard.direction = turned(frame, hard.direction);
 }
 
+void resize(HardCase& hard, double factor) {
+  for (double& value : hard.sensor.worldFromMesh.m) value *= factor;
+  for (PlacedMesh& object : hard.objects) {
+    for (double& value : object.worldFromMesh.m) value *= factor;
+  }
+  hard.distance *= factor;
+}
+
 void moveVertices(PlacedMesh& placed, const Vec3& offset) {
   MeshData moved{placed.mesh.name, {}, {}};
   append(moved, placed.mesh, offset);
@@ -65,6 +73,8 @@ HardCase hardCase(const HardFamily& family, uint64_t seed, uint64_t number) {
     std::swap(hard.sensor, hard.objects[0]);
     hard.direction = -1 * hard.direction;
   }
+  hard.ignoreLeaving = family.ignoresLeaving;
+  hard.skipOverlapping = family.skipsOverlapping;
   return hard;
 }
 
@@ -75,6 +85,7 @@ Workload sceneOf(const std::vector<HardCase>& cases, Company company) {
   for (size_t i = 0; i < cases.size(); ++i) {
     const HardCase& hard = cases[i];
     const uint32_t mask = company == Company::mixed ? ~0u : 1u << i;
+    const auto firstObject = static_cast<uint32_t>(scene.instances.size());
     for (const PlacedMesh& object : hard.objects) {
       if (mask != ~0u) scene.masks.emplace_back(static_cast<uint32_t>(scene.instances.size()), mask);
       scene.instances.push_back({meshIn(workload, object.mesh), object.worldFromMesh});
@@ -85,6 +96,10 @@ Workload sceneOf(const std::vector<HardCase>& cases, Company company) {
     query.direction = hard.direction;
     query.distance = hard.distance;
     query.mask = mask;
+    for (const uint32_t object : hard.exclude) query.exclude.push_back(firstObject + object);
+    query.ignoreLeaving = hard.ignoreLeaving;
+    query.skipOverlapping = hard.skipOverlapping;
+    query.slack = hard.slack;
     workload.queries.push_back(std::move(query));
   }
   workload.scenes.push_back(std::move(scene));

@@ -1,6 +1,7 @@
 // Cases in which collision queries are known to fail, in families. Equal arguments give equal bits on every platform.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,10 +22,15 @@ struct HardCase {
   std::vector<PlacedMesh> objects;
   Vec3 direction{0, 0, 1};
   double distance = 0;
+  std::vector<uint32_t> exclude = {};  ///< of the objects
+  bool ignoreLeaving = false, skipOverlapping = false;
+  std::optional<double> slack = {};
 };
 
 /// Turns everything by `frame`, then moves it.
 void place(HardCase& hard, const Rotation& frame, const Vec3& origin);
+/// Scales everything by `factor`.
+void resize(HardCase& hard, double factor);
 /// Moves the vertices by `offset` in the mesh's own coordinates.
 void moveVertices(PlacedMesh& placed, const Vec3& offset);
 
@@ -34,6 +40,7 @@ struct HardFamily {
   std::vector<double> values;  ///< the cases take them in turn
   HardCase (*make)(double value, Random& random);
   bool placesItself = false;  ///< otherwise cases are turned and moved at random, half of them by exact steps
+  bool ignoresLeaving = false, skipsOverlapping = false;  ///< what its queries ask for; mode sampled offers neither
 };
 
 const std::vector<HardFamily>& hardFamilies();

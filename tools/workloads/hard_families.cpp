@@ -7,6 +7,7 @@
 
 #include "workloads/generate.h"
 #include "workloads/random_shapes.h"
+#include "workloads/rest_families.h"
 #include "workloads/shapes.h"
 
 namespace radar::tools {
@@ -87,15 +88,6 @@ double stepped(double value, int ulps) {
   for (; ulps > 0; --ulps) value = std::nextafter(value, INFINITY);
   for (; ulps < 0; ++ulps) value = std::nextafter(value, -INFINITY);
   return value;
-}
-
-/// Scales everything by `factor`.
-void resize(HardCase& hard, double factor) {
-  for (double& value : hard.sensor.worldFromMesh.m) value *= factor;
-  for (PlacedMesh& object : hard.objects) {
-    for (double& value : object.worldFromMesh.m) value *= factor;
-  }
-  hard.distance *= factor;
 }
 
 HardCase thinCase(double pixels, Random& random) {
@@ -396,6 +388,15 @@ std::vector<double> zeroAnd(std::vector<double> values) {
   return values;
 }
 
+HardFamily atRest(const char* name, HardCase (*make)(double, Random&)) {
+  return {.name = name,
+          .parameter = "bodies at rest: 0 on a grid, 1 by quarter turns, 2 turned at random, 3 and scaled and far away",
+          .values = {0, 1, 2, 3},
+          .make = make,
+          .placesItself = true,
+          .ignoresLeaving = true};
+}
+
 }  // namespace
 
 const std::vector<HardFamily>& hardFamilies() {
@@ -435,6 +436,17 @@ const std::vector<HardFamily>& hardFamilies() {
       {"floor", "size of a sensor beside a floor of 10^4", powers(0, -2), floorCase},
       {"direction", "how far the direction is off an axis", zeroAnd(powers(-2, -12)), directionCase},
       {"distance", "D", {0, 1e-300, 1e-12, 1e-6, 1, 1e6, 1e12}, distanceCase},
+      atRest("assembly", assemblyCase),
+      atRest("stacked", stackedCase),
+      atRest("corner", cornerCase),
+      atRest("peg", pegCase),
+      {"sunk",
+       "by how much bodies at rest may sink into the sensor",
+       {0.5, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15},
+       sunkCase,
+       true,
+       true,
+       true},
   };
   return families;
 }

@@ -1,0 +1,32 @@
+// What a query's answer must be, by brute force over all pairs of triangles in exact integers.
+#pragma once
+
+#include <string>
+
+#include "exact_oracle.h"
+
+namespace oracle {
+
+/// A first contact.
+struct Contact {
+  Fraction s;  ///< least parameter, 0 for overlap
+  radar::ObjectId object = radar::kNone;
+  uint32_t triB = radar::kNone, triA = radar::kNone;
+};
+
+struct Truth {
+  std::vector<radar::ObjectId> overlapping;  ///< objects that are skipped, ascending
+  std::vector<Contact> contacts;             ///< within D, one per object, by (t, object)
+};
+
+Truth truthOf(const radar::Scene& scene, const radar::Query& query);
+
+/// What is wrong with the status, the pair and the bracket of an answer, in words; empty if nothing is. `contact`: null
+/// if there is none.
+std::string faultOf(const Contact* contact, const radar::Query& query, const radar::Result& result);
+
+/// What is wrong with an answer and with its lists.
+std::string faultOf(const Truth& truth, const radar::Query& query, const radar::Result& result,
+                    std::span<const radar::Result> hits, std::span<const radar::ObjectId> overlapping);
+
+}  // namespace oracle

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "exact/event.h"
 
 namespace radar::cpu {
 
@@ -16,7 +19,8 @@ constexpr double kTolerance = 1e-6;
 ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double size)
     : PairVisitor(motion.distance),
       query_(query),
-      motion_(motion),
+      sensorMotion_(motion),
+      motion_(&motion),
       tolerance_(query.tolerance.value_or(kTolerance * size)),
       lo_(std::numeric_limits<double>::infinity()) {}
 
@@ -31,10 +35,26 @@ bool ClearanceContact::Near::precedes(const Near& other) const {
   return name < other.name;
 }
 
+std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair) const {
+  const Motion& motion = *motion_;
+  auto found = approach(pair.a, pair.b, motion.unit, query_.clearance, motion.wayUntil(motion.distance), tolerance_);
+  if (!found || !motion.isStep) return found;
+  const auto timeOf = [&](double way, double rounding) {
+    return way > 0 && motion.speed > 0 ? rounding * (way / motion.speed) : 0;
+  };
+  found->lo = timeOf(found->lo, 1 - 4 * kUnit);
+  if (!std::isinf(found->hi)) found->hi = timeOf(found->hi, 1 + 4 * kUnit);
+  if (found->lo > motion.distance) return std::nullopt;
+  // Rounding does not tell the end from a time before it.
+  if (found->hi > motion.distance) found->hi = std::numeric_limits<double>::infinity();
+  found->point = exact::along(found->point, found->lo, motion.drift);
+  return found;
+}
+
 void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
   if (isBefore(name)) return;
-  if (query_.ignoreLeaving && !exact::blocks(pair.a, pair.b, motion_.direction, rule_.slack, rule_.mirrored)) return;
-  const auto found = approach(pair.a, pair.b, motion_.unit, query_.clearance, motion_.distance, tolerance_);
+  if (query_.ignoreLeaving && !rule_.blocks(pair, *motion_)) return;
+  const auto found = approachOf(pair);
   if (!found) return;
   lo_ = std::min(lo_, found->lo);
   Near near{name, *found, found->lo};
@@ -60,7 +80,7 @@ void ClearanceContact::endObject() {
   } else {
     open_.push_back(best_[0]);
   }
-  latest_ = motion_.distance;
+  latest_ = sensorMotion_.distance;
   if (nearest_.size() == query_.hits) latest_ = std::min(latest_, nearest_.back().approach.hi);
   atStart_ = false;
   best_.clear();
@@ -74,7 +94,7 @@ Result ClearanceContact::answer(const Near& near) const {
   result.detected = Detected::yes;
   result.t = near.lo;
   result.hi = near.approach.hi;
-  result.fraction = motion_.distance > 0 ? result.t / motion_.distance : 0;
+  result.fraction = sensorMotion_.distance > 0 ? result.t / sensorMotion_.distance : 0;
   result.triB = near.name.triB;
   result.triA = near.name.triA;
   result.featureB = near.approach.features.b;
@@ -93,7 +113,7 @@ Result ClearanceContact::first() const {
   // No ids, as of any decision and of what is undecided.
   Result result(first.isCertain() ? Status::hit : Status::undecided);
   result.lo = first.isCertain() ? 0 : lo_;
-  if (first.isCertain()) result.hi = motion_.distance;
+  if (first.isCertain()) result.hi = sensorMotion_.distance;
   if (first.isCertain()) result.detected = Detected::yes;
   return result;
 }

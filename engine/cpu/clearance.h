@@ -1,6 +1,7 @@
 // Finds when a query's sensor comes within its clearance of an object: first, or of each of the nearest objects.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cpu/approach.h"
@@ -14,7 +15,10 @@ class ClearanceContact final : public PairVisitor {
   ClearanceContact(const Query& query, const Motion& motion, double size);
 
   /// As of FirstContact.
-  void beginObject(const PairRule& rule) { rule_ = rule; }
+  void beginObject(const PairRule& rule, const Motion& motion) {
+    rule_ = rule;
+    motion_ = &motion;
+  }
   void endObject();
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
   Result first() const;
@@ -23,16 +27,18 @@ class ClearanceContact final : public PairVisitor {
  private:
   struct Near {
     exact::PairName name;
-    Approach approach;
-    double lo;  ///< nothing considered together with this pair is within the clearance before this
+    Approach approach;  ///< its bounds in units of t
+    double lo;          ///< nothing considered together with this pair is within the clearance before this
 
     bool isCertain() const;
     bool precedes(const Near& other) const;
   };
+  std::optional<Approach> approachOf(const exact::PlacedPair& pair) const;
   Result answer(const Near& near) const;
 
   const Query& query_;
-  const Motion& motion_;
+  const Motion& sensorMotion_;
+  const Motion* motion_;  // past the current object
   double tolerance_;
   PairRule rule_;
   double lo_;                  // nothing is within the clearance before this

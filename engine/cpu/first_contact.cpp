@@ -11,16 +11,25 @@ namespace radar::cpu {
 FirstContact::FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size)
     : PairVisitor(motion.distance),
       query_(query),
-      motion_(motion),
+      sensorMotion_(motion),
+      motion_(&motion),
+      sensor_(sensor),
+      size_(size),
       view_(sensor, size, motion.unit),
       earliest_(motion) {}
 
+void FirstContact::beginObject(const PairRule& rule, const Motion& motion) {
+  rule_ = rule;
+  if (!motion.isStep) return;
+  motion_ = &motion;
+  view_ = View(sensor_, size_, motion.unit);
+  earliest_.setMotion(motion);
+}
+
 // Returns whether the pair is the earliest so far.
 bool FirstContact::considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) {
-  const Vector& d = motion_.direction;
-  const auto doesBlock = [&] {
-    return !query_.ignoreLeaving || exact::blocks(pair.a, pair.b, d, rule_.slack, rule_.mirrored);
-  };
+  const Vector& d = motion_->direction;
+  const auto doesBlock = [&] { return !query_.ignoreLeaving || rule_.blocks(pair, *motion_); };
   const bool mayBePressed = query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack);
   std::optional<exact::Event> certain;
   if (const Feature feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
@@ -34,12 +43,10 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
       certain = event;
     }
   }
-  if (mayBePressed && exact::arePressed(pair.a, pair.b, d, rule_.slack, rule_.mirrored)) {
-    return earliest_.considerPressed(name, pair);
-  }
+  if (mayBePressed && rule_.arePressed(pair, *motion_)) return earliest_.considerPressed(name, pair);
   if (certain) return earliest_.considerKnown(name, pair, *certain, doesBlock);
-  const Meeting meeting =
-      meetingOf(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), view_.scale * latest_);
+  const double reach = view_.scale * motion_->wayUntil(latest_);
+  const Meeting meeting = meetingOf(ViewedTriangle(pair.a, view_), ViewedTriangle(pair.b, view_), reach);
   if (meeting == Meeting::never) return false;
   // Most pairs that meet ahead block, most that touch at the start do not.
   if (meeting == Meeting::ahead) return earliest_.consider(name, pair, doesBlock);
@@ -54,7 +61,7 @@ void FirstContact::consider(const exact::PairName& name, const exact::PlacedPair
   limit(earliest_);
 }
 
-// Lowers `latest_` to a distance a little beyond that of a contact, by what the parameter, the length and the product
+// Lowers `latest_` to a t a little beyond that of a contact, by what the parameter, the length and the product
 // may have lost.
 void FirstContact::limit(const exact::EarliestContact& contact) {
   double latest = 0;
@@ -62,7 +69,7 @@ void FirstContact::limit(const exact::EarliestContact& contact) {
     const exact::Event& first = contact.event();
     const bool rough = first.error > 1e-12 * first.s;
     const double s = rough ? exact::parameter(first) : first.s + first.error;
-    latest = s * motion_.length * (1 + 8 * kUnit);
+    latest = s * sensorMotion_.length * (1 + 8 * kUnit);
   }
   latest_ = std::min(latest_, latest);
 }
@@ -72,10 +79,10 @@ void FirstContact::endObject() {
   const auto isBefore = [](const auto& p, const auto& q) { return p.precedes(q); };
   nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), earliest_, isBefore), earliest_);
   if (nearest_.size() > query_.hits) nearest_.pop_back();
-  latest_ = motion_.distance;
+  latest_ = sensorMotion_.distance;
   if (nearest_.size() == query_.hits) limit(nearest_.back());
   atStart_ = false;
-  earliest_ = exact::EarliestContact(motion_);
+  earliest_ = exact::EarliestContact(sensorMotion_);
 }
 
 Result FirstContact::first() const {

@@ -15,6 +15,13 @@ namespace radar::cpu {
 struct PairRule {
   double slack = 0;
   exact::Mirrored mirrored;
+
+  bool blocks(const exact::PlacedPair& pair, const Motion& motion) const {
+    return exact::blocks(pair.a, pair.b, motion.stands ? Vector{} : motion.direction, slack, mirrored);
+  }
+  bool arePressed(const exact::PlacedPair& pair, const Motion& motion) const {
+    return exact::arePressed(pair.a, pair.b, motion.stands ? Vector{} : motion.direction, slack, mirrored);
+  }
 };
 
 class FirstContact final : public PairVisitor {
@@ -23,7 +30,8 @@ class FirstContact final : public PairVisitor {
   FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size);
 
   /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
-  void beginObject(const PairRule& rule) { rule_ = rule; }
+  /// `motion` must stay in place meanwhile.
+  void beginObject(const PairRule& rule, const Motion& motion);
   void endObject();
 
   void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
@@ -38,7 +46,10 @@ class FirstContact final : public PairVisitor {
   void limit(const exact::EarliestContact& contact);
 
   const Query& query_;
-  const Motion& motion_;
+  const Motion& sensorMotion_;
+  const Motion* motion_;  // past the current object
+  const Vector sensor_;
+  const double size_;
   View view_;
   PairRule rule_;
   exact::EarliestContact earliest_;              // of all objects, or of the current one if several are asked for
@@ -52,7 +63,7 @@ class CrossingTest final : public PairVisitor {
   explicit CrossingTest(double latest) : PairVisitor(latest) {}
 
   /// Call before and after the pairs of one object.
-  void beginObject(const PairRule& rule) { rule_ = rule; }
+  void beginObject(const PairRule& rule, const Motion&) { rule_ = rule; }
   /// Returns whether the surfaces of the sensor and the object cross.
   bool endObject() { return std::exchange(decided_, false); }
 

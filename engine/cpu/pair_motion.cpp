@@ -19,7 +19,7 @@ double sizeAlong(const Vector& p, const Vector& sizes) {
 }  // namespace
 
 PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double c, double latest)
-    : clearance(c), span(latest) {
+    : clearance(c), span(motion.wayUntil(latest)), speed(motion.speed) {
   const Vector& unit = motion.unit;
   int fastest = 0;
   for (int k = 0; k < 3; ++k) {

@@ -12,12 +12,13 @@ struct PairMotion {
   Vector rounding;   ///< per world axis: bound on the error of a position or a displacement
   double clearance;  ///< world units: meshes meet when they come this near
   double span;       ///< world units; no contact that matters comes later
+  double speed;      ///< Motion::speed
 
-  /// Contacts later than `latest` do not matter.
+  /// Contacts later than t = `latest` do not matter.
   PairMotion(const Placement& a, const Placement& b, const Motion& motion, double clearance, double latest);
 
-  /// `distance` in units of time, rounded up; 1 at most.
-  double timeOf(double distance) const { return span > 0 ? std::min((1 + 8 * kUnit) * (distance / span), 1.0) : 1.0; }
+  /// `t` of a motion in units of time, rounded up; 1 at most.
+  double timeOf(double t) const { return span > 0 ? std::min((1 + 8 * kUnit) * (speed * t / span), 1.0) : 1.0; }
 };
 
 /// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error

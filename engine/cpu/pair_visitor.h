@@ -16,7 +16,7 @@ class PairVisitor {
 
   /// Whether no further pair matters.
   bool isDecided() const { return decided_; }
-  /// No contact later than this, world units, matters.
+  /// No contact later than this t of the motion matters.
   double latest() const { return latest_; }
   /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
   bool isBefore(const exact::PairName& least) const { return atStart_ && first_ < least; }

@@ -1,6 +1,7 @@
 #include "cpu/query_search.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cpu/clearance.h"
 #include "cpu/swept_box.h"
@@ -22,6 +23,17 @@ double longestSide(const Box& box) {
   return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
 
+/// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
+void scale(Result& result, double distance) {
+  // A bracket's ends are equal only at the start or the end.
+  const double rounding = result.lo == result.hi ? 0 : 2 * kUnit;
+  const auto scaled = [&](double t, double outwards) { return std::isinf(t) ? t : outwards * t * distance; };
+  const bool isLo = result.t == result.lo;
+  result.lo = scaled(result.lo, 1 - rounding);
+  result.t = isLo ? result.lo : scaled(result.t, 1);
+  result.hi = std::isinf(result.hi) ? result.hi : std::min(scaled(result.hi, 1 + rounding), distance);
+}
+
 /// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
 void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& nodes, const Scene::Impl& scene) {
   const uint32_t item = node.link & gpu::kLinkItem;
@@ -39,7 +51,9 @@ struct QuerySearch::Task {
   const Scene::Impl& scene;
   std::span<const ObjectId> overlapping;  ///< ascending; not eligible
   const Mesh& sensor;
-  Motion motion;
+  bool isStep;
+  Vector displacement{};  ///< of the sensor during a step
+  Motion motion;          ///< of the sensor
   Placement placement;
   MeshAxes axes;
   double magnitude = 0;
@@ -50,7 +64,9 @@ struct QuerySearch::Task {
         scene(s),
         overlapping(skipped),
         sensor(s.meshes[q.mesh]),
-        motion(q),
+        isStep(radar::isStep(q, s)),
+        displacement(isStep ? displacementOf(q) : Vector{}),
+        motion(isStep ? Motion(displacement, {}) : Motion(q)),
         placement(sensor, q.worldFromMesh),
         axes(placement.linear) {
     if (!query.ignoreLeaving && !query.skipOverlapping) return;
@@ -70,12 +86,10 @@ struct QuerySearch::Task {
   /// How pairs with an object are judged. Computed only if the query needs it.
   PairRule ruleFor(ObjectId id) const {
     if (!query.ignoreLeaving && !query.skipOverlapping) return {};
-    const auto& [mesh, worldFromMesh, mask] = scene.objects[id].object;
-    const double slack =
-        query.slack
-            ? *query.slack
-            : exact::defaultSlack(std::max(magnitude, placedMagnitude(scene.meshes[mesh].farthest, worldFromMesh)));
-    return {slack, {mirrored, exact::isMirroring(worldFromMesh)}};
+    const Object& object = scene.objects[id].object;
+    const double farthest = placedMagnitude(scene.meshes[object.mesh].farthest, object.worldFromMesh);
+    const double slack = query.slack ? *query.slack : exact::defaultSlack(std::max(magnitude, farthest));
+    return {slack, {mirrored, exact::isMirroring(object.worldFromMesh)}};
   }
 };
 
@@ -87,13 +101,19 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
   const double size = std::max({extent[0], extent[1], extent[2]});
   const auto find = [&](auto&& finder) {
     forObjects(task, tree, finder, [&](ObjectId id) {
-      const PairRule rule = task.ruleFor(id);
-      finder.beginObject(rule);
-      searchObject(task, id, rule, finder);
+      search(task, id, finder);
       finder.endObject();
     });
-    if (lists != nullptr) *lists = {finder.nearest(), std::move(skipped)};
-    return finder.first();
+    const bool scales = task.isStep && !query.motion;
+    if (lists != nullptr) {
+      *lists = {finder.nearest(), std::move(skipped)};
+      for (Result& hit : lists->hits) {
+        if (scales) scale(hit, query.distance);
+      }
+    }
+    Result first = finder.first();
+    if (scales) scale(first, query.distance);
+    return first;
   };
   if (query.clearance > 0)
     return find(ClearanceContact(query, task.motion, longestSide(boxOf(task.sensor, query.worldFromMesh.m))));
@@ -110,13 +130,12 @@ std::vector<ObjectId> QuerySearch::inReach(const Query& query, const Scene::Impl
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
   Query still = query;
   still.distance = still.clearance = 0;
+  if (query.motion) still.motion = Vector{};
   const Task task(still, scene, {});
   std::vector<ObjectId> found;
   CrossingTest test(0);
   forObjects(task, tree, test, [&](ObjectId id) {
-    const PairRule rule = task.ruleFor(id);
-    test.beginObject(rule);
-    searchObject(task, id, rule, test);
+    search(task, id, test);
     if (test.endObject()) found.push_back(id);
   });
   std::sort(found.begin(), found.end());
@@ -142,11 +161,14 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
     box.hi[k] += room;
   }
   const SweptBox meets(box, task.motion, tree);
+  // Converts its distances to t.
+  const double perUnit = !task.isStep ? 1 : task.motion.speed > 0x1p-900 ? (1 - 8 * kUnit) / task.motion.speed : 0;
+  const auto timeOf = [&](double way) { return std::isinf(way) ? way : way * perUnit; };
   open_.resize(size_t{tree.depth()} + 2);
   Open* top = open_.data();
   const auto push = [&](double near, const gpu::ObjectNode& node) {
-    *top = {near, node.link};
-    top += near <= visitor.latest();
+    *top = {timeOf(near), node.link};
+    top += top->near <= visitor.latest();
   };
   push(meets(nodes[0], nodes[0])[0], nodes[0]);
   while (top != open_.data() && !visitor.isDecided()) {
@@ -167,7 +189,21 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
   }
 }
 
-void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& rule, PairVisitor& visitor) {
+template <class Finder>
+void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
+  const PairRule rule = task.ruleFor(id);
+  if (task.isStep) {
+    const Motion motion(task.displacement, task.scene.objects[id].object.motion);
+    finder.beginObject(rule, motion);
+    searchObject(task, id, rule, motion, finder);
+  } else {
+    finder.beginObject(rule, task.motion);
+    searchObject(task, id, rule, task.motion, finder);
+  }
+}
+
+void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion,
+                               PairVisitor& visitor) {
   const Object& object = task.scene.objects[id].object;
   const Mesh& mesh = task.scene.meshes[object.mesh];
   if (visitor.isBefore({id, mesh.tree.below[0].least, 0})) return;
@@ -177,18 +213,18 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& ru
   const Placement placement(mesh, object.worldFromMesh);
   // Faces that are pressed together may have passed each other by the slack.
   const double room = task.query.ignoreLeaving ? 2 * rule.slack : 0;
-  const PairMotion motion(task.placement, placement, task.motion, std::max(task.query.clearance, room),
-                          visitor.latest());
+  const PairMotion pairMotion(task.placement, placement, motion, std::max(task.query.clearance, room),
+                              visitor.latest());
   TimeSpan times;
   // The sensor's axes come first: they rule out most objects, and those of the object need a matrix inverse.
-  const RelativePlacement fromSensor(task.axes, placement, motion, -1);
+  const RelativePlacement fromSensor(task.axes, placement, pairMotion, -1);
   narrow(times, fromSensor, rootA, rootB);
   if (times.empty()) return;
-  const RelativePlacement fromObject(MeshAxes(placement.linear), task.placement, motion, 1);
+  const RelativePlacement fromObject(MeshAxes(placement.linear), task.placement, pairMotion, 1);
   narrow(times, fromObject, rootB, rootA);
   if (times.empty()) return;
   const MeshPair pair{
-      {task.sensor, task.query.worldFromMesh}, {mesh, object.worldFromMesh}, id, motion, fromSensor, fromObject};
+      {task.sensor, task.query.worldFromMesh}, {mesh, object.worldFromMesh}, id, pairMotion, fromSensor, fromObject};
   meshes_.run(pair, times.from, visitor, stats_);
 }
 

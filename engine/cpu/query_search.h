@@ -32,7 +32,9 @@ class QuerySearch {
   /// Calls `search` with each eligible object in reach of the visitor.
   template <class SearchObject>
   void forObjects(const Task& task, const ObjectTree& tree, const PairVisitor& visitor, const SearchObject& search);
-  void searchObject(const Task& task, ObjectId id, const PairRule& rule, PairVisitor& visitor);
+  template <class Finder>
+  void search(const Task& task, ObjectId id, Finder& finder);
+  void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);
 
   std::vector<Open> open_;
   MeshSearch meshes_;

@@ -16,7 +16,7 @@ TwoDoubles both(double x) {
 SweptBox::SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree) {
   const Box& world = tree.worldBox();
   Vector middle, half, magnitude;
-  double latest = motion.distance;
+  double latest = motion.wayUntil(motion.distance);
   for (int k = 0; k < 3; ++k) {
     const double anchor = tree.anchor()[k], speed = std::abs(motion.unit[k]);
     const double reach = 2 * std::max(std::abs(world.lo[k] - anchor), std::abs(world.hi[k] - anchor));

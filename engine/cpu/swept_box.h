@@ -13,7 +13,7 @@ class SweptBox {
   /// `tree` must be in range.
   SweptBox(const Box& box, const Motion& motion, const ObjectTree& tree);
 
-  /// Lower bounds on the distances at which the boxes of two nodes are met; infinite if they are not.
+  /// Lower bounds on the distances, world units, at which the boxes of two nodes are met; infinite if they are not.
   TwoDoubles operator()(const gpu::ObjectNode& first, const gpu::ObjectNode& second) const;
 
  private:

@@ -92,8 +92,8 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    if (wrong.empty() && (hasLists(queries[i]) || queries[i].clearance > 0)) {
-      wrong = "skipOverlapping, hits, clearance: only a Sweeper, a CpuSweeper and a Pool offer these";
+    if (wrong.empty() && (hasLists(queries[i]) || queries[i].clearance > 0 || isStep(queries[i], scene.impl()))) {
+      wrong = "skipOverlapping, hits, clearance, motion: only a Sweeper, a CpuSweeper and a Pool offer these";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }

@@ -56,10 +56,12 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
 
 /// -1, 0 or 1: the sign of the event's parameter.
 int sign(const Event& event);
-/// -1, 0 or 1: p before, at or after q. Both have the same direction.
+/// -1, 0 or 1: the parameter of p is below, equal to or above that of q.
 int compare(const Event& p, const Event& q);
 /// -1, 0 or 1: the event's distance s * |direction| is below, equal to or above `distance`, which is not negative.
 int compareToDistance(const Event& event, double distance);
+/// -1, 0 or 1: the event's parameter is below, equal to or above `parameter`.
+int compareToParameter(const Event& event, double parameter);
 /// The event's parameter: the double nearest to an approximation with a relative error below 2^-60. Events of the same
 /// features have the same bits.
 double parameter(const Event& event);

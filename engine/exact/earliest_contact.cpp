@@ -27,9 +27,11 @@ bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pa
   return precedes(name, beginning) && keep(name, pair, beginning);
 }
 
-// -1, 0 or 1: the event comes before, at or after D.
-int EarliestContact::compareToEnd(const Event& event) const {
-  return event.s + event.error < motion_->parameter ? -1 : compareToDistance(event, motion_->distance);
+// -1, 0 or 1: the event comes before, at or after the end of the motion.
+int EarliestContact::compareToEnd(const Event& event, const Motion& motion) {
+  if (event.s + event.error < motion.parameter) return -1;
+  if (motion.isStep) return compareToParameter(event, motion.stands ? 0 : 1);
+  return compareToDistance(event, motion.distance);
 }
 
 // -1, 0 or 1: a contact that begins with `event` comes before, with or after the other.
@@ -43,7 +45,7 @@ bool EarliestContact::precedes(const EarliestContact& other) const {
 }
 
 bool EarliestContact::precedes(const PairName& name, const Beginning& beginning) const {
-  if (!beginning.overlap && compareToEnd(beginning.first) > 0) return false;
+  if (!beginning.overlap && compareToEnd(beginning.first, *motion_) > 0) return false;
   if (!found_) return true;
   const int order = compareTimes(beginning.overlap, beginning.first, *this);
   return order < 0 || (order == 0 && !(name_ < name));
@@ -55,6 +57,7 @@ bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const B
   name_ = name;
   pair_ = pair;
   event_ = beginning.first;
+  kept_ = *motion_;
   features_ = beginning.features;
   return true;
 }
@@ -66,7 +69,7 @@ Result EarliestContact::answer(bool anyHit) const {
   if (anyHit) {
     result.status = Status::hit;
     result.lo = 0;
-    result.hi = motion_->distance;
+    result.hi = kept_.distance;
   } else {
     describe(result);
   }
@@ -83,6 +86,7 @@ void EarliestContact::describe(Result& result) const {
   const double s = overlap_ ? 0 : parameter(event_);
   if (!overlap_ || sign(event_) == 0) {
     result.point = point(event_, s);
+    if (kept_.isStep) result.point = withoutZeroSigns(along(result.point, s, kept_.drift));
     result.normal = normal(event_);
   } else {
     result.point = commonPoint(pair_.a, pair_.b);
@@ -90,17 +94,17 @@ void EarliestContact::describe(Result& result) const {
   if (overlap_) {
     result.t = result.lo = result.hi = result.fraction = 0;
   } else {
-    setBracket(result, s * motion_->length);
+    setBracket(result, s * kept_.length);
   }
 }
 
 void EarliestContact::setBracket(Result& result, double t) const {
-  const double distance = motion_->distance;
-  const bool atEnd = compareToEnd(event_) == 0;
+  const double distance = kept_.distance;
+  const bool atEnd = compareToEnd(event_, kept_) == 0;
   result.t = atEnd ? distance : std::min(t, distance);
   // Three roundings of half an ulp each, of the parameter, the length and the product, and one more here; the floor is
   // what the parameter may lose if it is subnormal.
-  const double slack = 8 * kUnit * t + (motion_->length + 2) * std::numeric_limits<double>::denorm_min();
+  const double slack = 8 * kUnit * t + (kept_.length + 2) * std::numeric_limits<double>::denorm_min();
   result.lo = atEnd ? distance : std::min(std::max(t - slack, 0.0), result.t);
   result.hi = atEnd ? distance : std::min(t + slack, distance);
   result.fraction = result.t / distance;

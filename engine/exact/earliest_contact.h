@@ -24,8 +24,11 @@ struct PlacedPair {
 
 class EarliestContact {
  public:
-  /// `motion` must outlive this.
-  explicit EarliestContact(const Motion& motion) : motion_(&motion) {}
+  /// `motion` must stay in place while pairs are considered.
+  explicit EarliestContact(const Motion& motion) : motion_(&motion), kept_(motion) {}
+
+  /// The motion of the pairs that are considered next: in a step, each object has its own.
+  void setMotion(const Motion& motion) { motion_ = &motion; }
 
   /// Computes the pair's contact exactly, and keeps it if it is the earliest so far and `counts()`, which is asked
   /// last. Returns whether it was kept.
@@ -54,7 +57,7 @@ class EarliestContact {
   const PairName& name() const { return name_; }
   /// Where contact of the pair begins; not after the start, or unknown, if overlaps().
   const Event& event() const { return event_; }
-  /// Whether this contact comes before another one, by (time, name). Both are found, for the same motion.
+  /// Whether this contact comes before another one, by (time, name). Both are found, for the same query.
   bool precedes(const EarliestContact& other) const;
   /// The answer to a query for the first contact, or with `anyHit` for any, without the tier; clear if none was found.
   Result answer(bool anyHit) const;
@@ -70,11 +73,12 @@ class EarliestContact {
   bool precedes(const PairName& name, const Beginning& beginning) const;
   bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
-  int compareToEnd(const Event& event) const;
+  static int compareToEnd(const Event& event, const Motion& motion);
   void describe(Result& result) const;
   void setBracket(Result& result, double t) const;
 
   const Motion* motion_;
+  Motion kept_;  // of the earliest contact
   bool found_ = false;
   bool overlap_ = false;
   PairName name_;

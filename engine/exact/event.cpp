@@ -102,8 +102,8 @@ Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b) {
 }
 
 bool precedes(const Event& p, const Event& q) {
-  return std::tie(p.kind, p.from, p.to, p.x0, p.x1, p.y0, p.y1) <
-         std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1);
+  return std::tie(p.kind, p.from, p.to, p.x0, p.x1, p.y0, p.y1, p.direction) <
+         std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1, q.direction);
 }
 
 int sign(const Event& e) {
@@ -151,6 +151,14 @@ int compareToDistance(const Event& e, double distance) {
   return (num * num * square - end * end).sign();
 }
 
+int compareToParameter(const Event& e, double parameter) {
+  const double apart = e.s - parameter;
+  if (std::abs(apart) > (1 + 8 * kUnit) * (e.error + 2 * kUnit * std::abs(apart))) return signOf(apart);
+  countExactDecision();
+  const Dyadic den = exactly(denominator(e));
+  return (exactly(numerator(e)) - Dyadic(parameter) * den).sign() * den.sign();
+}
+
 double parameter(const Event& e) {
   const FineParameter fine = fineParameter(e);
   if (fine.error <= 0x1p-60 * std::abs(fine.s.high)) return fine.s.high;
@@ -196,13 +204,9 @@ double length(const Vector& d) {
   return below == above ? below : exactLength(d, root);
 }
 
-namespace {
-
 Vector along(const Vector& p, double s, const Vector& d) {
   return {p[0] + s * d[0], p[1] + s * d[1], p[2] + s * d[2]};
 }
-
-}  // namespace
 
 Vector point(const Event& e, double s) {
   switch (e.kind) {

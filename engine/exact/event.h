@@ -15,6 +15,9 @@ Event vertexEdge(const Vector& direction, const Vector& a, const Vector& b0, con
 Event edgeVertex(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b, int axis);
 Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b);
 
+/// p + s d, rounded.
+Vector along(const Vector& p, double s, const Vector& d);
+
 /// An event's parameter as an exact fraction.
 struct Ratio {
   Dyadic num, den;
@@ -25,8 +28,7 @@ int compare(const Ratio& p, const Ratio& q);
 /// The same for two events' parameters, if floating point suffices.
 std::optional<int> compareRoughly(const Event& p, const Event& q);
 
-/// A total order of the events of one direction, by kind and coordinates. If neither of two events precedes the other,
-/// they are the same.
+/// A total order of events, by kind and coordinates. If neither of two events precedes the other, they are the same.
 bool precedes(const Event& p, const Event& q);
 
 }  // namespace radar::exact

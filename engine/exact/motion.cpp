@@ -13,6 +13,10 @@ namespace {
 // Below this, the relative error of a length or a quotient may exceed its rounding error.
 constexpr double kLeastNormal = 0x1p-900;
 
+Vector minus(const Vector& p, const Vector& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
 Vector normalized(Vector v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   for (double& c : v) c /= largest;
@@ -31,6 +35,24 @@ Motion::Motion(const Query& query)
       parameter(0) {
   const double quotient = distance / length;
   if (length > kLeastNormal && quotient > kLeastNormal) parameter = (1 - 8 * kUnit) * quotient;
+}
+
+Motion::Motion(const Vector& sensor, const Vector& object)
+    : direction(minus(sensor, object)), length(1), distance(1), parameter(1 - 4 * kUnit), isStep(true), drift(object) {
+  stands = direction == Vector{};
+  if (stands) {
+    direction = {1, 0, 0};
+    parameter = speed = 0;
+  } else {
+    speed = lengthOf(direction);
+  }
+  unit = normalized(direction);
+}
+
+Vector displacementOf(const Query& query) {
+  if (query.motion) return *query.motion;
+  const Motion sweep(query);
+  return {sweep.distance * sweep.unit[0], sweep.distance * sweep.unit[1], sweep.distance * sweep.unit[2]};
 }
 
 }  // namespace radar

@@ -31,6 +31,15 @@ FloatBox floatBox(const Box& box, const Vector& anchor) {
   return out;
 }
 
+// Extends a box by all its places during a motion.
+void sweep(Box& box, const Vector& motion) {
+  for (int k = 0; k < 3; ++k) {
+    const double room = 0x1p-50 * std::abs(motion[k]);
+    if (motion[k] < 0) box.lo[k] += motion[k] - room;
+    if (motion[k] > 0) box.hi[k] += motion[k] + room;
+  }
+}
+
 FloatBox boxAround(const gpu::ObjectNode& node) {
   FloatBox box;
   for (int k = 0; k < 3; ++k) {
@@ -50,6 +59,7 @@ void ObjectTree::update(const Scene::Impl& scene) {
       if (!scene.objects[i].used || scene.changedAt[i] <= seenPose_) continue;
       const Object& object = scene.objects[i].object;
       boxes_[i] = radar::boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
+      sweep(boxes_[i], object.motion);
       if (const Box* bounds = scene.boundsOf(static_cast<ObjectId>(i))) boxes_[i].merge(*bounds);
     }
   });

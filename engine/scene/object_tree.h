@@ -25,7 +25,7 @@ class ObjectTree {
   const Vector& anchor() const { return anchor_; }
   /// The box of all objects; empty without objects.
   const Box& worldBox() const { return world_; }
-  /// An object's world box, its bounds from setBounds included.
+  /// An object's world box, its motion and its bounds from setBounds included.
   const Box& boxOf(ObjectId object) const { return boxes_[object]; }
   /// Nodes on the longest path from the root to a leaf.
   uint32_t depth() const { return depth_; }

@@ -8,6 +8,13 @@
 
 namespace radar {
 
+namespace {
+
+// Sums and lengths of displacements up to this do not overflow.
+constexpr double kMostMotion = 0x1p1000;
+
+}  // namespace
+
 std::string validate(const Transform& pose) {
   for (double value : pose.m) {
     if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
@@ -29,9 +36,26 @@ std::string validate(const Transform& pose) {
   return {};
 }
 
-std::string validate(const Query& query, const Scene& scene) {
-  if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
-  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
+std::string validateMotion(const std::array<double, 3>& motion) {
+  for (double value : motion) {
+    if (!(std::abs(value) <= kMostMotion)) {
+      return "expected 3 finite numbers of at most 2^1000, got " + std::to_string(value);
+    }
+  }
+  return {};
+}
+
+namespace {
+
+// Checks where a query's sensor goes.
+std::string validateCourse(const Query& query, const Scene::Impl& scene) {
+  if (query.motion) {
+    if (std::string wrong = validateMotion(*query.motion); !wrong.empty()) return "motion: " + wrong;
+    if (query.direction != std::array<double, 3>{} || query.distance != 0) {
+      return "motion: expected no direction and no distance beside it";
+    }
+    return {};
+  }
   double largest = 0;
   for (double value : query.direction) {
     if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + std::to_string(value);
@@ -41,6 +65,18 @@ std::string validate(const Query& query, const Scene& scene) {
   if (!std::isfinite(query.distance) || query.distance < 0) {
     return "distance: expected a finite number of 0 or more, got " + std::to_string(query.distance);
   }
+  if (scene.moving > 0 && query.distance > kMostMotion) {
+    return "distance: expected at most 2^1000 where objects move, got " + std::to_string(query.distance);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string validate(const Query& query, const Scene& scene) {
+  if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
+  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
+  if (std::string wrong = validateCourse(query, scene.impl()); !wrong.empty()) return wrong;
   for (ObjectId object : query.exclude) {
     if (!scene.hasObject(object)) return "exclude: object " + std::to_string(object) + " does not exist";
   }
@@ -57,6 +93,9 @@ std::string validate(const Query& query, const Scene& scene) {
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
   if (query.mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
     return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
+  }
+  if (query.mode == Mode::sampled && isStep(query, scene.impl())) {
+    return "mode: expected contact with a motion, of the query or of objects, got sampled";
   }
   if (query.resolution > kMaxResolution) {
     return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);

@@ -102,6 +102,16 @@ uint32_t takeSlot(Slots& slots, FreeIds& free) {
   return id;
 }
 
+void requireFinite(const std::string& where, std::span<const float> positions) {
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i])) throw Error(where + ": vertex " + std::to_string(i / 3) + " is not finite");
+  }
+}
+
+size_t isMoving(const Object& object) {
+  return object.motion == Vector{} ? 0 : 1;
+}
+
 }  // namespace
 
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
@@ -194,9 +204,8 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   if (indices.size() % 3 != 0)
     throw Error("addMesh: indices: expected 3 per triangle, got " + std::to_string(indices.size()));
   if (indices.empty()) throw Error("addMesh: expected at least one triangle, got none");
+  requireFinite("addMesh: positions", positions);
   for (size_t i = 0; i < positions.size(); ++i) {
-    if (!std::isfinite(positions[i]))
-      throw Error("addMesh: positions: vertex " + std::to_string(i / 3) + " is not finite");
     if (bounds && std::abs(positions[i]) > kMostBound) {
       throw Error("addMesh: positions: vertex " + std::to_string(i / 3) +
                   " of a mesh with bounds: expected coordinates of at most 2^120");
@@ -228,6 +237,31 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   return id;
 }
 
+void Scene::setPositions(MeshId id, std::span<const float> positions) {
+  if (!hasMesh(id)) throw Error("setPositions: " + idText("mesh", id) + " does not exist");
+  Mesh& mesh = impl_->meshes[id];
+  if (mesh.deforms) throw Error("setPositions: " + idText("mesh", id) + " has bounds: its host moves its vertices");
+  if (positions.size() != mesh.positions.size()) {
+    throw Error("setPositions: expected " + std::to_string(mesh.positions.size()) + " floats, 3 for each vertex, got " +
+                std::to_string(positions.size()));
+  }
+  requireFinite("setPositions", positions);
+  Mesh moved;
+  moved.positions.assign(positions.begin(), positions.end());
+  moved.indices = mesh.indices;
+  moved.used = true;
+  moved.objects = mesh.objects;
+  moved.version = nextVersion();
+  derive(moved, {});
+  mesh = std::move(moved);
+  impl_->meshVersion = nextVersion();
+  if (mesh.objects == 0) return;
+  impl_->poseVersion = nextVersion();
+  for (size_t i = 0; i < impl_->objects.size(); ++i) {
+    if (impl_->objects[i].used && impl_->objects[i].object.mesh == id) impl_->changedAt[i] = impl_->poseVersion;
+  }
+}
+
 void Scene::removeMesh(MeshId mesh) {
   if (!hasMesh(mesh)) throw Error("removeMesh: " + idText("mesh", mesh) + " does not exist");
   if (impl_->meshes[mesh].objects != 0) {
@@ -242,9 +276,11 @@ void Scene::removeMesh(MeshId mesh) {
 ObjectId Scene::addObject(const Object& object) {
   if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
   if (std::string wrong = validate(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
+  if (std::string wrong = validateMotion(object.motion); !wrong.empty()) throw Error("addObject: motion: " + wrong);
   const ObjectId id = takeSlot(impl_->objects, impl_->freeObjects);
   impl_->objects[id] = {object, true};
   ++impl_->meshes[object.mesh].objects;
+  impl_->moving += isMoving(object);
   impl_->changedAt.resize(impl_->objects.size());
   impl_->structureVersion = impl_->poseVersion = impl_->changedAt[id] = nextVersion();
   return id;
@@ -254,6 +290,17 @@ void Scene::setTransform(ObjectId object, const Transform& worldFromMesh) {
   if (!hasObject(object)) throw Error("setTransform: " + idText("object", object) + " does not exist");
   if (std::string wrong = validate(worldFromMesh); !wrong.empty()) throw Error("setTransform: " + wrong);
   impl_->objects[object].object.worldFromMesh = worldFromMesh;
+  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+}
+
+void Scene::setMotion(ObjectId object, const std::array<double, 3>& motion) {
+  if (!hasObject(object)) throw Error("setMotion: " + idText("object", object) + " does not exist");
+  if (std::string wrong = validateMotion(motion); !wrong.empty()) throw Error("setMotion: " + wrong);
+  Object& moved = impl_->objects[object].object;
+  if (moved.motion == motion) return;
+  impl_->moving -= isMoving(moved);
+  moved.motion = motion;
+  impl_->moving += isMoving(moved);
   impl_->poseVersion = impl_->changedAt[object] = nextVersion();
 }
 
@@ -273,6 +320,7 @@ void Scene::setBounds(ObjectId object, const Bounds& world) {
 void Scene::removeObject(ObjectId object) {
   if (!hasObject(object)) throw Error("removeObject: " + idText("object", object) + " does not exist");
   impl_->bounds.erase(object);
+  impl_->moving -= isMoving(impl_->objects[object].object);
   --impl_->meshes[impl_->objects[object].object.mesh].objects;
   impl_->objects[object] = {};
   impl_->freeObjects.push(object);

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <queue>
+#include <string>
 #include <vector>
 
 #include "math/box.h"
@@ -64,6 +65,7 @@ struct Scene::Impl {
   uint64_t poseVersion = 0;       ///< any object changed
   /// For each object, the poseVersion at which it last changed.
   std::vector<uint64_t> changedAt;
+  size_t moving = 0;               ///< number of objects that move during a step
   std::map<ObjectId, Box> bounds;  ///< where a host may move objects, with a margin, world coordinates
 
   /// The up-to-date tree over the objects' world boxes, built or refitted at the first call after a change. Any thread
@@ -94,6 +96,14 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& parentFromMesh);
 
 /// The same for a matrix that takes local vertices. The caller adds the rounding error of that matrix.
 Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
+
+/// Whether a query takes a step.
+inline bool isStep(const Query& query, const Scene::Impl& scene) {
+  return query.motion.has_value() || scene.moving > 0;
+}
+
+/// Empty, or what is wrong with a displacement during a step.
+std::string validateMotion(const std::array<double, 3>& motion);
 
 /// The determinant of the 3x3 part.
 double determinant(const Transform& pose);

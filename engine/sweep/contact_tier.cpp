@@ -102,8 +102,8 @@ void ContactTier::run(std::span<const size_t> which) {
 
 bool ContactTier::plan(size_t query) {
   const Query& asked = batch_.asked[query];
-  if (asked.clearance > 0) return false;
   const Scene::Impl& scene = scene_.impl();
+  if (asked.clearance > 0 || isStep(asked, scene)) return false;
   const ObjectTree& tree = scene.objectTree();
   if (asked.hits == 1) {
     const Planned planned = planOne(query, kNone);

@@ -71,7 +71,7 @@ TEST_CASE("a bad query file ends with status 2, a message that names the place, 
   requireRefused(folder, queryFile(kGood + "," + kGood), "queries[1].id", "no other query");
   const std::string whole = queryFile(kGood);
   requireRefused(folder, whole.substr(0, whole.size() - 9), "line 2", "unexpected end of input");
-  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "motion": [0,0,1])")), "queries[0].motion",
+  requireRefused(folder, queryFile(query("p", R"("sensor": [0], "rotation": [0,0,1])")), "queries[0].rotation",
                  "not available in this version");
 }
 

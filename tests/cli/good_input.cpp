@@ -206,3 +206,29 @@ TEST_CASE("sweep lifts a crate from the floor that it rests on") {
   CHECK_THAT(runProgram(folder, sweep).out, Contains("overlap"));
   CHECK_THAT(runProgram(folder, sweep + " --ignore-leaving").out, Contains("clear"));
 }
+
+TEST_CASE("query answers steps in which objects move and meshes are deformed") {
+  const ScratchFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+  const float raised[] = {0, 0, 2, 4, 0, 2, 0, 4, 2};
+  folder.write("raised.f32", std::string(reinterpret_cast<const char*>(raised), sizeof raised));
+  // Its object comes down by 4 of 10 while the sensor, which is deformed in the second scene, goes up by 12.
+  folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj", "a.obj"],
+    "scenes": [{"id": "a", "instances": [[0, 1,0,0,0, 0,1,0,0, 0,0,1,8]], "motions": [[0, 0,0,-4]]},
+               {"id": "b", "base": 0, "instances": [], "deforms": [[1, "raised.f32"]]}],
+    "queries": [{"id": "step", "scene": 0, "sensor": [1], "motion": [0,0,12], "speed": 4},
+                {"id": "rest", "scene": 0, "sensor": [1, 1,0,0,0, 0,1,0,0, 0,0,1,6], "motion": [0,0,0]},
+                {"id": "sweep", "scene": 0, "sensor": [1], "dir": [0,0,1], "D": 12},
+                {"id": "raised", "scene": 1, "sensor": [1], "dir": [0,0,1], "D": 12}]})");
+  const char* mode = GENERATE("contact", "reference");
+  CAPTURE(mode);
+  const Run run = runProgram(folder, std::string("query q.json --mode ") + mode);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  const auto lines = linesOf(run.out);
+  CHECK((lines[0]["t"] == 6 && lines[0]["fraction"] == 0.5 && lines[0]["time"] == 1.5));
+  CHECK((lines[0]["fraction_lo"] <= 0.5 && lines[0]["fraction_hi"] >= 0.5 && lines[0]["point"][2] == 6));
+  CHECK((lines[1]["t"] == 0 && lines[1]["fraction"] == 0.5 && lines[1]["status"] == "hit"));
+  CHECK((lines[2]["t"] == 6 && lines[2]["fraction"] == 0.5 && !lines[2].contains("fraction_lo")));
+  CHECK((lines[3]["t"] == 6 && lines[3]["fraction"] == 0.5));
+}

@@ -103,3 +103,21 @@ TEST_CASE("writeAtomically writes a whole file or leaves nothing") {
   CHECK_THROWS(writeAtomically(folder.path() / "b", "x"));
   CHECK(folder.list() == "a b");
 }
+
+TEST_CASE("a query with a motion is answered in fractions and in distances of its sensor") {
+  QuerySpec query = queryWithId("a");
+  query.motion = {0, 3, 4};
+  query.speed = 10;
+  Result result = hit();
+  result.t = result.fraction = 0.5;
+  result.lo = 0.4375;
+  result.hi = 0.75;
+  const auto line = nlohmann::json::parse(answerLine(query, {.result = result, .hits = {result}}));
+  CHECK((line["fraction"] == 0.5 && line["fraction_lo"] == 0.4375 && line["fraction_hi"] == 0.75));
+  CHECK((line["t"] == 2.5 && line["time"] == 0.25));
+  CHECK((line["lo"] <= 2.1875 && line["lo"] > 2.1874 && line["hi"] >= 3.75 && line["hi"] < 3.7501));
+  const auto clear = nlohmann::json::parse(answerLine(query, {.result = Result(Status::clear)}));
+  CHECK((clear["fraction_lo"].is_null() && clear["hi"].is_null() && clear["time"].is_null()));
+  query.motion = {0, 0, 0};
+  CHECK(nlohmann::json::parse(answerLine(query, {.result = result}))["t"] == 0);
+}

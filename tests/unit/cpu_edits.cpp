@@ -156,3 +156,50 @@ TEST_CASE("the CPU answers no query of a batch in which one breaks its contract,
   REQUIRE(sweeper.run({}).empty());
   REQUIRE(sweeper.stats().queries == 0);
 }
+
+TEST_CASE("a scene whose meshes are deformed answers as one that is built anew") {
+  for (uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed);
+    Scene scene;
+    std::vector<soups::Mesh> meshes;
+    for (int m = 0; m < 3; ++m) {
+      meshes.push_back(soups::soup(random, random.integer(1, 20), 0.5, 0.2));
+      soups::add(scene, meshes.back());
+    }
+    for (int i = 0; i < 5; ++i) {
+      scene.addObject({static_cast<MeshId>(random.integer(0, 2)), random.pose(1, random.inBall())});
+    }
+    CpuSweeper sweeper(scene, 1);
+    for (int step = 0; step < 4; ++step) {
+      INFO("seed " << seed << " step " << step);
+      const auto deformed = static_cast<MeshId>(random.integer(0, 2));
+      for (float& c : meshes[deformed].positions) c += static_cast<float>(random.uniform(-0.3, 0.3));
+      scene.setPositions(deformed, meshes[deformed].positions);
+      Scene again;
+      for (const soups::Mesh& mesh : meshes) soups::add(again, mesh);
+      for (ObjectId id = 0; id < scene.objectLimit(); ++id) again.addObject(scene.object(id));
+      std::vector<Query> queries(6);
+      for (Query& query : queries) {
+        query = {.mesh = static_cast<MeshId>(random.integer(0, 2)), .worldFromMesh = random.pose(1, {-4, 0, 0})};
+        query.direction = {1, random.uniform(-0.2, 0.2), 0};
+        query.distance = 8;
+      }
+      const std::vector<Result> results = sweeper.run(queries), expected = CpuSweeper(again, 1).run(queries);
+      for (size_t i = 0; i < queries.size(); ++i) REQUIRE(agreement::sameBits(results[i], expected[i]));
+    }
+  }
+}
+
+TEST_CASE("positions that a mesh cannot take are refused") {
+  Scene scene;
+  const soups::Mesh box = soups::box(1, 1, 1);
+  const MeshId mesh = soups::add(scene, box);
+  const MeshId bounded = scene.addMesh(box.positions, box.indices, Bounds{{-2, -2, -2}, {2, 2, 2}});
+  std::vector<float> positions = box.positions;
+  CHECK_THROWS_WITH(scene.setPositions(9, positions), Catch::Contains("mesh 9 does not exist"));
+  CHECK_THROWS_WITH(scene.setPositions(bounded, positions), Catch::Contains("has bounds"));
+  positions[5] = NAN;
+  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), Catch::Contains("vertex 1 is not finite"));
+  positions.pop_back();
+  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), Catch::Contains("expected 24 floats"));
+}

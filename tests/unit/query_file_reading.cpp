@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "batch/query_file.h"
 #include "support/scratch_folder.h"
@@ -164,16 +165,8 @@ TEST_CASE("unknown keys are refused everywhere, and reserved keys with a message
   CHECK_THAT(files.refusalWith("/extra", "1"), StartsWith("extra: ") && Contains("got \"extra\""));
   CHECK_THAT(files.refusalWith("/scenes/0/Instances", "[]"), StartsWith("scenes[0].Instances: "));
   CHECK_THAT(files.refusalWith("/queries/1/direction", "[]"), StartsWith("queries[1].direction: "));
-  for (const char* key : {"margin", "top", "rotation", "motion"}) {
-    CAPTURE(key);
-    CHECK_THAT(files.refusalWith((std::string("/queries/1/") + key).c_str(), "0"),
-               StartsWith(std::string("queries[1].") + key) && Contains("not available in this version"));
-  }
-  for (const char* key : {"motions", "deforms"}) {
-    CAPTURE(key);
-    CHECK_THAT(files.refusalWith((std::string("/scenes/1/") + key).c_str(), "[]"),
-               StartsWith(std::string("scenes[1].") + key) && Contains("not available in this version"));
-  }
+  CHECK_THAT(files.refusalWith("/queries/1/rotation", "0"),
+             StartsWith("queries[1].rotation") && Contains("not available in this version"));
 }
 
 TEST_CASE("the message about a missing key names it") {
@@ -285,4 +278,48 @@ TEST_CASE("a query may ask what counts as a contact and for how many, and is wri
   }
   CHECK_FALSE((workload.queries[1].ignoreLeaving || workload.queries[1].slack || workload.queries[1].skipOverlapping));
   CHECK(workload.queries[1].hits == 1);
+}
+
+TEST_CASE("motions and deformations are read, written as they were read, and refused by their place") {
+  Files files;
+  const std::vector<float> positions{0, 0, 1, 2, 0, 0, 0, 2, 0.5};
+  const auto bytes = [](std::span<const float> values) {
+    return std::string(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  };
+  files.folder.write("a.f32", bytes(positions));
+  files.folder.write("short.f32", "12345");
+  files.folder.write("bad.f32", bytes(std::vector<float>{0, 0, 1, 2, NAN, 0, 0, 2, 0}));
+  nlohmann::json file = goodFile();
+  file["scenes"][1]["motions"] = nlohmann::json::parse("[[2, 0, 0.5, 0], [0, 1, 2, 3]]");
+  file["scenes"][1]["deforms"] = nlohmann::json::parse(R"([[0, "a.f32"]])");
+  file["queries"][0].erase("dir");
+  file["queries"][0].erase("D");
+  file["queries"][0]["motion"] = nlohmann::json::parse("[0, -1, 1e-3]");
+  file["queries"][1]["mode"] = "reference";
+  const Workload workload = files.read(file.dump());
+  std::vector<std::string> warnings;
+  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  for (const Workload& one : {workload, again}) {
+    CHECK(one.scenes[0].motions.empty());
+    CHECK(one.scenes[1].motions == std::vector<ObjectMotion>{{2, {0, 0.5, 0}}, {0, {1, 2, 3}}});
+    REQUIRE(one.scenes[1].deforms.size() == 1);
+    CHECK(one.scenes[1].deforms[0].positions == positions);
+    CHECK(one.queries[0].motion == std::array<double, 3>{0, -1, 1e-3});
+    CHECK_FALSE(one.queries[1].motion);
+  }
+  const auto refused = [&](const char* pointer, const char* value) {
+    nlohmann::json changed = file;
+    changed[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    return files.refusal(changed.dump());
+  };
+  CHECK_THAT(refused("/scenes/1/motions/0", "[3, 0, 0, 0]"), StartsWith("scenes[1].motions[0][0]: "));
+  CHECK_THAT(refused("/scenes/1/motions/0", "[0, 0, 0, 0]"), Contains("each object once"));
+  CHECK_THAT(refused("/scenes/1/motions/0", "[2, 0, 0]"), Contains("[object, dx, dy, dz]"));
+  CHECK_THAT(refused("/scenes/1/deforms/0", R"([1, "a.f32"])"), StartsWith("scenes[1].deforms[0][0]: "));
+  CHECK_THAT(refused("/scenes/1/deforms/0/1", R"("short.f32")"), Contains("expected 36 bytes"));
+  CHECK_THAT(refused("/scenes/1/deforms/0/1", R"("bad.f32")"), Contains("vertex 1: expected finite numbers"));
+  CHECK_THAT(refused("/scenes/1/deforms/0/1", R"("none.f32")"), Contains("no readable file"));
+  CHECK_THAT(refused("/queries/0/D", "2"), StartsWith("queries[0].D: ") && Contains("got both"));
+  CHECK_THAT(refused("/queries/0/motion", "[1, 2]"), StartsWith("queries[0].motion: "));
+  CHECK_THAT(refused("/queries/1/mode", R"("sampled")"), Contains("motions need"));
 }

@@ -67,3 +67,26 @@ TEST_CASE("queries with the same scene and batch number form one batch, wherever
   CHECK(batches[2].queries == std::vector<uint32_t>{3});
   CHECK(batches[3].queries == std::vector<uint32_t>{4});
 }
+
+TEST_CASE("a player moves objects and deforms meshes only in the scenes that say so") {
+  Workload workload;
+  workload.meshes = {makeBox({1, 1, 1}), makePlate(2, 2, 0.1)};
+  std::vector<float> stretched = workload.meshes[0].positions;
+  for (float& c : stretched) c *= 3;
+  workload.scenes = {{"still", {}, {at(0, 1), at(1, 2)}},
+                     {"moves", 0, {at(0, 3)}, {}, {{1, {0, 0, 2}}, {2, {1, 0, 0}}}},
+                     {"deformed", 0, {}, {}, {}, {{0, stretched}}}};
+  ScenePlayer player(workload);
+  for (uint32_t scene : {0, 1, 2, 1, 0, 2, 2, 0}) {
+    CAPTURE(scene);
+    player.show(scene);
+    Scene again;
+    replaceBy(workload, scene, again);
+    for (const Scene* shown : {&player.scene(), static_cast<const Scene*>(&again)}) {
+      CHECK(shown->object(1).motion[2] == (scene == 1 ? 2 : 0));
+      CHECK(shown->object(0).motion == std::array<double, 3>{});
+      const MeshView mesh = shown->mesh(0);
+      CHECK(std::ranges::equal(mesh.positions, scene == 2 ? stretched : workload.meshes[0].positions));
+    }
+  }
+}

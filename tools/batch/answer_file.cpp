@@ -1,5 +1,7 @@
 #include "batch/answer_file.h"
 
+#include <cmath>
+
 #include "batch/json_output.h"
 
 namespace radar::tools {
@@ -22,12 +24,27 @@ const char* wordFor(Detected detected) {
   return detected == Detected::no ? "false" : detected == Detected::yes ? "true" : "null";
 }
 
-std::string hitText(const Result& hit) {
+// Adds t, lo and hi: distances of the sensor. With a motion, they are fractions in the result; `hasFraction`: those are
+// added, too.
+void addTimes(JsonObject& object, const QuerySpec& query, const Result& result, bool hasFraction) {
+  constexpr double kRoom = 0x1p-50;
+  const double length = query.motion ? std::hypot((*query.motion)[0], (*query.motion)[1], (*query.motion)[2]) : 1,
+               room = query.motion ? kRoom : 0;
+  object.addNumber("t", length * result.t);
+  object.addNumber("lo", (1 - room) * length * result.lo);
+  object.addNumber("hi", (1 + room) * length * result.hi);
+  if (hasFraction) object.addNumber("fraction", result.fraction);
+  if (query.motion) {
+    object.addNumber("fraction_lo", result.lo);
+    object.addNumber("fraction_hi", result.hi);
+  }
+  if (hasFraction && query.speed) object.addNumber("time", length * result.t / *query.speed);
+}
+
+std::string hitText(const QuerySpec& query, const Result& hit) {
   JsonObject object;
   object.add("object", idText(hit.object));
-  object.addNumber("t", hit.t);
-  object.addNumber("lo", hit.lo);
-  object.addNumber("hi", hit.hi);
+  addTimes(object, query, hit, false);
   object.add("tri_a", idText(hit.triA));
   object.add("tri_b", idText(hit.triB));
   object.add("feature_a", featureText(hit.featureA));
@@ -60,11 +77,7 @@ std::string answerLine(const QuerySpec& query, const Answer& answer) {
   line.addString("id", query.id);
   line.addString("status", nameOf(result.status));
   if (result.status == Status::invalid) line.addString("reason", answer.reason);
-  line.addNumber("t", result.t);
-  line.addNumber("lo", result.lo);
-  line.addNumber("hi", result.hi);
-  line.addNumber("fraction", result.fraction);
-  if (query.speed) line.addNumber("time", result.t / *query.speed);
+  addTimes(line, query, result, true);
   line.add("detected", wordFor(result.detected));
   line.add("object", idText(result.object));
   line.add("tri_a", idText(result.triA));
@@ -76,7 +89,8 @@ std::string answerLine(const QuerySpec& query, const Answer& answer) {
   line.addString("tier", nameOf(result.tier));
   if (answer.mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
   if (query.hits > 1) {
-    line.add("hits", listOf(answer.hits, ", ", [](std::string& text, const Result& hit) { text += hitText(hit); }));
+    line.add("hits",
+             listOf(answer.hits, ", ", [&](std::string& text, const Result& hit) { text += hitText(query, hit); }));
   }
   if (query.skipOverlapping) {
     line.add("overlapping",

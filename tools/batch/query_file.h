@@ -22,9 +22,9 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
 
 /// Whether a query asks for what mode sampled does not offer; and what to use instead.
-bool needsExactMode(const QuerySpec& query);
+bool needsExactMode(const Workload& workload, const QuerySpec& query);
 inline constexpr const char* kExactModes =
-    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\", \"clearance\" and several \"hits\" need";
+    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\", \"clearance\", several \"hits\" and motions need";
 
 /// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them.
 const char* nameOf(AnswerMode mode);

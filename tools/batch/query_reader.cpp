@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -16,7 +18,7 @@ namespace radar::tools {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::string_view kLater[] = {"motion", "motions", "deforms", "margin", "top", "rotation"};
+constexpr std::string_view kLater[] = {"rotation"};
 
 std::string readWhole(const std::filesystem::path& file, const char* kind) {
   std::error_code error;
@@ -57,6 +59,11 @@ size_t readNumbers(std::string_view line, std::span<double> numbers) {
   }
 }
 
+std::array<double, 3> readVector(const JsonValue& list) {
+  if (list.size() != 3) list.expected("3 numbers");
+  return {list[0].number(), list[1].number(), list[2].number()};
+}
+
 class Reader {
  public:
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings)
@@ -71,6 +78,9 @@ class Reader {
   Instance readInstance(const JsonValue& list) const;
   std::vector<Instance> readInstanceFile(const std::filesystem::path& file) const;
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
+  std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
+  std::vector<Deformation> readDeforms(const JsonValue& list) const;
+  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh) const;
 
   std::filesystem::path file_;
   std::string name_;
@@ -98,7 +108,7 @@ void Reader::readMesh(const JsonValue& value) {
 }
 
 void Reader::readScene(const JsonValue& scene) {
-  requireKnownKeys(scene, {"id", "base", "instances", "instances_file", "masks"});
+  requireKnownKeys(scene, {"id", "base", "instances", "instances_file", "masks", "motions", "deforms"});
   SceneSpec spec;
   scene.ifHas("id", [&](const JsonValue& id) {
     spec.id = id.string();
@@ -118,10 +128,10 @@ void Reader::readScene(const JsonValue& scene) {
   } else {
     scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
   }
-  scene.ifHas("masks", [&](const JsonValue& masks) {
-    const size_t still = spec.base ? workload_.scenes[*spec.base].instances.size() : 0;
-    spec.masks = readMasks(masks, still + spec.instances.size());
-  });
+  const size_t objects = (spec.base ? workload_.scenes[*spec.base].instances.size() : 0) + spec.instances.size();
+  scene.ifHas("masks", [&](const JsonValue& masks) { spec.masks = readMasks(masks, objects); });
+  scene.ifHas("motions", [&](const JsonValue& motions) { spec.motions = readMotions(motions, objects); });
+  scene.ifHas("deforms", [&](const JsonValue& deforms) { spec.deforms = readDeforms(deforms); });
   workload_.scenes.push_back(std::move(spec));
 }
 
@@ -134,6 +144,49 @@ std::vector<ObjectMask> Reader::readMasks(const JsonValue& list, size_t objects)
     if (!named.insert(masks.back().first).second) pair[0].expected("each object once");
   });
   return masks;
+}
+
+std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t objects) const {
+  std::vector<ObjectMotion> motions;
+  std::unordered_set<uint32_t> named;
+  list.forEach([&](const JsonValue& entry) {
+    if (entry.size() != 4) entry.expected("[object, dx, dy, dz]");
+    motions.push_back({entry[0].index(objects, "objects"), {entry[1].number(), entry[2].number(), entry[3].number()}});
+    if (!named.insert(motions.back().first).second) entry[0].expected("each object once");
+  });
+  return motions;
+}
+
+std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
+  std::vector<Deformation> deforms;
+  std::unordered_set<uint32_t> named;
+  list.forEach([&](const JsonValue& pair) {
+    if (pair.size() != 2) pair.expected("[mesh, \"file of positions\"]");
+    const uint32_t mesh = pair[0].index(workload_.meshes.size(), "meshes");
+    if (!named.insert(mesh).second) pair[0].expected("each mesh once");
+    const std::filesystem::path file = file_.parent_path() / pair[1].string();
+    deforms.push_back({mesh, pair[1].guard([&] { return readPositions(file, workload_.meshes[mesh]); })});
+  });
+  return deforms;
+}
+
+std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) const {
+  static_assert(std::endian::native == std::endian::little);
+  const std::string bytes = readWhole(file, "a file of vertex positions");
+  std::vector<float> positions(mesh.positions.size());
+  const size_t expected = positions.size() * sizeof(float);
+  if (bytes.size() != expected) {
+    throw InputError(file.string(), "",
+                     "expected " + std::to_string(expected) + " bytes, 3 floats for each of the " +
+                         std::to_string(mesh.vertexCount()) + " vertices of " + mesh.name + ", got " +
+                         std::to_string(bytes.size()));
+  }
+  std::memcpy(positions.data(), bytes.data(), expected);
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (std::isfinite(positions[i])) continue;
+    throw InputError(file.string(), "vertex " + std::to_string(i / 3), "expected finite numbers");
+  }
+  return positions;
 }
 
 Instance Reader::readInstance(const JsonValue& list) const {
@@ -179,8 +232,8 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 void Reader::readQuery(const JsonValue& query) {
-  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "mask", "decide", "mode", "speed",
-                           "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits", "clearance"});
+  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "motion", "mask", "decide", "mode",
+                           "speed", "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits", "clearance"});
   QuerySpec spec;
   const JsonValue id = query.member("id");
   spec.id = id.string();
@@ -194,11 +247,17 @@ void Reader::readQuery(const JsonValue& query) {
       spec.exclude.push_back(object.index(objects, "objects of the query's scene"));
     });
   });
-  const JsonValue direction = query.member("dir");
-  if (direction.size() != 3) direction.expected("3 numbers");
-  for (size_t k = 0; k < 3; ++k) spec.direction[k] = direction[k].number();
-  if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
-  spec.distance = query.member("D").numberFrom0();
+  if (query.has("motion")) {
+    for (const char* other : {"dir", "D"}) {
+      if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
+    }
+    spec.motion = readVector(query.member("motion"));
+  } else {
+    const JsonValue direction = query.member("dir");
+    spec.direction = readVector(direction);
+    if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
+    spec.distance = query.member("D").numberFrom0();
+  }
   query.ifHas("mask", [&](const JsonValue& mask) { spec.mask = mask.wholeNumber<uint32_t>(); });
   query.ifHas("decide", [&](const JsonValue& decide) { spec.anyHit = decide.boolean(); });
   query.ifHas("ignore_leaving", [&](const JsonValue& ignore) { spec.ignoreLeaving = ignore.boolean(); });
@@ -212,7 +271,7 @@ void Reader::readQuery(const JsonValue& query) {
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
-    if (spec.mode == AnswerMode::sampled && needsExactMode(spec)) mode.expected(kExactModes);
+    if (spec.mode == AnswerMode::sampled && needsExactMode(workload_, spec)) mode.expected(kExactModes);
   });
   query.ifHas("speed", [&](const JsonValue& speed) {
     spec.speed = speed.number();
@@ -228,8 +287,9 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
   return Reader(file, warnings).read();
 }
 
-bool needsExactMode(const QuerySpec& query) {
-  return query.ignoreLeaving || query.skipOverlapping || query.hits > 1 || query.clearance > 0;
+bool needsExactMode(const Workload& workload, const QuerySpec& query) {
+  return query.motion || !workload.scenes[query.scene].motions.empty() || query.ignoreLeaving ||
+         query.skipOverlapping || query.hits > 1 || query.clearance > 0;
 }
 
 const char* nameOf(AnswerMode mode) {

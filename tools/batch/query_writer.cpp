@@ -45,7 +45,12 @@ std::string instanceText(const Instance& instance) {
   return text + "]";
 }
 
-std::string sceneText(const SceneSpec& scene, const std::string& instanceFile) {
+// The file of a mesh's positions in a scene.
+std::string positionsFile(size_t scene, uint32_t mesh) {
+  return "scene-" + std::to_string(scene) + "-mesh-" + std::to_string(mesh) + ".f32";
+}
+
+std::string sceneText(const SceneSpec& scene, size_t number, const std::string& instanceFile) {
   JsonObject object;
   object.addString("id", scene.id);
   if (scene.base) object.add("base", std::to_string(*scene.base));
@@ -61,6 +66,21 @@ std::string sceneText(const SceneSpec& scene, const std::string& instanceFile) {
                  text += "[" + std::to_string(mask.first) + "," + std::to_string(mask.second) + "]";
                }));
   }
+  if (!scene.motions.empty()) {
+    object.add("motions", listOf(scene.motions, ",", [](std::string& text, const ObjectMotion& motion) {
+                 text += "[" + std::to_string(motion.first);
+                 for (double value : motion.second) {
+                   text += ",";
+                   appendNumber(text, value);
+                 }
+                 text += "]";
+               }));
+  }
+  if (!scene.deforms.empty()) {
+    object.add("deforms", listOf(scene.deforms, ",", [&](std::string& text, const Deformation& deformed) {
+                 text += "[" + std::to_string(deformed.mesh) + "," + quoted(positionsFile(number, deformed.mesh)) + "]";
+               }));
+  }
   return object.text();
 }
 
@@ -74,8 +94,12 @@ std::string queryText(const QuerySpec& query) {
     object.add("exclude",
                listOf(query.exclude, ",", [](std::string& text, uint32_t number) { text += std::to_string(number); }));
   }
-  object.add("dir", listOf(query.direction, ",", appendNumber));
-  object.addNumber("D", query.distance);
+  if (query.motion) {
+    object.add("motion", listOf(*query.motion, ",", appendNumber));
+  } else {
+    object.add("dir", listOf(query.direction, ",", appendNumber));
+    object.addNumber("D", query.distance);
+  }
   if (query.mask != ~0u) object.add("mask", std::to_string(query.mask));
   if (query.anyHit) object.add("decide", "true");
   if (query.mode) object.addString("mode", nameOf(*query.mode));
@@ -115,7 +139,12 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
       }
       writeAtomically(folder / instanceFile, lines);
     }
-    text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, instanceFile);
+    for (const Deformation& deformed : scene.deforms) {
+      std::string bytes;
+      for (float value : deformed.positions) appendBytes(bytes, value);
+      writeAtomically(folder / positionsFile(i, deformed.mesh), bytes);
+    }
+    text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, i, instanceFile);
   }
   text += "],\n \"queries\": [";
   for (size_t i = 0; i < workload.queries.size(); ++i) {

@@ -30,7 +30,7 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     for (uint32_t number : batch.queries) {
       const QuerySpec& spec = workload.queries[number];
       const AnswerMode mode = spec.mode.value_or(options.mode);
-      if (mode == AnswerMode::sampled && needsExactMode(spec)) {
+      if (mode == AnswerMode::sampled && needsExactMode(workload, spec)) {
         throw InputError("--mode", "",
                          std::string("expected ") + kExactModes + " (query \"" + spec.id + "\"), got sampled");
       }

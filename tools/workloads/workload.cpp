@@ -1,5 +1,6 @@
 #include "workloads/workload.h"
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 
@@ -15,17 +16,21 @@ class Objects {
   Objects(const Workload& workload, uint32_t scene) : workload_(workload), scene_(scene) {
     const SceneSpec& spec = workload.scenes[scene];
     masks_.insert(spec.masks.begin(), spec.masks.end());
+    motions_.insert(spec.motions.begin(), spec.motions.end());
   }
   Object operator[](uint32_t number) const {
     const Instance& instance = workload_.instance(scene_, number);
     const auto mask = masks_.find(number);
-    return {instance.mesh, instance.worldFromMesh, mask == masks_.end() ? ~0u : mask->second};
+    const auto motion = motions_.find(number);
+    return {instance.mesh, instance.worldFromMesh, mask == masks_.end() ? ~0u : mask->second,
+            motion == motions_.end() ? std::array<double, 3>{} : motion->second};
   }
 
  private:
   const Workload& workload_;
   uint32_t scene_;
   std::map<uint32_t, uint32_t> masks_;
+  std::map<uint32_t, std::array<double, 3>> motions_;
 };
 
 }  // namespace
@@ -50,6 +55,7 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   query.worldFromMesh = spec.sensor.worldFromMesh;
   query.direction = spec.direction;
   query.distance = spec.distance;
+  query.motion = spec.motion;
   query.mode = mode;
   query.exclude = spec.exclude;
   query.mask = spec.mask;
@@ -88,6 +94,7 @@ void replaceBy(const Workload& workload, uint32_t scene, Scene& to) {
     if (to.hasMesh(id)) to.removeMesh(id);
   }
   for (const MeshData& mesh : workload.meshes) to.addMesh(mesh.positions, mesh.indices);
+  for (const Deformation& deformed : workload.scenes[scene].deforms) to.setPositions(deformed.mesh, deformed.positions);
   const Objects objects(workload, scene);
   for (uint32_t i = 0; i < workload.objectCount(scene); ++i) to.addObject(objects[i]);
 }
@@ -104,12 +111,26 @@ void ScenePlayer::show(uint32_t scene) {
   for (uint32_t id = scene_.objectLimit(); id > count; --id) {
     if (scene_.hasObject(id - 1)) scene_.removeObject(id - 1);
   }
+  deform(scene);
   const Objects objects(workload_, scene);
   // The objects of a base that stays need no comparison, so that a step costs only what moves in it.
-  const bool sameBase = before && spec.base && before->base == spec.base && before->masks == spec.masks;
+  const bool sameBase = before && spec.base && before->base == spec.base && before->masks == spec.masks &&
+                        before->motions == spec.motions;
   const size_t first = sameBase ? workload_.baseOf(scene).size() : 0;
   for (auto i = static_cast<uint32_t>(first); i < count; ++i) showObject(objects[i], i);
   shown_ = scene;
+}
+
+void ScenePlayer::deform(uint32_t scene) {
+  const std::vector<Deformation>& now = workload_.scenes[scene].deforms;
+  if (shown_) {
+    for (const Deformation& before : workload_.scenes[*shown_].deforms) {
+      if (std::ranges::count(now, before.mesh, &Deformation::mesh) == 0) {
+        scene_.setPositions(before.mesh, workload_.meshes[before.mesh].positions);
+      }
+    }
+  }
+  for (const Deformation& deformed : now) scene_.setPositions(deformed.mesh, deformed.positions);
 }
 
 void ScenePlayer::showObject(const Object& object, ObjectId id) {
@@ -117,6 +138,7 @@ void ScenePlayer::showObject(const Object& object, ObjectId id) {
     const Object& present = scene_.object(id);
     if (present.mesh == object.mesh && present.mask == object.mask) {
       if (present.worldFromMesh != object.worldFromMesh) scene_.setTransform(id, object.worldFromMesh);
+      scene_.setMotion(id, object.motion);
       return;
     }
     scene_.removeObject(id);

@@ -30,14 +30,23 @@ struct Instance {
   friend bool operator==(const Instance&, const Instance&) = default;
 };
 
-using ObjectMask = std::pair<uint32_t, uint32_t>;  ///< object, bits
+using ObjectMask = std::pair<uint32_t, uint32_t>;                 ///< object, bits
+using ObjectMotion = std::pair<uint32_t, std::array<double, 3>>;  ///< object, displacement during the step
+
+/// New positions of all vertices of a mesh.
+struct Deformation {
+  uint32_t mesh = 0;
+  std::vector<float> positions;
+};
 
 /// The base's objects have the first numbers, `instances` the next. A base has no base itself and comes earlier.
 struct SceneSpec {
   std::string id;
   std::optional<uint32_t> base;
   std::vector<Instance> instances;
-  std::vector<ObjectMask> masks;  ///< every other object has all bits; not inherited from the base
+  std::vector<ObjectMask> masks;      ///< every other object has all bits
+  std::vector<ObjectMotion> motions;  ///< every other object rests
+  std::vector<Deformation> deforms;   ///< each mesh once; not inherited from the base, as masks and motions
 };
 
 /// How an answer is found.
@@ -51,6 +60,7 @@ struct QuerySpec {
   std::vector<uint32_t> exclude;
   std::array<double, 3> direction{};
   double distance = 0;
+  std::optional<std::array<double, 3>> motion;  ///< instead of both
   uint32_t mask = ~0u;
   bool anyHit = false;
   bool ignoreLeaving = false, skipOverlapping = false;
@@ -102,6 +112,7 @@ class ScenePlayer {
 
  private:
   void showObject(const Object& object, ObjectId id);
+  void deform(uint32_t scene);
 
   const Workload& workload_;
   Scene scene_;

@@ -92,6 +92,8 @@ struct Object {
   MeshId mesh = kNone;
   Transform worldFromMesh;
   uint32_t mask = ~0u;  ///< takes part in a query if it shares a bit with the query's mask
+  /// How far it moves during the step that queries ask about, at constant velocity, world units: see Query::motion.
+  std::array<double, 3> motion{};
 };
 
 /// Meshes, and objects that place them. Plain data on the CPU, independent of any device; any number of sweepers may
@@ -112,12 +114,18 @@ class RADAR_API Scene {
   /// the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
+  /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Throws if the mesh does not exist, was declared
+  /// with `bounds`, has another number of vertices, or a number is not finite.
+  void setPositions(MeshId mesh, std::span<const float> positions);
   /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);
 
-  /// Throws if the mesh does not exist, or the pose is singular or not finite.
+  /// Throws if the mesh does not exist, the pose is singular or not finite, or a component of the motion is above
+  /// 2^1000.
   ObjectId addObject(const Object& object);
   void setTransform(ObjectId object, const Transform& worldFromMesh);
+  /// Sets Object::motion. The pose stays that at the start of the step.
+  void setMotion(ObjectId object, const std::array<double, 3>& motion);
   /// Declares that the host will move the object on its device within `world` (radar/host_geometry.h). Larger bounds
   /// cost more time. All other calls use the object's pose. Replaces earlier bounds; removing the object removes them.
   /// Throws if the object does not exist, a lower bound exceeds its upper bound, or a bound exceeds 2^120.
@@ -160,6 +168,12 @@ struct Query {
   bool anyHit = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
   std::vector<ObjectId> exclude;  ///< objects to ignore, such as the sensor's own; at most a handful
   uint32_t mask = ~0u;            ///< an object takes part if its mask shares a bit
+
+  /// Mode contact, instead of `direction` and `distance`, which stay 0: how far the sensor moves during a step, world
+  /// units, at constant velocity; may be zero. Objects move by Object::motion meanwhile. First contact is that of the
+  /// relative motion, and t, lo and hi are fractions of the step. If objects move, a query with a direction takes a
+  /// step, too, in which the sensor moves by D; t is then the fraction times D. Relative motions round once.
+  std::optional<std::array<double, 3>> motion;
 
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
   /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
@@ -236,7 +250,7 @@ struct RADAR_API Result {
   uint32_t resolution = 0;  ///< pixels along the window's longer side; 0 if no picture was drawn
   double t;                 ///< best estimate of t*, world units; tier sampled: hi
   double lo, hi;            ///< the certified bracket, world units
-  double fraction;          ///< t / D (0 if D is 0)
+  double fraction;          ///< t / D (0 if D is 0); of the step, if the query takes one
   ObjectId object = kNone;  ///< the object touched
   uint32_t triB = kNone;    ///< its triangle
   uint32_t triA = kNone;    ///< the sensor's triangle

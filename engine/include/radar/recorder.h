@@ -38,8 +38,8 @@ class RADAR_API Recorder {
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
   /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
   /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has kFlagUnresolved instead: its status is undecided, `hi` is absent, and there is no contact before `lo`. Queries
-  /// with numbers that floats cannot hold become Status::invalid with kFlagRange:
+  /// has kFlagUnresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`.
+  /// Queries with numbers that floats cannot hold become Status::invalid with kFlagRange:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
   ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away;
@@ -58,8 +58,9 @@ class RADAR_API Recorder {
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
-  /// Throws before recording anything if a query breaks its contract or is not of mode contact, there are more than
-  /// Capacity::queries, `geometry` breaks its contract, or something does not fit the device.
+  /// Throws before recording anything if a query breaks its contract, is not of mode contact, or asks for
+  /// skipOverlapping, hits, a clearance or a step; if there are more than Capacity::queries, `geometry` breaks its
+  /// contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.
   void reset();

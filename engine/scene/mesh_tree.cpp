@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "scene/box_tree.h"
 #include "scene/parallel.h"
@@ -18,26 +19,36 @@ constexpr uint32_t kLeafTriangles = 2;
 constexpr uint32_t kSlabTriangles = 1024;
 constexpr size_t kChunk = 4096;
 
+// A tree is built anew once refitting has made its cost this many times that after it was built.
+constexpr double kRebuildAt = 2.0;
+
 using Point = std::array<float, 3>;
+
+double halfArea(const FloatBox& box) {
+  const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1], z = double(box.hi[2]) - box.lo[2];
+  return x * y + y * z + z * x;
+}
+
+// The nodes that a random line through the root meets, by the areas of their boxes.
+double cost(const std::vector<BoxTree::Node>& nodes) {
+  double sum = 0;
+  for (const BoxTree::Node& node : nodes) sum += halfArea(node.box);
+  return sum / std::max(halfArea(nodes[0].box), std::numeric_limits<double>::min());
+}
 
 class Builder {
  public:
   explicit Builder(const Mesh& mesh) : mesh_(mesh) {}
 
   MeshTree build() const {
-    std::vector<FloatBox> boxes(mesh_.triangleCount());
-    parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      for (size_t t = first; t < last; ++t) boxes[t] = boxOf(static_cast<uint32_t>(t));
-    });
-    BoxTree tree = buildBoxTree(boxes, kLeafTriangles);
+    BoxTree tree = buildBoxTree(boxesOfTriangles(), kLeafTriangles);
     MeshTree out;
     out.order = std::move(tree.order);
     out.depth = tree.depth;
+    out.builtCost = cost(tree.nodes);
     out.nodes.resize(tree.nodes.size());
     out.below.resize(tree.nodes.size());
-    parallelFor(tree.nodes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-      for (size_t i = first; i < last; ++i) fill(out, tree.nodes[i], i);
-    });
+    fillAll(out, tree.nodes);
     for (size_t i = out.nodes.size(); i-- > 0;) {  // children come after their parents
       const BoxTree::Node& node = tree.nodes[i];
       if (node.child == 0) continue;
@@ -46,7 +57,50 @@ class Builder {
     return out;
   }
 
+  MeshTree refit(MeshTree tree) const {
+    const std::vector<FloatBox> boxes = boxesOfTriangles();
+    std::vector<BoxTree::Node> nodes(tree.nodes.size());
+    for (size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+      const uint32_t link = tree.nodes[i].link;
+      BoxTree::Node& node = nodes[i];
+      node = {{}, tree.below[i].first, tree.below[i].count, (link & gpu::kLinkLeaf) != 0 ? 0 : link};
+      if (node.child != 0) {
+        node.box = around(nodes[node.child].box, nodes[node.child + 1].box);
+      } else {
+        node.box = boxes[tree.order[node.first]];
+        for (uint32_t k = 1; k < node.count; ++k) node.box = around(node.box, boxes[tree.order[node.first + k]]);
+      }
+    }
+    if (!(cost(nodes) <= kRebuildAt * tree.builtCost)) return build();
+    fillAll(tree, nodes);
+    return tree;
+  }
+
  private:
+  std::vector<FloatBox> boxesOfTriangles() const {
+    std::vector<FloatBox> boxes(mesh_.triangleCount());
+    parallelFor(boxes.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t t = first; t < last; ++t) boxes[t] = boxOf(static_cast<uint32_t>(t));
+    });
+    return boxes;
+  }
+
+  static FloatBox around(const FloatBox& p, const FloatBox& q) {
+    FloatBox box;
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(p.lo[k], q.lo[k]);
+      box.hi[k] = std::max(p.hi[k], q.hi[k]);
+    }
+    return box;
+  }
+
+  // Writes the nodes and their ranges, but not the least triangle below inner nodes.
+  void fillAll(MeshTree& tree, const std::vector<BoxTree::Node>& from) const {
+    parallelFor(from.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) fill(tree, from[i], i);
+    });
+  }
+
   Point corner(uint32_t triangle, int i) const {
     const uint32_t vertex = mesh_.indices[3 * size_t{triangle} + i];
     return {mesh_.normalised(vertex, 0), mesh_.normalised(vertex, 1), mesh_.normalised(vertex, 2)};
@@ -67,13 +121,15 @@ class Builder {
   void fill(MeshTree& tree, const BoxTree::Node& from, size_t i) const {
     gpu::MeshNode& node = tree.nodes[i];
     fitBox(from.box.lo, from.box.hi, node.centre, node.halfExtent);
-    tree.below[i] = {from.first, from.count, gpu::kNobody};
+    node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
     if (from.child == 0) {
       node.link = gpu::kLinkLeaf | (from.count > 1 ? gpu::kLinkPair : 0) | from.first;
       const auto first = tree.order.begin() + from.first;
-      tree.below[i].least = *std::min_element(first, first + from.count);
+      tree.below[i] = {from.first, from.count, *std::min_element(first, first + from.count)};
     } else {
       node.link = from.child;
+      tree.below[i].first = from.first;
+      tree.below[i].count = from.count;
     }
     if (from.count <= kSlabTriangles) fitSlab(tree, from, node);
   }
@@ -124,6 +180,10 @@ void fitBox(const Point& lo, const Point& hi, float (&centre)[3], float (&half)[
 
 MeshTree buildMeshTree(const Mesh& mesh) {
   return Builder(mesh).build();
+}
+
+MeshTree refitMeshTree(const Mesh& mesh, MeshTree before) {
+  return Builder(mesh).refit(std::move(before));
 }
 
 }  // namespace radar

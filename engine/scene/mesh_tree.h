@@ -21,10 +21,15 @@ struct MeshTree {
   };
   std::vector<Below> below;  ///< per node
   uint32_t depth = 0;        ///< nodes on the longest path from the root to a leaf
+  double builtCost = 0;      ///< of the tree when it was built: see cost() in mesh_tree.cpp
 };
 
 /// `mesh` must have its local vertices.
 MeshTree buildMeshTree(const Mesh& mesh);
+
+/// The same for a mesh whose vertices have moved. `before`: its tree until now, which is fitted to them; built anew if
+/// that has made it much worse.
+MeshTree refitMeshTree(const Mesh& mesh, MeshTree before);
 
 /// Centre and half extents of a box that contains [lo, hi] despite rounding.
 void fitBox(const std::array<float, 3>& lo, const std::array<float, 3>& hi, float (&centre)[3], float (&half)[3]);

@@ -57,7 +57,7 @@ double originOf(double lo, double hi) {
   return std::abs(middle) >= 2.5 * half ? static_cast<float>(middle) : 0;
 }
 
-// Computes the derived members. `box`: the bounds within which a host may deform the mesh, or empty.
+// Computes the derived members but the tree. `box`: the bounds within which a host may deform the mesh, or empty.
 void derive(Mesh& mesh, Box box) {
   // Vertices that no triangle uses must not widen the window.
   for (uint32_t vertex : mesh.indices) {
@@ -88,7 +88,6 @@ void derive(Mesh& mesh, Box box) {
     sum += edgeLength(mesh, a, b) + edgeLength(mesh, b, c) + edgeLength(mesh, c, a);
   }
   mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
-  mesh.tree = buildMeshTree(mesh);
 }
 
 template <class Slots>
@@ -231,6 +230,7 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
     box.hi[k] = roundUp(box.hi[k]);
   }
   derive(mesh, box);
+  mesh.tree = buildMeshTree(mesh);
   const MeshId id = takeSlot(impl_->meshes, impl_->freeMeshes);
   impl_->meshes[id] = std::move(mesh);
   impl_->meshVersion = nextVersion();
@@ -246,15 +246,10 @@ void Scene::setPositions(MeshId id, std::span<const float> positions) {
                 std::to_string(positions.size()));
   }
   requireFinite("setPositions", positions);
-  Mesh moved;
-  moved.positions.assign(positions.begin(), positions.end());
-  moved.indices = mesh.indices;
-  moved.used = true;
-  moved.objects = mesh.objects;
-  moved.version = nextVersion();
-  derive(moved, {});
-  mesh = std::move(moved);
-  impl_->meshVersion = nextVersion();
+  std::ranges::copy(positions, mesh.positions.begin());
+  derive(mesh, {});
+  mesh.tree = refitMeshTree(mesh, std::move(mesh.tree));
+  mesh.version = impl_->meshVersion = nextVersion();
   if (mesh.objects == 0) return;
   impl_->poseVersion = nextVersion();
   for (size_t i = 0; i < impl_->objects.size(); ++i) {

@@ -243,3 +243,27 @@ TEST_CASE("a box of centre and half extent contains both of its ends despite rou
     if (!boxHolds(node, lo) || !boxHolds(node, hi)) FAIL("box " << i);
   }
 }
+
+TEST_CASE("moved vertices keep their tree while it serves, and a tree that has become bad is built anew") {
+  tools::Random random(12);
+  for (const bool scrambles : {false, true}) {
+    CAPTURE(scrambles);
+    tools::MeshData data = tools::makeTorus(3, 1, 40, 30);
+    Scene scene;
+    const MeshId id = scene.addMesh(data.positions, data.indices);
+    const Mesh& mesh = scene.impl().meshes[id];
+    const std::vector<uint32_t> order = mesh.tree.order;
+    // Bent a little and far away at another size, or with every vertex in the place of another.
+    if (scrambles) {
+      for (size_t i = data.positions.size() / 3; i > 1; --i) {
+        const size_t other = random.below(static_cast<uint32_t>(i));
+        for (size_t k = 0; k < 3; ++k) std::swap(data.positions[3 * (i - 1) + k], data.positions[3 * other + k]);
+      }
+    } else {
+      for (float& c : data.positions) c = 1000 + 300 * (c + 0.05f * static_cast<float>(std::sin(c)));
+    }
+    scene.setPositions(id, data.positions);
+    checkTree(mesh);
+    CHECK((mesh.tree.order == order) == !scrambles);
+  }
+}

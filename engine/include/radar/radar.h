@@ -114,8 +114,9 @@ class RADAR_API Scene {
   /// the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
-  /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Throws if the mesh does not exist, was declared
-  /// with `bounds`, has another number of vertices, or a number is not finite.
+  /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Its tree is fitted to them, and built anew
+  /// only if that would make it much worse. Throws if the mesh does not exist, was declared with `bounds`, has another
+  /// number of vertices, or a number is not finite.
   void setPositions(MeshId mesh, std::span<const float> positions);
   /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);

@@ -2,6 +2,7 @@
 // I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,6 +13,15 @@ namespace radar {
 struct FloatBox {
   std::array<float, 3> lo, hi;
 };
+
+inline FloatBox around(const FloatBox& p, const FloatBox& q) {
+  FloatBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(p.lo[k], q.lo[k]);
+    box.hi[k] = std::max(p.hi[k], q.hi[k]);
+  }
+  return box;
+}
 
 struct BoxTree {
   /// A leaf holds the items order[first] to order[first + count - 1]; for an inner node, the leaves below hold them.

@@ -85,15 +85,6 @@ class Builder {
     return boxes;
   }
 
-  static FloatBox around(const FloatBox& p, const FloatBox& q) {
-    FloatBox box;
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(p.lo[k], q.lo[k]);
-      box.hi[k] = std::max(p.hi[k], q.hi[k]);
-    }
-    return box;
-  }
-
   // Writes the nodes and their ranges, but not the least triangle below inner nodes.
   void fillAll(MeshTree& tree, const std::vector<BoxTree::Node>& from) const {
     parallelFor(from.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {

@@ -1,6 +1,8 @@
 #include "scene/object_tree.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "math/rounding.h"
 #include "scene/box_tree.h"
@@ -49,18 +51,38 @@ FloatBox boxAround(const gpu::ObjectNode& node) {
   return box;
 }
 
+// A NaN is out of range, too.
+bool isInRange(const Box& box) {
+  bool isInside = true;
+  for (int k = 0; k < 3; ++k) isInside = isInside && box.lo[k] >= -kMostCoordinate && box.hi[k] <= kMostCoordinate;
+  return isInside;
+}
+
 }  // namespace
 
-void ObjectTree::update(const Scene::Impl& scene) {
+void ObjectTree::update(const Scene::Impl& scene, const ObjectChanges& changes) {
   if (seenPose_ == scene.poseVersion) return;
+  bool isDone = !nodes_.empty() && !changes.areMany;
+  if (isDone) {
+    boxes_.resize(scene.objects.size());
+    leaves_.resize(scene.objects.size(), kNone);
+    for (const ObjectId object : changes.objects) apply(scene, object);
+    isDone = inRange_ && !isWorn();
+  }
+  if (!isDone) updateAll(scene);
+  seenStructure_ = scene.structureVersion;
+  seenPose_ = version_ = scene.poseVersion;
+}
+
+bool ObjectTree::isWorn() const {
+  return nodes_.empty() || 4 * edits_ > nodes_.size() || !(cost_ <= kRebuildAt * builtCost_);
+}
+
+void ObjectTree::updateAll(const Scene::Impl& scene) {
   boxes_.resize(scene.objects.size());
   parallelFor(boxes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
-      if (!scene.objects[i].used || scene.changedAt[i] <= seenPose_) continue;
-      const Object& object = scene.objects[i].object;
-      boxes_[i] = radar::boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
-      sweep(boxes_[i], object.motion);
-      if (const Box* bounds = scene.boundsOf(static_cast<ObjectId>(i))) boxes_[i].merge(*bounds);
+      if (scene.objects[i].used && scene.changedAt[i] > seenPose_) setBox(scene, static_cast<ObjectId>(i));
     }
   });
   world_ = {};
@@ -68,16 +90,113 @@ void ObjectTree::update(const Scene::Impl& scene) {
   for (size_t i = 0; i < boxes_.size(); ++i) {
     if (!scene.objects[i].used) continue;
     world_.merge(boxes_[i]);
-    // A NaN makes the tree out of range, too.
-    for (int k = 0; k < 3; ++k) {
-      inRange_ = inRange_ && boxes_[i].lo[k] >= -kMostCoordinate && boxes_[i].hi[k] <= kMostCoordinate;
-    }
+    inRange_ = inRange_ && isInRange(boxes_[i]);
   }
-  const bool sameObjects = seenStructure_ == scene.structureVersion;
+  const bool sameObjects = seenStructure_ == scene.structureVersion && edits_ == 0;
   if (sameObjects) refit();
-  if (!sameObjects || nodes_.empty() || !(cost() <= kRebuildAt * builtCost_)) build(scene);
-  seenStructure_ = scene.structureVersion;
-  seenPose_ = version_ = scene.poseVersion;
+  if (!sameObjects || isWorn()) build(scene);
+}
+
+void ObjectTree::setBox(const Scene::Impl& scene, ObjectId id) {
+  const Object& object = scene.objects[id].object;
+  boxes_[id] = radar::boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
+  sweep(boxes_[id], object.motion);
+  if (const Box* bounds = scene.boundsOf(id)) boxes_[id].merge(*bounds);
+}
+
+void ObjectTree::apply(const Scene::Impl& scene, ObjectId object) {
+  if (!scene.objects[object].used) {
+    if (leaves_[object] != kNone) remove(object);
+    return;
+  }
+  setBox(scene, object);
+  inRange_ = inRange_ && isInRange(boxes_[object]);
+  if (!inRange_) return;
+  world_.merge(boxes_[object]);
+  if (leaves_[object] == kNone) {
+    insert(object);
+  } else {
+    fit(leaves_[object], boxes_[object]);
+    fitUpwards(parents_[leaves_[object]]);
+  }
+}
+
+void ObjectTree::insert(ObjectId object) {
+  if (nodes_.empty()) return;  // all others were removed before: it is built anew
+  const FloatBox box = floatBox(boxes_[object], anchor_);
+  const auto grown = [&](uint32_t node) {
+    gpu::ObjectNode both{};
+    const FloatBox sum = around(boxAround(nodes_[node]), box);
+    fitBox(sum.lo, sum.hi, both.centre, both.halfExtent);
+    return halfArea(both) - halfArea(nodes_[node]);
+  };
+  uint32_t at = 0, level = 1;
+  for (; (nodes_[at].link & gpu::kLinkLeaf) == 0; ++level) {
+    const uint32_t left = nodes_[at].link;
+    at = grown(left) <= grown(left + 1) ? left : left + 1;
+  }
+  // The leaf makes room for itself and the new one.
+  const auto first = static_cast<uint32_t>(nodes_.size());
+  nodes_.push_back(nodes_[at]);
+  cost_ += halfArea(nodes_[at]);
+  nodes_.push_back({.link = gpu::kLinkLeaf | object});
+  parents_.resize(nodes_.size(), at);
+  fit(first + 1, boxes_[object]);
+  nodes_[at].link = first;
+  adopt(first);
+  adopt(first + 1);
+  fitUpwards(at);
+  depth_ = std::max(depth_, level + 1);
+  ++edits_;
+}
+
+void ObjectTree::remove(ObjectId object) {
+  const uint32_t leaf = std::exchange(leaves_[object], kNone);
+  const uint32_t parent = parents_[leaf];
+  if (parent == kNone) {
+    nodes_.clear();
+    return;
+  }
+  // The sibling takes the parent's place.
+  const uint32_t left = nodes_[parent].link, sibling = left + (leaf == left ? 1 : 0);
+  cost_ -= halfArea(nodes_[leaf]) + halfArea(nodes_[parent]);
+  nodes_[parent] = nodes_[sibling];
+  adopt(parent);
+  fitUpwards(parents_[parent]);
+  ++edits_;
+}
+
+// Fits a leaf.
+void ObjectTree::fit(uint32_t node, const Box& box) {
+  const FloatBox rounded = floatBox(box, anchor_);
+  cost_ -= halfArea(nodes_[node]);
+  fitBox(rounded.lo, rounded.hi, nodes_[node].centre, nodes_[node].halfExtent);
+  cost_ += halfArea(nodes_[node]);
+}
+
+// Fits an inner node, and those above as far as that changes them.
+void ObjectTree::fitUpwards(uint32_t node) {
+  for (; node != kNone; node = parents_[node]) {
+    const uint32_t left = nodes_[node].link;
+    const FloatBox box = around(boxAround(nodes_[left]), boxAround(nodes_[left + 1]));
+    const gpu::ObjectNode before = nodes_[node];
+    fitBox(box.lo, box.hi, nodes_[node].centre, nodes_[node].halfExtent);
+    if (std::ranges::equal(before.centre, nodes_[node].centre) &&
+        std::ranges::equal(before.halfExtent, nodes_[node].halfExtent)) {
+      return;
+    }
+    cost_ += halfArea(nodes_[node]) - halfArea(before);
+  }
+}
+
+// Tells the object or the children of a node where it is.
+void ObjectTree::adopt(uint32_t node) {
+  const uint32_t link = nodes_[node].link;
+  if ((link & gpu::kLinkLeaf) != 0) {
+    leaves_[link & gpu::kLinkItem] = node;
+  } else {
+    parents_[link] = parents_[link + 1] = node;
+  }
 }
 
 void ObjectTree::build(const Scene::Impl& scene) {
@@ -86,8 +205,10 @@ void ObjectTree::build(const Scene::Impl& scene) {
     if (scene.objects[i].used) ids.push_back(i);
   }
   nodes_.clear();
+  leaves_.assign(scene.objects.size(), kNone);
   depth_ = 0;
-  builtCost_ = 0;
+  builtCost_ = cost_ = 0;
+  edits_ = 0;
   if (ids.empty() || !inRange_) return;
   for (int k = 0; k < 3; ++k) anchor_[k] = world_.middle(k);
   std::vector<FloatBox> boxes(ids.size());
@@ -99,8 +220,10 @@ void ObjectTree::build(const Scene::Impl& scene) {
     fitBox(from.box.lo, from.box.hi, nodes_[i].centre, nodes_[i].halfExtent);
     nodes_[i].link = from.child != 0 ? from.child : gpu::kLinkLeaf | ids[tree.order[from.first]];
   }
+  parents_.assign(nodes_.size(), kNone);
+  for (uint32_t i = 0; i < nodes_.size(); ++i) adopt(i);
   depth_ = tree.depth;
-  builtCost_ = cost();
+  builtCost_ = cost_ = cost();
 }
 
 void ObjectTree::refit() {
@@ -111,15 +234,11 @@ void ObjectTree::refit() {
     if ((node.link & gpu::kLinkLeaf) != 0) {
       box = floatBox(boxes_[node.link & gpu::kLinkItem], anchor_);
     } else {
-      box = boxAround(nodes_[node.link]);
-      const FloatBox other = boxAround(nodes_[node.link + 1]);
-      for (int k = 0; k < 3; ++k) {
-        box.lo[k] = std::min(box.lo[k], other.lo[k]);
-        box.hi[k] = std::max(box.hi[k], other.hi[k]);
-      }
+      box = around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1]));
     }
     fitBox(box.lo, box.hi, node.centre, node.halfExtent);
   }
+  cost_ = cost();
 }
 
 double ObjectTree::cost() const {

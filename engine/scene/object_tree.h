@@ -11,23 +11,31 @@
 
 namespace radar {
 
-/// Follows a scene: rebuilt if objects are added or removed, refitted if they move, rebuilt if refitting has degraded
-/// it.
+/// Objects that were added, moved or removed.
+struct ObjectChanges {
+  std::vector<ObjectId> objects;  ///< some perhaps several times
+  bool areMany = false;           ///< any object may have changed; `objects` is not used
+};
+
+/// Follows a scene. A few changed objects are inserted, removed or refitted one by one, along their paths to the root;
+/// if many have changed, the tree is refitted or, if objects were added or removed, built anew. It is also built anew
+/// once changes have degraded it.
 class ObjectTree {
  public:
-  /// Brings the tree up to date.
-  void update(const Scene::Impl& scene);
+  /// Brings the tree up to date. `changes`: the objects added, moved or removed since the last update.
+  void update(const Scene::Impl& scene, const ObjectChanges& changes);
 
   /// Float boxes, in world coordinates minus anchor(), that contain the objects' world boxes. A leaf's link is
-  /// kLinkLeaf plus its object's id. Empty without objects.
+  /// kLinkLeaf plus its object's id. Empty without objects. The root is first; nodes may be left over from removed
+  /// objects.
   const std::vector<gpu::ObjectNode>& nodes() const { return nodes_; }
   /// A point amid the objects when the tree was built; keeps a scene far from its origin precise.
   const Vector& anchor() const { return anchor_; }
-  /// The box of all objects; empty without objects.
+  /// A box that contains all objects; empty if there have been none.
   const Box& worldBox() const { return world_; }
   /// An object's world box, its motion and its bounds from setBounds included.
   const Box& boxOf(ObjectId object) const { return boxes_[object]; }
-  /// Nodes on the longest path from the root to a leaf.
+  /// At least the number of nodes on the longest path from the root to a leaf.
   uint32_t depth() const { return depth_; }
   /// Whether floats can hold the tree (kMostCoordinate).
   bool inRange() const { return inRange_; }
@@ -35,17 +43,30 @@ class ObjectTree {
   uint64_t version() const { return version_; }
 
  private:
+  void updateAll(const Scene::Impl& scene);
   void build(const Scene::Impl& scene);
   void refit();
   double cost() const;
 
+  bool isWorn() const;
+  void apply(const Scene::Impl& scene, ObjectId object);
+  void setBox(const Scene::Impl& scene, ObjectId object);
+  void insert(ObjectId object);
+  void remove(ObjectId object);
+  void fit(uint32_t node, const Box& box);
+  void fitUpwards(uint32_t node);
+  void adopt(uint32_t node);
+
   std::vector<gpu::ObjectNode> nodes_;
-  std::vector<Box> boxes_;  // by object id
+  std::vector<uint32_t> parents_;  // by node; kNone: the root
+  std::vector<uint32_t> leaves_;   // by object id; kNone: not in the tree
+  std::vector<Box> boxes_;         // by object id
   Vector anchor_{};
   Box world_;
   uint32_t depth_ = 0;
   bool inRange_ = true;
-  double builtCost_ = 0;
+  double builtCost_ = 0, cost_ = 0;
+  size_t edits_ = 0;  // insertions and removals since the tree was built
   uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0;
 };
 

@@ -17,6 +17,9 @@ constexpr double kMostBound = 0x1p120;
 // Least exponent of a mesh's unit: a float must hold its inverse.
 constexpr int kLeastUnit = -126;
 
+// If more objects change than this and a sixteenth of all, looking at every object is cheaper than at each change.
+constexpr size_t kFewChanges = 16;
+
 std::string idText(const char* kind, uint32_t id) {
   return std::string(kind) + " " + std::to_string(id);
 }
@@ -187,8 +190,16 @@ Scene::Impl::Impl() : identity(nextVersion()) {}
 
 const ObjectTree& Scene::Impl::objectTree() const {
   const std::scoped_lock lock(treeMutex_);
-  tree_.update(*this);
+  tree_.update(*this, treeChanges_);
+  treeChanges_.objects.clear();
+  treeChanges_.areMany = false;
   return tree_;
+}
+
+void Scene::Impl::change(ObjectId object) {
+  poseVersion = changedAt[object] = nextVersion();
+  treeChanges_.areMany = treeChanges_.areMany || treeChanges_.objects.size() > kFewChanges + objects.size() / 16;
+  if (!treeChanges_.areMany) treeChanges_.objects.push_back(object);
 }
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -251,9 +262,8 @@ void Scene::setPositions(MeshId id, std::span<const float> positions) {
   mesh.tree = refitMeshTree(mesh, std::move(mesh.tree));
   mesh.version = impl_->meshVersion = nextVersion();
   if (mesh.objects == 0) return;
-  impl_->poseVersion = nextVersion();
-  for (size_t i = 0; i < impl_->objects.size(); ++i) {
-    if (impl_->objects[i].used && impl_->objects[i].object.mesh == id) impl_->changedAt[i] = impl_->poseVersion;
+  for (ObjectId i = 0; i < impl_->objects.size(); ++i) {
+    if (impl_->objects[i].used && impl_->objects[i].object.mesh == id) impl_->change(i);
   }
 }
 
@@ -277,7 +287,8 @@ ObjectId Scene::addObject(const Object& object) {
   ++impl_->meshes[object.mesh].objects;
   impl_->moving += isMoving(object);
   impl_->changedAt.resize(impl_->objects.size());
-  impl_->structureVersion = impl_->poseVersion = impl_->changedAt[id] = nextVersion();
+  impl_->change(id);
+  impl_->structureVersion = impl_->poseVersion;
   return id;
 }
 
@@ -285,7 +296,7 @@ void Scene::setTransform(ObjectId object, const Transform& worldFromMesh) {
   if (!hasObject(object)) throw Error("setTransform: " + idText("object", object) + " does not exist");
   if (std::string wrong = validate(worldFromMesh); !wrong.empty()) throw Error("setTransform: " + wrong);
   impl_->objects[object].object.worldFromMesh = worldFromMesh;
-  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+  impl_->change(object);
 }
 
 void Scene::setMotion(ObjectId object, const std::array<double, 3>& motion) {
@@ -296,7 +307,7 @@ void Scene::setMotion(ObjectId object, const std::array<double, 3>& motion) {
   impl_->moving -= isMoving(moved);
   moved.motion = motion;
   impl_->moving += isMoving(moved);
-  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+  impl_->change(object);
 }
 
 void Scene::setBounds(ObjectId object, const Bounds& world) {
@@ -309,7 +320,7 @@ void Scene::setBounds(ObjectId object, const Bounds& world) {
     box.hi[k] += kBoundsRoom * largest;
   }
   impl_->bounds[object] = box;
-  impl_->poseVersion = impl_->changedAt[object] = nextVersion();
+  impl_->change(object);
 }
 
 void Scene::removeObject(ObjectId object) {
@@ -319,7 +330,8 @@ void Scene::removeObject(ObjectId object) {
   --impl_->meshes[impl_->objects[object].object.mesh].objects;
   impl_->objects[object] = {};
   impl_->freeObjects.push(object);
-  impl_->structureVersion = impl_->poseVersion = nextVersion();
+  impl_->change(object);
+  impl_->structureVersion = impl_->poseVersion;
 }
 
 bool Scene::hasMesh(MeshId mesh) const {

@@ -65,6 +65,8 @@ struct Scene::Impl {
   uint64_t poseVersion = 0;       ///< any object changed
   /// For each object, the poseVersion at which it last changed.
   std::vector<uint64_t> changedAt;
+  /// Records that an object was added, moved or removed.
+  void change(ObjectId object);
   size_t moving = 0;               ///< number of objects that move during a step
   std::map<ObjectId, Box> bounds;  ///< where a host may move objects, with a margin, world coordinates
 
@@ -81,6 +83,7 @@ struct Scene::Impl {
  private:
   mutable std::mutex treeMutex_;
   mutable ObjectTree tree_;
+  mutable ObjectChanges treeChanges_;  // since the tree's last update
 };
 
 /// The corners of a triangle of the placed mesh.

@@ -1,9 +1,7 @@
 // A real assembly, whose parts touch and cross where they are joined: every part moved out along 26 directions.
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
 #include <catch2/catch.hpp>
 
+#include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
@@ -11,31 +9,6 @@
 using namespace radar;
 
 namespace {
-
-/// One object per node that has triangles, in its place.
-void addNodes(const aiScene& file, const aiNode& node, const aiMatrix4x4& parent, Scene& scene) {
-  const aiMatrix4x4 world = parent * node.mTransformation;
-  std::vector<float> positions;
-  std::vector<uint32_t> indices;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& mesh = *file.mMeshes[node.mMeshes[m]];
-    const auto first = static_cast<uint32_t>(positions.size() / 3);
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      const aiVector3D& p = mesh.mVertices[v];
-      positions.insert(positions.end(), {p.x, p.y, p.z});
-    }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      REQUIRE(mesh.mFaces[f].mNumIndices == 3);
-      for (unsigned i = 0; i < 3; ++i) indices.push_back(first + mesh.mFaces[f].mIndices[i]);
-    }
-  }
-  if (!indices.empty()) {
-    const Transform pose{{world.a1, world.a2, world.a3, world.a4, world.b1, world.b2, world.b3, world.b4, world.c1,
-                          world.c2, world.c3, world.c4}};
-    scene.addObject({scene.addMesh(positions, indices), pose});
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) addNodes(file, *node.mChildren[i], world, scene);
-}
 
 /// Each object, as it stands, moves out of the others along 26 directions.
 std::vector<Query> disassembly(const Scene& scene) {
@@ -57,11 +30,12 @@ std::vector<Query> disassembly(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, and each object's contact is its own") {
-  Assimp::Importer importer;
-  const aiScene* file = importer.ReadFile(RADAR_ENGINE, 0);
-  REQUIRE(file != nullptr);
+  std::vector<std::string> warnings;
+  const tools::Assembly assembly = tools::readAssembly(RADAR_ENGINE, warnings);
+  REQUIRE(warnings.empty());
   Scene scene;
-  addNodes(*file, *file->mRootNode, aiMatrix4x4(), scene);
+  for (const tools::MeshData& mesh : assembly.meshes) scene.addMesh(mesh.positions, mesh.indices);
+  for (const tools::Assembly::Part& part : assembly.parts) scene.addObject({part.mesh, part.fileFromMesh});
   REQUIRE(scene.objectLimit() == 67);
 
   std::vector<Query> queries = disassembly(scene);

@@ -68,6 +68,25 @@ TEST_CASE("query answers in the order of the file and respects base scenes, mask
   CHECK(answers[0]["fraction"] == 5.0 / 8);
 }
 
+TEST_CASE("answers about an assembly name the objects") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  folder.write("b.obj", "v 0 0 2\nv 4 0 2\nv 0 4 2\nv 0 0 3\nv 4 0 3\nv 0 4 3\no floor\nf 1 2 3\no roof\nf 4 5 6\n");
+  folder.write("assembly.json", R"({"format": "cyber-radar-queries-1", "meshes": ["b.obj#floor"],
+    "scenes": [{"id": "a", "assembly": "b.obj"}],
+    "queries": [{"id": "up", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,1], "D": 8, "hits": "all"},
+                {"id": "down", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,-1], "D": 8}]})");
+  const Run run = runProgram(folder, "query assembly.json --mode reference");
+  REQUIRE(run.status == 0);
+  const auto answers = linesOf(run.out);
+  REQUIRE(answers.size() == 2);
+  CHECK((answers[0]["t"] == 1 && answers[0]["object"] == 1 && answers[0]["object_name"] == "roof"));
+  CHECK(answers[0]["hits"][0]["object_name"] == "roof");
+  CHECK(answers[1]["object_name"].is_null());
+  const Run words = runProgram(folder, "sweep b.obj#roof b.obj#floor --direction 0 0 1 --distance 9");
+  CHECK_THAT(words.out, Contains("hit: first contact after 1 of 9") && Contains("b.obj#roof"));
+}
+
 TEST_CASE("query writes answers and statistics to files") {
   const ScratchFolder folder;
   writeTriangles(folder);

@@ -88,6 +88,19 @@ TEST_CASE("hits and overlapping objects appear only where the query asks for the
   CHECK_FALSE((plain.contains("hits") || plain.contains("overlapping")));
 }
 
+TEST_CASE("objects are named where the scene has names") {
+  QuerySpec query = queryWithId("a");
+  query.hits = 2;
+  const std::vector<std::string> names{"", "", "", "", "", "", "", "the \"lid\""};
+  Result other = hit();
+  other.object = 3;
+  const auto line = nlohmann::json::parse(answerLine(query, {.result = hit(), .hits = {hit(), other}}, names));
+  CHECK(line["object_name"] == "the \"lid\"");
+  CHECK(line["hits"][0]["object_name"] == "the \"lid\"");
+  CHECK(line["hits"][1]["object_name"].is_null());
+  CHECK(nlohmann::json::parse(answerLine(query, {}, names))["object_name"].is_null());
+}
+
 TEST_CASE("an id of any characters reads back unchanged") {
   const std::string id = "\"quoted\"\n\\ \x01 \xc3\xa4";
   CHECK(nlohmann::json::parse(answerLine(queryWithId(id), {.result = hit(), .mode = AnswerMode::sampled}))["id"] == id);

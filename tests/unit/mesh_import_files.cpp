@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "import/mesh_import.h"
 #include "support/scratch_folder.h"
@@ -44,6 +45,23 @@ std::string refusal(const std::string& file) {
   return {};
 }
 
+/// A glTF file of two meshes, of one triangle and of two. `nodes` are the nodes of a list; those that no other has as a
+/// child are 0 and the last one.
+std::string writeNodes(const ScratchFolder& folder, const std::string& nodes) {
+  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  folder.write("a.bin", std::string(reinterpret_cast<const char*>(positions), sizeof positions));
+  const auto count = nlohmann::json::parse("[" + nodes + "]").size();
+  const std::string roots = count == 1 ? "0" : "0, " + std::to_string(count - 1);
+  return folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [)" + roots +
+                                    R"(]}], "nodes": [)" + nodes + R"(],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]},
+               {"primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"uri": "a.bin", "byteLength": 36}]})");
+}
+
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 }  // namespace
@@ -74,20 +92,54 @@ TEST_CASE("lines are dropped with a warning that counts them") {
 
 TEST_CASE("nodes are visited depth-first, their transforms are multiplied, and each use of a mesh is a copy") {
   const ScratchFolder folder;
-  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  folder.write("a.bin", std::string(reinterpret_cast<const char*>(positions), sizeof positions));
-  const std::string file = folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
-    "scenes": [{"nodes": [0, 3]}],
-    "nodes": [{"mesh": 0, "translation": [10, 0, 0], "children": [1, 2]}, {"mesh": 0, "scale": [2, 3, 4]},
-              {"mesh": 0, "translation": [0, 0, 7]}, {"mesh": 0}],
-    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
-    "bufferViews": [{"buffer": 0, "byteLength": 36}],
-    "buffers": [{"uri": "a.bin", "byteLength": 36}]})");
+  const std::string file = writeNodes(folder, R"({"mesh": 0, "translation": [10, 0, 0], "children": [1, 2]},
+    {"mesh": 0, "scale": [2, 3, 4]}, {"mesh": 0, "translation": [0, 0, 7]}, {"mesh": 0})");
   CHECK(corners(read(file)) == std::vector<float>{10, 0, 0, 11, 0, 0, 10, 1, 0,  //
                                                   10, 0, 0, 12, 0, 0, 10, 3, 0,  //
                                                   10, 0, 7, 11, 0, 7, 10, 1, 7,  //
                                                   0,  0, 0, 1,  0, 0, 0,  1, 0});
+}
+
+TEST_CASE("an assembly has a part per node with triangles, named and placed by it, and nodes share a mesh") {
+  const ScratchFolder folder;
+  const std::string file = writeNodes(folder, R"({"name": "frame", "translation": [10, 0, 0], "children": [1, 2]},
+    {"name": "lid", "mesh": 0, "scale": [2, 3, 4]}, {"name": "lid", "mesh": 0, "translation": [0, 0, 7]},
+    {"name": "3", "mesh": 1})");
+  std::vector<std::string> warnings;
+  const Assembly assembly = readAssembly(file, warnings);
+  CHECK(warnings.empty());
+  REQUIRE(assembly.parts.size() == 3);
+  REQUIRE(assembly.meshes.size() == 2);
+  CHECK((assembly.parts[0].name == "lid" && assembly.parts[1].name == "lid" && assembly.parts[2].name == "3"));
+  CHECK((assembly.parts[0].mesh == 0 && assembly.parts[1].mesh == 0 && assembly.parts[2].mesh == 1));
+  CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{2, 0, 0, 10, 0, 3, 0, 0, 0, 0, 4, 0});
+  CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 7});
+  CHECK(corners(assembly.meshes[0]) == std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+
+  CHECK(corners(read(file + "#1")) == corners(assembly.meshes[0]));
+  CHECK(read(file + "#2").triangleCount() == 2);
+  CHECK_THAT(refusal(file + "#3"), Contains("expected one of the 3 nodes, from 0"));
+  CHECK_THAT(refusal(file + "#"), Contains("#: expected one of the 3 nodes"));
+  CHECK_THAT(refusal(file + "#99999999999"), Contains("one of the 3 nodes"));
+  CHECK_THAT(refusal(file + "#lid"), Contains("that 2 have"));
+  CHECK_THAT(refusal(file + "#frame"), Contains("that none has"));
+}
+
+TEST_CASE("a node may be named by what it alone is called, and a # in the name of a file is part of it") {
+  const ScratchFolder folder;
+  const std::string file = writeNodes(folder, R"({"name": "a#b", "mesh": 1}, {"name": "in/out", "mesh": 0})");
+  CHECK(read(file + "#a#b").triangleCount() == 2);
+  CHECK(read(file + "#in/out").triangleCount() == 1);
+  const std::string odd = folder.write("odd#0.obj", std::string(kSquare) + "f 1 2 3 4\n");
+  CHECK(read(odd).triangleCount() == 2);
+  CHECK(read(odd + "#0").triangleCount() == 2);
+}
+
+TEST_CASE("an assembly with a node that flattens its mesh is refused") {
+  const ScratchFolder folder;
+  const std::string file = writeNodes(folder, R"({"name": "flat", "mesh": 0, "scale": [1, 0, 1]})");
+  std::vector<std::string> warnings;
+  CHECK_THROWS_WITH(readAssembly(file, warnings), Contains("node \"flat\": expected an invertible matrix"));
 }
 
 TEST_CASE("the message about a broken mesh file names the file, the place and what was expected") {

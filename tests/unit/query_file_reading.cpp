@@ -183,6 +183,38 @@ TEST_CASE("the message about a missing key names it") {
   }
 }
 
+TEST_CASE("a scene may be an assembly, alone or upon a base, and a mesh may be one of its nodes") {
+  Files files;
+  files.folder.write("b.obj", std::string(kMesh) + "o lid\nf 1 3 2\no box\nf 3 2 1\nf 1 2 3\n");
+  nlohmann::json file = goodFile();
+  file["meshes"] = {"a.obj", "b.obj#lid"};
+  file["scenes"][1] = {{"id", "b"}, {"base", 0}, {"assembly", "b.obj"}, {"masks", {{4, 6}}}};
+  file["scenes"].push_back({{"id", "c"}, {"assembly", "b.obj"}});
+  file["queries"][0].update({{"scene", 2}, {"sensor", {1}}, {"exclude", {1}}});
+  const Workload workload = files.read(file.dump());
+  REQUIRE(workload.meshes.size() == 5);
+  CHECK(workload.meshes[1].name == "b.obj#lid");
+  CHECK(workload.meshes[1].indices == workload.meshes[3].indices);
+  REQUIRE(workload.objectCount(1) == 5);
+  REQUIRE(workload.objectCount(2) == 3);
+  CHECK(workload.instance(1, 4) == Instance{4, {}});
+  CHECK(workload.instance(2, 2) == Instance{4, {}});
+  CHECK(workload.objectNames(0).empty());
+  CHECK(workload.objectNames(1).size() == 5);
+  CHECK((workload.objectNames(1)[1].empty() && workload.objectNames(1)[3] == "lid"));
+  CHECK(workload.objectNames(2)[2] == "box");
+
+  file["scenes"][2]["instances"] = nlohmann::json::array();
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("scenes[2]: ") && Contains("only one of"));
+  file["scenes"][2] = {{"id", "c"}, {"assembly", "no.glb"}};
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("scenes[2].assembly: ") && Contains("no such file"));
+  file["scenes"][2] = {{"id", "c"}, {"assembly", "b.obj"}};
+  file["queries"][0]["sensor"] = {2};
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("queries[0].sensor[0]: ") && Contains("one of the 2 meshes"));
+  file["meshes"][1] = "b.obj#roof";
+  CHECK_THAT(files.refusal(file.dump()), StartsWith("meshes[1]: ") && Contains("b.obj#roof: expected the name"));
+}
+
 TEST_CASE("a base that has a base itself is refused") {
   Files files;
   nlohmann::json file = goodFile();

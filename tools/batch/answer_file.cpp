@@ -24,6 +24,12 @@ const char* wordFor(Detected detected) {
   return detected == Detected::no ? "false" : detected == Detected::yes ? "true" : "null";
 }
 
+void addObject(JsonObject& to, ObjectId object, std::span<const std::string> names) {
+  to.add("object", idText(object));
+  if (names.empty()) return;
+  to.add("object_name", object == kNone || names[object].empty() ? "null" : quoted(names[object]));
+}
+
 // Adds t, lo and hi: distances of the sensor. With a motion, they are fractions in the result; `hasFraction`: those are
 // added, too.
 void addTimes(JsonObject& object, const QuerySpec& query, const Result& result, bool hasFraction) {
@@ -41,9 +47,9 @@ void addTimes(JsonObject& object, const QuerySpec& query, const Result& result, 
   if (hasFraction && query.speed) object.addNumber("time", length * result.t / *query.speed);
 }
 
-std::string hitText(const QuerySpec& query, const Result& hit) {
+std::string hitText(const QuerySpec& query, const Result& hit, std::span<const std::string> objectNames) {
   JsonObject object;
-  object.add("object", idText(hit.object));
+  addObject(object, hit.object, objectNames);
   addTimes(object, query, hit, false);
   object.add("tri_a", idText(hit.triA));
   object.add("tri_b", idText(hit.triB));
@@ -71,7 +77,7 @@ const char* nameOf(Feature feature) {
   return kNames[static_cast<size_t>(feature)];
 }
 
-std::string answerLine(const QuerySpec& query, const Answer& answer) {
+std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames) {
   const Result& result = answer.result;
   JsonObject line;
   line.addString("id", query.id);
@@ -79,7 +85,7 @@ std::string answerLine(const QuerySpec& query, const Answer& answer) {
   if (result.status == Status::invalid) line.addString("reason", answer.reason);
   addTimes(line, query, result, true);
   line.add("detected", wordFor(result.detected));
-  line.add("object", idText(result.object));
+  addObject(line, result.object, objectNames);
   line.add("tri_a", idText(result.triA));
   line.add("tri_b", idText(result.triB));
   line.add("feature_a", featureText(result.featureA));
@@ -89,8 +95,8 @@ std::string answerLine(const QuerySpec& query, const Answer& answer) {
   line.addString("tier", nameOf(result.tier));
   if (answer.mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
   if (query.hits > 1) {
-    line.add("hits",
-             listOf(answer.hits, ", ", [&](std::string& text, const Result& hit) { text += hitText(query, hit); }));
+    line.add("hits", listOf(answer.hits, ", ",
+                            [&](std::string& text, const Result& hit) { text += hitText(query, hit, objectNames); }));
   }
   if (query.skipOverlapping) {
     line.add("overlapping",

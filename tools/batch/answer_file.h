@@ -1,6 +1,7 @@
 // Answer files: JSON Lines, one line per query.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct Answer {
 
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
 /// `paper_min_l` only in mode sampled, `time` only where the query gives a speed, `reason` only where the status is
-/// invalid, `hits` and `overlapping` only where the query asks for them.
-std::string answerLine(const QuerySpec& query, const Answer& answer);
+/// invalid, `hits` and `overlapping` only where the query asks for them, `object_name` only with `objectNames`, which
+/// are Workload::objectNames of the query's scene.
+std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames = {});
 
 const char* nameOf(Status status);
 const char* nameOf(Tier tier);

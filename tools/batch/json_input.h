@@ -144,7 +144,7 @@ class JsonValue {
   [[noreturn]] void refuse(const std::string& problem) const { throw InputError(file_, path(), problem); }
   /// Runs `use`; what it throws is refused at this place.
   template <class Use>
-  auto guard(const Use& use) const {
+  decltype(auto) guard(const Use& use) const {
     try {
       return use();
     } catch (const std::exception& error) {

@@ -18,7 +18,8 @@ Workload readQueryFile(const std::filesystem::path& file, std::vector<std::strin
 
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
 /// instances as an instance file; makes the folder. Reading it gives the same workload to the bit (a mesh's name is its
-/// file's then). Returns the query file. Throws std::runtime_error if something cannot be written.
+/// file's then, and names of objects are not kept). Returns the query file. Throws std::runtime_error if something
+/// cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
 
 /// Whether a query asks for what mode sampled does not offer; and what to use instead.

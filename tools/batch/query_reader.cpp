@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <span>
 #include <unordered_set>
 
@@ -74,6 +75,8 @@ class Reader {
  private:
   void readMesh(const JsonValue& value);
   void readScene(const JsonValue& scene);
+  void readInstances(const JsonValue& scene, SceneSpec& spec);
+  const Assembly& assembly(const std::filesystem::path& file);
   void readQuery(const JsonValue& query);
   Instance readInstance(const JsonValue& list) const;
   std::vector<Instance> readInstanceFile(const std::filesystem::path& file) const;
@@ -86,6 +89,9 @@ class Reader {
   std::string name_;
   std::vector<std::string>& warnings_;
   Workload workload_;
+  size_t listed_ = 0;  ///< of the meshes, those that the file lists; those of assemblies follow
+  std::map<std::filesystem::path, Assembly> assemblies_;
+  std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
 };
 
@@ -96,6 +102,7 @@ Workload Reader::read() {
   const JsonValue format = root.member("format");
   if (format.string() != "cyber-radar-queries-1") format.expected("\"cyber-radar-queries-1\"");
   root.member("meshes").forEach([&](const JsonValue& mesh) { readMesh(mesh); });
+  listed_ = workload_.meshes.size();
   root.member("scenes").forEach([&](const JsonValue& scene) { readScene(scene); });
   root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
   return std::move(workload_);
@@ -103,12 +110,23 @@ Workload Reader::read() {
 
 void Reader::readMesh(const JsonValue& value) {
   const std::string name = value.string();
-  workload_.meshes.push_back(value.guard([&] { return tools::readMesh(file_.parent_path() / name, warnings_); }));
+  const std::filesystem::path path = file_.parent_path() / name;
+  workload_.meshes.push_back(value.guard([&] {
+    const MeshName split = splitMeshName(path);
+    return split.node ? assembly(split.file).meshOf(split.file.string(), *split.node)
+                      : tools::readMesh(path, warnings_);
+  }));
   workload_.meshes.back().name = name;
 }
 
+const Assembly& Reader::assembly(const std::filesystem::path& file) {
+  auto found = assemblies_.find(file);
+  if (found == assemblies_.end()) found = assemblies_.emplace(file, readAssembly(file, warnings_)).first;
+  return found->second;
+}
+
 void Reader::readScene(const JsonValue& scene) {
-  requireKnownKeys(scene, {"id", "base", "instances", "instances_file", "masks", "motions", "deforms"});
+  requireKnownKeys(scene, {"id", "base", "instances", "instances_file", "assembly", "masks", "motions", "deforms"});
   SceneSpec spec;
   scene.ifHas("id", [&](const JsonValue& id) {
     spec.id = id.string();
@@ -118,21 +136,35 @@ void Reader::readScene(const JsonValue& scene) {
     spec.base = base.index(workload_.scenes.size(), "scenes before this one");
     if (workload_.scenes[*spec.base].base) base.expected("a scene that has no base itself");
   });
-  if (scene.has("instances") && scene.has("instances_file")) {
-    scene.refuse("expected either \"instances\" or \"instances_file\", got both");
-  }
-  if (scene.has("instances_file")) {
-    const JsonValue file = scene.member("instances_file");
-    const std::string name = file.string();
-    spec.instances = file.guard([&] { return readInstanceFile(file_.parent_path() / name); });
-  } else {
-    scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
-  }
+  readInstances(scene, spec);
   const size_t objects = (spec.base ? workload_.scenes[*spec.base].instances.size() : 0) + spec.instances.size();
   scene.ifHas("masks", [&](const JsonValue& masks) { spec.masks = readMasks(masks, objects); });
   scene.ifHas("motions", [&](const JsonValue& motions) { spec.motions = readMotions(motions, objects); });
   scene.ifHas("deforms", [&](const JsonValue& deforms) { spec.deforms = readDeforms(deforms); });
   workload_.scenes.push_back(std::move(spec));
+}
+
+void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
+  if (scene.has("instances") + scene.has("instances_file") + scene.has("assembly") > 1) {
+    scene.refuse("expected only one of \"instances\", \"instances_file\" and \"assembly\", got several");
+  }
+  if (scene.has("instances_file")) {
+    const JsonValue file = scene.member("instances_file");
+    const std::string name = file.string();
+    spec.instances = file.guard([&] { return readInstanceFile(file_.parent_path() / name); });
+  } else if (scene.has("assembly")) {
+    const JsonValue file = scene.member("assembly");
+    const std::string name = file.string();
+    const Assembly& parts = file.guard([&]() -> const Assembly& { return assembly(file_.parent_path() / name); });
+    const auto [first, isNew] = firstMesh_.emplace(&parts, static_cast<uint32_t>(workload_.meshes.size()));
+    if (isNew) workload_.meshes.insert(workload_.meshes.end(), parts.meshes.begin(), parts.meshes.end());
+    for (const Assembly::Part& part : parts.parts) {
+      spec.instances.push_back({first->second + part.mesh, part.fileFromMesh});
+      spec.names.push_back(part.name);
+    }
+  } else {
+    scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
+  }
 }
 
 std::vector<ObjectMask> Reader::readMasks(const JsonValue& list, size_t objects) const {
@@ -162,7 +194,7 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& pair) {
     if (pair.size() != 2) pair.expected("[mesh, \"file of positions\"]");
-    const uint32_t mesh = pair[0].index(workload_.meshes.size(), "meshes");
+    const uint32_t mesh = pair[0].index(listed_, "meshes");
     if (!named.insert(mesh).second) pair[0].expected("each mesh once");
     const std::filesystem::path file = file_.parent_path() / pair[1].string();
     deforms.push_back({mesh, pair[1].guard([&] { return readPositions(file, workload_.meshes[mesh]); })});
@@ -193,7 +225,7 @@ Instance Reader::readInstance(const JsonValue& list) const {
   const size_t count = list.size();
   if (count != 1 && count != 13) list.expected("a mesh index, alone or followed by 12 numbers");
   Instance instance;
-  instance.mesh = list[0].index(workload_.meshes.size(), "meshes");
+  instance.mesh = list[0].index(listed_, "meshes");
   for (size_t i = 1; i < count; ++i) instance.worldFromMesh.m[i - 1] = list[i].number();
   if (std::string wrong = validate(instance.worldFromMesh); !wrong.empty()) list.refuse(wrong);
   return instance;
@@ -219,7 +251,7 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
     if (count != 1 && count != 13) {
       expected("a mesh index, alone or followed by 12 numbers, separated by blanks");
     }
-    const size_t meshes = workload_.meshes.size();
+    const size_t meshes = listed_;
     if (!(numbers[0] >= 0 && numbers[0] < double(meshes) && std::floor(numbers[0]) == numbers[0])) {
       expected("first a whole number that names one of the " + std::to_string(meshes) + " meshes, from 0");
     }

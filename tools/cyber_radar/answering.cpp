@@ -124,9 +124,12 @@ PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
 }
 
 std::string answerLines(const Workload& workload, const std::vector<Answer>& answers) {
+  std::vector<std::vector<std::string>> names;
+  for (uint32_t scene = 0; scene < workload.scenes.size(); ++scene) names.push_back(workload.objectNames(scene));
   std::string lines;
   for (size_t i = 0; i < answers.size(); ++i) {
-    lines += answerLine(workload.queries[i], answers[i]) + "\n";
+    const QuerySpec& query = workload.queries[i];
+    lines += answerLine(query, answers[i], names[query.scene]) + "\n";
   }
   return lines;
 }

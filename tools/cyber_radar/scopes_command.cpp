@@ -62,7 +62,8 @@ const QuerySpec& findQuery(const Workload& workload, const Options& options) {
   return *found;
 }
 
-void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const Scopes& scopes) {
+void writeRaw(const std::filesystem::path& folder, const Workload& workload, const QuerySpec& query,
+              const Scopes& scopes) {
   static_assert(std::endian::native == std::endian::little);
   for (const auto& [name, values] :
        {std::pair{"R.f32", &scopes.R}, std::pair{"M.f32", &scopes.M}, std::pair{"L.f32", &scopes.L}}) {
@@ -78,8 +79,8 @@ void writeRaw(const std::filesystem::path& folder, const QuerySpec& query, const
   sidecar["right"] = scopes.right;
   sidecar["up"] = scopes.up;
   sidecar["forward"] = scopes.forward;
-  sidecar["answer"] =
-      nlohmann::ordered_json::parse(answerLine(query, {.result = scopes.result, .mode = AnswerMode::sampled}));
+  sidecar["answer"] = nlohmann::ordered_json::parse(
+      answerLine(query, {.result = scopes.result, .mode = AnswerMode::sampled}, workload.objectNames(query.scene)));
   writeAtomically(folder / "scopes.json", sidecar.dump(2) + "\n");
 }
 
@@ -108,7 +109,7 @@ void drawScopes(Options& options) {
   writeScopePicture(folder / "M.png", title, scopes, "M");
   writeScopePicture(folder / "L.png", title, scopes, "L");
   writeScopePicture(folder / "scopes.png", title, scopes);
-  if (options.raw) writeRaw(folder, query, scopes);
+  if (options.raw) writeRaw(folder, workload, query, scopes);
   std::cout << title << "\n"
             << inWords(workload, query, {scopes.result, AnswerMode::sampled, {}})
             << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png"

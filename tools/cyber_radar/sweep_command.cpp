@@ -14,8 +14,9 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --json | python3 -m json.tool
 
-SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit. The scene stands as it is;
-the sensor is turned (--rotate), put in its place (--at) and moved along --direction for --distance.)";
+SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit; FILE#3 or FILE#NAME is one
+node of a file, in its own frame. The scene stands as it is; the sensor is turned (--rotate), put in its place (--at)
+and moved along --direction for --distance.)";
 
 struct Options {
   EngineOptions engine;

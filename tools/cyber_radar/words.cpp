@@ -15,10 +15,12 @@ std::string triangleInWords(uint32_t triangle, Feature feature) {
 
 std::string contactInWords(const Workload& workload, const QuerySpec& query, const Result& result) {
   const Instance& touched = workload.instance(query.scene, result.object);
-  std::string text = "  what    " + triangleInWords(result.triB, result.featureB) + " of object " +
-                     std::to_string(result.object) + " (" + workload.meshes[touched.mesh].name + "), by the sensor's " +
-                     triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.sensor.mesh].name +
-                     ")\n";
+  const std::vector<std::string> names = workload.objectNames(query.scene);
+  const std::string name = names.empty() ? "" : names[result.object];
+  std::string text =
+      "  what    " + triangleInWords(result.triB, result.featureB) + " of object " + std::to_string(result.object) +
+      (name.empty() ? "" : " \"" + name + "\"") + " (" + workload.meshes[touched.mesh].name + "), by the sensor's " +
+      triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.sensor.mesh].name + ")\n";
   if (!std::isnan(result.point[0])) text += "  where   " + inDigits(result.point) + "\n";
   if (!std::isnan(result.normal[0])) {
     text += "  normal  " + inDigits(result.normal) + ", from the touched surface towards the sensor\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,42 @@
 
 namespace radar::tools {
 
+/// The nodes of a file that have triangles, depth-first.
+struct Assembly {
+  struct Part {
+    std::string name;  ///< the node's; others may have the same
+    uint32_t mesh = 0;
+    Transform fileFromMesh;  ///< the transforms of the node and those above it, multiplied in double precision
+  };
+  std::vector<MeshData> meshes;  ///< in the frames of their nodes; nodes that place the same meshes share one
+  std::vector<Part> parts;
+
+  /// The geometry of one node: `node` is its number in `parts` or the name that it alone has. Throws InputError that
+  /// names `file` and the node.
+  const MeshData& meshOf(const std::string& file, const std::string& node) const;
+};
+
+/// A mesh's name: FILE, or FILE#NODE for the geometry of one node.
+struct MeshName {
+  std::filesystem::path file;
+  std::optional<std::string> node;
+};
+/// A whole name that is a file's has no node. Otherwise the file is what stands before the first # that ends the name
+/// of a file.
+MeshName splitMeshName(const std::filesystem::path& name);
+
 /// Reads any file assimp reads as one mesh: nodes depth-first, each node's meshes in order, their vertices and faces in
 /// order, as often as nodes place them. Node transforms are multiplied in double precision and each vertex is rounded
 /// once to float. Faces of more than three corners are fanned from their first corner; points and lines are dropped and
 /// counted in a warning. No vertex is joined, moved or left out, no face removed. Assimp itself gives floats: numbers
-/// written in text, or in doubles, are what its importer makes of them.
+/// written in text, or in doubles, are what its importer makes of them. With a FILE#NODE, reads that node's meshes
+/// only, in the node's own frame.
 ///
 /// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the file is
 /// missing or broken, holds no triangle, a vertex that is not finite or a face that names a vertex that does not exist.
-MeshData readMesh(const std::filesystem::path& file, std::vector<std::string>& warnings);
+MeshData readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings);
+
+/// Reads any file assimp reads as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
+Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace radar::tools

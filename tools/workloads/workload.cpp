@@ -49,6 +49,17 @@ const Instance& Workload::instance(uint32_t scene, uint32_t object) const {
   return object < base.size() ? base[object] : scenes[scene].instances[object - base.size()];
 }
 
+std::vector<std::string> Workload::objectNames(uint32_t scene) const {
+  const SceneSpec& own = scenes[scene];
+  std::vector<std::string> names;
+  if (own.base) names = scenes[*own.base].names;
+  if (names.empty() && own.names.empty()) return {};
+  names.resize(baseOf(scene).size());
+  names.insert(names.end(), own.names.begin(), own.names.end());
+  names.resize(objectCount(scene));
+  return names;
+}
+
 Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
   Query query;
   query.mesh = spec.sensor.mesh;

@@ -47,6 +47,7 @@ struct SceneSpec {
   std::vector<ObjectMask> masks;      ///< every other object has all bits
   std::vector<ObjectMotion> motions;  ///< every other object rests
   std::vector<Deformation> deforms;   ///< each mesh once; not inherited from the base, as masks and motions
+  std::vector<std::string> names;     ///< of the instances, if they are the parts of an assembly; else empty
 };
 
 /// How an answer is found.
@@ -82,6 +83,8 @@ struct Workload {
   /// Objects of a scene, its base's included.
   uint32_t objectCount(uint32_t scene) const;
   const Instance& instance(uint32_t scene, uint32_t object) const;
+  /// The names of a scene's objects, empty for those that have none; no names if none has one.
+  std::vector<std::string> objectNames(uint32_t scene) const;
 };
 
 /// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.

@@ -1,0 +1,164 @@
+"""Wrong arguments end with an exception that says what was expected, never otherwise."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from conftest import DOWN, FACES, at, box, same_answers
+
+
+def refusal(call) -> str:
+    with pytest.raises(ValueError) as caught:
+        call()
+    return str(caught.value)
+
+
+def test_messages_name_the_argument_and_the_shape(boxes):
+    scene, mesh = boxes
+    cast = scene.cast
+    six = np.zeros((6, 3))
+    for call, words in (
+        (lambda: cast(mesh, np.eye(3), DOWN), "poses: expected numbers of shape (..., 4, 4), got shape (3, 3)"),
+        (lambda: cast(mesh, None, 5.0), "displacements: expected numbers of shape (..., 3), got shape ()"),
+        (lambda: cast(mesh, None, [[0, 0], [1]]), "displacements: expected numbers of shape (..., 3), got"),
+        (lambda: cast(mesh, None, ["a", "b", "c"]), "displacements: expected numbers of at most double precision"),
+        (lambda: cast(mesh, None, DOWN * 1j), "displacements: expected numbers of at most double precision"),
+        (lambda: cast(mesh, None, np.float128(DOWN)), "displacements: expected numbers of at most double precision"),
+        (lambda: cast(mesh, None, np.array([0, 0, 2**53 + 1])), "displacements: expected whole numbers up to 2^53"),
+        (lambda: cast(mesh, None, np.ma.masked_less(DOWN, 0)), "got a masked array"),
+        (lambda: cast(mesh, at(six).swapaxes(1, 2) + np.eye(4)[3], DOWN), "poses[0]: expected the last row 0 0 0 1"),
+        (lambda: cast(mesh, at(six), np.ones((5, 3))), "got poses (6, 4, 4), displacements (5, 3)"),
+        (lambda: cast(mesh + 1, None, DOWN), "mesh: expected ids of meshes of the scene, got 1"),
+        (lambda: cast(0.5, None, DOWN), "mesh: expected whole numbers, got dtype float64"),
+        (lambda: cast(-1, None, DOWN), "mesh: expected whole numbers from 0 to 4294967294, got -1"),
+        (lambda: cast(mesh, None, DOWN, exclude=3), "exclude: expected whole numbers of shape (..., K), got shape ()"),
+        (lambda: cast(mesh, None, DOWN, exclude=[200]), "exclude: expected ids of objects of the scene, got 200"),
+        (lambda: cast(mesh, None, DOWN, mask=2**32), "mask: expected whole numbers from 0 to 4294967295"),
+        (lambda: cast(mesh, None, DOWN, mode="fast"), 'mode: expected "contact", "sampled" or "reference"'),
+        (lambda: cast(mesh, None, DOWN, slack=-1), "slack: expected a finite number of 0 or more, got -1"),
+        (lambda: cast(mesh, None, DOWN, clearance=np.inf), "clearance: expected a finite number of 0 or more"),
+        (lambda: cast(mesh, None, DOWN, tolerance=[1]), "tolerance: expected a finite number of 0 or more"),
+        (lambda: cast(mesh, None, DOWN, hits=0), "hits: expected whole numbers from 1 to"),
+        (lambda: cast(mesh, None, DOWN, hits="some"), "hits: expected whole numbers, got dtype <U4"),
+        (lambda: cast(mesh, None, DOWN, hits=2, any_hit=True), "hits: expected 1 with any_hit"),
+        (lambda: cast(mesh, None, DOWN, hits=2, mode="sampled"), 'mode: expected "contact" or "reference" with'),
+        (lambda: cast(mesh, None, DOWN, resolution=2049), "resolution: expected whole numbers from 0 to 2048"),
+        (lambda: cast(mesh, None, DOWN, distances=[[1, 2], [3]]), "distances: expected numbers of shape (...)"),
+        (lambda: scene.add(mesh, np.zeros((2, 4, 4)) + np.diag([0, 1, 1, 1])), "transforms[0]: expected an invertible"),
+        (lambda: scene.add(mesh, np.full((4, 4), np.nan)), "transforms: expected 12 finite numbers, got nan"),
+        (lambda: scene.set_transforms([0, 200], np.eye(4)), "objects: expected ids of objects of the scene, got 200"),
+        (lambda: scene.remove([-1]), "objects: expected whole numbers from 0"),
+        (lambda: scene.add_mesh(box(1, 1, 1)[:, :2], FACES), "vertices: expected numbers of shape (..., 3)"),
+        (lambda: scene.add_mesh(box(1, 1, 1)[None], FACES), "vertices: expected shape (N, 3), got shape (1, 8, 3)"),
+        (lambda: scene.add_mesh([[0, 0, 1e39]], FACES), "vertices[0]: expected 3 finite numbers that float32 can hold"),
+        (lambda: scene.add_mesh(box(1, 1, 1), FACES + 1), "faces: expected whole numbers from 0 to 7, got 8"),
+        (lambda: scene.add_mesh(box(1, 1, 1), FACES[:0]), "faces: expected shape (M, 3) with a triangle at least"),
+        (lambda: scene.add_mesh(box(1, 1, 1), FACES * 1.0), "faces: expected whole numbers, got dtype float64"),
+        (lambda: cyber_radar.Scene(device="gpu"), "device: expected a number of devices()"),
+        (lambda: cyber_radar.Scene(device=[]), "device: expected a number of devices()"),
+        (lambda: cyber_radar.Scene(threads=-1), "threads: expected whole numbers from 0 to 4096"),
+    ):
+        assert words in refusal(call)
+    assert len(scene) == 200 and scene.meshes == [0]
+    with pytest.raises(TypeError, match="speed"):
+        cast(mesh, None, DOWN, speed=2)
+    with pytest.raises(TypeError, match="speed"):
+        scene.cast_async(mesh, None, DOWN, speed=2)
+
+
+def test_out_must_be_able_to_take_the_answers(boxes):
+    scene, mesh = boxes
+    out = cyber_radar.Casts.empty((4,))
+    cast = lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="reference", out=out)  # noqa: E731
+    assert "out: expected Casts, got dict" in refusal(lambda: scene.cast(mesh, None, DOWN, out={}))
+    assert "out.distance: expected a writeable" in refusal(lambda: scene.cast(mesh, None, DOWN, out=out))
+    assert "out.paper_min_l" in refusal(lambda: scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="sampled", out=out))
+    for name, wrong in (
+        ("distance", np.zeros(4, np.float32)),
+        ("hi", np.zeros((4, 1))),
+        ("object", np.zeros(4, np.int32)),
+        ("point", np.zeros((8, 3))[::2]),
+        ("normal", np.zeros((3, 4)).T),
+        ("status", [0, 0, 0, 0]),
+    ):
+        right = getattr(out, name)
+        setattr(out, name, wrong)
+        assert f"out.{name}: expected a writeable C-contiguous array" in refusal(cast)
+        setattr(out, name, right)
+    out.triangles.flags.writeable = False
+    assert "out.triangles" in refusal(cast)
+    out.triangles.flags.writeable = True
+    assert same_answers(cast(), scene.cast(mesh, at(np.zeros((4, 3))), DOWN, mode="reference"))
+
+
+def odd_arrays(rng: np.random.Generator, shape: tuple[int, ...]):
+    """Arrays of all sorts, some of a shape near the one wanted."""
+    shapes = [shape, (2, *shape), (0, *shape), shape[1:], (*shape, 1), (3,), (), (1, 2, *shape)]
+    numbers = [0, 1, -1, 0.5, np.nan, np.inf, -np.inf, 1e308, 5e-324, 2.0**63, -0.0]
+    types = [float, np.float32, np.float16, np.longdouble, int, np.uint64, np.int8, bool, complex, object, "U3", ">f8"]
+    chosen = rng.choice(np.array(numbers), shapes[rng.integers(len(shapes))])
+    with np.errstate(all="ignore"):
+        array = chosen.astype(types[rng.integers(len(types))])
+    if len(shape) == 2 and array.shape[-2:] == (4, 4) and rng.random() < 0.8 and array.dtype.kind in "fiu":
+        array[..., :, :] = rng.permutation(np.eye(4)) if rng.random() < 0.2 else np.eye(4)
+        array[..., 0, 3] = chosen[..., 0, 3].astype(array.dtype) if array.dtype.kind == "f" else 0
+    change = rng.integers(5)
+    if change == 0 and array.ndim:
+        return array[..., ::-1]
+    if change == 1 and array.ndim:
+        return np.broadcast_to(array, (3, *array.shape))
+    return array.tolist() if change == 2 else array
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_odd_arguments_never_crash(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(9)
+    out = cyber_radar.Casts.empty((2,))
+    answered = refused = 0
+    for round_ in range(3000):
+        odd = lambda *shape, plain: odd_arrays(rng, shape) if rng.random() < 0.12 else plain  # noqa: E731
+        try:
+            what = round_ % 6
+            if what == 0:
+                scene.add_mesh(odd(8, 3, plain=box(1, 1, 1)), odd(12, 3, plain=FACES))
+            elif what == 1:
+                scene.remove(scene.add(odd(plain=mesh), odd(4, 4, plain=np.eye(4)), mask=odd(plain=1)))
+            elif what == 2:
+                scene.set_transforms(odd(plain=[3, 4]), odd(4, 4, plain=at([9, 9, 9])))
+            else:
+                casts = scene.cast(
+                    odd(plain=mesh), odd(4, 4, plain=at([[0, 0, 0], [1, 2, 3]])), odd(3, plain=DOWN),
+                    mode=("reference", "contact")[round_ % 2], exclude=odd(3, plain=[]), mask=odd(plain=7),
+                    distances=odd(plain=None), clearance=odd(plain=0.0), slack=odd(plain=None),
+                    hits=odd(plain=2), skip_overlapping=rng.random() < 0.5, ignore_leaving=rng.random() < 0.5,
+                    out=out if rng.random() < 0.1 else None,
+                )  # fmt: skip
+                answered += casts.distance.size
+        except (ValueError, TypeError) as error:
+            assert str(error)
+            refused += 1
+    assert answered > 500 and refused > 500
+    assert len(scene) == 200
+
+
+def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
+    scene, mesh = boxes
+    engine = scene._engine
+    with pytest.raises((TypeError, ValueError)):
+        engine.add(np.zeros(2, np.uint32), np.zeros((1, 4, 4)), np.zeros(2, np.uint32))
+    with pytest.raises((TypeError, ValueError)):
+        engine.set_transforms(np.zeros(2, np.uint32), np.zeros((1, 4, 4)))
+    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, (), 1, {"sampled": False}, None)
+    options = dict.fromkeys(("sampled", "on_cpu", "any_hit", "ignore_leaving", "skip_overlapping"), False)
+    options |= {"slack": None, "clearance": 0.0, "tolerance": None, "hits": 1, "resolution": 0}
+    for wrong in itertools.chain(batch.arguments, batch.results):
+        if wrong == "distances":
+            continue
+        arguments, results = dict(batch.arguments), dict(batch.results)
+        of = arguments if wrong in arguments else results
+        of[wrong] = of[wrong][:2]
+        with pytest.raises(ValueError):
+            engine.cast(batch.shape, arguments, options, results, lambda n: {}, None)

@@ -1,0 +1,230 @@
+"""What casts answer."""
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from brute_force import first_contacts
+from conftest import DOWN, FACES, at, box, fill, random_poses, same_answers
+from cyber_radar import Status, Tier
+
+
+def test_answers_are_those_of_brute_force():
+    rng = np.random.default_rng(7)
+    scene = cyber_radar.Scene()
+    tetrahedron = np.float32(rng.normal(size=(4, 3)))
+    faces = np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+    mesh = scene.add_mesh(tetrahedron, faces)
+    standing = random_poses(rng, 12, 9)
+    scene.add(mesh, standing)
+    poses, displacements = random_poses(rng, 150, 9), rng.normal(size=(150, 3)) * 4
+
+    def corners(pose):
+        return (tetrahedron.astype(np.float64) @ pose[:3, :3].T + pose[:3, 3])[faces]
+
+    of_objects = np.concatenate([corners(pose) for pose in standing])
+    expected = np.empty(150)
+    pairs = []
+    for i in range(150):
+        moving = np.repeat(corners(poses[i]), len(of_objects), axis=0)
+        times = first_contacts(moving, np.tile(of_objects, (4, 1, 1)), displacements[i])
+        expected[i] = times.min()
+        pairs.append({divmod(int(k), len(of_objects)) for k in np.flatnonzero(times <= times.min() + 1e-9)})
+    casts = scene.cast(mesh, poses, displacements, mode="reference")
+    assert 20 < np.isfinite(expected).sum() < 130
+    assert (np.isfinite(expected) == casts.touches).all()
+    np.testing.assert_allclose(casts.fraction, expected, rtol=0, atol=1e-11)
+    length = np.linalg.norm(displacements, axis=1)
+    np.testing.assert_allclose(casts.distance, expected * length, rtol=0, atol=1e-10)
+    assert ((casts.lo <= casts.distance) & (casts.distance <= casts.hi)).all()
+    hits = np.flatnonzero(casts.status == Status.HIT)
+    for i in hits:
+        a, b = casts.triangles[i]
+        assert (a, casts.object[i] * len(faces) + b) in pairs[i]
+        assert np.dot(casts.normal[i], displacements[i]) <= 0
+        assert np.linalg.norm(casts.normal[i]) == pytest.approx(1)
+        # The point lies in the plane of the touched triangle.
+        corner = of_objects[casts.object[i] * len(faces) + b]
+        normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
+        assert np.dot(normal / np.linalg.norm(normal), casts.point[i] - corner[0]) == pytest.approx(0, abs=1e-9)
+    assert len(hits) > 10
+
+
+def test_device_and_processor_give_the_same_bits():
+    on_device = cyber_radar.Scene(cpu_batch=0)
+    mesh = fill(on_device)
+    rng = np.random.default_rng(3)
+    poses, displacements = random_poses(rng, 700, 20), rng.normal(size=(700, 3)) * 5
+    contact = on_device.cast(mesh, poses, displacements)
+    reference = on_device.cast(mesh, poses, displacements, mode="reference")
+    assert len(on_device.device_names) == 1
+    assert (contact.tier == Tier.CONTACT).all() and (reference.tier == Tier.REFERENCE).all()
+    assert same_answers(contact, reference, but=("tier",))
+    assert set(np.unique(contact.status)) == {Status.HIT, Status.CLEAR, Status.OVERLAP}
+
+
+def test_mode_sampled_bounds_the_distance_from_above():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, 0], [5, 0, -0.25]]))
+    poses = at([[0.1, 0.2, 3], [5.1, 0.2, 3], [20, 0, 0]])
+    casts = scene.cast(mesh, poses, DOWN, mode="sampled", resolution=32)
+    np.testing.assert_allclose(casts.distance, [2, 2.25, np.inf], atol=1e-6)
+    assert (casts.hi >= scene.cast(mesh, poses, DOWN, mode="reference").distance).all()
+    np.testing.assert_allclose(casts.paper_min_l[:2], [2, 2.25], atol=1e-4)
+    assert casts.resolution.tolist() == [32, 32, 0]
+    assert casts.detected.tolist() == [1, 1, 0]
+
+
+def test_leading_shapes_broadcast_and_are_those_of_the_arrays(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(4)
+    poses, displacements = random_poses(rng, 15, 20).reshape(5, 1, 3, 4, 4), rng.normal(size=(2, 1, 3)) * 5
+    exclude, distances = rng.integers(-1, 200, (3, 4)), np.array([[[6.0]], [[7.0]]] * 5).reshape(5, 2, 1)
+    casts = scene.cast(mesh, poses, displacements, exclude=exclude, distances=distances, mode="reference")
+    assert casts.shape == casts.object.shape == (5, 2, 3)
+    assert casts.triangles.shape == (5, 2, 3, 2) and casts.point.shape == casts.normal.shape == (5, 2, 3, 3)
+    assert casts.touches.any()
+    for i in np.ndindex(5, 2, 3):
+        one = scene.cast(
+            mesh, poses[i[0], 0, i[2]], displacements[i[1], 0], mode="reference",
+            exclude=exclude[i[2]], distances=distances[i[0], i[1], 0],
+        )  # fmt: skip
+        assert one.shape == ()
+        assert one.distance == casts.distance[i] and one.object == casts.object[i]
+        assert (one.point == casts.point[i]).all() or one.status == Status.CLEAR
+
+
+def test_numbers_of_any_type_and_layout_mean_the_same(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(5)
+    poses = at(rng.integers(-9, 9, (40, 3)))
+    expected = scene.cast(mesh, poses, DOWN, mode="reference")
+    wide = np.zeros((40, 8, 8))
+    wide[:, ::2, ::-2] = poses
+    fortran = np.asfortranarray(poses)
+    for given in (poses.astype(np.float32), poses.astype(np.int64), wide[:, ::2, ::-2], fortran, poses.tolist(),
+                  poses.astype(">f8")):  # fmt: skip
+        assert same_answers(scene.cast(np.uint8(mesh), given, [0, 0, -10], mode="reference"), expected)
+    backwards = scene.cast(mesh, poses[::-1], DOWN, mode="reference")
+    assert (backwards.distance[::-1] == expected.distance).all()
+
+
+def test_a_distance_is_exact_where_single_precision_would_round(boxes):
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([1e8, 0, 0]))
+    casts = scene.cast(mesh, at([1e8 - 3.0625, 0.25, 0.25]), [5, 0, 0], mode="reference")
+    assert casts.distance == 2.0625
+
+
+def test_no_displacement_asks_whether_the_surfaces_meet():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh)
+    casts = scene.cast(mesh, at([[0.5, 0.5, 0.5], [3, 0, 0]]), [0, 0, 0], mode="reference")
+    assert casts.status.tolist() == [Status.OVERLAP, Status.CLEAR]
+    # What leaves depends on a direction.
+    leaving = scene.cast(mesh, at([0.5, 0.5, 0.5]), [0, 0, 0], ignore_leaving=True, mode="reference")
+    assert leaving.status == Status.INVALID
+
+
+def test_a_crate_leaves_the_floor_it_rests_on():
+    scene = cyber_radar.Scene()
+    floor, crate = scene.add_mesh(box(20, 20, 1), FACES), scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(floor)
+    ways = [[0, 0, 3], [3, 0, 0], [0, 0, -3]]
+    assert scene.cast(crate, at([0, 0, 1]), ways, mode="reference").status.tolist() == [Status.OVERLAP] * 3
+    casts = scene.cast(crate, at([0, 0, 1]), ways, ignore_leaving=True, mode="reference")
+    assert casts.distance.tolist() == [np.inf, np.inf, 0]
+    sunk = scene.cast(crate, at([0, 0, 1 - 1e-9]), ways, ignore_leaving=True, slack=1e-8, mode="reference")
+    assert sunk.distance.tolist() == [np.inf, np.inf, 0]
+
+
+def test_hits_and_what_overlaps_are_listed():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, -3], [0, 0, -6], [0, 0, -9], [0.5, 0, 0.25], [9, 9, -2]]))
+    poses = at([[0.25, 0, 0], [9, 9, 0], [30, 0, 0]])
+    casts = scene.cast(mesh, poses, DOWN, hits="all", skip_overlapping=True, mode="reference")
+    assert casts.hits.offsets.tolist() == [0, 3, 4, 4]
+    assert casts.hits.object.tolist() == [0, 1, 2, 4]
+    assert casts.hits.distance.tolist() == [2, 5, 8, 1]
+    assert casts.hits.cast.tolist() == [0, 0, 0, 1]
+    assert casts.hits.object[casts.hits.of(0)].tolist() == [0, 1, 2]
+    assert casts.hits.of(2) == slice(4, 4)
+    assert casts.overlapping.object[casts.overlapping.of(0)].tolist() == [3]
+    assert casts.overlapping.offsets.tolist() == [0, 1, 1, 1]
+    two = scene.cast(mesh, poses[:, None], DOWN, hits=2, skip_overlapping=True, mode="reference")
+    assert two.hits.object[two.hits.of(0, 0)].tolist() == [0, 1]
+    plain = scene.cast(mesh, poses, DOWN, mode="reference")
+    assert plain.hits is None and plain.overlapping is None
+
+
+def test_masks_exclusions_clearance_and_any_hit():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, -3], [0, 0, -6]]), mask=[1, 2])
+    cast = lambda **options: scene.cast(mesh, None, DOWN, mode="reference", **options)  # noqa: E731
+    assert cast(mask=[1, 2, 3, 4]).distance.tolist() == [2, 5, 2, np.inf]
+    assert cast(exclude=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
+    near = cast(clearance=0.5, tolerance=1e-3)
+    assert 1.5 - 1e-3 <= near.lo <= 1.5 <= near.hi <= near.lo + 1e-3
+    any_hit = cast(any_hit=True)
+    assert any_hit.status == Status.HIT and np.isnan(any_hit.distance) and any_hit.object == -1
+    assert cast(any_hit=True, mask=4).status == Status.CLEAR
+    assert cast(distances=[1.5, 2.5]).distance.tolist() == [np.inf, 2]
+
+
+def test_out_is_filled_and_returned(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(6)
+    poses, displacements = random_poses(rng, 50, 20), rng.normal(size=(50, 3)) * 5
+    expected = scene.cast(mesh, poses, displacements, mode="reference")
+    out = cyber_radar.Casts.empty((50,))
+    distance = out.distance
+    assert scene.cast(mesh, poses, displacements, mode="reference", out=out) is out
+    assert out.distance is distance
+    assert same_answers(out, expected)
+    scene.cast(mesh, poses[::-1], displacements[::-1], mode="reference", out=out)
+    assert (distance[::-1] == expected.distance).all()
+
+
+def test_one_bad_cast_is_invalid_and_leaves_the_others_alone(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(8)
+    poses, displacements = random_poses(rng, 900, 20), rng.normal(size=(900, 3)) * 5
+    for mode in ("reference", "contact"):
+        expected = scene.cast(mesh, poses, displacements, mode=mode, hits=2, skip_overlapping=True)
+        bad_poses, bad_displacements = poses.copy(), displacements.copy()
+        bad_poses[3] = np.nan
+        bad_poses[500, 1, 2] = -np.inf
+        bad_poses[600, :3, :3] = 0
+        bad_displacements[[4, 899], 1] = np.nan
+        casts = scene.cast(mesh, bad_poses, bad_displacements, mode=mode, hits=2, skip_overlapping=True)
+        bad = [3, 4, 500, 600, 899]
+        assert np.flatnonzero(casts.status == Status.INVALID).tolist() == bad
+        assert sorted(np.concatenate(list(casts.reasons.values())).tolist()) == bad
+        assert casts.reasons["displacements: expected 3 finite numbers, got nan"].tolist() == [4, 899]
+        assert np.isnan(casts.distance[bad]).all() and (casts.object[bad] == -1).all()
+        good = np.setdiff1d(np.arange(900), bad)
+        assert (casts.distance[good] == expected.distance[good]).all()
+        for i in good:
+            assert (casts.hits.object[casts.hits.of(i)] == expected.hits.object[expected.hits.of(i)]).all()
+            rows = casts.overlapping.of(i), expected.overlapping.of(i)
+            assert (casts.overlapping.object[rows[0]] == expected.overlapping.object[rows[1]]).all()
+
+
+def test_there_may_be_no_cast_at_all(boxes):
+    scene, mesh = boxes
+    casts = scene.cast(mesh, np.zeros((0, 4, 4)), DOWN, hits="all")
+    assert casts.shape == (0,) and casts.hits.offsets.tolist() == [0] and casts.reasons == {}
+    assert scene.cast(mesh, np.zeros((3, 0, 1, 4, 4)), np.zeros((5, 3))).shape == (3, 0, 5)
+    assert repr(casts) == "<Casts of shape (0,): none>"
+
+
+def test_a_scene_without_objects_is_free():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    for mode in ("reference", "contact", "sampled"):
+        assert scene.cast(mesh, None, DOWN, mode=mode).distance == np.inf

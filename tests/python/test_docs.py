@@ -1,0 +1,73 @@
+"""What is written about the package is true."""
+
+import ast
+import doctest
+import inspect
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from conftest import FACES, box
+from cyber_radar import _engine, _scene
+
+ROOT = pathlib.Path(__file__).parents[2]
+PACKAGE = pathlib.Path(cyber_radar.__file__).parent
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_the_examples_of_a_page_print_what_it_says(page, tmp_path):
+    """The examples of a page follow on from each other, as one script."""
+    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
+    (tmp_path / "part.obj").write_text("\n".join(lines))
+    script = "\n".join(re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.M | re.S))
+    (tmp_path / "page.py").write_text(script)
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "page.py"], cwd=tmp_path, capture_output=True, text=True
+    )  # fmt: skip
+    expected = re.findall(r"print\(.*?  # (.*)$", script, re.M)
+    assert (run.stdout.splitlines(), run.stderr) == (expected, "")
+    assert expected
+
+
+def test_doctests():
+    results = doctest.testmod(_scene, extraglobs={"np": np})
+    assert results.attempted >= 5 and results.failed == 0
+
+
+def test_everything_public_has_a_docstring_and_types():
+    for name in cyber_radar.__all__:
+        item = getattr(cyber_radar, name)
+        assert item.__doc__, name
+        if inspect.isclass(item) and item.__module__.startswith("cyber_radar"):
+            for member, value in vars(item).items():
+                if inspect.isfunction(value) and not member.startswith("_"):
+                    assert value.__doc__ and value.__annotations__, f"{name}.{member}"
+    assert (PACKAGE / "py.typed").exists()
+
+
+def test_help_shows_the_arguments_of_cast():
+    text = subprocess.run(
+        [sys.executable, "-c", "import cyber_radar; help(cyber_radar.Scene.cast)"],
+        capture_output=True, text=True, check=True, env=os.environ | {"PAGER": "cat"},
+    ).stdout  # fmt: skip
+    assert all(f"{name}:" in text for name in inspect.signature(cyber_radar.Scene.cast).parameters if name != "self")
+
+
+def test_the_stubs_declare_what_the_compiled_half_has():
+    tree = ast.parse((PACKAGE / "_engine.pyi").read_text())
+    declared = {node.name for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    declared |= {node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)}
+    assert declared == {name for name in vars(_engine) if not name.startswith("__")}
+    (scene,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Scene")
+    methods = {node.name for node in scene.body if isinstance(node, ast.FunctionDef)}
+    assert methods == {name for name in vars(_engine.Scene) if name not in ("__module__", "__doc__", "__new__")}
+
+
+def test_pip_gives_the_package_the_version_it_has():
+    assert f'version = "{cyber_radar.__version__}"' in (ROOT / "pyproject.toml").read_text()

@@ -1,0 +1,103 @@
+"""The answers are the program's: 100,000 random casts, to the bit."""
+
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from conftest import FACES, box, random_poses
+
+COUNT = 100_000
+ENGINE = "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"
+
+
+def ask_program(folder, queries) -> list[dict]:
+    (folder / "q.json").write_text(json.dumps(queries))
+    run = subprocess.run(
+        [os.environ["RADAR_PROGRAM"], "query", folder / "q.json", "--mode", "reference"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return [json.loads(line) for line in run.stdout.splitlines()]
+
+
+def instance(mesh: int, matrix: np.ndarray) -> list:
+    return [mesh, *matrix[:3].ravel().tolist()]
+
+
+def column(answers: list[dict], key: str, absent: float, dtype=np.float64) -> np.ndarray:
+    return np.array([absent if answer[key] is None else answer[key] for answer in answers], dtype)
+
+
+def test_random_casts_have_the_bits_of_the_program(tmp_path):
+    rng = np.random.default_rng(12)
+    objects, poses = random_poses(rng, 60, 16), random_poses(rng, COUNT, 16)
+    displacements = rng.normal(size=(COUNT, 3)) * 3
+    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
+    (tmp_path / "box.obj").write_text("\n".join(lines))
+    lengths = np.array([np.hypot(np.hypot(*d[:2]), d[2]) for d in displacements])
+    queries = {
+        "format": "cyber-radar-queries-1",
+        "meshes": ["box.obj"],
+        "scenes": [{"id": "s", "instances": [instance(0, pose) for pose in objects]}],
+        "queries": [
+            {"id": str(i), "scene": 0, "sensor": instance(0, poses[i]), "dir": displacements[i].tolist(),
+             "D": lengths[i]}
+            for i in range(COUNT)
+        ],
+    }  # fmt: skip
+    answers = ask_program(tmp_path, queries)
+    scene = cyber_radar.Scene()
+    mesh = scene.load_mesh(tmp_path / "box.obj")
+    scene.add(mesh, objects)
+    casts = scene.cast(mesh, poses, displacements, distances=lengths, mode="reference")
+    free = casts.distance == np.inf
+    for key, array in (("t", casts.distance), ("lo", casts.lo), ("hi", casts.hi), ("fraction", casts.fraction)):
+        assert (column(answers, key, np.inf) == array).all()
+    for key, array in (("object", casts.object), ("tri_a", casts.triangles[:, 0]), ("tri_b", casts.triangles[:, 1])):
+        assert (column(answers, key, -1, np.int64) == array).all()
+    for key, array in (("point", casts.point), ("normal", casts.normal)):
+        expected = np.array([[np.nan] * 3 if answer[key] is None else answer[key] for answer in answers])
+        np.testing.assert_array_equal(expected, array)
+    names = [cyber_radar.Status(status).name.lower() for status in casts.status]
+    assert names == [answer["status"] for answer in answers]
+    assert 0.2 < free.mean() < 0.8
+    own = scene.cast(mesh, poses, displacements, mode="reference")
+    np.testing.assert_allclose(own.distance, casts.distance, rtol=1e-14)
+
+
+def test_an_assembly_has_the_answers_of_the_program(tmp_path):
+    scene = cyber_radar.Scene()
+    objects = scene.load_assembly(ENGINE)
+    held = scene.objects()
+    queries = {
+        "format": "cyber-radar-queries-1",
+        "meshes": [f"{ENGINE}#{i}" for i in range(67)],
+        "scenes": [{"id": "engine", "assembly": ENGINE}],
+        "queries": [
+            {"id": str(i), "scene": 0, "sensor": instance(i, held.transforms[i]), "exclude": [i], "dir": [0, 1000, 0],
+             "D": 1000, "ignore_leaving": True, "skip_overlapping": True, "hits": "all"}
+            for i in range(67)
+        ],
+    }  # fmt: skip
+    answers = ask_program(tmp_path, queries)
+    casts = scene.cast(
+        held.meshes, held.transforms, [0, 1000, 0], exclude=objects[:, None], mode="reference",
+        ignore_leaving=True, skip_overlapping=True, hits="all",
+    )  # fmt: skip
+    assert (column(answers, "t", np.inf) == casts.distance).all()
+    for i, answer in enumerate(answers):
+        rows = casts.hits.of(i)
+        assert [hit["object"] for hit in answer["hits"]] == casts.hits.object[rows].tolist()
+        assert [hit["object_name"] for hit in answer["hits"]] == [scene.names[k] for k in casts.hits.object[rows]]
+        assert [hit["t"] for hit in answer["hits"]] == casts.hits.distance[rows].tolist()
+        assert answer["overlapping"] == casts.overlapping.object[casts.overlapping.of(i)].tolist()
+    assert len(casts.hits.object) > 100 and len(casts.overlapping.object) > 100
+
+
+def test_a_mesh_file_that_is_broken_is_refused_with_the_programs_words(tmp_path):
+    (tmp_path / "a.ply").write_text("ply\nformat ascii 1.0\n")
+    with pytest.raises(ValueError, match="a.ply: .*header"):
+        cyber_radar.read_mesh(tmp_path / "a.ply")

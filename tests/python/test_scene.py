@@ -1,0 +1,138 @@
+"""What a scene holds."""
+
+import copy
+import pickle
+import warnings
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from conftest import DOWN, FACES, at, box, random_poses, same_answers
+
+ENGINE = "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb"
+
+
+def test_objects_get_the_least_free_ids_and_keep_them():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    assert scene.add(mesh) == 0
+    assert scene.add(mesh, at(np.zeros((2, 3, 3)))).tolist() == [[1, 2, 3], [4, 5, 6]]
+    assert scene.add([mesh, mesh]).tolist() == [7, 8]
+    scene.remove([[2, 5], [2, 5]])
+    assert len(scene) == 7
+    assert scene.add(mesh, mask=[1, 2, 3]).tolist() == [2, 5, 9]
+    assert scene.objects().ids.tolist() == list(range(10))
+    assert scene.objects().masks[[0, 2, 5, 9]].tolist() == [2**32 - 1, 1, 2, 3]
+    assert repr(scene) == "<Scene of 10 objects, 1 meshes>"
+
+
+def test_objects_move():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, -3], [0, 0, -6]]))
+    for mode in ("reference", "contact", "sampled"):
+        scene.set_transforms([0, 1], at([[0, 0, -3], [0, 0, -6]]))
+        assert scene.cast(mesh, None, DOWN, mode=mode).object == 0
+        scene.set_transforms(0, at([0, 0, -7]))
+        assert scene.cast(mesh, None, DOWN, mode=mode).object == 1
+    assert (scene.objects().transforms == at([[0, 0, -7], [0, 0, -6]])).all()
+    scene.set_transforms([[0, 1]], at([3, 0, 0]))
+    assert scene.cast(mesh, None, [5, 0, 0], mode="reference").distance == 2
+
+
+def test_meshes_are_kept_as_given_and_rounding_is_said():
+    scene = cyber_radar.Scene()
+    vertices = np.float32([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]])
+    mesh = scene.add_mesh(vertices, [[0, 1, 2]])
+    kept, faces = scene.mesh(mesh)
+    assert kept.dtype == np.float32 and (kept == vertices).all() and (faces == [[0, 1, 2]]).all()
+    scene.add_mesh([[0, 0, 0], [0.5, 0, 0], [0, 1, 0]], [[0, 1, 2]])  # float32 holds these
+    with pytest.warns(cyber_radar.RoundingWarning, match=r"rounded to float32, by up to 1\.5e-09") as caught:
+        scene.add_mesh([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert caught[0].filename == __file__
+    assert scene.meshes == [0, 1, 2]
+    scene.remove_mesh(1)
+    assert scene.meshes == [0, 2]
+    scene.add(2)
+    with pytest.raises(ValueError, match="mesh: expected a mesh that no object uses, got 2"):
+        scene.remove_mesh(2)
+
+
+def test_a_mesh_file_is_read_as_the_program_reads_it(tmp_path):
+    file = tmp_path / "a.obj"
+    file.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no lid\nf 1 2 3 4\no box\nf 4 2 1\nl 1 2\n")
+    with pytest.warns(cyber_radar.MeshFileWarning, match="dropped 0 points and 1 line") as caught:
+        vertices, faces = cyber_radar.read_mesh(file)
+    assert caught[0].filename == __file__
+    assert vertices.dtype == np.float32 and len(faces) == 3
+    scene = cyber_radar.Scene()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cyber_radar.MeshFileWarning)
+        mesh = scene.load_mesh(f"{file}#lid")
+        assert len(scene.mesh(mesh)[1]) == 2
+        assert scene.load_assembly(file).tolist() == [0, 1]
+    assert scene.names == {0: "lid", 1: "box"}
+    for wrong, message in (("b.obj", "no such file"), ("a.obj#roof", "a name that none has")):
+        with pytest.raises(ValueError, match=message):
+            scene.load_mesh(tmp_path / wrong)
+
+
+def test_an_assembly_has_an_object_for_each_node_and_keeps_the_names():
+    scene = cyber_radar.Scene()
+    objects = scene.load_assembly(ENGINE)
+    assert objects.tolist() == list(range(67)) and len(scene.meshes) < 67
+    assert sorted(scene.names) == objects.tolist() and scene.names[0] == "nodes[80]"
+    moved = at([0, 0, 1000])
+    again = scene.load_assembly(ENGINE, moved, mask=6)
+    of_again = scene.objects().transforms[again]
+    assert (of_again == moved @ scene.objects().transforms[objects]).all()
+    assert (scene.objects().masks[again] == 6).all()
+    scene.remove(objects)
+    assert sorted(scene.names) == again.tolist()
+
+
+def test_a_scene_pickles_as_its_recipe_with_its_ids():
+    scene = cyber_radar.Scene(threads=1, cpu_batch=7)
+    meshes = [scene.add_mesh(box(1, 1, side), FACES) for side in (1, 2, 3, 4)]
+    rng = np.random.default_rng(2)
+    scene.add(rng.choice([1, 3], 60), random_poses(rng, 60, 8), mask=rng.integers(1, 4, 60))
+    scene.remove(rng.choice(60, 20, replace=False))
+    scene.remove_mesh(meshes[0])
+    scene.remove_mesh(meshes[2])
+    scene.cast(1, None, DOWN)  # a scene with an open device, too
+    poses, displacements = random_poses(rng, 80, 12), rng.normal(size=(80, 3)) * 4
+    expected = scene.cast(3, poses, displacements, mask=2, mode="reference")
+    assert expected.touches.any()
+    for other in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+        assert other.meshes == [1, 3] and repr(other) == "<Scene of 40 objects, 2 meshes>"
+        for a, b in zip(other.objects(), scene.objects()):
+            assert (a == b).all()
+        assert same_answers(other.cast(3, poses, displacements, mask=2, mode="reference"), expected)
+    empty = pickle.loads(pickle.dumps(cyber_radar.Scene()))
+    assert len(empty) == 0 and empty.meshes == []
+
+
+def test_devices_are_listed_and_chosen():
+    devices = cyber_radar.devices()
+    assert [device.index for device in devices] == list(range(len(devices)))
+    usable = [device for device in devices if device.usable]
+    assert usable and usable[0].name and usable[0].version.startswith("1.")
+    scene = cyber_radar.Scene(device=usable[0].index)
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    assert scene.device_names == []
+    scene.cast(mesh, None, DOWN, mode="reference")
+    assert scene.device_names == []
+    scene.cast(mesh, None, DOWN)
+    assert scene.device_names == [usable[0].name]
+    absent = cyber_radar.Scene(device=len(devices))
+    mesh = absent.add_mesh(box(1, 1, 1), FACES)
+    with pytest.raises(cyber_radar.Error, match=f"{len(devices)}"):
+        absent.cast(mesh, None, DOWN)
+    assert absent.cast(mesh, None, DOWN, mode="reference").distance == np.inf
+
+
+def test_versions_name_what_was_built():
+    versions = cyber_radar.versions()
+    assert versions["cyber_radar"] == cyber_radar.__version__
+    assert versions["numpy"] == np.__version__ and versions["commit"]

@@ -1,0 +1,196 @@
+#include "python/batch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+namespace radar::python {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Between two chunks a signal is seen and progress reported. The first is small, because a query may take anything from
+// a microsecond to a second; each is then as large as fits into the time. Answers do not depend on it.
+constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 16, kGrowth = 8;
+constexpr double kChunkSeconds = 0.1;
+
+size_t nextChunk(size_t chunk, double seconds) {
+  const double wanted = double(chunk) * kChunkSeconds / std::max(seconds, 1e-9);
+  const double limit = double(std::min(chunk * kGrowth, kLargestChunk));
+  return static_cast<size_t>(std::clamp(wanted, 1.0, limit));
+}
+
+int64_t idOf(uint32_t id) {
+  return id == kNone ? -1 : int64_t(id);
+}
+
+/// Goes through the queries in row-major order.
+class Reader {
+ public:
+  explicit Reader(const BatchInput& input) : input_(input), index_(input.shape.size()) {}
+
+  Query next();
+
+ private:
+  template <class T>
+  void read(const PerQuery& from, T* to, size_t count) const {
+    const char* at = from.data;
+    for (size_t d = 0; d < index_.size(); ++d) at += index_[d] * from.strides[d];
+    std::copy_n(at, count * sizeof(T), reinterpret_cast<char*>(to));
+  }
+  void advance() {
+    for (size_t d = index_.size(); d-- > 0;) {
+      if (++index_[d] < static_cast<ptrdiff_t>(input_.shape[d])) return;
+      index_[d] = 0;
+    }
+  }
+
+  const BatchInput& input_;
+  std::vector<ptrdiff_t> index_;
+  std::vector<int64_t> excluded_;
+};
+
+Query Reader::next() {
+  Query query = input_.options;
+  read(input_.meshes, &query.mesh, 1);
+  read(input_.poses, query.worldFromMesh.m.data(), 12);
+  read(input_.displacements, query.direction.data(), 3);
+  read(input_.masks, &query.mask, 1);
+  if (input_.distances.data) {
+    read(input_.distances, &query.distance, 1);
+  } else {
+    query.distance = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
+    // Asks whether the surfaces meet at the start, which no direction changes unless what leaves is ignored.
+    if (query.distance == 0 && !query.ignoreLeaving) query.direction = {0, 0, 1};
+  }
+  excluded_.resize(input_.excludedCount);
+  read(input_.excluded, excluded_.data(), excluded_.size());
+  for (const int64_t object : excluded_) {
+    if (object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
+  }
+  advance();
+  return query;
+}
+
+/// A query's broken contract in the words of the arguments; empty if it is kept.
+std::string wrongWith(const Query& query, const Scene& scene) {
+  std::string wrong = validate(query, scene);
+  for (const auto& [engine, argument] : {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
+                                         std::pair{"distance: ", "distances: "}}) {
+    if (wrong.rfind(engine, 0) == 0) return argument + wrong.substr(std::strlen(engine));
+  }
+  return wrong;
+}
+
+/// Answers those of the queries that keep their contracts; the others become invalid, with a reason.
+PoolAnswers answerValid(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+  std::vector<Query> valid;
+  std::vector<size_t> numbers;
+  PoolAnswers all;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (std::string wrong = wrongWith(queries[i], scene.scene()); !wrong.empty()) {
+      all.reasons[i] = std::move(wrong);
+    } else {
+      numbers.push_back(i);
+      valid.push_back(queries[i]);
+    }
+  }
+  const PoolAnswers some = scene.answer(valid, onCpu);
+  all.results.resize(queries.size());
+  size_t done = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const bool isValid = done < numbers.size() && numbers[done] == i;
+    if (isValid) {
+      all.results[i] = some.results[done];
+      if (const auto reason = some.reasons.find(done); reason != some.reasons.end()) all.reasons[i] = reason->second;
+      const auto hits = some.lists.hitsOf(done);
+      all.lists.hits.insert(all.lists.hits.end(), hits.begin(), hits.end());
+      const auto overlapping = some.lists.overlappingOf(done);
+      all.lists.overlapping.insert(all.lists.overlapping.end(), overlapping.begin(), overlapping.end());
+      ++done;
+    }
+    if (i == 0) all.lists.hitOffsets = all.lists.overlappingOffsets = {0};
+    all.lists.hitOffsets.push_back(all.lists.hits.size());
+    all.lists.overlappingOffsets.push_back(all.lists.overlapping.size());
+  }
+  return all;
+}
+
+PoolAnswers answer(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+  try {
+    return scene.answer(queries, onCpu);
+  } catch (const Error&) {
+    const auto isWrong = [&](const Query& query) { return !validate(query, scene.scene()).empty(); };
+    if (std::none_of(queries.begin(), queries.end(), isWrong)) throw;
+  }
+  return answerValid(scene, queries, onCpu);
+}
+
+void append(Lists& to, const Lists& lists, size_t queries) {
+  for (size_t i = 0; i < queries; ++i) {
+    const auto hits = lists.hitsOf(i);
+    to.hits.insert(to.hits.end(), hits.begin(), hits.end());
+    to.hitOffsets.push_back(to.hits.size());
+    const auto overlapping = lists.overlappingOf(i);
+    to.overlapping.insert(to.overlapping.end(), overlapping.begin(), overlapping.end());
+    to.overlappingOffsets.push_back(to.overlapping.size());
+  }
+}
+
+}  // namespace
+
+size_t BatchInput::count() const {
+  size_t count = 1;
+  for (const size_t length : shape) count *= length;
+  return count;
+}
+
+void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  const bool met = result.status == Status::hit || result.status == Status::overlap;
+  const bool clear = result.status == Status::clear, undecided = result.status == Status::undecided;
+  const double none = clear ? kInfinity : kNaN;
+  distance[i] = met && !anyHit ? result.t : none;
+  fraction[i] = met && !anyHit ? result.fraction : none;
+  lo[i] = met || undecided ? result.lo : none;
+  hi[i] = met ? result.hi : undecided ? kInfinity : none;
+  status[i] = static_cast<uint8_t>(result.status);
+  tier[i] = static_cast<uint8_t>(result.tier);
+  detected[i] = static_cast<int8_t>(result.detected == Detected::notLooked ? -1 : result.detected == Detected::yes);
+  object[i] = idOf(result.object);
+  triangles[2 * i] = idOf(result.triA);
+  triangles[2 * i + 1] = idOf(result.triB);
+  std::copy(result.point.begin(), result.point.end(), point + 3 * i);
+  std::copy(result.normal.begin(), result.normal.end(), normal + 3 * i);
+  if (paperMinL) paperMinL[i] = result.paperMinL;
+  if (resolution) resolution[i] = result.resolution;
+}
+
+BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
+                const std::function<void(size_t)>& afterChunk) {
+  BatchLists lists;
+  lists.lists.hitOffsets = lists.lists.overlappingOffsets = {0};
+  const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
+  const size_t count = input.count();
+  Reader reader(input);
+  std::vector<Query> queries;
+  size_t chunk = kFirstChunk;
+  for (size_t first = 0; first < count;) {
+    const Clock::time_point start = Clock::now();
+    const size_t end = std::min(first + chunk, count);
+    queries.clear();
+    for (size_t i = first; i < end; ++i) queries.push_back(reader.next());
+    const PoolAnswers answers = answer(scene, queries, input.onCpu);
+    for (size_t i = first; i < end; ++i) output.write(i, answers.results[i - first], input.options.anyHit);
+    for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
+    if (listing) append(lists.lists, answers.lists, queries.size());
+    first = end;
+    chunk = nextChunk(chunk, std::chrono::duration<double>(Clock::now() - start).count());
+    afterChunk(first);
+  }
+  return lists;
+}
+
+}  // namespace radar::python

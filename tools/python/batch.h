@@ -1,0 +1,62 @@
+// A batch of casts: arrays in, arrays out, with no object for each cast.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "python/casting_scene.h"
+
+namespace radar::python {
+
+/// What an array gives to each query of a batch: adjacent numbers, found by the strides of the leading dimensions
+/// (bytes; 0 along a dimension that is broadcast).
+struct PerQuery {
+  const char* data = nullptr;
+  std::vector<ptrdiff_t> strides;
+};
+
+struct BatchInput {
+  std::vector<size_t> shape;  ///< of the leading dimensions
+  PerQuery meshes;            ///< uint32_t
+  PerQuery poses;             ///< 16 doubles; the last row is 0 0 0 1
+  PerQuery displacements;     ///< 3 doubles
+  PerQuery distances;         ///< double; without data, the length of the displacement
+  PerQuery masks;             ///< uint32_t
+  PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
+  size_t excludedCount = 0;
+  Query options;       ///< for the members that all queries share
+  bool onCpu = false;  ///< mode reference
+
+  size_t count() const;
+};
+
+/// Where answers go: one number for each query, or as many as stated. Absent ids are -1, absent numbers NaN, except
+/// that a distance is infinite if there is none.
+struct BatchOutput {
+  double *distance = nullptr, *lo = nullptr, *hi = nullptr, *fraction = nullptr;
+  uint8_t *status = nullptr, *tier = nullptr;
+  int8_t* detected = nullptr;                       ///< 0, 1; -1: not looked
+  int64_t *object = nullptr, *triangles = nullptr;  ///< triangles: 2
+  double *point = nullptr, *normal = nullptr;       ///< 3 each
+  double* paperMinL = nullptr;                      ///< null where not wanted
+  uint32_t* resolution = nullptr;                   ///< null where not wanted
+
+  void write(size_t i, const Result& result, bool anyHit) const;
+};
+
+/// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.
+struct BatchLists {
+  Lists lists;
+  std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
+};
+
+/// Answers the batch in chunks. After each, `afterChunk` gets the number of queries answered; what it throws ends the
+/// batch. A query that breaks its contract becomes Status::invalid.
+BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
+                const std::function<void(size_t)>& afterChunk);
+
+}  // namespace radar::python

@@ -1,0 +1,92 @@
+#include "python/casting_scene.h"
+
+#include <unistd.h>
+
+#include <mutex>
+#include <utility>
+
+namespace radar::python {
+
+namespace {
+
+std::mutex mutex;
+std::vector<std::string> messages;
+
+void onValidation(const std::string& message) {
+  const std::lock_guard lock(mutex);
+  messages.push_back(message);
+}
+
+}  // namespace
+
+std::vector<std::string> takeValidationMessages() {
+  const std::lock_guard lock(mutex);
+  return std::exchange(messages, {});
+}
+
+struct CastingScene::Answerers {
+  pid_t process = getpid();
+  std::vector<Device> devices;
+  std::optional<Sweeper> sweeper;
+  std::optional<Pool> pool;
+  std::optional<CpuSweeper> cpu;
+};
+
+CastingScene::CastingScene(DeviceChoice choice) : choice_(std::move(choice)) {}
+
+CastingScene::~CastingScene() {
+  if (answerers_ && answerers_->process != getpid()) {
+    [[maybe_unused]] Answerers* left = answerers_.release();
+  }
+}
+
+CastingScene::Answerers& CastingScene::answerers() {
+  if (answerers_ && answerers_->process != getpid()) {
+    // The threads and devices of the process that forked are not here: nothing of them can be used, nor ended.
+    [[maybe_unused]] Answerers* left = answerers_.release();
+  }
+  if (!answerers_) answerers_ = std::make_unique<Answerers>();
+  return *answerers_;
+}
+
+void CastingScene::edit(const std::function<void(Scene&)>& change) {
+  Answerers& by = answerers();
+  if (by.pool) {
+    by.pool->edit([&] { change(scene_); });
+  } else {
+    change(scene_);
+  }
+}
+
+PoolAnswers CastingScene::answer(const std::vector<Query>& queries, bool onCpu) {
+  Answerers& by = answerers();
+  PoolAnswers found;
+  if (onCpu) {
+    if (!by.cpu) by.cpu.emplace(scene_, choice_.threads);
+    found.results = by.cpu->run(queries);
+    found.lists = by.cpu->lists();
+    return found;
+  }
+  const SweeperOptions options{.cpuBatch = choice_.cpuBatch, .cpuThreads = choice_.threads};
+  if (choice_.pool) {
+    if (by.devices.empty()) by.devices = openDevices(*choice_.pool, onValidation);
+    if (!by.pool) by.pool.emplace(by.devices, scene_, options);
+    return by.pool->submit(queries).get();
+  }
+  if (by.devices.empty()) {
+    by.devices.push_back(Device::open({.index = choice_.device, .onValidation = onValidation}));
+  }
+  if (!by.sweeper) by.sweeper.emplace(by.devices[0], scene_, options);
+  found.results = by.sweeper->run(queries);
+  found.lists = by.sweeper->lists();
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (found.results[i].status == Status::invalid) found.reasons[i] = by.sweeper->reason(i);
+  }
+  return found;
+}
+
+std::span<const Device> CastingScene::devices() const {
+  return answerers_ ? answerers_->devices : std::span<const Device>();
+}
+
+}  // namespace radar::python

@@ -1,0 +1,170 @@
+"""The answers to casts."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+class Status(enum.IntEnum):
+    """What an answer says: the values of Casts.status."""
+
+    HIT = 0  #: certainly a contact
+    CLEAR = 1  #: certainly none
+    OVERLAP = 2  #: the surfaces meet at the start
+    UNDECIDED = 3  #: no contact before `lo`; only in mode "sampled" and with a clearance
+    INVALID = 4  #: not answered; Casts.reasons says why
+
+
+class Tier(enum.IntEnum):
+    """The stage that produced an answer: the values of Casts.tier."""
+
+    SELECT = 0
+    SAMPLED = 1
+    CONTACT = 2
+    REFERENCE = 3
+
+
+# Of each array: dtype, and the length of its last dimension if it has one beside the leading shape.
+_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
+    "distance": (np.float64, ()),
+    "lo": (np.float64, ()),
+    "hi": (np.float64, ()),
+    "fraction": (np.float64, ()),
+    "status": (np.uint8, ()),
+    "tier": (np.uint8, ()),
+    "detected": (np.int8, ()),
+    "object": (np.int64, ()),
+    "triangles": (np.int64, (2,)),
+    "point": (np.float64, (3,)),
+    "normal": (np.float64, (3,)),
+}
+_SAMPLED_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
+    "paper_min_l": (np.float64, ()),
+    "resolution": (np.uint32, ()),
+}
+
+
+@dataclasses.dataclass(eq=False, repr=False)
+class Casts:
+    """Answers as arrays, each of the casts' leading shape (...).
+
+    Distances are in world units along the displacement. A number that an answer does not have is NaN, an id -1; a
+    distance is infinite if there is no contact. 107 bytes a cast, and 12 more in mode "sampled".
+    """
+
+    distance: npt.NDArray[np.float64]
+    """(...) to first contact: exact to rounding, but `hi` in mode "sampled". inf: free. NaN: undecided, invalid, or
+    any_hit, which does not ask for it."""
+    lo: npt.NDArray[np.float64]
+    """(...) no contact before this."""
+    hi: npt.NDArray[np.float64]
+    """(...) a contact by then; inf: none is certain."""
+    fraction: npt.NDArray[np.float64]
+    """(...) distance / the whole way, 0 to 1."""
+    status: npt.NDArray[np.uint8]
+    """(...) values of Status."""
+    tier: npt.NDArray[np.uint8]
+    """(...) values of Tier."""
+    detected: npt.NDArray[np.int8]
+    """(...) whether any surface lies in the swept volume: 1, 0, or -1 if nobody looked."""
+    object: npt.NDArray[np.int64]
+    """(...) the object touched; among equal distances the least."""
+    triangles: npt.NDArray[np.int64]
+    """(..., 2) the triangles that touch: the moving mesh's, the object's."""
+    point: npt.NDArray[np.float64]
+    """(..., 3) where they touch, in world units, at the moment of contact."""
+    normal: npt.NDArray[np.float64]
+    """(..., 3) of length 1, from the touched surface towards the moving one."""
+    paper_min_l: npt.NDArray[np.float64] | None = None
+    """(...) mode "sampled": the paper's literal min(L), for comparison; may be negative, too early or too late."""
+    resolution: npt.NDArray[np.uint32] | None = None
+    """(...) mode "sampled": pixels along the picture's longer side; 0 if none was drawn."""
+    hits: Hits | None = None
+    """With hits above 1: the first contact with each of the nearest objects."""
+    overlapping: Overlapping | None = None
+    """With skip_overlapping: the objects left out."""
+    reasons: dict[str, npt.NDArray[np.int64]] = dataclasses.field(default_factory=dict)
+    """Why casts are invalid: reason -> their positions, counted in C order."""
+
+    @classmethod
+    def empty(cls, shape: tuple[int, ...], mode: str = "contact") -> Casts:
+        """Arrays for answers of this shape, to be filled by Scene.cast(out=...)."""
+        return cls(**_new_arrays(shape, mode == "sampled"))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The leading shape of all arrays."""
+        return self.distance.shape
+
+    @property
+    def touches(self) -> npt.NDArray[np.bool_]:
+        """(...) whether there certainly is a contact: status HIT or OVERLAP."""
+        return np.isin(self.status, (Status.HIT, Status.OVERLAP))
+
+    def __repr__(self) -> str:
+        counts = np.bincount(self.status.ravel(), minlength=len(Status))
+        words = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status if counts[status])
+        return f"<{type(self).__name__} of shape {self.shape}: {words or 'none'}>"
+
+
+class _Ragged:
+    """Rows of all casts, one after the other: those of cast i, counted in C order, begin at offsets[i] and end before
+    offsets[i + 1]."""
+
+    offsets: npt.NDArray[np.int64]
+    of_shape: tuple[int, ...]
+
+    def of(self, *index: int) -> slice:
+        """The rows of one cast: hits.object[hits.of(3, 1)]."""
+        i = int(np.ravel_multi_index(index, self.of_shape)) if self.of_shape else 0
+        return slice(int(self.offsets[i]), int(self.offsets[i + 1]))
+
+    @property
+    def cast(self) -> npt.NDArray[np.int64]:
+        """(rows,) the cast of each row, counted in C order."""
+        return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
+
+
+@dataclasses.dataclass(eq=False, repr=False)
+class Hits(Casts, _Ragged):
+    """First contacts with several objects, one row each, for each cast in the order of (distance, object)."""
+
+    offsets: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.zeros(1, np.int64))
+    of_shape: tuple[int, ...] = ()
+
+
+@dataclasses.dataclass(eq=False)
+class Overlapping(_Ragged):
+    """The objects whose surfaces cross the moving one's at the start, one row each, for each cast ascending."""
+
+    object: npt.NDArray[np.int64]
+    offsets: npt.NDArray[np.int64]
+    of_shape: tuple[int, ...]
+
+
+def _new_arrays(shape: tuple[int, ...], sampled: bool) -> dict[str, Any]:
+    fields = _FIELDS | _SAMPLED_FIELDS if sampled else _FIELDS
+    return {name: np.empty(shape + inner, dtype) for name, (dtype, inner) in fields.items()}
+
+
+def _arrays_of(casts: Casts, shape: tuple[int, ...], sampled: bool) -> dict[str, Any]:
+    """The arrays of `out`, or a ValueError that names the one that cannot take answers of this shape."""
+    if not isinstance(casts, Casts):
+        raise ValueError(f"out: expected Casts, got {type(casts).__name__}")
+    arrays = {}
+    for name, (dtype, inner) in (_FIELDS | _SAMPLED_FIELDS if sampled else _FIELDS).items():
+        array = getattr(casts, name)
+        fits = isinstance(array, np.ndarray) and array.dtype == dtype and array.shape == shape + inner
+        if not (fits and array.flags.c_contiguous and array.flags.writeable):
+            got = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+            raise ValueError(
+                f"out.{name}: expected a writeable C-contiguous array of {np.dtype(dtype)} of shape {shape + inner}, "
+                f"got {got}" + ("" if not fits else ", not writeable or not C-contiguous")
+            )
+        arrays[name] = array
+    return arrays

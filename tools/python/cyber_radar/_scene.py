@@ -1,0 +1,589 @@
+"""Scenes and casts."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import inspect
+import os
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Literal, NamedTuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _engine
+from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
+from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
+
+Mode = Literal["contact", "sampled", "reference"]
+Path = Union[str, "os.PathLike[str]"]
+
+_ALL_BITS = MOST_MASK
+_MOST_ID = 2**32 - 2
+
+
+class RoundingWarning(UserWarning):
+    """Vertices were rounded to float32, the engine's precision for meshes."""
+
+
+class MeshFileWarning(UserWarning):
+    """Something in a mesh file was left out."""
+
+
+class ValidationWarning(UserWarning):
+    """A message of a Vulkan validation layer."""
+
+
+class Objects(NamedTuple):
+    """All objects of a scene, in the order of their ids."""
+
+    ids: npt.NDArray[np.int64]  #: (n,)
+    meshes: npt.NDArray[np.int64]  #: (n,)
+    transforms: npt.NDArray[np.float64]  #: (n, 4, 4) world from mesh
+    masks: npt.NDArray[np.uint32]  #: (n,)
+
+
+def read_mesh(file: Path) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+    """Reads a mesh file of any kind that assimp reads, as the program cyber-radar does.
+
+    "engine.glb" is the whole file as one mesh; "engine.glb#3" is node 3 of those that have triangles, in its own frame;
+    "engine.glb#name" is the only node of that name.
+
+    Returns vertices (N, 3) and faces (M, 3). Raises ValueError if the file is missing, broken, or has no triangle.
+    """
+    (vertices, faces), notes = _engine.read_mesh(os.fspath(file))
+    _warn_of(notes, MeshFileWarning)
+    return vertices, faces
+
+
+class Scene:
+    """Meshes, and objects that place them: what casts may touch.
+
+    device: what answers casts in the modes "contact" and "sampled". None: the best Vulkan device; a number: that device
+        of devices(); a list of numbers, or "all": these devices share the work. It is opened by the first cast that
+        needs it. Mode "reference" needs none.
+    threads: of the exact search on the CPU; 0: one for each core.
+    cpu_batch: in mode "contact", fewer casts than this at once are answered on the CPU, with the same answers. 0: none.
+        None: 16, or all if the device is a CPU.
+
+    Lengths are in any one unit. Meshes are triangle soups seen from both sides: they need not be closed or convex. A
+    scene pickles as its recipe: meshes, objects, names and these settings. Any thread may use a scene; calls wait for
+    each other.
+
+    >>> scene = Scene()
+    >>> plate = scene.add_mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    >>> scene.add(plate)
+    0
+    >>> above = np.eye(4)
+    >>> above[2, 3] = 2
+    >>> scene.cast(plate, above, [[0, 0, -5], [0, 0, -1]], mode="reference").distance
+    array([ 2., inf])
+    """
+
+    def __init__(
+        self,
+        *,
+        device: int | Literal["all"] | Sequence[int] | None = None,
+        threads: int = 0,
+        cpu_batch: int | None = None,
+    ) -> None:
+        self._settings = {"device": device, "threads": threads, "cpu_batch": cpu_batch}
+        single, pool = _device_choice(device)
+        self._engine = _engine.Scene(
+            device=single,
+            pool=pool,
+            cpu_batch=None if cpu_batch is None else _one_whole_number(cpu_batch, "cpu_batch", 0, 2**31),
+            threads=_one_whole_number(threads, "threads", 0, 4096),
+        )
+        self._names: dict[int, str] = {}
+        self._lock = threading.Lock()
+        self._user: int | None = None  # the thread that holds the lock
+        self._worker: concurrent.futures.ThreadPoolExecutor | None = None
+        self._process = os.getpid()  # which the worker and what is queued belong to
+        self._queued: list[concurrent.futures.Future[Casts]] = []
+
+    # ------------------------------------------------------------------------------------------------------ contents
+
+    def add_mesh(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> int:
+        """Adds a mesh and returns its id.
+
+        vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that changes any.
+        faces: (M, 3), whole numbers: the vertices of each triangle.
+        """
+        placed = _vertices(vertices)
+        corners = whole_numbers(faces, "faces", np.uint32, 0, max(len(placed) - 1, 0), (3,))
+        if corners.ndim != 2 or len(corners) == 0 or len(placed) == 0:
+            raise ValueError(f"faces: expected shape (M, 3) with a triangle at least, got shape {corners.shape}")
+        with self._exclusive() as engine:
+            return engine.add_mesh(placed, corners)
+
+    def load_mesh(self, file: Path) -> int:
+        """Adds the mesh that read_mesh(file) reads and returns its id."""
+        return self.add_mesh(*read_mesh(file))
+
+    def load_assembly(
+        self, file: Path, transform: npt.ArrayLike | None = None, *, mask: int = _ALL_BITS
+    ) -> npt.NDArray[np.int64]:
+        """Adds one object for each node of a mesh file that has triangles, placed by the nodes' transforms.
+
+        transform: (4, 4) world from file. Returns the objects' ids, (n,), in the file's depth-first order. `names` has
+        the nodes' names; nodes that place the same triangles share a mesh.
+        """
+        meshes, names, placed, transforms, notes = _engine.read_assembly(os.fspath(file))
+        _warn_of(notes, MeshFileWarning)
+        if transform is not None:
+            transforms = _regular(_poses(transform, "transform"), "transform") @ transforms
+        bits = np.full(len(placed), _one_whole_number(mask, "mask", LEAST_MASK, MOST_MASK), np.uint32)
+        with self._exclusive() as engine:
+            ids = [engine.add_mesh(vertices, faces) for vertices, faces in meshes]
+            objects = engine.add(np.array(ids, np.uint32)[placed], transforms, bits)
+            self._names.update(zip(objects.tolist(), names))
+            return objects
+
+    def remove_mesh(self, mesh: int) -> None:
+        """Removes a mesh that no object uses."""
+        number = self._known_mesh(mesh)
+        with self._exclusive() as engine:
+            if (engine.objects()[1] == number).any():
+                raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
+            engine.remove_mesh(number)
+
+    def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+        """A copy of a mesh: vertices (N, 3), faces (M, 3)."""
+        return self._engine.mesh(self._known_mesh(mesh))
+
+    @property
+    def meshes(self) -> list[int]:
+        """The ids of all meshes."""
+        return self._engine.mesh_ids()
+
+    def add(
+        self, mesh: npt.ArrayLike, transforms: npt.ArrayLike | None = None, *, mask: npt.ArrayLike = _ALL_BITS
+    ) -> Any:
+        """Adds objects, which place meshes, and returns their ids: (...), or a number for a single one.
+
+        mesh: (...) ids. transforms: (..., 4, 4) world from mesh, any invertible affine matrices; None: the identity.
+        mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
+        """
+        meshes = self._known_meshes(mesh)
+        matrices = np.eye(4) if transforms is None else _regular(_poses(transforms, "transforms"), "transforms")
+        masks = whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK)
+        shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
+        with self._exclusive() as engine:
+            ids = engine.add(
+                np.broadcast_to(meshes, shape).ravel(),
+                np.broadcast_to(matrices, (*shape, 4, 4)).reshape(-1, 4, 4),
+                np.broadcast_to(masks, shape).ravel(),
+            ).reshape(shape)
+        return ids if shape else int(ids)
+
+    def set_transforms(self, objects: npt.ArrayLike, transforms: npt.ArrayLike) -> None:
+        """Moves objects: ids (...), transforms (..., 4, 4) world from mesh; leading shapes broadcast."""
+        matrices = _regular(_poses(transforms, "transforms"), "transforms")
+        with self._exclusive() as engine:
+            ids = self._known_objects(objects, "objects")
+            shape = common_shape({"objects": (ids, 0), "transforms": (matrices, 2)})
+            engine.set_transforms(
+                np.broadcast_to(ids, shape).astype(np.uint32).ravel(),
+                np.broadcast_to(matrices, (*shape, 4, 4)).reshape(-1, 4, 4),
+            )
+
+    def remove(self, objects: npt.ArrayLike) -> None:
+        """Removes objects: ids (...). New objects get the least free ids."""
+        with self._exclusive() as engine:
+            ids = np.unique(self._known_objects(objects, "objects"))
+            engine.remove(ids.astype(np.uint32))
+            for number in ids.tolist():
+                self._names.pop(number, None)
+
+    def objects(self) -> Objects:
+        """Ids, meshes, transforms and masks of all objects: copies."""
+        return Objects(*self._engine.objects())
+
+    @property
+    def names(self) -> dict[int, str]:
+        """Names of the objects that have one: a copy."""
+        return dict(self._names)
+
+    def __len__(self) -> int:
+        return len(self._engine.object_ids())
+
+    def __repr__(self) -> str:
+        return f"<Scene of {len(self)} objects, {len(self.meshes)} meshes>"
+
+    # --------------------------------------------------------------------------------------------------------- casts
+
+    def cast(
+        self,
+        mesh: npt.ArrayLike,
+        poses: npt.ArrayLike | None,
+        displacements: npt.ArrayLike,
+        *,
+        mode: Mode = "contact",
+        distances: npt.ArrayLike | None = None,
+        exclude: npt.ArrayLike = (),
+        mask: npt.ArrayLike = _ALL_BITS,
+        any_hit: bool = False,
+        ignore_leaving: bool = False,
+        skip_overlapping: bool = False,
+        slack: float | None = None,
+        clearance: float = 0.0,
+        tolerance: float | None = None,
+        hits: int | Literal["all"] = 1,
+        resolution: int = 0,
+        out: Casts | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Casts:
+        """How far can a mesh move before its surface first touches an object? Any number of casts at once.
+
+        mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
+        poses: (..., 4, 4) world from mesh at the start, affine; None: the identity.
+        displacements: (..., 3) the way to go, world units. A zero asks whether the surfaces meet at the start.
+        Leading shapes broadcast together, also those of the next three; the result has the common shape.
+
+        distances: (...) how far to go; displacements then give the direction alone.
+        exclude: (..., K) ids of objects to ignore; -1 is none.
+        mask: (...) 32 bits; an object takes part if its mask shares one.
+
+        mode: "contact", exact, on device or CPU; "sampled", the paper's depth pictures, an upper bound; "reference",
+            exact, on the CPU alone. "contact" and "reference" give the same numbers.
+        any_hit: ask only whether there is a contact; cheaper if there is one.
+        ignore_leaving: count only what blocks: the mesh may leave what it rests on, or slide along it.
+        skip_overlapping: leave out objects whose surfaces cross the mesh's at the start; the answer lists them.
+        slack: with these two: how far rounding may have let surfaces sink into each other, world units.
+        clearance: surfaces are in contact where their distance is at most this, world units.
+        tolerance: with a clearance: how narrow hi - lo is to be, world units.
+        hits: list the first contacts with this many nearest objects, one each; "all" for all in reach.
+        resolution: mode "sampled": pixels along the picture's longer side, up to 2048; 0: chosen.
+
+        out: Casts of this shape, whose arrays are used again.
+        progress: is called with the numbers of casts done and asked for, a few times a second. What it raises ends the
+            cast, as Ctrl-C does; `out` then has some of the answers.
+
+        A cast whose own numbers are wrong, such as a NaN in its pose, has status INVALID and a reason, and the others
+        are answered. Raises ValueError for arguments of a wrong type or shape, and Error if no device is usable.
+        """
+        options = _options(
+            mode, any_hit, ignore_leaving, skip_overlapping, slack, clearance, tolerance, hits, resolution
+        )
+        batch = self._batch(mesh, poses, displacements, distances, exclude, mask, options, out)
+        total = _count(batch.shape)
+        after_chunk = None if progress is None else lambda done: progress(done, total)
+        with self._exclusive() as engine:
+            return self._run(engine, batch, after_chunk)
+
+    def cast_async(
+        self, mesh: npt.ArrayLike, poses: npt.ArrayLike | None, displacements: npt.ArrayLike, **options: Any
+    ) -> CastHandle:
+        """Begins a cast on another thread and returns at once; arguments as cast(). They are copied, except `out`.
+
+        Casts of one scene run one after the other. What changes the scene waits until those begun before are done.
+        """
+        bound = inspect.signature(self.cast).bind(mesh, poses, displacements, **options)
+        bound.apply_defaults()
+        given = bound.arguments
+        chosen = _options(**{name: given[name] for name in inspect.signature(_options).parameters})
+        per_cast = {name: given[name] for name in ("mesh", "poses", "displacements", "distances", "exclude", "mask")}
+        batch = self._batch(**per_cast, options=chosen, out=given["out"], copy=True)
+        handle = CastHandle(_count(batch.shape), given["progress"])
+
+        def work() -> Casts:
+            with self._exclusive(settle=False) as engine:
+                return self._run(engine, batch, handle._after_chunk)
+
+        with self._exclusive(settle=False):
+            if self._worker is None or self._process != os.getpid():  # threads do not follow a fork
+                self._worker = concurrent.futures.ThreadPoolExecutor(1, "cyber-radar-cast")
+                self._process, self._queued = os.getpid(), []
+            self._queued = [future for future in self._queued if not future.done()]
+            handle._future = self._worker.submit(work)
+            self._queued.append(handle._future)
+        return handle
+
+    @property
+    def device_names(self) -> list[str]:
+        """The devices that have been opened for this scene."""
+        return self._engine.device_names()
+
+    # ------------------------------------------------------------------------------------------------------- pickling
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._exclusive() as engine:
+            return {
+                "settings": self._settings,
+                "meshes": {mesh: engine.mesh(mesh) for mesh in engine.mesh_ids()},
+                "objects": engine.objects(),
+                "names": self._names,
+            }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state["settings"])  # type: ignore[misc]
+        ids, meshes, transforms, masks = state["objects"]
+        triangle = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32)
+        # A new item gets the least free id: what is missing is added, too, and removed again.
+        last_mesh = max(state["meshes"], default=-1)
+        for mesh in range(last_mesh + 1):
+            self._engine.add_mesh(*state["meshes"].get(mesh, triangle))
+        if len(ids):
+            count = int(ids[-1]) + 1
+            rows = np.zeros(count, np.intp)
+            rows[ids] = np.arange(len(ids))
+            self._engine.add(meshes[rows].astype(np.uint32), transforms[rows], masks[rows])
+            self._engine.remove(np.setdiff1d(np.arange(count), ids).astype(np.uint32))
+        for mesh in set(range(last_mesh + 1)) - set(state["meshes"]):
+            self._engine.remove_mesh(mesh)
+        self._names = dict(state["names"])
+
+    # ---------------------------------------------------------------------------------------------------------- inner
+
+    @contextlib.contextmanager
+    def _exclusive(self, settle: bool = True) -> Iterator[_engine.Scene]:
+        """The engine's scene, for this thread alone; `settle`: once all casts begun before are done."""
+        if self._user == threading.get_ident():
+            raise RuntimeError("a progress callback cannot use the scene that is being cast")
+        if settle and self._process == os.getpid():
+            concurrent.futures.wait(self._queued)
+        with self._lock:
+            self._user = threading.get_ident()
+            try:
+                yield self._engine
+            finally:
+                self._user = None
+
+    def _batch(
+        self,
+        mesh: npt.ArrayLike,
+        poses: npt.ArrayLike | None,
+        displacements: npt.ArrayLike,
+        distances: npt.ArrayLike | None,
+        exclude: npt.ArrayLike,
+        mask: npt.ArrayLike,
+        options: dict[str, Any],
+        out: Casts | None,
+        copy: bool = False,
+    ) -> _Batch:
+        arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
+            "mesh": (self._known_meshes(mesh), 0),
+            "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
+            "displacements": (reals(displacements, "displacements", (3,)), 1),
+            "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
+            "exclude": (self._known_objects(exclude, "exclude", (-1,)), 1),
+        }
+        if distances is not None:
+            arrays["distances"] = (reals(distances, "distances"), 0)
+        shape = common_shape(arrays)
+        arguments: dict[str, Any] = {"distances": None}
+        for name, (array, inner) in arrays.items():
+            own = array.copy() if copy else array
+            arguments[name] = np.broadcast_to(own, shape + own.shape[own.ndim - inner :])
+        sampled = options["sampled"]
+        results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
+        return _Batch(shape, arguments, options, results, out)
+
+    def _run(
+        self,
+        engine: _engine.Scene,
+        batch: _Batch,
+        after_chunk: Callable[[int], object] | None,
+    ) -> Casts:
+        options = batch.options
+        try:
+            hit_offsets, hit_arrays, overlapping_offsets, overlapping, reasons = engine.cast(
+                batch.shape,
+                batch.arguments,
+                options,
+                batch.results,
+                lambda count: _new_arrays((count,), False),
+                after_chunk,
+            )
+        finally:
+            _warn_of(_engine.take_validation_messages(), ValidationWarning)
+        casts = Casts(**batch.results) if batch.out is None else batch.out
+        if not options["sampled"]:
+            casts.paper_min_l = casts.resolution = None
+        casts.hits = casts.overlapping = None
+        casts.reasons = reasons
+        if options["hits"] > 1:
+            casts.hits = Hits(**hit_arrays, offsets=hit_offsets, of_shape=batch.shape)
+        if options["skip_overlapping"]:
+            casts.overlapping = Overlapping(overlapping, overlapping_offsets, batch.shape)
+        return casts
+
+    def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
+        ids = whole_numbers(mesh, "mesh", np.uint32, 0, _MOST_ID)
+        unknown = np.setdiff1d(ids, self._engine.mesh_ids())
+        if unknown.size:
+            raise ValueError(f"mesh: expected ids of meshes of the scene, got {unknown[0]}")
+        return ids
+
+    def _known_mesh(self, mesh: int) -> int:
+        return int(self._known_meshes(_one_whole_number(mesh, "mesh", 0, _MOST_ID)))
+
+    def _known_objects(self, objects: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.NDArray[np.int64]:
+        """`inner` is given for `exclude`, where -1 is none."""
+        ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, _MOST_ID, inner)
+        if ids.size:
+            unknown = np.setdiff1d(ids, self._engine.object_ids())
+            unknown = unknown[unknown >= 0]
+            if unknown.size:
+                raise ValueError(f"{name}: expected ids of objects of the scene, got {unknown[0]}")
+        return ids
+
+
+class CastHandle:
+    """A cast that runs on another thread."""
+
+    def __init__(self, total: int, progress: Callable[[int, int], object] | None) -> None:
+        self._progress = (0, total)
+        self._callback = progress
+        self._cancelled = threading.Event()
+        self._future: concurrent.futures.Future[Casts]
+
+    def result(self, timeout: float | None = None) -> Casts:
+        """Waits, at most `timeout` seconds, and returns the answers, or raises what ended the cast:
+        concurrent.futures.CancelledError after cancel(), concurrent.futures.TimeoutError if it is not done in time."""
+        return self._future.result(timeout)
+
+    def done(self) -> bool:
+        """Whether result() returns at once."""
+        return self._future.done()
+
+    def cancel(self) -> None:
+        """Ends the cast soon; some of `out` is then written."""
+        self._cancelled.set()
+        self._future.cancel()
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """How many casts are done, of how many."""
+        return self._progress
+
+    def _after_chunk(self, done: int) -> None:
+        self._progress = (done, self._progress[1])
+        if self._callback is not None:
+            self._callback(*self._progress)
+        if self._cancelled.is_set():
+            raise concurrent.futures.CancelledError
+
+
+class _Batch(NamedTuple):
+    shape: tuple[int, ...]
+    arguments: dict[str, Any]  # of that leading shape
+    options: dict[str, Any]
+    results: dict[str, Any]
+    out: Casts | None  # whose arrays `results` are
+
+
+def _options(
+    mode: Mode,
+    any_hit: bool,
+    ignore_leaving: bool,
+    skip_overlapping: bool,
+    slack: float | None,
+    clearance: float,
+    tolerance: float | None,
+    hits: int | str,
+    resolution: int,
+) -> dict[str, Any]:
+    if mode not in ("contact", "sampled", "reference"):
+        raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
+    count = _one_whole_number(
+        _engine.ALL_HITS if isinstance(hits, str) and hits == "all" else hits, "hits", 1, _engine.ALL_HITS
+    )
+    least = _length(clearance, "clearance") or 0.0
+    if count > 1 and any_hit:
+        raise ValueError(f"hits: expected 1 with any_hit, got {hits}")
+    if mode == "sampled" and (ignore_leaving or skip_overlapping or count > 1 or least > 0):
+        raise ValueError(
+            'mode: expected "contact" or "reference" with ignore_leaving, skip_overlapping, clearance or several hits, '
+            'got "sampled"'
+        )
+    return {
+        "sampled": mode == "sampled",
+        "on_cpu": mode == "reference",
+        "any_hit": bool(any_hit),
+        "ignore_leaving": bool(ignore_leaving),
+        "skip_overlapping": bool(skip_overlapping),
+        "slack": _length(slack, "slack"),
+        "clearance": least,
+        "tolerance": _length(tolerance, "tolerance"),
+        "hits": count,
+        "resolution": _one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION),
+    }
+
+
+def _length(value: float | None, name: str) -> float | None:
+    if value is None:
+        return None
+    number = reals(value, name)
+    if number.ndim or not (np.isfinite(number) and number >= 0):
+        raise ValueError(f"{name}: expected a finite number of 0 or more, got {value}")
+    return float(number)
+
+
+def _one_whole_number(value: Any, name: str, least: int, most: int) -> int:
+    number = whole_numbers(value, name, np.int64, least, most)
+    if number.ndim:
+        raise ValueError(f"{name}: expected one whole number, got shape {number.shape}")
+    return int(number)
+
+
+def _device_choice(device: Any) -> tuple[int | None, list[int] | None]:
+    if device is None:
+        return None, None
+    if isinstance(device, str):
+        if device != "all":
+            raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
+        return None, []
+    numbers = whole_numbers(device, "device", np.int64, 0, _MOST_ID)
+    if numbers.ndim > 1 or numbers.size == 0:
+        raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
+    return (int(numbers), None) if numbers.ndim == 0 else (None, numbers.tolist())
+
+
+def _vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
+    given = reals(value, "vertices", (3,))
+    if given.ndim != 2:
+        raise ValueError(f"vertices: expected shape (N, 3), got shape {given.shape}")
+    with np.errstate(over="ignore"):
+        rounded = given.astype(np.float32)
+    if not np.isfinite(rounded).all():
+        row = int(np.argwhere(~np.isfinite(rounded))[0][0])
+        raise ValueError(f"vertices[{row}]: expected 3 finite numbers that float32 can hold, got {given[row]}")
+    error = float(np.abs(rounded - given).max(initial=0.0))
+    if error > 0:
+        _warn(
+            f"vertices are rounded to float32, by up to {error:.2g}; pass float32 to say that this is meant",
+            RoundingWarning,
+        )
+    return rounded
+
+
+def _regular(matrices: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.float64]:
+    """Refuses a matrix that is singular or not finite."""
+    wrong = _engine.first_singular(matrices)
+    if wrong is not None:
+        at, why = wrong
+        index = tuple(int(k) for k in np.unravel_index(at, matrices.shape[:-2])) if matrices.ndim > 2 else ()
+        raise ValueError(f"{name}{list(index) or ''}: {why}")
+    return matrices
+
+
+def _warn(note: str, category: type[Warning]) -> None:
+    """Warns at the line that called the package."""
+    level, frame = 1, inspect.currentframe()
+    while frame is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(note, category, stacklevel=level)
+
+
+def _warn_of(notes: list[str], category: type[Warning]) -> None:
+    for note in notes:
+        _warn(note, category)
+
+
+def _count(shape: tuple[int, ...]) -> int:
+    return int(np.prod(shape, dtype=np.int64))

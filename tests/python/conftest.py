@@ -39,7 +39,20 @@ def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
 
 
 def same_answers(a: cyber_radar.Casts, b: cyber_radar.Casts, but: tuple[str, ...] = ()) -> bool:
-    names = {"distance", "lo", "hi", "fraction", "status", "tier", "detected", "object", "triangles", "point", "normal"}
+    names = {
+        "distance",
+        "lo",
+        "hi",
+        "fraction",
+        "status",
+        "tier",
+        "detected",
+        "object",
+        "triangles",
+        "features",
+        "point",
+        "normal",
+    }
     return all(same_bits(getattr(a, name), getattr(b, name)) for name in names - set(but))
 
 

@@ -61,6 +61,8 @@ def test_random_casts_have_the_bits_of_the_program(tmp_path):
     for key, array in (("point", casts.point), ("normal", casts.normal)):
         expected = np.array([[np.nan] * 3 if answer[key] is None else answer[key] for answer in answers])
         np.testing.assert_array_equal(expected, array)
+    for key, array in (("feature_a", casts.features[:, 0]), ("feature_b", casts.features[:, 1])):
+        assert [answer[key] for answer in answers] == [(None, "vertex", "edge", "face")[feature] for feature in array]
     names = [cyber_radar.Status(status).name.lower() for status in casts.status]
     assert names == [answer["status"] for answer in answers]
     assert 0.2 < free.mean() < 0.8

@@ -162,6 +162,8 @@ void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
   object[i] = idOf(result.object);
   triangles[2 * i] = idOf(result.triA);
   triangles[2 * i + 1] = idOf(result.triB);
+  features[2 * i] = static_cast<uint8_t>(result.featureA);
+  features[2 * i + 1] = static_cast<uint8_t>(result.featureB);
   std::copy(result.point.begin(), result.point.end(), point + 3 * i);
   std::copy(result.normal.begin(), result.normal.end(), normal + 3 * i);
   if (paperMinL) paperMinL[i] = result.paperMinL;

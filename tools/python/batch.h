@@ -41,6 +41,7 @@ struct BatchOutput {
   uint8_t *status = nullptr, *tier = nullptr;
   int8_t* detected = nullptr;                       ///< 0, 1; -1: not looked
   int64_t *object = nullptr, *triangles = nullptr;  ///< triangles: 2
+  uint8_t* features = nullptr;                      ///< 2
   double *point = nullptr, *normal = nullptr;       ///< 3 each
   double* paperMinL = nullptr;                      ///< null where not wanted
   uint32_t* resolution = nullptr;                   ///< null where not wanted

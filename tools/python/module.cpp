@@ -174,6 +174,7 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
   to.detected = output<int8_t>(arrays, "detected", count);
   to.object = output<int64_t>(arrays, "object", count);
   to.triangles = output<int64_t>(arrays, "triangles", 2 * count);
+  to.features = output<uint8_t>(arrays, "features", 2 * count);
   to.point = output<double>(arrays, "point", 3 * count);
   to.normal = output<double>(arrays, "normal", 3 * count);
   if (arrays.contains("paper_min_l")) to.paperMinL = output<double>(arrays, "paper_min_l", count);

@@ -23,7 +23,7 @@ import platform
 import numpy as _np
 
 from . import _engine
-from ._casts import Casts, Hits, Overlapping, Status, Tier
+from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
 from ._engine import Error
 from ._scene import (
     CastHandle,
@@ -41,6 +41,7 @@ __all__ = [
     "Casts",
     "DeviceInfo",
     "Error",
+    "Feature",
     "Hits",
     "MeshFileWarning",
     "Objects",

@@ -29,6 +29,15 @@ class Tier(enum.IntEnum):
     REFERENCE = 3
 
 
+class Feature(enum.IntEnum):
+    """A part of a triangle: the values of Casts.features. Each is the number of its corners."""
+
+    NONE = 0
+    VERTEX = 1
+    EDGE = 2
+    FACE = 3
+
+
 # Of each array: dtype, and the length of its last dimension if it has one beside the leading shape.
 _FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
     "distance": (np.float64, ()),
@@ -40,6 +49,7 @@ _FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
     "detected": (np.int8, ()),
     "object": (np.int64, ()),
     "triangles": (np.int64, (2,)),
+    "features": (np.uint8, (2,)),
     "point": (np.float64, (3,)),
     "normal": (np.float64, (3,)),
 }
@@ -54,7 +64,7 @@ class Casts:
     """Answers as arrays, each of the casts' leading shape (...).
 
     Distances are in world units along the displacement. A number that an answer does not have is NaN, an id -1; a
-    distance is infinite if there is no contact. 107 bytes a cast, and 12 more in mode "sampled".
+    distance is infinite if there is no contact. 109 bytes a cast, and 12 more in mode "sampled".
     """
 
     distance: npt.NDArray[np.float64]
@@ -76,6 +86,8 @@ class Casts:
     """(...) the object touched; among equal distances the least."""
     triangles: npt.NDArray[np.int64]
     """(..., 2) the triangles that touch: the moving mesh's, the object's."""
+    features: npt.NDArray[np.uint8]
+    """(..., 2) values of Feature: which parts of the two triangles touch, the smallest that contain every point."""
     point: npt.NDArray[np.float64]
     """(..., 3) where they touch, in world units, at the moment of contact."""
     normal: npt.NDArray[np.float64]

@@ -1,0 +1,121 @@
+"""The examples do what they say, on small inputs."""
+
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import zlib
+
+import numpy as np
+
+EXAMPLES = pathlib.Path(__file__).parents[2] / "tools/examples"
+sys.path.insert(0, str(EXAMPLES))
+
+import burr  # noqa: E402
+import disassembly  # noqa: E402
+import picture  # noqa: E402
+from test_scene import ENGINE  # noqa: E402
+
+
+def run(example: str, *arguments) -> str:
+    done = subprocess.run(
+        [sys.executable, "-W", "error", EXAMPLES / example, *map(str, arguments)], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def chunks(file: pathlib.Path) -> list[tuple[bytes, bytes]]:
+    """Those of a PNG file, with their checksums compared."""
+    content, at, found = file.read_bytes(), 8, []
+    while at < len(content):
+        (length,) = struct.unpack(">I", content[at : at + 4])
+        kind, data = content[at + 4 : at + 8], content[at + 8 : at + 8 + length]
+        assert zlib.crc32(kind + data) == struct.unpack(">I", content[at + 8 + length : at + 12 + length])[0]
+        found.append((kind, data))
+        at += 12 + length
+    return found
+
+
+def pixels(file: pathlib.Path) -> np.ndarray:
+    """A still picture as png.write writes it."""
+    found = dict(chunks(file))
+    width, height = struct.unpack(">II", found[b"IHDR"][:8])
+    rows = np.frombuffer(zlib.decompress(found[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
+    assert (rows[:, 0] == 2).all()
+    return np.cumsum(rows[:, 1:], axis=0, dtype=np.uint8).reshape(height, width, 3)
+
+
+def test_a_picture_shows_the_nearest_triangle_where_it_is():
+    view = np.eye(3)  # from above
+    square = np.array([[[0, 0, 0], [8, 0, 0], [8, 8, 0]], [[0, 0, 0], [8, 8, 0], [0, 8, 0]]], float)
+    above = np.array([[[0, 0, 1], [4, 0, 1], [0, 4, 1]]], float)
+    camera = picture.Camera(view, square.reshape(-1, 3), (80, 80), margin=0)
+    shown = picture.draw(camera, np.concatenate([above, square]), np.array([[1, 0, 0], [0, 1, 0], [0, 1, 0]]))
+    assert (shown[..., 2] == 0).all()  # the square covers all
+    red = shown[..., 0] > 0
+    # Pixel centres in the corner triangle, which the picture shows at its lower left.
+    x, y = np.meshgrid(np.arange(80) + 0.5, 80 - (np.arange(80) + 0.5))
+    assert (red == (x + y < 40)).sum() >= 80 * 80 - 80 and 700 < red.sum() < 900
+
+
+def test_the_blocking_graph_of_a_burr_is_that_of_its_cubes(tmp_path):
+    text = run("disassembly.py", "--out", tmp_path, "--frames", 5, "--size", 96, 80, "--mode", "reference")
+    told = json.loads((tmp_path / "graph.json").read_text())
+    expected = burr.blocking(burr.pieces())
+    for direction, blocked_by in zip(told["directions"], told["blocked_by"]):
+        d = (burr.AXES == direction).all(axis=1).argmax()
+        assert blocked_by == [np.flatnonzero(row).tolist() for row in expected[d]]
+    assert told["interpenetrating"] == [] and told["locked"] == []
+    assert [step["parts"] for step in told["steps"]][0] == [0]
+    free = [i for i in range(6) if any(not blocked_by[i] for blocked_by in told["blocked_by"])]
+    assert free == [0] and len(told["steps"]) == 5
+    assert text.startswith("6 parts, 0 pairs interpenetrate, 5 steps\n  part 0: along")
+
+    frames = sorted((tmp_path / "frames").iterdir())
+    shown = [pixels(frame) for frame in frames]
+    assert len(frames) == 5 and shown[0].shape == (80, 96, 3)
+    covered = [(frame != 255).any(axis=-1).sum() for frame in shown]
+    assert 200 < covered[0] < covered[-1]  # apart, more of the pieces is seen
+    kinds = [kind for kind, _ in chunks(tmp_path / "film.png")]
+    assert kinds.count(b"fcTL") == 5 and kinds.count(b"fdAT") == 4 and kinds[-1] == b"IEND"
+
+
+def test_pieces_of_the_burr_are_closed_and_fill_the_middle():
+    parts = burr.pieces()
+    cubes = np.concatenate(parts)
+    assert len(np.unique(cubes, axis=0)) == len(cubes) == 104
+    for part in parts:
+        vertices, faces = burr.surface(part)
+        a, b, c = vertices[faces].transpose(1, 0, 2)
+        assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6 == len(part)  # the volume, so it is wound outwards
+        edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        there, count = np.unique(edges, axis=0, return_counts=True)
+        back = {tuple(edge): n for edge, n in zip(there[:, ::-1].tolist(), count.tolist())}
+        assert all(back[tuple(edge)] == n for edge, n in zip(there.tolist(), count.tolist()))
+
+
+def test_groups_that_only_move_together_are_found_and_what_is_locked_is_listed():
+    # 0 and 1 block each other everywhere; 2 blocks both in all directions but the first; 2 itself is blocked by 0.
+    blocked = np.ones((2, 3, 3), bool)
+    blocked[:, range(3), range(3)] = False
+    blocked[0, :2, 2] = False
+    graph = disassembly.Graph(np.eye(3)[:2], blocked, np.zeros((2, 3)), np.zeros((3, 3), bool))
+    steps, locked = disassembly.removal_order(graph)
+    assert [(step.parts, step.direction, step.taken_from) for step in steps] == [([0, 1], 0, [2])]
+    assert locked == [[0, 1]]
+
+
+def test_an_engine_comes_apart_and_what_interpenetrates_is_listed(tmp_path):
+    run("disassembly.py", ENGINE, "--out", tmp_path, "--frames", 2, "--size", 64, 48)
+    told = json.loads((tmp_path / "graph.json").read_text())
+    assert len(told["parts"]) == 67 and len(told["interpenetrating"]) == 80
+    moved = [part for step in told["steps"] for part in step["parts"]]
+    assert len(told["steps"]) > 50 and len(set(moved)) > 50
+    crossing = {tuple(pair) for pair in told["interpenetrating"]}
+    for direction in told["blocked_by"]:
+        for part, others in enumerate(direction):
+            assert part not in others
+            assert not any((min(part, k), max(part, k)) in crossing for k in others)
+    assert all(len(group) > 1 for group in told["locked"])

@@ -85,7 +85,14 @@ def test_cast_async_gives_the_same_answers_and_changes_wait_for_it(boxes):
     expected = scene.cast(mesh, poses, displacements, mode="reference")
     gate = threading.Event()
     given = poses.copy()
-    first = scene.cast_async(mesh, given, displacements, mode="reference", progress=lambda *_: gate.wait())
+    begun = threading.Event()
+
+    def hold(*_):
+        begun.set()
+        gate.wait()
+
+    first = scene.cast_async(mesh, given, displacements, mode="reference", progress=hold)
+    begun.wait()
     second = scene.cast_async(mesh, given, displacements, mode="reference")
     given[:] = 0  # the arguments were copied
     assert not first.done() and not second.done()
@@ -108,8 +115,8 @@ def test_a_handle_cancels_what_runs_and_what_waits(boxes):
         gate.wait()
 
     running = scene.cast_async(mesh, poses, displacements, mode="reference", progress=hold)
-    waiting = scene.cast_async(mesh, poses, displacements, mode="reference")
     begun.wait()
+    waiting = scene.cast_async(mesh, poses, displacements, mode="reference")
     with pytest.raises(concurrent.futures.TimeoutError):
         running.result(timeout=0)
     waiting.cancel()

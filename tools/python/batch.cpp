@@ -14,7 +14,7 @@ using Clock = std::chrono::steady_clock;
 // Between two chunks a signal is seen and progress reported. The first is small, because a query may take anything from
 // a microsecond to a second; each is then as large as fits into the time. Answers do not depend on it.
 constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 16, kGrowth = 8;
-constexpr double kChunkSeconds = 0.1;
+constexpr double kChunkSeconds = 0.2;
 
 size_t nextChunk(size_t chunk, double seconds) {
   const double wanted = double(chunk) * kChunkSeconds / std::max(seconds, 1e-9);

@@ -100,6 +100,7 @@ class Scene:
         )
         self._names: dict[int, str] = {}
         self._lock = threading.Lock()
+        self._queueing = threading.Lock()  # of the worker and what is queued; never held for long
         self._user: int | None = None  # the thread that holds the lock
         self._worker: concurrent.futures.ThreadPoolExecutor | None = None
         self._process = os.getpid()  # which the worker and what is queued belong to
@@ -294,7 +295,8 @@ class Scene:
             with self._exclusive(settle=False) as engine:
                 return self._run(engine, batch, handle._after_chunk)
 
-        with self._exclusive(settle=False):
+        self._refuse_callbacks()
+        with self._queueing:
             if self._worker is None or self._process != os.getpid():  # threads do not follow a fork
                 self._worker = concurrent.futures.ThreadPoolExecutor(1, "cyber-radar-cast")
                 self._process, self._queued = os.getpid(), []
@@ -342,16 +344,21 @@ class Scene:
     @contextlib.contextmanager
     def _exclusive(self, settle: bool = True) -> Iterator[_engine.Scene]:
         """The engine's scene, for this thread alone; `settle`: once all casts begun before are done."""
-        if self._user == threading.get_ident():
-            raise RuntimeError("a progress callback cannot use the scene that is being cast")
+        self._refuse_callbacks()
         if settle and self._process == os.getpid():
-            concurrent.futures.wait(self._queued)
+            with self._queueing:
+                queued = list(self._queued)
+            concurrent.futures.wait(queued)
         with self._lock:
             self._user = threading.get_ident()
             try:
                 yield self._engine
             finally:
                 self._user = None
+
+    def _refuse_callbacks(self) -> None:
+        if self._user == threading.get_ident():
+            raise RuntimeError("a progress callback cannot use the scene that is being cast")
 
     def _batch(
         self,
@@ -414,9 +421,9 @@ class Scene:
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
         ids = whole_numbers(mesh, "mesh", np.uint32, 0, _MOST_ID)
-        unknown = np.setdiff1d(ids, self._engine.mesh_ids())
-        if unknown.size:
-            raise ValueError(f"mesh: expected ids of meshes of the scene, got {unknown[0]}")
+        known = np.isin(ids, self._engine.mesh_ids())
+        if not known.all():
+            raise ValueError(f"mesh: expected ids of meshes of the scene, got {ids[~known].flat[0]}")
         return ids
 
     def _known_mesh(self, mesh: int) -> int:

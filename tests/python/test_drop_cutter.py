@@ -1,0 +1,194 @@
+"""The heights of the drop cutter, against the exact ones of round cutters on vertices, edges and facets."""
+
+import json
+
+import numpy as np
+import pytest
+
+import cyber_radar
+from test_examples import pixels, run
+
+import cutters  # noqa: E402  (test_examples makes the examples importable)
+import drop_cutter  # noqa: E402
+from cutters import Cutter  # noqa: E402
+
+BALL, FLAT = Cutter(3, 50, corner=3), Cutter(3, 50)
+BULL, CONE = Cutter(3, 50, corner=1), Cutter(3, 50, slope=1.5)
+
+
+def exact_heights(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The tip's height at each point (n, 2): the highest of q_z - height(|q - point|) over all points q of the
+    triangles (m, 3, 3). That is at a vertex, at the steepest touch of a facet, or on an edge, where it is concave."""
+    edges = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 3)
+    highest = [_over(cutter, corners.reshape(-1, 3), points).max(axis=1)]
+    highest.append(_on_facets(cutter, corners, points).max(axis=1))
+    highest.append(_on_edges(cutter, edges, points).max(axis=1))
+    return np.max(highest, axis=0)
+
+
+def _over(cutter: Cutter, q: np.ndarray, points: np.ndarray) -> np.ndarray:
+    distance = np.linalg.norm(q[..., :2] - points[:, None], axis=-1)
+    return q[..., 2] - cutter.height(distance)
+
+
+def _on_facets(cutter: Cutter, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, normals = corners[normals[:, 2] != 0], normals[normals[:, 2] != 0]
+    gradient = -normals[:, :2] / normals[:, 2:]
+    slope = np.linalg.norm(gradient, axis=1)
+    uphill = gradient / np.maximum(slope, 1e-300)[:, None]
+    to = points[:, None] + uphill * cutter.steepest(slope)[:, None]
+    inside = np.ones(to.shape[:2], bool)
+    for i in range(3):
+        a, b = corners[:, i, :2], corners[:, (i + 1) % 3, :2]
+        side = (b - a)[:, 0] * (to - a)[..., 1] - (b - a)[:, 1] * (to - a)[..., 0]
+        inside &= side * np.sign(normals[:, 2]) >= 0
+    z = corners[:, 0, 2] + ((to - corners[:, 0, :2]) * gradient).sum(axis=-1)
+    return np.where(inside, z - cutter.height(cutter.steepest(slope)), -np.inf)
+
+
+def _on_edges(cutter: Cutter, edges: np.ndarray, points: np.ndarray) -> np.ndarray:
+    start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
+    # Where the edge is below the cutter: |start + s along - point| <= radius.
+    away = start[:, :2] - points[:, None]
+    a = (along[:, :2] ** 2).sum(axis=-1) + 1e-300
+    b, c = (away * along[:, :2]).sum(axis=-1), (away**2).sum(axis=-1) - cutter.radius**2
+    root = np.sqrt(np.maximum(b * b - a * c, 0))
+    low, high = np.clip((-b - root) / a, 0, 1), np.clip((-b + root) / a, 0, 1)
+
+    def value(s):
+        q = start + s[..., None] * along
+        distance = np.minimum(np.linalg.norm(q[..., :2] - points[:, None], axis=-1), cutter.radius)
+        return q[..., 2] - cutter.height(distance)
+
+    seen = (b * b > a * c) & (low < high)
+    for _ in range(100):
+        one, two = low + (high - low) / 3, high - (high - low) / 3
+        rises = value(one) < value(two)
+        low, high = np.where(rises, one, low), np.where(rises, high, two)
+    return np.where(seen, value((low + high) / 2), -np.inf)
+
+
+@pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
+def test_the_exact_height_lies_between_those_of_the_two_meshes(cutter):
+    rng = np.random.default_rng(14)
+    turned = drop_cutter.cube(side=9.0)
+    peak = np.float32([[20, 0, 0], [24, 0, 0], [20, 4, 0], [21, 1, 6]]), np.array(
+        [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]]
+    )
+    for vertices, faces in (turned, peak, drop_cutter.relief(cells=8, side=30.0)):
+        scene = cyber_radar.Scene()
+        scene.add(scene.add_mesh(vertices, faces))
+        corners = vertices.astype(float)[faces]
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        points = rng.uniform(low[:2] - 2, high[:2] + 2, (300, 2))
+        poses = np.zeros((300, 4, 4)) + np.eye(4)
+        poses[:, :2, 3], poses[:, 2, 3] = points, high[2] + 1
+        expected = exact_heights(cutter, corners, points)
+        bracket = []
+        for tool in (cutter.inscribed(48, 12), cutter.circumscribed(48, 12)):
+            casts = scene.cast(scene.add_mesh(*tool), poses, [0, 0, -200], mode="reference")
+            bracket.append(high[2] + 1 - casts.distance)
+        assert (bracket[0] <= expected + 1e-9).all() and (expected <= bracket[1] + 1e-9).all()
+        touched = np.isfinite(expected)
+        assert 100 < touched.sum()
+        # Between vertical walls a small error of the shape may be a large one of the height, but seldom is.
+        error = cutter.tessellation_error(48, 12)
+        assert np.median(bracket[1][touched] - bracket[0][touched]) < 8 * error
+
+
+@pytest.mark.parametrize("cutter", [BALL, FLAT, BULL, CONE])
+def test_the_meshes_of_a_cutter_are_closed_and_inside_and_around_it(cutter):
+    for mesh, sign in ((cutter.inscribed(20, 6), 1), (cutter.circumscribed(20, 6), -1)):
+        vertices, faces = mesh[0].astype(float), mesh[1]
+        edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        assert {tuple(edge) for edge in edges.tolist()} == {tuple(edge) for edge in edges[:, ::-1].tolist()}
+        a, b, c = vertices[faces].transpose(1, 0, 2)
+        assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0  # wound outwards
+        # Points of the lower faces: above the cutter's surface if the mesh is inside.
+        middle = np.concatenate([vertices[faces].mean(axis=1), vertices, (a + b) / 2])
+        middle = middle[middle[:, 2] < cutter.length * 0.9]
+        distance = np.linalg.norm(middle[:, :2], axis=1)
+        with np.errstate(invalid="ignore"):
+            depth = sign * (middle[:, 2] - cutter.height(distance))
+        inside = distance <= cutter.radius if sign > 0 else distance < cutter.radius
+        assert (depth[inside] >= -1e-12).all()
+        assert sign < 0 or inside.all()
+
+
+def test_a_relief_is_machined(tmp_path):
+    (tmp_path / "part.obj").write_text(_obj(*drop_cutter.relief(cells=10, side=20.0)))
+    text = run(
+        "drop_cutter.py", tmp_path / "part.obj", "--out", tmp_path, "--step", 1, "--diameter", 4, "--segments", 24,
+        "--arc-steps", 6, "--holder", 8, 6, "--mode", "reference",
+    )  # fmt: skip
+    heights, lowest = np.load(tmp_path / "heights.npy"), np.load(tmp_path / "lowest.npy")
+    assert heights.shape == (21, 21) and (lowest <= heights).all()
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["points"] == 441 and report["triangles"] == 200 and "points: 441" in text
+    assert report["widest_bracket_um"] == pytest.approx(1e3 * (heights - lowest).max())
+
+    table = np.loadtxt(tmp_path / "holder.csv", delimiter=",", skiprows=1, ndmin=2)
+    assert len(table) == report["holder_touches_first"] > 0
+    assert (table[:, 3] > table[:, 2]).all()
+
+    moves = [line for line in (tmp_path / "path.ngc").read_text().splitlines() if line.startswith("G1 ")]
+    driven = np.array([[float(word[1:]) for word in line.split()[1:4]] for line in moves])
+    order = np.lexsort((driven[:, 0], driven[:, 1]))
+    assert (driven[order, 2] >= heights.ravel()).all() and (driven[order, 2] <= heights.ravel() + 1.01e-4).all()
+    steps = np.abs(np.diff(driven[:, :2], axis=0)).sum(axis=1)
+    np.testing.assert_allclose(steps, 1, atol=2e-4)  # to and fro, never across the part
+
+    grey = pixels(tmp_path / "heights.png")[::-1, :, 0].astype(float)
+    scaled = 255 * (heights - heights.min()) / np.ptp(heights)
+    assert np.abs(grey - scaled).max() <= 1
+    assert (pixels(tmp_path / "surface.png") != 255).any(axis=-1).mean() > 0.2
+
+
+def test_the_surface_left_is_the_lowest_envelope_and_never_below_the_part():
+    part = drop_cutter.relief(cells=10, side=20.0)
+    machine = drop_cutter.Machine(part, 1.0, "reference")
+    heights, _, _ = machine.drop(BALL.circumscribed(48, 12))
+    left = drop_cutter.surface_left(heights, 1.0, BALL, 99.0)
+    x, y = np.meshgrid(machine.raster.x, machine.raster.y)
+    points = np.stack([x, y], axis=-1).reshape(-1, 2)
+    direct = (heights.ravel() + BALL.height(np.linalg.norm(points[:, None] - points, axis=-1))).min(axis=1)
+    np.testing.assert_allclose(left.ravel(), np.minimum(direct, 99), atol=1e-12)
+    needle = Cutter(1e-9, 50)
+    assert (left.ravel() >= exact_heights(needle, part[0].astype(float)[part[1]], points) - 1e-6).all()
+
+
+def test_any_mesh_may_be_the_cutter_and_depth_pictures_are_compared(tmp_path):
+    (tmp_path / "mill.obj").write_text(_obj(*cutters.cylinder(2.0, 0.0, 9.0, 4)))
+    (tmp_path / "holder.obj").write_text(_obj(*cutters.cylinder(20.0, 9.0, 30.0, 8)))
+    text = run(
+        "drop_cutter.py", "cube", "--cutter", tmp_path / "mill.obj", "--step", 50, "--compare", "--out", tmp_path,
+        "--holder", tmp_path / "holder.obj",
+    )  # fmt: skip
+    heights = np.load(tmp_path / "heights.npy")
+    assert heights.shape == (5, 6)
+    held = np.loadtxt(tmp_path / "holder.csv", delimiter=",", skiprows=1, ndmin=2)
+    assert len(held) > 0 and (held[:, 3] > held[:, 2]).all()
+    modes = json.loads((tmp_path / "report.json").read_text())["modes"]
+    assert [row["mode"] for row in modes] == ["reference", "contact", "sampled 32", "sampled 128"]
+    assert modes[1]["deepest_error_um"] == 0 and all(row["deepest_error_um"] >= 0 for row in modes)
+    assert "um too deep" in text
+
+
+def test_the_turned_cube_has_no_holes():
+    vertices, faces = drop_cutter.cube()
+    machine = drop_cutter.Machine((vertices, faces), 7.0, "reference")
+    heights, _, _ = machine.drop(BALL.circumscribed(64, 16))
+    points = np.stack(np.meshgrid(machine.raster.x, machine.raster.y), axis=-1).reshape(-1, 2)
+    expected = exact_heights(BALL, vertices.astype(float)[faces], points)
+    over = np.isfinite(expected)
+    assert over.mean() > 0.8
+    error = 1e3 * (heights.ravel()[over] - expected[over])
+    # Micrometres; more at the rim, where the ball is vertical. A hole would be a hundred times as deep.
+    assert (error >= -1e-6).all() and np.quantile(error, 0.9) < 40 and (error < 1000).all()
+
+
+def _obj(vertices: np.ndarray, faces: np.ndarray) -> str:
+    return "".join(
+        [f"v {x} {y} {z}\n" for x, y, z in vertices.tolist()] + [f"f {a} {b} {c}\n" for a, b, c in faces + 1]
+    )

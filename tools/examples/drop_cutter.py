@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""Machines a surface: a cutter falls along -z at every point of a raster until it touches the part.
+
+    PYTHONPATH=build/release/python python3 tools/examples/drop_cutter.py part.stl --cutter ball --diameter 6 --out part
+    ... drop_cutter.py relief --cutter mill.stl --holder 20 30 --step 0.5 --out relief
+    ... drop_cutter.py cube --compare --out cube
+
+The part is a mesh file, or "relief" or "cube", which are made here. The cutter is a ball, a flat or a bull-nosed end
+mill, a cone, or any mesh file with its tip at the origin. A round cutter is cast twice, as a mesh inside it and as a mesh
+around it: its exact height lies between the two. The higher one is driven, so that it never cuts too deep.
+
+Writes heights.npy (the tip's height at each point, row by row), heights.png, path.ngc (G-code, millimetres), report.json,
+of a round cutter also surface.png (what is left of the stock), and with a holder holder.csv (where it would touch first).
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import sys
+import time
+
+import numpy as np
+
+import cyber_radar
+import picture
+import png
+from cutters import Cutter, Mesh, cylinder
+
+
+@dataclasses.dataclass
+class Raster:
+    """Points at the distance `step` that cover a box."""
+
+    x: np.ndarray  #: (nx,)
+    y: np.ndarray  #: (ny,)
+    top: float  #: where the tip starts, above the part
+    floor: float  #: where it ends if nothing is below
+
+    def poses(self) -> np.ndarray:
+        """(ny, nx, 4, 4): the tip at the top of each point."""
+        poses = np.zeros((len(self.y), len(self.x), 4, 4)) + np.eye(4)
+        poses[..., 0, 3], poses[..., 1, 3] = np.meshgrid(self.x, self.y)
+        poses[..., 2, 3] = self.top
+        return poses
+
+
+class Machine:
+    """A part, and what falls onto it."""
+
+    def __init__(self, part: Mesh, step: float, mode: str) -> None:
+        self.scene, self.mode = cyber_radar.Scene(), mode
+        self.scene.add(self.scene.add_mesh(*part))
+        low, high = part[0].min(axis=0).astype(float), part[0].max(axis=0).astype(float)
+        ticks = [np.arange(low[k], high[k] + 0.5 * step, step) for k in range(2)]
+        self.raster = Raster(*ticks, top=high[2] + 1.0, floor=low[2])
+
+    def drop(self, tool: Mesh, mode: str | None = None, resolution: int = 0) -> tuple[np.ndarray, float, int]:
+        """Heights of the tip, (ny, nx), the seconds that took, and how many casts were undecided."""
+        mesh = self.scene.add_mesh(*tool)
+        poses, way = self.raster.poses(), [0, 0, self.raster.floor - self.raster.top]
+        mode = mode or self.mode
+        self.scene.cast(mesh, poses[:1, :1], way, mode=mode, resolution=resolution)  # opens the device
+        start = time.perf_counter()
+        casts = self.scene.cast(mesh, poses, way, mode=mode, resolution=resolution)
+        seconds = time.perf_counter() - start
+        self.scene.remove_mesh(mesh)
+        heights = np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)
+        return heights, seconds, int((casts.status == cyber_radar.Status.UNDECIDED).sum())
+
+
+def surface_left(heights: np.ndarray, step: float, cutter: Cutter, top: float) -> np.ndarray:
+    """The finished surface at the points of the raster: under every place of the cutter nothing is left."""
+    reach = int(cutter.radius / step)
+    left = np.full_like(heights, top)
+    rows, columns = heights.shape
+    for dy in range(-reach, reach + 1):
+        for dx in range(-reach, reach + 1):
+            above = float(cutter.height(np.array(step * np.hypot(dx, dy))))
+            if np.isinf(above):
+                continue
+            to = left[max(0, dy) : rows + min(0, dy), max(0, dx) : columns + min(0, dx)]
+            by = heights[max(0, -dy) : rows + min(0, -dy), max(0, -dx) : columns + min(0, -dx)]
+            np.minimum(to, by + above, out=to)
+    return left
+
+
+def relief(cells: int = 88, side: float = 100.0) -> Mesh:
+    """Hills on a square, 2 * cells^2 triangles."""
+    u = np.linspace(0, 1, cells + 1)
+    x, y = np.meshgrid(u, u)
+    z = 8 * np.sin(7 * x) * np.cos(9 * y) + 3 * np.sin(23 * x + 5 * y) + 6 * (np.hypot(x - 0.5, y - 0.5) < 0.2)
+    return np.stack([side * x, side * y, z], axis=-1).reshape(-1, 3).astype(np.float32), _grid_faces(
+        cells + 1, cells + 1
+    )
+
+
+def cube(side: float = 200.0, degrees: float = 10.0) -> Mesh:
+    """Turned about the y axis."""
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * side / 2
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turned = signs @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
+    squares = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    faces = [[a, b, c] for p, q, r, t in squares for a, b, c in ((p, q, r), (p, r, t))]
+    return turned.astype(np.float32), np.array(faces)
+
+
+def _grid_faces(rows: int, columns: int) -> np.ndarray:
+    number = np.arange(rows * columns).reshape(rows, columns)
+    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    return np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]).reshape(-1, 3)
+
+
+def write_path(file: pathlib.Path, raster: Raster, heights: np.ndarray) -> None:
+    """Rows to and fro. Heights are rounded up."""
+    up = np.ceil(heights * 1e4) / 1e4
+    lines = ["G21 G90", f"G0 Z{raster.top:.4f}"]
+    for row, y in enumerate(raster.y):
+        order = range(len(raster.x)) if row % 2 == 0 else range(len(raster.x) - 1, -1, -1)
+        lines += [f"G1 X{raster.x[i]:.4f} Y{y:.4f} Z{up[row, i]:.4f} F1000" for i in order]
+    file.write_text("\n".join([*lines, f"G0 Z{raster.top:.4f}", "M2", ""]))
+
+
+def write_heights(file: pathlib.Path, heights: np.ndarray) -> None:
+    """The lowest is black, the highest white."""
+    low, high = heights.min(), heights.max()
+    grey = np.uint8(255 * (heights - low) / max(high - low, 1e-300))[::-1]
+    png.write(file, np.repeat(grey[..., None], 3, axis=-1))
+
+
+def write_surface(file: pathlib.Path, raster: Raster, left: np.ndarray) -> None:
+    x, y = np.meshgrid(raster.x, raster.y)
+    points = np.stack([x, y, left], axis=-1).reshape(-1, 3)
+    faces = _grid_faces(*left.shape)
+    camera = picture.Camera(picture.view_from((-1.0, -2.0, 2.2)), points, (640, 480))
+    colours = np.broadcast_to([0.55, 0.65, 0.8], (len(faces), 3))
+    png.write(file, picture.draw(camera, points[faces], colours))
+
+
+def compare_modes(machine: Machine, tool: Mesh) -> list[dict]:
+    """What depth pictures get wrong: how much deeper than the truth they let the cutter fall."""
+    exact, seconds, _ = machine.drop(tool, "reference")
+    rows = [{"mode": "reference", "seconds": seconds, "deepest_error_um": 0.0, "undecided": 0}]
+    for mode, resolution in (("contact", 0), ("sampled", 32), ("sampled", 128)):
+        heights, seconds, undecided = machine.drop(tool, mode, resolution)
+        error = 1e3 * float((exact - heights).max())
+        name = f"{mode} {resolution}" if resolution else mode
+        rows.append({"mode": name, "seconds": seconds, "deepest_error_um": error, "undecided": undecided})
+    return rows
+
+
+def cutter_from(options: argparse.Namespace) -> Cutter | None:
+    radius, length = options.diameter / 2, options.length
+    if options.cutter == "ball":
+        return Cutter(radius, length, corner=radius)
+    if options.cutter == "flat":
+        return Cutter(radius, length)
+    if options.cutter == "bull":
+        return Cutter(radius, length, corner=options.corner)
+    if options.cutter == "cone":
+        return Cutter(radius, length, slope=1 / np.tan(np.radians(options.angle / 2)))
+    return None
+
+
+def holder_from(options: argparse.Namespace) -> Mesh:
+    if len(options.holder) == 1:
+        return cyber_radar.read_mesh(options.holder[0])
+    radius, above = map(float, options.holder)
+    return cylinder(radius, above, above + options.length, options.segments)
+
+
+def machine_part(options: argparse.Namespace) -> dict:
+    made = {"relief": relief, "cube": cube}
+    part = made[options.part]() if options.part in made else cyber_radar.read_mesh(options.part)
+    machine, cutter = Machine(part, options.step, options.mode), cutter_from(options)
+    report: dict = {"part": options.part, "triangles": len(part[1]), "cutter": options.cutter, "mode": options.mode}
+    if cutter is None:
+        tool = cyber_radar.read_mesh(options.cutter)
+        heights, seconds, _ = machine.drop(tool)
+    else:
+        tool = cutter.circumscribed(options.segments, options.arc_steps)
+        heights, seconds, _ = machine.drop(tool)
+        deepest, _, _ = machine.drop(cutter.inscribed(options.segments, options.arc_steps))
+        report["tessellation_error_um"] = 1e3 * cutter.tessellation_error(options.segments, options.arc_steps)
+        report["widest_bracket_um"] = 1e3 * float((heights - deepest).max())
+        np.save(options.out / "lowest.npy", deepest)
+    report |= {"points": heights.size, "seconds": seconds, "us_per_point": 1e6 * seconds / heights.size}
+
+    np.save(options.out / "heights.npy", heights)
+    write_heights(options.out / "heights.png", heights)
+    write_path(options.out / "path.ngc", machine.raster, heights)
+    if cutter is not None:
+        left = surface_left(heights, options.step, cutter, machine.raster.top - 1.0)
+        write_surface(options.out / "surface.png", machine.raster, left)
+    if options.holder:
+        held, _, _ = machine.drop(holder_from(options))
+        rows, columns = np.nonzero(held > heights)
+        table = [
+            f"{machine.raster.x[i]},{machine.raster.y[k]},{heights[k, i]},{held[k, i]}" for k, i in zip(rows, columns)
+        ]
+        (options.out / "holder.csv").write_text("\n".join(["x,y,cutter_z,holder_z", *table, ""]))
+        report["holder_touches_first"] = len(table)
+    if options.compare:
+        report["modes"] = compare_modes(machine, tool)
+    return report
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", help="a mesh file, or relief or cube")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder to write to")
+    parser.add_argument("--cutter", default="ball", help="ball, flat, bull, cone, or a mesh file")
+    parser.add_argument("--diameter", type=float, default=6.0)
+    parser.add_argument("--corner", type=float, default=1.0, help="radius of a bull-nosed cutter's corner")
+    parser.add_argument("--angle", type=float, default=60.0, help="of a cone, degrees")
+    parser.add_argument("--length", type=float, default=50.0)
+    parser.add_argument(
+        "--holder", nargs="+", help="a mesh file with the tip at the origin, or a cylinder: RADIUS ABOVE"
+    )
+    parser.add_argument("--step", type=float, default=1.0, help="distance of the raster's points")
+    parser.add_argument("--segments", type=int, default=64, help="corners around a round cutter")
+    parser.add_argument("--arc-steps", type=int, default=16, help="rings of a rounded corner")
+    parser.add_argument("--mode", choices=("contact", "reference"), default="contact")
+    parser.add_argument("--compare", action="store_true", help="also in the other modes")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    report = machine_part(options)
+    (options.out / "report.json").write_text(json.dumps(report, indent=1) + "\n")
+    modes = report.pop("modes", [])
+    for name, value in report.items():
+        print(f"{name}: {value:.6g}" if isinstance(value, float) else f"{name}: {value}")
+    for row in modes:
+        print(
+            "  {mode}: {seconds:.3f} s, up to {deepest_error_um:.3g} um too deep, {undecided} undecided".format(**row)
+        )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -124,9 +124,9 @@ def test_no_displacement_asks_whether_the_surfaces_meet():
     scene.add(mesh)
     casts = scene.cast(mesh, at([[0.5, 0.5, 0.5], [3, 0, 0]]), [0, 0, 0], mode="reference")
     assert casts.status.tolist() == [Status.OVERLAP, Status.CLEAR]
-    # What leaves depends on a direction.
-    leaving = scene.cast(mesh, at([0.5, 0.5, 0.5]), [0, 0, 0], ignore_leaving=True, mode="reference")
-    assert leaving.status == Status.INVALID
+    leaving = scene.cast(mesh, at([[0.5, 0.5, 0.5], [1, 0, 0]]), [0, 0, 0], ignore_leaving=True, mode="reference")
+    assert leaving.status.tolist() == [Status.OVERLAP, Status.CLEAR]
+    assert scene.cast(mesh, None, [0, 0, 0], distances=1.0, mode="reference").status == Status.INVALID
 
 
 def test_a_crate_leaves_the_floor_it_rests_on():

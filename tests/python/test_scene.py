@@ -41,6 +41,41 @@ def test_objects_move():
     assert scene.cast(mesh, None, [5, 0, 0], mode="reference").distance == 2
 
 
+def test_objects_move_during_a_cast():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, 9], [0, 0, -9]]))
+    scene.set_motions(0, [0, 0, -8])
+    scene.set_motions([1], [[0, 0, 0]])
+    for mode in ("reference", "contact"):
+        casts = scene.cast(mesh, None, [[0, 0, 8], [0, 0, 0], [0, 0, -16], [5, 0, 0]], mode=mode, hits="all")
+        assert casts.fraction.tolist() == [0.5, 1.0, 0.5, np.inf]
+        assert casts.distance.tolist() == [4, 0, 8, np.inf]
+        assert casts.object.tolist() == [0, 0, 1, -1]
+        assert casts.hits.distance.tolist() == [4, 0, 8] and casts.hits.fraction.tolist() == [0.5, 1, 0.5]
+        assert (casts.point[1] == [0, 0, 0.5]).any()
+    assert scene.objects().motions.tolist() == [[0, 0, -8], [0, 0, 0]]
+    again = pickle.loads(pickle.dumps(scene))
+    assert again.cast(mesh, None, [0, 0, 8], mode="reference").fraction == 0.5
+    scene.set_motions([0, 1], [0, 0, 0])
+    assert scene.cast(mesh, None, [0, 0, 0], mode="reference").status == cyber_radar.Status.CLEAR
+    with pytest.raises(ValueError, match="motions: expected finite numbers"):
+        scene.set_motions(0, [0, np.nan, 0])
+
+
+def test_meshes_deform():
+    scene = cyber_radar.Scene()
+    mesh, still = scene.add_mesh(box(1, 1, 1), FACES), scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([0, 0, -5]))
+    for mode in ("reference", "contact", "sampled"):
+        scene.set_vertices(mesh, box(1, 1, 1))
+        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).distance == pytest.approx(4)
+        scene.set_vertices(mesh, box(1, 1, 3))
+        assert scene.cast(still, None, DOWN, mode=mode, resolution=32).distance == pytest.approx(3)
+    with pytest.raises(ValueError, match=r"vertices: expected shape \(8, 3\), got shape \(7, 3\)"):
+        scene.set_vertices(mesh, box(1, 1, 1)[:7])
+
+
 def test_meshes_are_kept_as_given_and_rounding_is_said():
     scene = cyber_radar.Scene()
     vertices = np.float32([[0, 0, 0], [0.1, 0, 0], [0, 1, 0]])

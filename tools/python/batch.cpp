@@ -62,8 +62,13 @@ Query Reader::next() {
     read(input_.distances, &query.distance, 1);
   } else {
     query.distance = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
-    // Asks whether the surfaces meet at the start, which no direction changes unless what leaves is ignored.
-    if (query.distance == 0 && !query.ignoreLeaving) query.direction = {0, 0, 1};
+    if (query.distance == 0 && query.direction == std::array<double, 3>{}) {
+      if (query.mode == Mode::sampled) {
+        query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
+      } else {
+        query.motion = query.direction;
+      }
+    }
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
@@ -128,6 +133,19 @@ PoolAnswers answer(CastingScene& scene, const std::vector<Query>& queries, bool 
   return answerValid(scene, queries, onCpu);
 }
 
+/// The times of a sensor that rests are fractions of the step, in which it goes nowhere.
+void timesToDistances(const std::vector<Query>& queries, PoolAnswers& answers) {
+  const auto toDistance = [](Result& result) { result.t = result.lo = result.hi = 0; };
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (!queries[i].motion) continue;
+    toDistance(answers.results[i]);
+    if (answers.lists.hitOffsets.empty()) continue;
+    for (size_t hit = answers.lists.hitOffsets[i]; hit < answers.lists.hitOffsets[i + 1]; ++hit) {
+      toDistance(answers.lists.hits[hit]);
+    }
+  }
+}
+
 void append(Lists& to, const Lists& lists, size_t queries) {
   for (size_t i = 0; i < queries; ++i) {
     const auto hits = lists.hitsOf(i);
@@ -184,7 +202,8 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     const size_t end = std::min(first + chunk, count);
     queries.clear();
     for (size_t i = first; i < end; ++i) queries.push_back(reader.next());
-    const PoolAnswers answers = answer(scene, queries, input.onCpu);
+    PoolAnswers answers = answer(scene, queries, input.onCpu);
+    timesToDistances(queries, answers);
     for (size_t i = first; i < end; ++i) output.write(i, answers.results[i - first], input.options.anyHit);
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) append(lists.lists, answers.lists, queries.size());

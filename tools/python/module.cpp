@@ -89,6 +89,16 @@ void setTransforms(CastingScene& scene, const Array<uint32_t>& objects, const Ar
   });
 }
 
+void setMotions(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& motions) {
+  requireCount(motions, "motions", 3 * static_cast<size_t>(objects.size()));
+  scene.edit([&](Scene& to) {
+    for (py::ssize_t i = 0; i < objects.size(); ++i) {
+      const double* motion = motions.data() + 3 * i;
+      to.setMotion(objects.data()[i], {motion[0], motion[1], motion[2]});
+    }
+  });
+}
+
 void removeObjects(CastingScene& scene, const Array<uint32_t>& objects) {
   scene.edit([&](Scene& to) {
     for (py::ssize_t i = 0; i < objects.size(); ++i) to.removeObject(objects.data()[i]);
@@ -111,10 +121,10 @@ Array<int64_t> objectIds(const CastingScene& scene) {
   return arrayOf(ids, {py::ssize_t(ids.size())});
 }
 
-/// Ids, meshes, transforms and masks of all objects.
+/// Ids, meshes, transforms, masks and motions of all objects.
 py::tuple objects(const CastingScene& scene) {
   std::vector<int64_t> ids, meshes;
-  std::vector<double> transforms;
+  std::vector<double> transforms, motions;
   std::vector<uint32_t> masks;
   for (ObjectId id = 0; id < scene.scene().objectLimit(); ++id) {
     if (!scene.scene().hasObject(id)) continue;
@@ -122,12 +132,13 @@ py::tuple objects(const CastingScene& scene) {
     ids.push_back(id);
     meshes.push_back(object.mesh);
     masks.push_back(object.mask);
+    motions.insert(motions.end(), object.motion.begin(), object.motion.end());
     transforms.insert(transforms.end(), object.worldFromMesh.m.begin(), object.worldFromMesh.m.end());
     transforms.insert(transforms.end(), {0, 0, 0, 1});
   }
   const auto count = py::ssize_t(ids.size());
   return py::make_tuple(arrayOf(ids, {count}), arrayOf(meshes, {count}), arrayOf(transforms, {count, 4, 4}),
-                        arrayOf(masks, {count}));
+                        arrayOf(masks, {count}), arrayOf(motions, {count, 3}));
 }
 
 // ------------------------------------------------------------------------------------------------------------- casts
@@ -341,6 +352,11 @@ PYBIND11_MODULE(_engine, module) {
       .def("mesh_ids", &meshIds)
       .def("add", &add)
       .def("set_transforms", &setTransforms)
+      .def("set_motions", &setMotions)
+      .def("set_vertices",
+           [](CastingScene& scene, radar::MeshId mesh, const Array<float>& vertices) {
+             scene.edit([&](radar::Scene& in) { in.setPositions(mesh, {vertices.data(), size_t(vertices.size())}); });
+           })
       .def("remove", &removeObjects)
       .def("objects", &objects)
       .def("object_ids", &objectIds)

@@ -44,6 +44,7 @@ class Objects(NamedTuple):
     meshes: npt.NDArray[np.int64]  #: (n,)
     transforms: npt.NDArray[np.float64]  #: (n, 4, 4) world from mesh
     masks: npt.NDArray[np.uint32]  #: (n,)
+    motions: npt.NDArray[np.float64]  #: (n, 3)
 
 
 def read_mesh(file: Path) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
@@ -192,6 +193,29 @@ class Scene:
                 np.broadcast_to(matrices, (*shape, 4, 4)).reshape(-1, 4, 4),
             )
 
+    def set_motions(self, objects: npt.ArrayLike, motions: npt.ArrayLike) -> None:
+        """Says how far objects move during a cast, at constant velocity: ids (...), motions (..., 3), world units;
+        leading shapes broadcast. Displacements of casts are then those of the same time: `fraction` says when they meet,
+        and `distance` how far the cast mesh got. Where an object starts does not change."""
+        ways = reals(motions, "motions", (3,))
+        if not (np.abs(ways) <= 2.0**1000).all():
+            raise ValueError("motions: expected finite numbers up to 2^1000")
+        with self._exclusive() as engine:
+            ids = self._known_objects(objects, "objects")
+            shape = common_shape({"objects": (ids, 0), "motions": (ways, 1)})
+            engine.set_motions(
+                np.broadcast_to(ids, shape).astype(np.uint32).ravel(), np.broadcast_to(ways, (*shape, 3)).reshape(-1, 3)
+            )
+
+    def set_vertices(self, mesh: int, vertices: npt.ArrayLike) -> None:
+        """Moves the vertices of a mesh: (N, 3), as many as it has, as in add_mesh()."""
+        number, placed = self._known_mesh(mesh), _vertices(vertices)
+        with self._exclusive() as engine:
+            count = len(engine.mesh(number)[0])
+            if len(placed) != count:
+                raise ValueError(f"vertices: expected shape ({count}, 3), got shape {placed.shape}")
+            engine.set_vertices(number, placed)
+
     def remove(self, objects: npt.ArrayLike) -> None:
         """Removes objects: ids (...). New objects get the least free ids."""
         with self._exclusive() as engine:
@@ -201,7 +225,7 @@ class Scene:
                 self._names.pop(number, None)
 
     def objects(self) -> Objects:
-        """Ids, meshes, transforms and masks of all objects: copies."""
+        """Ids, meshes, transforms, masks and motions of all objects: copies."""
         return Objects(*self._engine.objects())
 
     @property
@@ -242,7 +266,8 @@ class Scene:
 
         mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
         poses: (..., 4, 4) world from mesh at the start, affine; None: the identity.
-        displacements: (..., 3) the way to go, world units. A zero asks whether the surfaces meet at the start.
+        displacements: (..., 3) the way to go, world units. With a zero the mesh rests: only what is there at the start,
+            or moves (set_motions), meets it.
         Leading shapes broadcast together, also those of the next three; the result has the common shape.
 
         distances: (...) how far to go; displacements then give the direction alone.
@@ -323,7 +348,7 @@ class Scene:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["settings"])  # type: ignore[misc]
-        ids, meshes, transforms, masks = state["objects"]
+        ids, meshes, transforms, masks, motions = state["objects"]
         triangle = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32)
         # A new item gets the least free id: what is missing is added, too, and removed again.
         last_mesh = max(state["meshes"], default=-1)
@@ -334,6 +359,7 @@ class Scene:
             rows = np.zeros(count, np.intp)
             rows[ids] = np.arange(len(ids))
             self._engine.add(meshes[rows].astype(np.uint32), transforms[rows], masks[rows])
+            self._engine.set_motions(ids.astype(np.uint32), motions)
             self._engine.remove(np.setdiff1d(np.arange(count), ids).astype(np.uint32))
         for mesh in set(range(last_mesh + 1)) - set(state["meshes"]):
             self._engine.remove_mesh(mesh)

@@ -192,14 +192,10 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
 template <class Finder>
 void QuerySearch::search(const Task& task, ObjectId id, Finder& finder) {
   const PairRule rule = task.ruleFor(id);
-  if (task.isStep) {
-    const Motion motion(task.displacement, task.scene.objects[id].object.motion);
-    finder.beginObject(rule, motion);
-    searchObject(task, id, rule, motion, finder);
-  } else {
-    finder.beginObject(rule, task.motion);
-    searchObject(task, id, rule, task.motion, finder);
-  }
+  const Motion& motion =
+      task.isStep ? past_.emplace(task.displacement, task.scene.objects[id].object.motion) : task.motion;
+  finder.beginObject(rule, motion);
+  searchObject(task, id, rule, motion, finder);
 }
 
 void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion,

@@ -1,6 +1,7 @@
 // Answers one query on one thread: traverses the tree over the objects, nearest first.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cpu/mesh_search.h"
@@ -37,6 +38,7 @@ class QuerySearch {
   void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);
 
   std::vector<Open> open_;
+  std::optional<Motion> past_;  // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
   SearchStats stats_;
 };

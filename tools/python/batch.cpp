@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 namespace radar::python {
 
@@ -22,6 +23,18 @@ size_t nextChunk(size_t chunk, double seconds) {
   return static_cast<size_t>(std::clamp(wanted, 1.0, limit));
 }
 
+/// Calls `work` with parts of [0, count), on all cores if there is enough to do.
+template <class Work>
+void inParts(size_t count, const Work& work) {
+  constexpr size_t kLeast = 2048;  // queries that take longer to convert than a thread to start
+  const size_t parts = std::clamp<size_t>(count / kLeast, 1, std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::jthread> others;
+  for (size_t i = 1; i < parts; ++i) {
+    others.emplace_back([&, i] { work(i * count / parts, (i + 1) * count / parts); });
+  }
+  work(0, count / parts);
+}
+
 int64_t idOf(uint32_t id) {
   return id == kNone ? -1 : int64_t(id);
 }
@@ -29,9 +42,15 @@ int64_t idOf(uint32_t id) {
 /// Goes through the queries in row-major order.
 class Reader {
  public:
-  explicit Reader(const BatchInput& input) : input_(input), index_(input.shape.size()) {}
+  /// Begins with query `first`.
+  Reader(const BatchInput& input, size_t first) : input_(input), index_(input.shape.size()) {
+    for (size_t d = index_.size(); d-- > 0; first /= input.shape[d]) {
+      index_[d] = static_cast<ptrdiff_t>(first % input.shape[d]);
+    }
+  }
 
-  Query next();
+  /// Writes the next query over one that has the input's options.
+  void next(Query& query);
 
  private:
   template <class T>
@@ -52,8 +71,7 @@ class Reader {
   std::vector<int64_t> excluded_;
 };
 
-Query Reader::next() {
-  Query query = input_.options;
+void Reader::next(Query& query) {
   read(input_.meshes, &query.mesh, 1);
   read(input_.poses, query.worldFromMesh.m.data(), 12);
   read(input_.displacements, query.direction.data(), 3);
@@ -76,7 +94,6 @@ Query Reader::next() {
     if (object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
   }
   advance();
-  return query;
 }
 
 /// A query's broken contract in the words of the arguments; empty if it is kept.
@@ -194,17 +211,21 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
   lists.lists.hitOffsets = lists.lists.overlappingOffsets = {0};
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
   const size_t count = input.count();
-  Reader reader(input);
   std::vector<Query> queries;
   size_t chunk = kFirstChunk;
   for (size_t first = 0; first < count;) {
     const Clock::time_point start = Clock::now();
     const size_t end = std::min(first + chunk, count);
-    queries.clear();
-    for (size_t i = first; i < end; ++i) queries.push_back(reader.next());
+    queries.assign(end - first, input.options);
+    inParts(end - first, [&](size_t from, size_t to) {
+      Reader reader(input, first + from);
+      for (size_t i = from; i < to; ++i) reader.next(queries[i]);
+    });
     PoolAnswers answers = answer(scene, queries, input.onCpu);
     timesToDistances(queries, answers);
-    for (size_t i = first; i < end; ++i) output.write(i, answers.results[i - first], input.options.anyHit);
+    inParts(end - first, [&](size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i], input.options.anyHit);
+    });
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
     if (listing) append(lists.lists, answers.lists, queries.size());
     first = end;

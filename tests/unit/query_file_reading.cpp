@@ -353,5 +353,8 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   CHECK_THAT(refused("/scenes/1/deforms/0/1", R"("none.f32")"), Contains("no readable file"));
   CHECK_THAT(refused("/queries/0/D", "2"), StartsWith("queries[0].D: ") && Contains("got both"));
   CHECK_THAT(refused("/queries/0/motion", "[1, 2]"), StartsWith("queries[0].motion: "));
+  CHECK_THAT(refused("/queries/0/motion", "[0, 1e305, 0]"), StartsWith("queries[0].motion[1]: ") && Contains("2^1000"));
+  CHECK_THAT(refused("/scenes/1/motions/0", "[2, 0, 0, -1e305]"), StartsWith("scenes[1].motions[0][3]: "));
+  CHECK_THAT(refused("/queries/1/D", "1e305"), StartsWith("queries[1].D: "));
   CHECK_THAT(refused("/queries/1/mode", R"("sampled")"), Contains("motions need"));
 }

@@ -60,6 +60,16 @@ size_t readNumbers(std::string_view line, std::span<double> numbers) {
   }
 }
 
+// Three numbers of `list`, from `first` on, that an object or a sensor may move by (radar.h).
+std::array<double, 3> readMotion(const JsonValue& list, size_t first) {
+  std::array<double, 3> motion{};
+  for (size_t k = 0; k < 3; ++k) {
+    motion[k] = list[first + k].number();
+    if (std::abs(motion[k]) > 0x1p1000) list[first + k].expected("a number of at most 2^1000");
+  }
+  return motion;
+}
+
 std::array<double, 3> readVector(const JsonValue& list) {
   if (list.size() != 3) list.expected("3 numbers");
   return {list[0].number(), list[1].number(), list[2].number()};
@@ -183,7 +193,7 @@ std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t obje
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& entry) {
     if (entry.size() != 4) entry.expected("[object, dx, dy, dz]");
-    motions.push_back({entry[0].index(objects, "objects"), {entry[1].number(), entry[2].number(), entry[3].number()}});
+    motions.push_back({entry[0].index(objects, "objects"), readMotion(entry, 1)});
     if (!named.insert(motions.back().first).second) entry[0].expected("each object once");
   });
   return motions;
@@ -283,12 +293,18 @@ void Reader::readQuery(const JsonValue& query) {
     for (const char* other : {"dir", "D"}) {
       if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
     }
-    spec.motion = readVector(query.member("motion"));
+    const JsonValue motion = query.member("motion");
+    if (motion.size() != 3) motion.expected("3 numbers");
+    spec.motion = readMotion(motion, 0);
   } else {
     const JsonValue direction = query.member("dir");
     spec.direction = readVector(direction);
     if (spec.direction == std::array<double, 3>{}) direction.expected("a vector that is not zero");
-    spec.distance = query.member("D").numberFrom0();
+    const JsonValue distance = query.member("D");
+    spec.distance = distance.numberFrom0();
+    if (spec.distance > 0x1p1000 && !workload_.scenes[spec.scene].motions.empty()) {
+      distance.expected("at most 2^1000 in a scene with motions");
+    }
   }
   query.ifHas("mask", [&](const JsonValue& mask) { spec.mask = mask.wholeNumber<uint32_t>(); });
   query.ifHas("decide", [&](const JsonValue& decide) { spec.anyHit = decide.boolean(); });

@@ -78,6 +78,16 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
   batch_.addCpuTime("cpu", msSince(start));
 }
 
+void ContactTier::leaveToCpu(std::vector<size_t> queries) {
+  std::erase_if(queries, [&](size_t query) {
+    if (batch_.asked[query].hits == 1) return false;
+    lists_.giveUp(query);  // other searches of it may still be under way
+    return true;
+  });
+  std::sort(queries.begin(), queries.end());
+  answerOnCpu(queries);
+}
+
 bool ContactTier::isOnCpu() const {
   return cpuBatchOf(options_, device_) == kNone;
 }
@@ -89,24 +99,23 @@ void ContactTier::run(std::span<const size_t> which) {
   planned_.clear();
   sensors_.clear();
   const Clock::time_point begun = Clock::now();
-  scene_.impl().objectTree();
+  const ObjectTree& tree = scene_.impl().objectTree();
   batch_.addCpuTime("select", msSince(begun));
   std::vector<size_t> onlyCpu;
   encoding_ = Clock::now();
   for (const size_t i : which) {
-    if (!plan(i)) onlyCpu.push_back(i);
+    if (!plan(i, tree)) onlyCpu.push_back(i);
   }
   submit();
   answerOnCpu(onlyCpu);
 }
 
-bool ContactTier::plan(size_t query) {
+bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   const Query& asked = batch_.asked[query];
   const Scene::Impl& scene = scene_.impl();
   if (asked.clearance > 0 || isStep(asked, scene)) return false;
-  const ObjectTree& tree = scene.objectTree();
   if (asked.hits == 1) {
-    const Planned planned = planOne(query, kNone);
+    const Planned planned = planOne(query, kNone, tree);
     if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
     return planned != Planned::outOfRange;
   }
@@ -114,7 +123,7 @@ bool ContactTier::plan(size_t query) {
   lists_.begin(query);
   for (const ObjectId object : reach_.inReach(asked, scene, tree)) {
     // Whether floats suffice does not depend on the object.
-    if (planOne(query, object) == Planned::outOfRange) {
+    if (planOne(query, object, tree) == Planned::outOfRange) {
       lists_.giveUp(query);
       break;
     }
@@ -122,10 +131,9 @@ bool ContactTier::plan(size_t query) {
   return true;
 }
 
-Planned ContactTier::planOne(size_t query, ObjectId object) {
-  const Scene::Impl& scene = scene_.impl();
-  const Planned planned = addSensor(sensors_, batch_.asked[query], static_cast<uint32_t>(planned_.size()), scene,
-                                    scene.objectTree(), object);
+Planned ContactTier::planOne(size_t query, ObjectId object, const ObjectTree& tree) {
+  const Planned planned =
+      addSensor(sensors_, batch_.asked[query], static_cast<uint32_t>(planned_.size()), scene_.impl(), tree, object);
   if (planned == Planned::added) planned_.push_back(query);
   if (planned_.size() == mostSensors_) submit();
   return planned;
@@ -141,7 +149,7 @@ void ContactTier::submit() {
       submitter_->submit(sensors_, scene_.impl());
       return true;
     } catch (const gpu::LimitError&) {
-      answerOnCpu(queries);
+      leaveToCpu({queries.begin(), queries.end()});
       return false;
     }
   });
@@ -204,17 +212,10 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
   const UnresolvedPairs unresolved(found.unresolved);
   std::vector<uint32_t> open;
   std::vector<size_t> left;
-  const auto leave = [&](size_t query) {
-    if (batch_.asked[query].hits > 1) {
-      lists_.giveUp(query);
-    } else {
-      left.push_back(query);
-    }
-  };
   for (uint32_t i = 0; i < queries.size(); ++i) {
     const Result& result = found.results[i];
     if (result.flags == 0 && result.status != Status::invalid) {
-      if (!keep(queries[i], result)) leave(queries[i]);
+      if (!keep(queries[i], result)) left.push_back(queries[i]);
     } else if (result.flags == 0) {
       throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
@@ -222,7 +223,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
     } else if (found.roomier && result.flags == kFlagCandidates && batch_.asked[queries[i]].hits == 1) {
       cramped_.push_back(queries[i]);
     } else {
-      leave(queries[i]);
+      left.push_back(queries[i]);
     }
   }
   std::vector<Result> decided(open.size());
@@ -234,10 +235,9 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
   });
   for (size_t k = 0; k < open.size(); ++k) {
     batch_.stats.cpuPairs += unresolved.of(open[k]).size();
-    if (!keep(queries[open[k]], decided[k])) leave(queries[open[k]]);
+    if (!keep(queries[open[k]], decided[k])) left.push_back(queries[open[k]]);
   }
-  std::sort(left.begin(), left.end());
-  answerOnCpu(left);
+  leaveToCpu(std::move(left));
 }
 
 }  // namespace radar

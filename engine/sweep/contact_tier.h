@@ -23,16 +23,18 @@ class ContactTier {
   void finish();
 
  private:
-  /// Adds the searches of a query; returns false if the device cannot answer it.
-  bool plan(size_t query);
-  Planned planOne(size_t query, ObjectId object);
+  /// Adds the searches of a query; returns false if the device cannot answer it. `tree`: the scene's, up to date.
+  bool plan(size_t query, const ObjectTree& tree);
+  Planned planOne(size_t query, ObjectId object, const ObjectTree& tree);
   void submit();
   void collect();
   void decode(const SearchAnswers& found, std::span<const size_t> queries);
   /// Keeps what a search found, unless only the CPU can tell what it means; returns whether it did.
   bool keep(size_t query, const Result& found);
   void finishLists();
-  void answerOnCpu(std::span<const size_t> which);
+  /// Leaves queries, some perhaps several times, to the CPU: those with lists when all their searches have ended.
+  void leaveToCpu(std::vector<size_t> queries);
+  void answerOnCpu(std::span<const size_t> which);  ///< ascending, each once
 
   const Device::Impl& device_;
   const Scene& scene_;

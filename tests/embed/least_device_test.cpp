@@ -135,6 +135,12 @@ TEST_CASE("too many sensors for one submission are split, and a scene beyond the
   sweeper.sync();
   checkSame(sweeper.run(queries), cpu.run(queries));
   CHECK(sweeper.stats().cpuQueries == queries.size());
+  // Nor are lists of such a scene taken for empty, though their searches share submissions with others.
+  queries.resize(40);
+  for (size_t i = 0; i < queries.size(); i += 3) queries[i].hits = kAllHits;
+  checkSame(sweeper.run(queries), cpu.run(queries));
+  REQUIRE(sweeper.lists().hitOffsets == cpu.lists().hitOffsets);
+  CHECK(sweeper.lists().hits.size() > 5);
 }
 
 TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the device's largest storage buffer") {

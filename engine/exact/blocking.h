@@ -6,7 +6,7 @@
 #pragma once
 
 #include "exact/contact.h"
-#include "radar/radar.h"
+#include "radar/scene.h"
 
 namespace radar::exact {
 

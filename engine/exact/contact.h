@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "math/vector.h"
-#include "radar/radar.h"
+#include "radar/query.h"
 
 namespace radar::exact {
 

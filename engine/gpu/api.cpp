@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "radar/radar.h"
+#include "radar/device.h"
 
 #if defined(_WIN32)
 #define WIN32_LEAN_AND_MEAN

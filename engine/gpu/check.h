@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "radar/radar.h"
+#include "radar/scene.h"
 
 namespace radar::gpu {
 

@@ -10,7 +10,7 @@
 #include <typeindex>
 
 #include "gpu/api.h"
-#include "radar/radar.h"
+#include "radar/device.h"
 
 namespace radar {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radar/radar.h"
+#include "radar/scene.h"
 
 namespace radar::gpu {
 

@@ -5,6 +5,7 @@
 #include "gpu/check.h"
 #include "gpu/device.h"
 #include "gpu/requirements.h"
+#include "radar/radar.h"
 
 namespace radar {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu/api.h"
-#include "radar/radar.h"
+#include "radar/device.h"
 
 namespace radar::gpu {
 

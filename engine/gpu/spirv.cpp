@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "radar/radar.h"
+#include "radar/device.h"
 
 namespace radar::gpu {
 

@@ -6,6 +6,7 @@
 
 #include "gpu/device.h"
 #include "gpu/handle.h"
+#include "radar/radar.h"
 
 namespace radar::gpu {
 

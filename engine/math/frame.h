@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/vector.h"
-#include "radar/radar.h"
+#include "radar/scene.h"
 
 namespace radar {
 

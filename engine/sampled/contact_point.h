@@ -2,6 +2,7 @@
 #pragma once
 
 #include "math/frame.h"
+#include "radar/query.h"
 
 namespace radar {
 

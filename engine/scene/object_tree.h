@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "math/box.h"
-#include "radar/radar.h"
+#include "radar/scene.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "radar/radar.h"
+#include "radar/query.h"
 
 namespace radar {
 

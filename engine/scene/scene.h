@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "math/box.h"
-#include "radar/radar.h"
+#include "radar/query.h"
 #include "scene/mesh_tree.h"
 #include "scene/object_tree.h"
 

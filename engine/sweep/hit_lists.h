@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "radar/radar.h"
+#include "radar/query.h"
 
 namespace radar {
 

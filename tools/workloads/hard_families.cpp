@@ -389,12 +389,8 @@ std::vector<double> zeroAnd(std::vector<double> values) {
 }
 
 HardFamily atRest(const char* name, HardCase (*make)(double, Random&)) {
-  return {.name = name,
-          .parameter = "bodies at rest: 0 on a grid, 1 by quarter turns, 2 turned at random, 3 and scaled and far away",
-          .values = {0, 1, 2, 3},
-          .make = make,
-          .placesItself = true,
-          .ignoresLeaving = true};
+  const char* how = "bodies at rest: 0 on a grid, 1 by quarter turns, 2 turned at random, 3 and scaled and far away";
+  return {name, how, {0, 1, 2, 3}, make, true, true};
 }
 
 }  // namespace
@@ -446,8 +442,7 @@ const std::vector<HardFamily>& hardFamilies() {
        sunkCase,
        true,
        true,
-       true},
-  };
+       true}};
   return families;
 }
 

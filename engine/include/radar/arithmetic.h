@@ -3,7 +3,7 @@
 // Instructions").
 #pragma once
 
-#include "radar/radar.h"
+#include "radar/device.h"
 
 namespace radar {
 

@@ -2,7 +2,7 @@
 // reference for tests.
 #pragma once
 
-#include "radar/radar.h"
+#include "radar/query.h"
 
 namespace radar {
 

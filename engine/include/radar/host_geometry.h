@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "radar/radar.h"
+#include "radar/device.h"
 
 namespace radar {
 

@@ -1,4 +1,4 @@
-// The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/radar.h explains the members.
+// The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/query.h explains the members.
 // Absent numbers are infinite or NaN, absent ids RADAR_NONE.
 //
 //     #extension GL_EXT_scalar_block_layout : require

@@ -7,34 +7,21 @@ import contextlib
 import inspect
 import os
 import threading
-import warnings
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Union
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _engine
+from ._arguments import MOST_ID, Mode, cast_options, device_choice, mesh_vertices, one_whole_number, regular
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
-
-Mode = Literal["contact", "sampled", "reference"]
-Path = Union[str, "os.PathLike[str]"]
+from ._files import Path, read_mesh
+from ._handle import CastHandle
+from ._warnings import MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
-_MOST_ID = 2**32 - 2
-
-
-class RoundingWarning(UserWarning):
-    """Vertices were rounded to float32, the engine's precision for meshes."""
-
-
-class MeshFileWarning(UserWarning):
-    """Something in a mesh file was left out."""
-
-
-class ValidationWarning(UserWarning):
-    """A message of a Vulkan validation layer."""
 
 
 class Objects(NamedTuple):
@@ -45,19 +32,6 @@ class Objects(NamedTuple):
     transforms: npt.NDArray[np.float64]  #: (n, 4, 4) world from mesh
     masks: npt.NDArray[np.uint32]  #: (n,)
     motions: npt.NDArray[np.float64]  #: (n, 3)
-
-
-def read_mesh(file: Path) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
-    """Reads a mesh file of any kind that assimp reads, as the program cyber-radar does.
-
-    "engine.glb" is the whole file as one mesh; "engine.glb#3" is node 3 of those that have triangles, in its own frame;
-    "engine.glb#name" is the only node of that name.
-
-    Returns vertices (N, 3) and faces (M, 3). Raises ValueError if the file is missing, broken, or has no triangle.
-    """
-    (vertices, faces), notes = _engine.read_mesh(os.fspath(file))
-    _warn_of(notes, MeshFileWarning)
-    return vertices, faces
 
 
 class Scene:
@@ -92,12 +66,12 @@ class Scene:
         cpu_batch: int | None = None,
     ) -> None:
         self._settings = {"device": device, "threads": threads, "cpu_batch": cpu_batch}
-        single, pool = _device_choice(device)
+        single, pool = device_choice(device)
         self._engine = _engine.Scene(
             device=single,
             pool=pool,
-            cpu_batch=None if cpu_batch is None else _one_whole_number(cpu_batch, "cpu_batch", 0, 2**31),
-            threads=_one_whole_number(threads, "threads", 0, 4096),
+            cpu_batch=None if cpu_batch is None else one_whole_number(cpu_batch, "cpu_batch", 0, 2**31),
+            threads=one_whole_number(threads, "threads", 0, 4096),
         )
         self._names: dict[int, str] = {}
         self._lock = threading.Lock()
@@ -115,7 +89,7 @@ class Scene:
         vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that changes any.
         faces: (M, 3), whole numbers: the vertices of each triangle.
         """
-        placed = _vertices(vertices)
+        placed = mesh_vertices(vertices)
         corners = whole_numbers(faces, "faces", np.uint32, 0, max(len(placed) - 1, 0), (3,))
         if corners.ndim != 2 or len(corners) == 0 or len(placed) == 0:
             raise ValueError(f"faces: expected shape (M, 3) with a triangle at least, got shape {corners.shape}")
@@ -135,10 +109,10 @@ class Scene:
         the nodes' names; nodes that place the same triangles share a mesh.
         """
         meshes, names, placed, transforms, notes = _engine.read_assembly(os.fspath(file))
-        _warn_of(notes, MeshFileWarning)
+        warn_of(notes, MeshFileWarning)
         if transform is not None:
-            transforms = _regular(_poses(transform, "transform"), "transform") @ transforms
-        bits = np.full(len(placed), _one_whole_number(mask, "mask", LEAST_MASK, MOST_MASK), np.uint32)
+            transforms = regular(_poses(transform, "transform"), "transform") @ transforms
+        bits = np.full(len(placed), one_whole_number(mask, "mask", LEAST_MASK, MOST_MASK), np.uint32)
         with self._exclusive() as engine:
             ids = [engine.add_mesh(vertices, faces) for vertices, faces in meshes]
             objects = engine.add(np.array(ids, np.uint32)[placed], transforms, bits)
@@ -171,7 +145,7 @@ class Scene:
         mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
         """
         meshes = self._known_meshes(mesh)
-        matrices = np.eye(4) if transforms is None else _regular(_poses(transforms, "transforms"), "transforms")
+        matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
         masks = whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK)
         shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
         with self._exclusive() as engine:
@@ -184,7 +158,7 @@ class Scene:
 
     def set_transforms(self, objects: npt.ArrayLike, transforms: npt.ArrayLike) -> None:
         """Moves objects: ids (...), transforms (..., 4, 4) world from mesh; leading shapes broadcast."""
-        matrices = _regular(_poses(transforms, "transforms"), "transforms")
+        matrices = regular(_poses(transforms, "transforms"), "transforms")
         with self._exclusive() as engine:
             ids = self._known_objects(objects, "objects")
             shape = common_shape({"objects": (ids, 0), "transforms": (matrices, 2)})
@@ -209,7 +183,7 @@ class Scene:
 
     def set_vertices(self, mesh: int, vertices: npt.ArrayLike) -> None:
         """Moves the vertices of a mesh: (N, 3), as many as it has, as in add_mesh()."""
-        number, placed = self._known_mesh(mesh), _vertices(vertices)
+        number, placed = self._known_mesh(mesh), mesh_vertices(vertices)
         with self._exclusive() as engine:
             count = len(engine.mesh(number)[0])
             if len(placed) != count:
@@ -292,7 +266,7 @@ class Scene:
         A cast whose own numbers are wrong, such as a NaN in its pose, has status INVALID and a reason, and the others
         are answered. Raises ValueError for arguments of a wrong type or shape, and Error if no device is usable.
         """
-        options = _options(
+        options = cast_options(
             mode, any_hit, ignore_leaving, skip_overlapping, slack, clearance, tolerance, hits, resolution
         )
         batch = self._batch(mesh, poses, displacements, distances, exclude, mask, options, out)
@@ -311,7 +285,7 @@ class Scene:
         bound = inspect.signature(self.cast).bind(mesh, poses, displacements, **options)
         bound.apply_defaults()
         given = bound.arguments
-        chosen = _options(**{name: given[name] for name in inspect.signature(_options).parameters})
+        chosen = cast_options(**{name: given[name] for name in inspect.signature(cast_options).parameters})
         per_cast = {name: given[name] for name in ("mesh", "poses", "displacements", "distances", "exclude", "mask")}
         batch = self._batch(**per_cast, options=chosen, out=given["out"], copy=True)
         handle = CastHandle(_count(batch.shape), given["progress"])
@@ -433,7 +407,7 @@ class Scene:
                 after_chunk,
             )
         finally:
-            _warn_of(_engine.take_validation_messages(), ValidationWarning)
+            warn_of(_engine.take_validation_messages(), ValidationWarning)
         casts = Casts(**batch.results) if batch.out is None else batch.out
         if not options["sampled"]:
             casts.paper_min_l = casts.resolution = None
@@ -446,18 +420,18 @@ class Scene:
         return casts
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
-        ids = whole_numbers(mesh, "mesh", np.uint32, 0, _MOST_ID)
+        ids = whole_numbers(mesh, "mesh", np.uint32, 0, MOST_ID)
         known = np.isin(ids, self._engine.mesh_ids())
         if not known.all():
             raise ValueError(f"mesh: expected ids of meshes of the scene, got {ids[~known].flat[0]}")
         return ids
 
     def _known_mesh(self, mesh: int) -> int:
-        return int(self._known_meshes(_one_whole_number(mesh, "mesh", 0, _MOST_ID)))
+        return int(self._known_meshes(one_whole_number(mesh, "mesh", 0, MOST_ID)))
 
     def _known_objects(self, objects: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.NDArray[np.int64]:
         """`inner` is given for `exclude`, where -1 is none."""
-        ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, _MOST_ID, inner)
+        ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, MOST_ID, inner)
         if ids.size:
             unknown = np.setdiff1d(ids, self._engine.object_ids())
             unknown = unknown[unknown >= 0]
@@ -466,156 +440,12 @@ class Scene:
         return ids
 
 
-class CastHandle:
-    """A cast that runs on another thread."""
-
-    def __init__(self, total: int, progress: Callable[[int, int], object] | None) -> None:
-        self._progress = (0, total)
-        self._callback = progress
-        self._cancelled = threading.Event()
-        self._future: concurrent.futures.Future[Casts]
-
-    def result(self, timeout: float | None = None) -> Casts:
-        """Waits, at most `timeout` seconds, and returns the answers, or raises what ended the cast:
-        concurrent.futures.CancelledError after cancel(), concurrent.futures.TimeoutError if it is not done in time."""
-        return self._future.result(timeout)
-
-    def done(self) -> bool:
-        """Whether result() returns at once."""
-        return self._future.done()
-
-    def cancel(self) -> None:
-        """Ends the cast soon; some of `out` is then written."""
-        self._cancelled.set()
-        self._future.cancel()
-
-    @property
-    def progress(self) -> tuple[int, int]:
-        """How many casts are done, of how many."""
-        return self._progress
-
-    def _after_chunk(self, done: int) -> None:
-        self._progress = (done, self._progress[1])
-        if self._callback is not None:
-            self._callback(*self._progress)
-        if self._cancelled.is_set():
-            raise concurrent.futures.CancelledError
-
-
 class _Batch(NamedTuple):
     shape: tuple[int, ...]
     arguments: dict[str, Any]  # of that leading shape
     options: dict[str, Any]
     results: dict[str, Any]
     out: Casts | None  # whose arrays `results` are
-
-
-def _options(
-    mode: Mode,
-    any_hit: bool,
-    ignore_leaving: bool,
-    skip_overlapping: bool,
-    slack: float | None,
-    clearance: float,
-    tolerance: float | None,
-    hits: int | str,
-    resolution: int,
-) -> dict[str, Any]:
-    if mode not in ("contact", "sampled", "reference"):
-        raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
-    count = _one_whole_number(
-        _engine.ALL_HITS if isinstance(hits, str) and hits == "all" else hits, "hits", 1, _engine.ALL_HITS
-    )
-    least = _length(clearance, "clearance") or 0.0
-    if count > 1 and any_hit:
-        raise ValueError(f"hits: expected 1 with any_hit, got {hits}")
-    if mode == "sampled" and (ignore_leaving or skip_overlapping or count > 1 or least > 0):
-        raise ValueError(
-            'mode: expected "contact" or "reference" with ignore_leaving, skip_overlapping, clearance or several hits, '
-            'got "sampled"'
-        )
-    return {
-        "sampled": mode == "sampled",
-        "on_cpu": mode == "reference",
-        "any_hit": bool(any_hit),
-        "ignore_leaving": bool(ignore_leaving),
-        "skip_overlapping": bool(skip_overlapping),
-        "slack": _length(slack, "slack"),
-        "clearance": least,
-        "tolerance": _length(tolerance, "tolerance"),
-        "hits": count,
-        "resolution": _one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION),
-    }
-
-
-def _length(value: float | None, name: str) -> float | None:
-    if value is None:
-        return None
-    number = reals(value, name)
-    if number.ndim or not (np.isfinite(number) and number >= 0):
-        raise ValueError(f"{name}: expected a finite number of 0 or more, got {value}")
-    return float(number)
-
-
-def _one_whole_number(value: Any, name: str, least: int, most: int) -> int:
-    number = whole_numbers(value, name, np.int64, least, most)
-    if number.ndim:
-        raise ValueError(f"{name}: expected one whole number, got shape {number.shape}")
-    return int(number)
-
-
-def _device_choice(device: Any) -> tuple[int | None, list[int] | None]:
-    if device is None:
-        return None, None
-    if isinstance(device, str):
-        if device != "all":
-            raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
-        return None, []
-    numbers = whole_numbers(device, "device", np.int64, 0, _MOST_ID)
-    if numbers.ndim > 1 or numbers.size == 0:
-        raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
-    return (int(numbers), None) if numbers.ndim == 0 else (None, numbers.tolist())
-
-
-def _vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    given = reals(value, "vertices", (3,))
-    if given.ndim != 2:
-        raise ValueError(f"vertices: expected shape (N, 3), got shape {given.shape}")
-    with np.errstate(over="ignore"):
-        rounded = given.astype(np.float32)
-    if not np.isfinite(rounded).all():
-        row = int(np.argwhere(~np.isfinite(rounded))[0][0])
-        raise ValueError(f"vertices[{row}]: expected 3 finite numbers that float32 can hold, got {given[row]}")
-    error = float(np.abs(rounded - given).max(initial=0.0))
-    if error > 0:
-        _warn(
-            f"vertices are rounded to float32, by up to {error:.2g}; pass float32 to say that this is meant",
-            RoundingWarning,
-        )
-    return rounded
-
-
-def _regular(matrices: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.float64]:
-    """Refuses a matrix that is singular or not finite."""
-    wrong = _engine.first_singular(matrices)
-    if wrong is not None:
-        at, why = wrong
-        index = tuple(int(k) for k in np.unravel_index(at, matrices.shape[:-2])) if matrices.ndim > 2 else ()
-        raise ValueError(f"{name}{list(index) or ''}: {why}")
-    return matrices
-
-
-def _warn(note: str, category: type[Warning]) -> None:
-    """Warns at the line that called the package."""
-    level, frame = 1, inspect.currentframe()
-    while frame is not None and frame.f_globals.get("__package__") == __package__:
-        level, frame = level + 1, frame.f_back
-    warnings.warn(note, category, stacklevel=level)
-
-
-def _warn_of(notes: list[str], category: type[Warning]) -> None:
-    for note in notes:
-        _warn(note, category)
 
 
 def _count(shape: tuple[int, ...]) -> int:

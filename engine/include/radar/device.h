@@ -1,0 +1,123 @@
+// Vulkan devices: opened by the engine, or a host's.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan_core.h>
+
+#include "radar/query.h"
+
+namespace radar {
+
+/// A limit of a physical device that shaders rely on; `name` is its name in VkPhysicalDeviceLimits.
+struct DeviceLimit {
+  std::string name;
+  uint64_t needed = 0, has = 0;  ///< the least value needed; the device's value
+  Mode mode = Mode::contact;     ///< the mode that needs it; sampled needs everything that contact needs
+};
+
+/// What is known of a physical device.
+struct DeviceReport {
+  std::string name, driver, type;
+  std::vector<std::string> reasons;         ///< why it cannot be used; empty if it can
+  std::vector<std::string> sampledReasons;  ///< why it does not support mode sampled; empty if it does
+  std::string version;                      ///< the device's Vulkan version: "1.3.224"
+  uint64_t memory = 0;                      ///< size of the largest device-local heap, bytes
+  uint32_t subgroup = 0;                    ///< invocations in a workgroup of the search; 0 before Vulkan 1.3
+  bool doubles = false;                     ///< supports shaderFloat64
+  std::vector<DeviceLimit> limits;          ///< empty before Vulkan 1.3
+  bool usable() const { return reasons.empty(); }
+};
+
+/// Lists the Vulkan loader's physical devices, in its order. Throws if there is no loader or no driver.
+RADAR_API std::vector<DeviceReport> listDevices();
+
+/// Vulkan handles that the host owns. All outlive the Device made from them. `device` has the features of
+/// requirements() enabled. `queue` belongs to family `queueFamily`, which supports compute and, for mode sampled,
+/// graphics.
+///
+/// `queue` may be null if the host makes every submission itself. The engine then never submits: a Recorder works in
+/// full; a Sweeper, a Pool and addMesh() of a HostMesh throw Error. Without a queue the device's doubles cannot be
+/// compared with the CPU's, so `doubles` is trusted: if they differ, answers may be wrong. If unsure, pass false, or
+/// the value that Device::doubles() gave when the same device and driver were adopted with a queue.
+struct HostDevice {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  uint32_t queueFamily = 0;
+  VkQueue queue = VK_NULL_HANDLE;
+  bool doubles = true;      ///< shaderFloat64 is enabled on `device`
+  bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) are enabled on `device`
+  bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
+  /// Used to look up all Vulkan functions. Null: the system's loader.
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
+  const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's
+  VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline; optional
+  /// Called around each vkQueueSubmit2, on the submitting thread. Set both if other threads use the queue too, else
+  /// none.
+  std::function<void()> lockQueue, unlockQueue;
+};
+
+/// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. The host chains it into its
+/// VkDeviceCreateInfo (without pEnabledFeatures), or copies the enabled features into its own structs.
+struct Requirements {
+  uint32_t apiVersion = VK_API_VERSION_1_3;  ///< of instance and device
+  VkPhysicalDeviceFeatures2 core{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  /// For VkDeviceCreateInfo::pNext: chains all three structs, then `next`. Valid until this object moves or ends.
+  const void* chain(void* next = nullptr);
+};
+/// `mode`: sampled needs everything that contact needs, and graphics. `doubles`: includes shaderFloat64, which is
+/// optional but lets mode contact leave less to the CPU.
+RADAR_API Requirements requirements(Mode mode, bool doubles);
+
+/// Why a host's physical device cannot be used for `mode`: one line per missing item, empty if it can. Reads only
+/// `instance`, `physicalDevice` and `getInstanceProcAddr`.
+RADAR_API std::vector<std::string> unsupportedReasons(const HostDevice& host, Mode mode);
+
+struct DeviceOptions {
+  uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
+  /// Receives each warning or error of active validation layers, on any thread.
+  std::function<void(const std::string&)> onValidation;
+  bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
+};
+
+/// A logical device with one queue: opened here and owned, or borrowed from a host.
+class RADAR_API Device {
+ public:
+  /// Throws, listing devices and reasons, if no device is usable, or the requested one is not.
+  static Device open(const DeviceOptions& options = {});
+  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the error
+  /// bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
+  /// it gives the lock functions. If `host` has a queue, submits at most twice, to check the arithmetic. Any number of
+  /// Devices may be made from one VkDevice.
+  static Device adopt(const HostDevice& host);
+  ~Device();
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+
+  const std::string& name() const;
+  const std::string& driver() const;
+  /// Whether the device supports a mode: contact always; sampled needs graphics.
+  bool supports(Mode mode) const;
+  /// Whether the device solves pairs in double precision. It does if it has doubles and the checks at opening
+  /// (radar/arithmetic.h) found the operations involved to match the CPU's, bit for bit. Otherwise it solves pairs in
+  /// float, with error bounds, and the CPU decides what that leaves open: the answers are the same. Without a queue:
+  /// HostDevice::doubles, untested.
+  bool doubles() const;
+  const HostDevice& handles() const;
+
+  struct Impl;
+  Impl& impl() const { return *impl_; }
+
+ private:
+  explicit Device(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace radar

@@ -1,0 +1,110 @@
+"""What casts and scenes are given, checked: a ValueError names the argument."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _engine
+from ._arrays import reals, whole_numbers
+from ._warnings import RoundingWarning, warn
+
+Mode = Literal["contact", "sampled", "reference"]
+MOST_ID = 2**32 - 2
+
+
+def cast_options(
+    mode: Mode,
+    any_hit: bool,
+    ignore_leaving: bool,
+    skip_overlapping: bool,
+    slack: float | None,
+    clearance: float,
+    tolerance: float | None,
+    hits: int | str,
+    resolution: int,
+) -> dict[str, Any]:
+    if mode not in ("contact", "sampled", "reference"):
+        raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
+    count = one_whole_number(
+        _engine.ALL_HITS if isinstance(hits, str) and hits == "all" else hits, "hits", 1, _engine.ALL_HITS
+    )
+    least = _length(clearance, "clearance") or 0.0
+    if count > 1 and any_hit:
+        raise ValueError(f"hits: expected 1 with any_hit, got {hits}")
+    if mode == "sampled" and (ignore_leaving or skip_overlapping or count > 1 or least > 0):
+        raise ValueError(
+            'mode: expected "contact" or "reference" with ignore_leaving, skip_overlapping, clearance or several hits, '
+            'got "sampled"'
+        )
+    return {
+        "sampled": mode == "sampled",
+        "on_cpu": mode == "reference",
+        "any_hit": bool(any_hit),
+        "ignore_leaving": bool(ignore_leaving),
+        "skip_overlapping": bool(skip_overlapping),
+        "slack": _length(slack, "slack"),
+        "clearance": least,
+        "tolerance": _length(tolerance, "tolerance"),
+        "hits": count,
+        "resolution": one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION),
+    }
+
+
+def _length(value: float | None, name: str) -> float | None:
+    if value is None:
+        return None
+    number = reals(value, name)
+    if number.ndim or not (np.isfinite(number) and number >= 0):
+        raise ValueError(f"{name}: expected a finite number of 0 or more, got {value}")
+    return float(number)
+
+
+def one_whole_number(value: Any, name: str, least: int, most: int) -> int:
+    number = whole_numbers(value, name, np.int64, least, most)
+    if number.ndim:
+        raise ValueError(f"{name}: expected one whole number, got shape {number.shape}")
+    return int(number)
+
+
+def device_choice(device: Any) -> tuple[int | None, list[int] | None]:
+    if device is None:
+        return None, None
+    if isinstance(device, str):
+        if device != "all":
+            raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
+        return None, []
+    numbers = whole_numbers(device, "device", np.int64, 0, MOST_ID)
+    if numbers.ndim > 1 or numbers.size == 0:
+        raise ValueError(f'device: expected a number of devices(), a list of them, or "all", got {device!r}')
+    return (int(numbers), None) if numbers.ndim == 0 else (None, numbers.tolist())
+
+
+def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
+    given = reals(value, "vertices", (3,))
+    if given.ndim != 2:
+        raise ValueError(f"vertices: expected shape (N, 3), got shape {given.shape}")
+    with np.errstate(over="ignore"):
+        rounded = given.astype(np.float32)
+    if not np.isfinite(rounded).all():
+        row = int(np.argwhere(~np.isfinite(rounded))[0][0])
+        raise ValueError(f"vertices[{row}]: expected 3 finite numbers that float32 can hold, got {given[row]}")
+    error = float(np.abs(rounded - given).max(initial=0.0))
+    if error > 0:
+        warn(
+            f"vertices are rounded to float32, by up to {error:.2g}; pass float32 to say that this is meant",
+            RoundingWarning,
+        )
+    return rounded
+
+
+def regular(matrices: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.float64]:
+    """Refuses a matrix that is singular or not finite."""
+    wrong = _engine.first_singular(matrices)
+    if wrong is not None:
+        at, why = wrong
+        index = tuple(int(k) for k in np.unravel_index(at, matrices.shape[:-2])) if matrices.ndim > 2 else ()
+        raise ValueError(f"{name}{list(index) or ''}: {why}")
+    return matrices

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "cpu/clearance.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"
 
@@ -61,11 +62,25 @@ void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& 
   }
 }
 
+Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const Query& query, const Motion& motion,
+                       double tolerance) {
+  cpu::ClearanceContact contact(query, motion, tolerance);
+  contact.beginObject({}, motion);
+  for (const gpu::UnresolvedPair* pair : pairs) {
+    contact.consider({pair->object, pair->triB, pair->triA}, placedPair(*pair, query), 0);
+    if (contact.isDecided()) break;
+  }
+  Result result = contact.first();
+  result.tier = Tier::contact;
+  return result;
+}
+
 }  // namespace
 
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const GpuScene& scene) {
+                        double tolerance, const GpuScene& scene) {
   const Motion motion(query);
+  if (query.clearance > 0) return decideClearance(pairs, query, motion, tolerance);
   exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {
     const exact::PlacedPair inOrder = placedPair(*pair, query);

@@ -21,10 +21,11 @@ class UnresolvedPairs {
 };
 
 /// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
-/// For a query with `anyHit`, stops at the first pair that meets. Throws Error with VK_ERROR_UNKNOWN if the search
-/// found a certain contact, but none of `pairs` meets. `scene`: the copy that was searched.
+/// For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its clearance (cpu/clearance.h).
+/// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `scene`: the
+/// copy that was searched.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const GpuScene& scene);
+                        double tolerance, const GpuScene& scene);
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();

@@ -17,14 +17,14 @@ namespace radar {
 
 namespace {
 
-std::array<uint32_t, 3> searchConstants(const Device::Impl& device, const SearchShape& shape) {
+std::array<uint32_t, 4> searchConstants(const Device::Impl& device, const SearchShape& shape) {
   const uint32_t lanes = device.subgroupSize;
   uint32_t queue = std::max(shape.queue != 0 ? shape.queue : std::max(8 * lanes, 128u), 6 * lanes);
   while (queue > 6 * lanes &&
          gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
     queue -= lanes;
   }
-  return {lanes, queue, std::max(shape.stack, 4u)};
+  return {lanes, queue, std::max(shape.stack, 4u), 0};
 }
 
 }  // namespace
@@ -39,12 +39,23 @@ ContactKernels::ContactKernels(const Device::Impl& device, const SearchShape& sh
       resolve(
           device,
           device.doubles ? std::span<const uint32_t>(k_contact_resolve_comp) : k_contact_resolve_comp_RADAR_NO_DOUBLES,
-          "resolve", device.divisionConstants()) {
+          "resolve", device.divisionConstants()),
+      device_(device),
+      constants_(searchConstants(device, shape)) {
   if (!device.doubles) return;
   const uint32_t divides = device.divisionConstants()[0];
   refine.emplace(device, k_contact_refine_comp, "refine", std::array{divides, 0u});
   refineLeaving.emplace(device, k_contact_refine_comp, "refine, leaving ignored", std::array{divides, 1u});
   block.emplace(device, k_contact_block_comp, "block");
+}
+
+const gpu::Kernel& ContactKernels::searchWithClearance() const {
+  std::call_once(clearanceOnce_, [&] {
+    std::array<uint32_t, 4> constants = constants_;
+    constants[3] = 1;
+    clearance_.emplace(device_, k_contact_search_comp, "search, with a clearance", constants, gpu::Subgroups::full);
+  });
+  return *clearance_;
 }
 
 }  // namespace radar

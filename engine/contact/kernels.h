@@ -1,6 +1,8 @@
 // The compute kernels of the contact tier, created once per device.
 #pragma once
 
+#include <array>
+#include <mutex>
 #include <optional>
 
 #include "gpu/kernel.h"
@@ -20,6 +22,15 @@ struct ContactKernels {
   uint32_t stack;
   gpu::Kernel search, collect, filter, link, resolve;
   std::optional<gpu::Kernel> refine, refineLeaving, block;  ///< if the device has doubles
+
+  /// The search for queries with a clearance, created at the first call; any thread may call.
+  const gpu::Kernel& searchWithClearance() const;
+
+ private:
+  const Device::Impl& device_;
+  std::array<uint32_t, 4> constants_;
+  mutable std::once_flag clearanceOnce_;
+  mutable std::optional<gpu::Kernel> clearance_;
 };
 
 }  // namespace radar

@@ -42,7 +42,7 @@ constexpr uint32_t kMostTasks = 1u << 21;
 // that it grows to. Sensors have some 10 candidates among boxes, 30 among meshes, hundreds where shapes interlock.
 constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
 // Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
-constexpr uint32_t kUnresolved = 4, kMostUnresolved = 1u << 20;
+constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolved = 1u << 20;
 
 // Whether the device runs on the CPU: it then has as many lanes at work as threads times the width of a vector.
 bool runsOnCpu(const Device::Impl& device) {
@@ -97,9 +97,9 @@ void ContactPass::reserveLists(uint32_t sensors) {
   const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
   const uint64_t candidates =
       room_.candidates != 0 ? room_.candidates : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
+  const uint32_t usual = (hasClearances_ ? kUnresolvedWithClearance : kUnresolved) * sensors;
   const uint32_t unresolved =
-      room_.unresolved != 0 ? room_.unresolved
-                            : std::clamp(std::max(kUnresolved * sensors, wantedUnresolved_), 4096u, kMostUnresolved);
+      room_.unresolved != 0 ? room_.unresolved : std::clamp(std::max(usual, wantedUnresolved_), 4096u, kMostUnresolved);
   taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
   candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::RefinedPair)));
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
@@ -129,6 +129,11 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   sensorCount_ = batch.count();
   ignoresLeaving_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
                                 [](const gpu::Sweep& sweep) { return sweep.ignoreLeaving != 0; });
+  hasClearances_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
+                               [](const gpu::Sweep& sweep) { return sweep.hasClearance != 0; });
+  for (auto& search : searchWithClearance_) {
+    if (hasClearances_ && !search) search.emplace(kernels_->searchWithClearance());
+  }
   const VkDeviceSize sceneBytes = scene_.prepare(scene);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
@@ -171,18 +176,18 @@ void ContactPass::setArguments() {
   const GpuScene::Buffers& scene = scene_.buffers();
   for (int i = 0; i < 2; ++i) {
     const Array<SearchTask>&from = i == 0 ? tasks_ : spilled_, &to = i == 0 ? spilled_ : tasks_;
-    search_[i].set({{kSlotMeshNodes, scene.meshNodes},
-                    {kSlotObjectNodes, scene.objectNodes},
-                    {kSlotVertices, scene.vertices},
-                    {kSlotTriangles, scene.triangles},
-                    {kSlotPlacements, scene.placements},
-                    {kSlotSensors, sensors_},
-                    {kSlotStates, states_},
-                    {kSlotCounts, counts_},
-                    {kSlotTasks, from},
-                    {kSlotSpilled, to},
-                    {kSlotCandidatePairs, candidates_},
-                    {kSlotExcluded, excluded_}});
+    search(i).set({{kSlotMeshNodes, scene.meshNodes},
+                   {kSlotObjectNodes, scene.objectNodes},
+                   {kSlotVertices, scene.vertices},
+                   {kSlotTriangles, scene.triangles},
+                   {kSlotPlacements, scene.placements},
+                   {kSlotSensors, sensors_},
+                   {kSlotStates, states_},
+                   {kSlotCounts, counts_},
+                   {kSlotTasks, from},
+                   {kSlotSpilled, to},
+                   {kSlotCandidatePairs, candidates_},
+                   {kSlotExcluded, excluded_}});
     collect_[i].set({{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
   }
   filter_.set({{kSlotStates, states_},
@@ -227,7 +232,7 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
   stage("search");
   for (uint32_t round = 0; round < rounds; ++round) {
     const gpu::SearchPush push{round, taskRoom_, candidateRoom_, room_.budget, room_.width};
-    search_[round % 2].dispatch(commands, groupsFor(sensorCount_), push);
+    search(static_cast<int>(round % 2)).dispatch(commands, groupsFor(sensorCount_), push);
     gpu::computeWriteToComputeReadWrite(commands);
     const bool abandons = isLast && round + 1 == rounds;
     collect_[round % 2].dispatch(commands, gpu::kCollectGroups, gpu::CollectPush{round, taskRoom_, abandons ? 1u : 0u});

@@ -56,6 +56,7 @@ class ContactPass {
   static constexpr uint32_t kMostBudget = 30'000;
 
  private:
+  gpu::KernelArguments& search(int list) { return hasClearances_ ? *searchWithClearance_[list] : search_[list]; }
   void setArguments();
   void reserveLists(uint32_t sensors);
   uint32_t groupsFor(uint32_t sensors) const;
@@ -77,11 +78,11 @@ class ContactPass {
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
   // Rounds alternate between the two lists of tasks.
   gpu::KernelArguments search_[2], collect_[2], filter_, link_, resolve_;
-  std::optional<gpu::KernelArguments> refine_, refineLeaving_, block_;
+  std::optional<gpu::KernelArguments> searchWithClearance_[2], refine_, refineLeaving_, block_;
   std::vector<gpu::SearchState> stateList_;
   std::vector<gpu::SearchTask> taskList_;
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;
-  bool ignoresLeaving_ = false;
+  bool ignoresLeaving_ = false, hasClearances_ = false;
   uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
   VkDeviceSize reservedBytes_ = 0;
 };

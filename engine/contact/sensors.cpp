@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/clearance.h"
 #include "exact/blocking.h"
 #include "math/frame.h"
 #include "math/rounding.h"
@@ -19,6 +20,9 @@ constexpr double kMostDistance = 0x1p42;
 // Scaled. Shorter distances, other than 0, are out of range: floats might flush them to 0, which would make contact
 // before D indistinguishable from contact at D.
 constexpr double kLeastDistance = 0x1p-100;
+// Scaled. Larger clearances are left to the CPU, for node_pair.glsl multiplies such lengths; so are clearances below
+// this share of the scene's extent, which the CPU's doubles may be unable to tell from 0.
+constexpr double kMostClearance = 0x1p29, kLeastClearance = 0x1p-40;
 
 // Distance from `centre` to the farthest point of the scene, as a sum over the axes.
 double farthestOf(const Box& world, const Vector& centre) {
@@ -73,6 +77,14 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   const double scale = std::ldexp(1.0, -std::ilogb(size));
   const double distance = std::min(query.distance * scale, kMostDistance);
   if (query.distance > 0 && distance < kLeastDistance) return Planned::outOfRange;
+  const double clearance = query.clearance;
+  if (clearance > 0 && !(clearance * scale <= kMostClearance && clearance >= kLeastClearance * (size + farthest))) {
+    return Planned::outOfRange;
+  }
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= clearance;
+    box.hi[k] += clearance;
+  }
 
   const std::array<Vector, 3> axes = axesAlong(query.direction);
   for (int row = 0; row < 3; ++row) {
@@ -86,9 +98,13 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   // then the same holds for triangles in one plane (docs/exact.md, "Pairs that block"). By default the slack is at most
   // a sixteenth of either placement's error.
   if (query.ignoreLeaving && !query.slack) sensor.frame[7] = 0.125f;
+  if (clearance > 0) {
+    sensor.frame[3] = roundUp(clearance * scale);
+    sensor.frame[11] = roundUp(cpu::toleranceOf(query, mesh) * scale);
+  }
   sensor.distance = roundUp(distance);
   sensor.stopBefore = query.anyHit ? roundDown(distance) : -1.0f;
-  setBox(sensor, box, tree.anchor(), farthest);
+  setBox(sensor, box, tree.anchor(), farthest + clearance);
   sensor.mask = query.mask;
   sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
   batch.excluded.insert(batch.excluded.end(), query.exclude.begin(), query.exclude.end());
@@ -104,6 +120,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sweep.result = result;
   sweep.scale = sensor.scale;
   sweep.start = sensor.distance;
+  sweep.hasClearance = clearance > 0 ? 1 : 0;
   if (query.ignoreLeaving) {
     sweep.ignoreLeaving = 1;
     sweep.isMirrored = exact::isMirroring(query.worldFromMesh) ? 1 : 0;

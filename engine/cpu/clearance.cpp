@@ -11,17 +11,23 @@ namespace radar::cpu {
 
 namespace {
 
-// Of the sensor's size, if the query gives no tolerance.
+// Of the longest side of the sensor's box.
 constexpr double kTolerance = 1e-6;
 
 }  // namespace
 
-ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double size)
+double toleranceOf(const Query& query, const Mesh& sensor) {
+  const Box box = boxOf(sensor, query.worldFromMesh.m);
+  const double usual = kTolerance * std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+  return std::min(query.tolerance.value_or(usual), usual);
+}
+
+ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double tolerance)
     : PairVisitor(motion.distance),
       query_(query),
       sensorMotion_(motion),
       motion_(&motion),
-      tolerance_(query.tolerance.value_or(kTolerance * size)),
+      tolerance_(tolerance),
       lo_(std::numeric_limits<double>::infinity()) {}
 
 bool ClearanceContact::Near::isCertain() const {
@@ -68,7 +74,8 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
   decided_ = query_.anyHit && near.isCertain();
   atStart_ = near.approach.hi == 0;
   first_ = name;
-  latest_ = std::min(latest_, near.approach.hi);
+  // A later pair may have a bracket that begins before this one's, which then widens that of the answer.
+  latest_ = std::min(latest_, near.approach.hi + (motion_->isStep ? 0 : tolerance_));
 }
 
 void ClearanceContact::endObject() {

@@ -6,13 +6,19 @@
 
 #include "cpu/approach.h"
 #include "cpu/first_contact.h"
+#include "scene/scene.h"
 
 namespace radar::cpu {
 
+/// How narrow the bracket of a query with a clearance is to be, world units: Query::tolerance, or by default a share of
+/// the longest side of the sensor's box. A larger one would save next to nothing.
+double toleranceOf(const Query& query, const Mesh& sensor);
+
+/// The answer does not depend on the order of the pairs, nor on those that come later than contact by the tolerance.
 class ClearanceContact final : public PairVisitor {
  public:
-  /// `size`: the sensor's, world units. `query` and `motion` must outlive this.
-  ClearanceContact(const Query& query, const Motion& motion, double size);
+  /// `tolerance`: see toleranceOf. `query` and `motion` must outlive this.
+  ClearanceContact(const Query& query, const Motion& motion, double tolerance);
 
   /// As of FirstContact.
   void beginObject(const PairRule& rule, const Motion& motion) {

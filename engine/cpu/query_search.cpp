@@ -18,11 +18,6 @@ Vector middleOf(const Mesh& mesh, const Placement& placement) {
   return middle;
 }
 
-/// The longest side of a placed sensor's box.
-double longestSide(const Box& box) {
-  return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
-}
-
 /// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
 void scale(Result& result, double distance) {
   // A bracket's ends are equal only at the start or the end.
@@ -115,8 +110,7 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     if (scales) scale(first, query.distance);
     return first;
   };
-  if (query.clearance > 0)
-    return find(ClearanceContact(query, task.motion, longestSide(boxOf(task.sensor, query.worldFromMesh.m))));
+  if (query.clearance > 0) return find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
   return find(FirstContact(query, task.motion, middleOf(task.sensor, task.placement), size));
 }
 

@@ -4,6 +4,7 @@
 
 #include "contact/decode.h"
 #include "contact/pass.h"
+#include "cpu/clearance.h"
 #include "embed/host_geometry.h"
 #include "gpu/barrier.h"
 #include "scene/query_lists.h"
@@ -62,6 +63,7 @@ struct Recorder::Impl {
   ContactPass pass;
   gpu::Buffer readback;                ///< counts, then results
   std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
+  std::vector<double> tolerances;      ///< of their clearances
   SensorBatch sensors;
   std::vector<Result> known;
 };
@@ -92,8 +94,11 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    if (wrong.empty() && (hasLists(queries[i]) || queries[i].clearance > 0 || isStep(queries[i], scene.impl()))) {
-      wrong = "skipOverlapping, hits, clearance, motion: only a Sweeper, a CpuSweeper and a Pool offer these";
+    const bool combines = queries[i].clearance > 0 && queries[i].ignoreLeaving;
+    if (wrong.empty() && (hasLists(queries[i]) || combines || isStep(queries[i], scene.impl()))) {
+      wrong =
+          "skipOverlapping, hits, motion, clearance with ignoreLeaving: only a Sweeper, a CpuSweeper and a Pool offer "
+          "these";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -153,6 +158,10 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   self.device.endLabel(commands);
   self.copy.confirm(self.scene.impl());
   self.recordedQueries.assign(queries.begin(), queries.end());
+  self.tolerances.clear();
+  for (const Query& query : queries) {
+    self.tolerances.push_back(cpu::toleranceOf(query, self.scene.impl().meshes[query.mesh]));
+  }
 }
 
 void Recorder::reset() {
@@ -173,7 +182,8 @@ std::vector<Result> Recorder::read() {
     const uint32_t query = self.sensors.sweeps[i].result;
     const auto pairs = unresolved.of(i);
     if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
-    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query], self.copy);
+    results[query] =
+        decideUnresolved(results[query], pairs, self.recordedQueries[query], self.tolerances[query], self.copy);
   }
   return results;
 }

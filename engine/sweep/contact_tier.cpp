@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cpu/clearance.h"
 #include "gpu/limit_error.h"
 #include "scene/parallel.h"
 
@@ -113,7 +114,8 @@ void ContactTier::run(std::span<const size_t> which) {
 bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   const Query& asked = batch_.asked[query];
   const Scene::Impl& scene = scene_.impl();
-  if (asked.clearance > 0 || isStep(asked, scene)) return false;
+  if (isStep(asked, scene)) return false;
+  if (asked.clearance > 0 && (asked.ignoreLeaving || asked.hits > 1)) return false;
   if (asked.hits == 1) {
     const Planned planned = planOne(query, kNone, tree);
     if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
@@ -184,6 +186,8 @@ void ContactTier::finishLists() {
 
 bool ContactTier::keep(size_t query, const Result& found) {
   const Query& asked = batch_.asked[query];
+  // The CPU finds the least pair of triangles that are that near at the start.
+  if (asked.clearance > 0 && found.status == Status::overlap && found.object == kNone) return false;
   // What meets at the start may cross, and then takes no part.
   const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
   if (asked.skipOverlapping && mayCross) return false;
@@ -230,7 +234,9 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
   parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
     for (size_t k = first; k < last; ++k) {
       const uint32_t i = open[k];
-      decided[k] = decideUnresolved(found.results[i], unresolved.of(i), batch_.asked[queries[i]], resident_);
+      const Query& asked = batch_.asked[queries[i]];
+      const double tolerance = cpu::toleranceOf(asked, scene_.impl().meshes[asked.mesh]);
+      decided[k] = decideUnresolved(found.results[i], unresolved.of(i), asked, tolerance, resident_);
     }
   });
   for (size_t k = 0; k < open.size(); ++k) {

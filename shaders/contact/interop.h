@@ -15,8 +15,9 @@ namespace gpu {
 // The input of a search.
 struct Sensor {
   Placement placement;
-  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the second row: by how much
-                   // a default slack may move a corner, as a share of both placements' errors
+  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the first row: the
+                   // clearance, scaled, rounded up; of the second: by how much a default slack may move a corner, as a share
+                   // of both placements' errors; of the third: the clearance's tolerance, scaled, rounded up
   Point direction; // unit, world
   float scale;
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects
@@ -42,6 +43,8 @@ struct Sweep {
   float start;      // Sensor::distance, the initial SearchState::hi
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
+  uint hasClearance;   // the CPU decides all pairs that may be first
+  uint pad;
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default
 };
@@ -54,6 +57,7 @@ struct SearchState {
 INTEROP_CONST kSearchLost = 1;        // a list was full
 INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small relative to the sensor, for floats
 INTEROP_CONST kSearchUnfinished = 4;  // more rounds were needed than recorded
+INTEROP_CONST kSearchWithin = 8;      // something certainly is within the clearance at the start: the search has ended
 
 // A pair of nodes, or a node of the tree over objects, still to be searched.
 struct SearchTask {

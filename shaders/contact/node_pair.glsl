@@ -1,6 +1,6 @@
 // Bounds when two nodes may meet, by slabs along both meshes' axes and both nodes' normals (docs/method.md, "Pairs of nodes").
 // A slab along any axis bounds the parameters at which two boxes, one of them moving, can overlap there; the intersection of
-// these intervals is the result. Margins cover all rounding errors.
+// these intervals is the result. Margins cover all rounding errors, and the clearance.
 
 // A sensor's mesh A relative to an object's mesh B, and the reverse. Parameters are scaled distances.
 struct MeshPair {
@@ -37,8 +37,9 @@ MeshPair meshPairOf(uint sensor, uint object) {
 
   const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
   const vec3 apart = (high + low) * scale;
-  const float error = scale * (sizesA.x + sizesB.x);
-  const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y);
+  const float clearance = clearanceOf(sensor);
+  const float error = scale * (sizesA.x + sizesB.x) + clearance;
+  const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y) + clearance;
 
   MeshPair p;
   // Tested before multiplying. perUnit is 0 if floats cannot hold the object.

@@ -38,6 +38,7 @@ void main() {
   if (i >= counts.refinedPairs) return;
   const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
+  if (sweep.hasClearance != 0) return;
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);

@@ -59,6 +59,14 @@ void writeUnresolved(uint at, RefinedPair c) {
       UnresolvedPair(s, name.x, name.y, name.z, objects[c.object].mesh, 0, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
 }
 
+#include "shared/double_bits.glsl"
+// x / scale, a power of two, by the exponent.
+uvec2 unscaled(float x, float scale) {
+  const uvec2 bits = doubleBits(floatBitsToUint(x));
+  const int shift = int(floatBitsToUint(scale) >> 23) - 127;
+  return x == 0.0 ? uvec2(0) : uvec2(bits.x, uint(int(bits.y) - (shift << 20)));
+}
+
 #ifndef RADAR_NO_DOUBLES
 #include "shared/divide.glsl"
 // 0 is written without sign: Vulkan does not define the sign of 0.
@@ -66,14 +74,7 @@ uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
 uvec2[3] bitsOf(dvec3 v) { return uvec2[3](bitsOf(v.x), bitsOf(v.y), bitsOf(v.z)); }
 double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
 #else
-#include "shared/double_bits.glsl"
 uvec2 bitsOf(uvec2 x) { return x; }
-// x / scale, a power of two, by the exponent.
-uvec2 unscaled(float x, float scale) {
-  const uvec2 bits = doubleBits(floatBitsToUint(x));
-  const int shift = int(floatBitsToUint(scale) >> 23) - 127;
-  return x == 0.0 ? uvec2(0) : uvec2(bits.x, uint(int(bits.y) - (shift << 20)));
-}
 #endif
 
 // Compares the bits of non-negative doubles.
@@ -107,6 +108,15 @@ RadarResult within() {
   return r;
 }
 
+// Within the clearance at the start. Which pair of triangles is the least of those is not searched for.
+RadarResult withinAtStart() {
+  if (sweeps[s].anyHit != 0) return within();
+  RadarResult r = nothing(RADAR_OVERLAP, kNoNumber);
+  r.detected = RADAR_DETECTED;
+  r.t = r.lo = r.hi = r.fraction = uvec2(0);
+  return r;
+}
+
 RadarResult undecided(bool met, uvec2 low) {
   RadarResult r = free(RADAR_UNDECIDED);
   r.flags = RADAR_UNRESOLVED;
@@ -114,6 +124,20 @@ RadarResult undecided(bool met, uvec2 low) {
   const uvec2 distance = bitsOf(sweeps[s].distance);
   r.lo = isAbove(low, distance) ? distance : low;
   return r;
+}
+
+// Lists all pairs as unresolved. The list has only pairs that begin no later than `hi` (link.comp).
+RadarResult leaveAll(bool met) {
+  if (heads[s] == kNobody) return noContact(met);
+  float low = 3.0e38;
+  uint count = 0;
+  for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
+    low = min(low, refinedPairs[i].first);
+  }
+  if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
+  uint at = reserveUnresolved(count);
+  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
+  return undecided(met, unscaled(low, sweeps[s].scale));
 }
 
 #ifndef RADAR_NO_DOUBLES
@@ -234,9 +258,8 @@ bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
   return sound;
 }
 
-RadarResult answer(SearchState state) {
-  const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
-  if (sweeps[s].anyHit != 0 && met) return within();
+RadarResult decide(SearchState state, bool met) {
+  if (sweeps[s].hasClearance != 0) return leaveAll(met);
   const PairSummary pairs = summarise(heads[s], hiOf(state));
   if (pairs.least.w == kNobody) return noContact(met);
   if (pairs.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
@@ -249,22 +272,14 @@ RadarResult answer(SearchState state) {
   return undecided(met, bitsOf(pairs.low));
 }
 #else
+RadarResult decide(SearchState state, bool met) { return leaveAll(met); }
+#endif
+
 RadarResult answer(SearchState state) {
   const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
   if (sweeps[s].anyHit != 0 && met) return within();
-  if (heads[s] == kNobody) return noContact(met);
-  // The list has only pairs that begin no later than `hi` (link.comp).
-  float low = 3.0e38;
-  uint count = 0;
-  for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
-    low = min(low, refinedPairs[i].first);
-  }
-  if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
-  uint at = reserveUnresolved(count);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
-  return undecided(met, unscaled(low, sweeps[s].scale));
+  return decide(state, met);
 }
-#endif
 
 void main() {
   s = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
@@ -274,7 +289,9 @@ void main() {
                        ((state.flags & kSearchUnfinished) != 0 ? RADAR_TOO_LONG : 0) |
                        ((state.flags & kSearchOutOfRange) != 0 ? RADAR_OUT_OF_RANGE : 0);
   RadarResult r;
-  if (missing != 0) {
+  if ((state.flags & kSearchWithin) != 0) {
+    r = withinAtStart();
+  } else if (missing != 0) {
     r = invalid(missing);
   } else {
     r = answer(state);

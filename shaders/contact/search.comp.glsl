@@ -22,6 +22,8 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint kLanes = 32;
 layout(constant_id = 1) const uint kQueue = 256;     // pairs in each queue: at least 6 times the lanes
 layout(constant_id = 2) const uint kStack = 40;      // entries of a lane: at least 4
+// Whether any query has a clearance. Constant, because some devices execute what they skip.
+layout(constant_id = 3) const bool kHasClearances = false;
 
 layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
@@ -32,8 +34,12 @@ layout(scalar, binding = kSlotExcluded) readonly restrict buffer Excluded { uint
 
 layout(push_constant) uniform PushConstants { SearchPush push; };
 
+// A sensor's clearance, scaled, rounded up.
+float clearanceOf(uint sensor) { return kHasClearances ? sensorTexel(sensor, kTexelFrame).w : 0.0; }
+
 #include "node_pair.glsl"
 #include "triangle_pair.glsl"
+#include "within_clearance.glsl"
 
 // A loop goes on only if at least this many lanes have work in it; otherwise all lanes leave it to fetch work.
 const uint kFew = (kLanes + 1) / 2;
@@ -342,8 +348,9 @@ void tryLeaves(bool all) {
         const PairFrame f = pairFrameOf(entry.w, entry.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
         const PlacedTriangle a0 = placedA(f, slotA), a1 = placedA(f, slotA + (twoA ? 1 : 0)), b0 = placedB(f, slotB),
                              b1 = placedB(f, slotB + (twoB ? 1 : 0));
-        meets = bool[4](mayMeet(a0, b0, bound), twoB && mayMeet(a0, b1, bound), twoA && mayMeet(a1, b0, bound),
-                        twoA && twoB && mayMeet(a1, b1, bound));
+        const float clearance = clearanceOf(entry.w);
+        meets = bool[4](mayMeet(a0, b0, clearance, bound), twoB && mayMeet(a0, b1, clearance, bound),
+                        twoA && mayMeet(a1, b0, clearance, bound), twoA && twoB && mayMeet(a1, b1, clearance, bound));
       }
     }
     const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
@@ -370,7 +377,7 @@ void keepCandidate(bool keeps, uvec4 pair, float low) {
 // Solves pairs in float: lowers the upper bound of first contact, and keeps the pairs that may be first as candidates.
 void solvePairs(bool all) {
   while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
-    ++work;
+    work += kHasClearances ? kClearanceSteps : 1;
     const uint at = pairHead + gl_SubgroupInvocationID;
     bool keeps = false;
     float low = 0.0;
@@ -384,11 +391,22 @@ void solvePairs(bool all) {
       low = max(min(m.earliest, m.unknown), 0.0);
       float bound = limitOf(pair.w, pair.z);
       // A subnormal number might be flushed to 0 later.
-      const float by = m.ahead ? max(m.by, 1e-37) : kMiss;
+      float by = m.ahead ? max(m.by, 1e-37) : kMiss;
+      bool isOver = m.latest < 0.0;
+      const float clearance = clearanceOf(pair.w);
+      if (clearance > 0.0) {
+        const WithinClearance within = withinClearance(a, b, clearance, bound);
+        // So many pairs may be that near that only the CPU finds the least of them quickly.
+        if (within.by == 0.0 || (m.ahead && m.by < 0.0)) atomicOr(states[pair.w].flags, kSearchWithin);
+        low = within.low;
+        // Pairs whose brackets begin this late do not widen that of the answer (ClearanceContact::consider).
+        by = min(by, within.by) * 1.000001 + sensorTexel(pair.w, kTexelFrame + 2).w;
+        isOver = false;
+      }
       if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
       if (m.ahead && m.by < 0.0) atomicMin(states[pair.w].least, pair.z);
       bound = min(bound, by);
-      keeps = m.latest >= 0.0 && low <= bound;
+      keeps = !isOver && low <= bound;
     }
     keepCandidate(keeps, pair, low);
     pairHead = min(pairHead + kLanes, pairTail);

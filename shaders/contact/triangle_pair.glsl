@@ -100,42 +100,48 @@ float differenceError(PlacedTriangle a, PlacedTriangle b) { return 2.0 * (a.erro
 
 // Whether the whole other triangle is certainly on the edge's outer side, seen along the motion. `turn`: the sign of the area
 // of the edge's own triangle, 0 if it is uncertain.
-bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float error) {
+bool edgeSeparates(vec2 from, vec2 to, float turn, PlacedTriangle other, float error, float clearance) {
   const vec2 e = to - from, d0 = other.corners[0].xy - from, d1 = other.corners[1].xy - from, d2 = other.corners[2].xy - from;
   const float s0 = turn * (e.x * d0.y - e.y * d0.x), s1 = turn * (e.x * d1.y - e.y * d1.x), s2 = turn * (e.x * d2.y - e.y * d2.x);
   const float edge = abs(e.x) + abs(e.y);
   const float farthest = max(abs(d0.x) + abs(d0.y), max(abs(d1.x) + abs(d1.y), abs(d2.x) + abs(d2.y)));
-  const float margin = 1.0001 * error * (edge + farthest + 2.0 * error) + 6.0 * kUlp * edge * farthest + 4.0 * kFlushed;
+  const float margin = 1.0001 * (error * (edge + farthest + 2.0 * error) + clearance * (edge + 2.0 * error)) +
+                       6.0 * kUlp * edge * farthest + 4.0 * kFlushed;
   return max(s0, max(s1, s2)) < -margin;
 }
 
 // Whether the other triangle certainly stays beyond the plane of x and y until `limit`, or is behind it. g0, g1, g2 lead from
 // the sensor's triangle to the scene's; one of their ends is a corner of the other triangle.
-bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g2, float error, float limit) {
+bool planeKeepsApart(vec3 x, vec3 y, BoundedFloat area, vec3 g0, vec3 g1, vec3 g2, float error,
+                     float clearance, float limit) {
   const vec3 n = cross(x, y);
   const float turn = float(signOf(area));
   const float h0 = turn * dot(g0, n), h1 = turn * dot(g1, n), h2 = turn * dot(g2, n);
   const float nx = norm1(x), ny = norm1(y), g = max(norm1(g0), max(norm1(g1), norm1(g2)));
   const float margin = 1.0001 * error * (nx * ny + g * (nx + ny) + 2.0 * error * (g + nx + ny) + 6.0 * error * error) +
-                       12.0 * kUlp * g * nx * ny + kFlushed * (6.0 + 6.0 * g);
+                       12.0 * kUlp * g * nx * ny + kFlushed * (6.0 + 6.0 * g) +
+                       clearance * (norm1(n) + 2.0001 * error * (nx + ny + 3.0 * error) + 16.0 * kUlp * nx * ny);
   const float reached = 1.00001 * limit * (abs(area.value) + area.error) + margin;
   return turn != 0.0 && (min(h0, min(h1, h2)) > reached || max(h0, max(h1, h2)) < -margin);
 }
 
-// Whether a pair may meet at or before `limit`. Cheap; false is certain.
-bool mayMeet(PlacedTriangle a, PlacedTriangle b, float limit) {
-  const float error = differenceError(a, b);
+// Whether a pair may meet, or come as near as the clearance, at or before `limit`. Cheap; false is certain.
+bool mayMeet(PlacedTriangle a, PlacedTriangle b, float clearance, float limit) {
+  const float error = differenceError(a, b), room = error + clearance;
   const vec3 a0 = a.corners[0], a1 = a.corners[1], a2 = a.corners[2], b0 = b.corners[0], b1 = b.corners[1], b2 = b.corners[2];
   const vec3 lowA = min(a0, min(a1, a2)), highA = max(a0, max(a1, a2)), lowB = min(b0, min(b1, b2)), highB = max(b0, max(b1, b2));
   // Comparisons are exact, and the slack in `error` is larger than the rounding errors of the sums.
-  const bool near = all(lessThanEqual(lowA.xy, highB.xy + error)) && all(lessThanEqual(lowB.xy, highA.xy + error)) &&
-                    highB.z + error >= lowA.z && lowB.z - highA.z - error <= limit;
+  const bool near = all(lessThanEqual(lowA.xy, highB.xy + room)) && all(lessThanEqual(lowB.xy, highA.xy + room)) &&
+                    highB.z + room >= lowA.z && lowB.z - highA.z - room <= limit;
   const vec3 xA = a1 - a0, yA = a2 - a0, xB = b1 - b0, yB = b2 - b0;
   const BoundedFloat areaA = faceOf(xA, yA, error), areaB = faceOf(xB, yB, error);
   const float turnA = float(signOf(areaA)), turnB = float(signOf(areaB));
-  const bool apart = edgeSeparates(a0.xy, a1.xy, turnA, b, error) || edgeSeparates(a1.xy, a2.xy, turnA, b, error) ||
-                     edgeSeparates(a2.xy, a0.xy, turnA, b, error) || edgeSeparates(b0.xy, b1.xy, turnB, a, error) ||
-                     edgeSeparates(b1.xy, b2.xy, turnB, a, error) || edgeSeparates(b2.xy, b0.xy, turnB, a, error);
-  return near && !apart && !planeKeepsApart(xA, yA, areaA, b0 - a0, b1 - a0, b2 - a0, error, limit) &&
-         !planeKeepsApart(xB, yB, areaB, b0 - a0, b0 - a1, b0 - a2, error, limit);
+  const bool apart = edgeSeparates(a0.xy, a1.xy, turnA, b, error, clearance) ||
+                     edgeSeparates(a1.xy, a2.xy, turnA, b, error, clearance) ||
+                     edgeSeparates(a2.xy, a0.xy, turnA, b, error, clearance) ||
+                     edgeSeparates(b0.xy, b1.xy, turnB, a, error, clearance) ||
+                     edgeSeparates(b1.xy, b2.xy, turnB, a, error, clearance) ||
+                     edgeSeparates(b2.xy, b0.xy, turnB, a, error, clearance);
+  return near && !apart && !planeKeepsApart(xA, yA, areaA, b0 - a0, b1 - a0, b2 - a0, error, clearance, limit) &&
+         !planeKeepsApart(xB, yB, areaB, b0 - a0, b0 - a1, b0 - a2, error, clearance, limit);
 }

@@ -1,4 +1,6 @@
 // The bits of doubles, low word first, for shaders that may have no doubles.
+#ifndef RADAR_DOUBLE_BITS_GLSL
+#define RADAR_DOUBLE_BITS_GLSL
 
 // Bits of the double equal to the float with these bits. Converting by arithmetic may flush a small float to 0.
 uvec2 doubleBits(uint bits) {
@@ -9,3 +11,5 @@ uvec2 doubleBits(uint bits) {
   const uint fraction = magnitude << (23 - leading) & 0x7fffffu;
   return uvec2(fraction << 29, sign | uint(leading + 874) << 20 | fraction >> 3);
 }
+
+#endif

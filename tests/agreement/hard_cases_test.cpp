@@ -49,6 +49,24 @@ TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU
   }
 }
 
+TEST_CASE("with a clearance, hard cases of every family get the CPU's answer on the device, to the bit") {
+  tools::CaseRun run(test::device());
+  tools::Tally all;
+  for (const std::string& family : tools::runFamilies()) {
+    CAPTURE(family);
+    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
+      UNSCOPED_INFO("case " << number << ": " << words);
+    };
+    const tools::Tally tally =
+        run.run({.family = family, .seed = 4, .cases = 64, .clearances = true}, onWrong, [](uint64_t) {});
+    CHECK(tally.wrong == 0);
+    all.add(tally);
+  }
+  CHECK(all.hits > all.queries / 5);
+  CHECK(all.overlaps > all.queries / 5);
+  CHECK(all.cpuPairs > all.hits);  // the device leaves pairs to the CPU, not whole queries
+}
+
 TEST_CASE("hard cases of every family, each alone, keep every promise of modes sampled and contact") {
   const auto onWrong = [](const std::string& words) { UNSCOPED_INFO(words); };
   const std::vector<tools::HardFamily>& families = tools::hardFamilies();

@@ -38,7 +38,7 @@ int main(int argc, char** argv) try {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
-  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false;
+  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false, clearances = false;
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
   const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
@@ -51,6 +51,7 @@ int main(int argc, char** argv) try {
   app.add_flag("--composed-division", composedDivision, "As on a device whose division of doubles is not right");
   app.add_flag("--ignore-leaving", ignoreLeaving, "Every query counts only pairs of triangles that block");
   app.add_flag("--all-hits", allHits, "Every query lists the contacts with all objects");
+  app.add_flag("--clearances", clearances, "Every query has a clearance, of its own size");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = known;
 
@@ -79,7 +80,8 @@ int main(int argc, char** argv) try {
                                  .first = first,
                                  .cases = each,
                                  .ignoreLeaving = ignoreLeaving,
-                                 .allHits = allHits},
+                                 .allHits = allHits,
+                                 .clearances = clearances},
                                 onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);

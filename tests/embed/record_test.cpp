@@ -84,11 +84,52 @@ TEST_CASE("record throws for a query that it cannot record, names its number and
   row.queries[1].mesh = 9;
   refused("record: query 1: sensor: mesh 9 does not exist");
   row.queries[1].mesh = row.mesh;
+  row.queries[2].clearance = 0.1;
+  row.queries[2].ignoreLeaving = true;
+  refused("record: query 2: skipOverlapping, hits, motion, clearance with ignoreLeaving");
+  row.queries[2].ignoreLeaving = false;
+  row.queries[2].clearance = 0;
+  row.queries[2].hits = 2;
+  refused("record: query 2: skipOverlapping, hits");
+  row.queries[2].hits = 1;
   recorder.record(commands, row.queries);
   submission.submitAndWait();
   CHECK(recorder.read()[2].status == Status::hit);
   row.queries.push_back(row.queries[0]);
   refused("expected at most 3 queries, got 4");
+}
+
+TEST_CASE("a recorded query with a clearance is decided when it is read, but for what it is near at the start",
+          "[subgroups]") {
+  Scene scene;
+  Recorder recorder(test::device(), scene, kRoom);
+  Sweeper sweeper(test::device(), scene);
+  size_t hits = 0, overlaps = 0;
+  for (const char* family : {"convex", "near", "ties", "interlocking", "far pose"}) {
+    const tools::Workload workload =
+        tools::hardScene(tools::hardFamily(family), 7, 0, kRoom.queries, tools::Company::mixed);
+    tools::replaceBy(workload, 0, scene);
+    std::vector<Query> queries = test::queriesOf(workload);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      queries[i].clearance = (i % 3 == 0 ? 1e-3 : 0.05) * tools::sensorSize(scene, queries[i]);
+      queries[i].anyHit = i % 7 == 0;
+    }
+    const std::vector<Result> read = execute(recorder, queries), expected = sweeper.run(queries);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      CAPTURE(family, i, read[i].flags);
+      CHECK(read[i].status == expected[i].status);
+      if (expected[i].status == Status::overlap) {
+        ++overlaps;
+        CHECK((read[i].object == kNone && read[i].t == 0 && read[i].lo == 0 && read[i].hi == 0));
+      } else {
+        CHECK(sameBits(read[i], expected[i]));
+        hits += expected[i].status == Status::hit;
+      }
+    }
+  }
+  CHECK(hits > 50);
+  CHECK(overlaps > 20);
+  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("after reset, a recording that never executed does not affect the next one") {

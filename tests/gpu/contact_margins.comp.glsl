@@ -8,8 +8,12 @@
 #include "shaders/shared/triangle_pair_bounds.glsl"
 #include "shaders/shared/scene.glsl"
 #include "shaders/contact/nodes.glsl"
+// Of the pair in hand.
+float clearance = 0.0;
+float clearanceOf(uint sensor) { return clearance; }
 #include "shaders/contact/node_pair.glsl"
 #include "shaders/contact/triangle_pair.glsl"
+#include "shaders/contact/within_clearance.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -39,8 +43,14 @@ void main() {
   found.cornersB = b.corners;
   found.errorA = a.error;
   found.errorB = b.error;
-  found.mayMeet = mayMeet(a, b, t.limit) ? 1 : 0;
+  found.mayMeet = mayMeet(a, b, 0.0, t.limit) ? 1 : 0;
   const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
   found.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
+  clearance = t.clearance;
+  found.gapNear = approachOf(meshPairOf(t.sensor, t.object), nodeA, nodeB, t.nearLimit).gap;
+  found.mayComeNear = mayMeet(a, b, clearance, t.nearLimit) ? 1 : 0;
+  const WithinClearance within = withinClearance(a, b, clearance, t.limit);
+  found.nearLow = within.low;
+  found.nearBy = within.by;
   pairBounds[i] = found;
 }

@@ -16,7 +16,9 @@ struct Touch {
   uint sensor, object;
   uint nodeA, nodeB, slotA, slotB;
   uint objectNode;
-  float limit;  // scaled distance that the sensor moves until they touch, rounded up
+  float limit;      // scaled distance that the sensor moves until they touch, rounded up
+  float clearance;  // scaled, rounded up
+  float nearLimit;  // scaled distance that the sensor moves until they are that near, rounded up
 };
 
 // The search's bounds for such a pair.
@@ -31,6 +33,10 @@ struct PairBounds {
   uint mayMeet;   // of the triangles
   float pairGap;  // of the triangles, once solved
   uint inRange;
+  // With the clearance.
+  float gapNear;     // of the nodes
+  uint mayComeNear;  // of the triangles
+  float nearLow, nearBy;
 };
 
 INTEROP_SLOT(kSlotTouches, 20, Touch);

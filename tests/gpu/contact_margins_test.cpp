@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "contact/sensors.h"
+#include "cpu/approach.h"
+#include "exact/motion.h"
 #include "gpu/contact_margins_interop.h"
 #include "gpu/kernel_fixture.h"
 #include "math/rounding.h"
@@ -65,6 +67,8 @@ struct Case {
   uint32_t triangleA, triangleB;
   Real contact;  ///< distance at which they touch, within `doubt`
   Real doubt;    ///< error of placing them in double precision
+  double clearance;
+  std::optional<cpu::Approach> nearing;  ///< when they come that near
 };
 
 class Margins {
@@ -151,6 +155,10 @@ class Margins {
       spanB += std::abs(object.worldFromMesh.m[4 * k + 3]);
     }
     c.doubt = 0x1p-50L * (spanA + spanB + c.contact);
+    c.clearance = size * magnitude(random_, 10);
+    c.nearing = cpu::approach(placedTriangle(a, c.query.worldFromMesh, c.triangleA),
+                              placedTriangle(b, object.worldFromMesh, c.triangleB), Motion(c.query).unit, c.clearance,
+                              c.query.distance, 0);
     cases_.push_back(c);
   }
 
@@ -233,12 +241,15 @@ void Margins::check() {
     const MeshTree &treeA = impl.meshes[c.query.mesh].tree, &treeB = impl.meshes[meshB].tree;
     const gpu::MeshRecord &recordA = gpuScene_.record(c.query.mesh), &recordB = gpuScene_.record(meshB);
     const std::vector<uint32_t> pathA = pathTo(treeA, c.triangleA), pathB = pathTo(treeB, c.triangleB);
-    const float limit = roundUp(static_cast<double>((c.contact + c.doubt) * batch.sensors.back().scale));
+    const double scale = batch.sensors.back().scale;
+    const float limit = roundUp(static_cast<double>((c.contact + c.doubt) * scale));
+    const float nearLimit = c.nearing && c.nearing->hi < 1e30 / scale ? roundUp(c.nearing->hi * scale) : limit;
     for (const uint32_t a : pathA) {
       for (const uint32_t b : pathB) {
         touches.push_back({sensor, c.object, recordA.firstNode + a, recordB.firstNode + b,
                            recordA.firstTriangle + slotOf(treeA, c.triangleA),
-                           recordB.firstTriangle + slotOf(treeB, c.triangleB), leafOf(tree, c.object), limit});
+                           recordB.firstTriangle + slotOf(treeB, c.triangleB), leafOf(tree, c.object), limit,
+                           roundUp(c.clearance * scale), nearLimit});
         of.push_back(&c);
       }
     }
@@ -270,7 +281,7 @@ void Margins::check() {
   const auto count = static_cast<uint32_t>(touches.size());
   test::run([&](const gpu::Commands& commands) { arguments.dispatch(commands, gpu::groupsFor(count, 64), count); });
 
-  uint32_t inRange = 0, tight = 0;
+  uint32_t inRange = 0, tight = 0, certainlyNear = 0, tightlyNear = 0;
   Real closest = 0;  // the largest error, as a fraction of its bound
   for (uint32_t i = 0; i < count; ++i) {
     const PairBounds& found = answers.mapped()[i];
@@ -289,6 +300,16 @@ void Margins::check() {
     // Triangles.
     CHECK(found.mayMeet == 1);
     CHECK(found.pairGap <= contact);
+    if (c.nearing && !std::isinf(c.nearing->hi)) {
+      const Real from = c.nearing->lo * scale, by = touches[i].nearLimit;
+      CAPTURE(c.clearance, double(from), double(by), found.nearLow, found.nearBy);
+      CHECK(found.gapNear <= by);
+      CHECK(found.mayComeNear == 1);
+      CHECK(found.nearLow <= by);
+      CHECK(found.nearBy >= from);
+      certainlyNear += found.nearBy < 1e30f;
+      tightlyNear += found.nearBy < 1e30f && found.nearBy - found.nearLow <= 0.01f * sensor.scale * c.clearance;
+    }
     const Mesh &a = impl.meshes[c.query.mesh], &b = impl.meshes[impl.objects[c.object].object.mesh];
     const std::array<Place, 3> frame = frameOf(sensor, c.query.direction);
     const Place anchor =
@@ -305,6 +326,8 @@ void Margins::check() {
   }
   CHECK(inRange > count / 2);
   CHECK(tight > count / 50);
+  CHECK(certainlyNear > inRange / 2);
+  CHECK(tightlyNear > certainlyNear / 2);
   CHECK(closest > 0.01);
 }
 

@@ -2,16 +2,16 @@ cmake_minimum_required(VERSION 3.25)
 
 # Checks the order of the floors: cmake -DROOT=... -P floors.cmake. `floors` lists them from low to high. A floor may include
 # itself and the folders in FLOOR_may, which names no higher floor.
-set(floors math exact gpu scene contact cpu sampled sweep embed pool)
+set(floors math exact gpu scene cpu contact sampled sweep embed pool)
 set(math_may radar)
 set(exact_may radar math)
 set(gpu_may radar shaders spirv)
 set(scene_may radar math gpu shaders)
-set(contact_may radar math exact gpu scene shaders spirv)
 set(cpu_may radar math exact scene shaders)
+set(contact_may radar math exact gpu scene cpu shaders spirv)
 set(sampled_may radar math exact gpu scene contact shaders spirv)
 set(sweep_may radar math gpu scene contact cpu sampled shaders)
-set(embed_may radar math gpu scene contact shaders spirv)
+set(embed_may radar math gpu scene cpu contact shaders spirv)
 set(pool_may radar gpu scene sweep)
 
 set(wrong "")

@@ -105,6 +105,14 @@ struct CaseRun::Stage {
            std::ranges::equal(ours.hitsOf(query), exact.hitsOf(query), sameAnswer);
   }
 
+  void setClearances(const CaseRange& range, uint64_t number, std::vector<Query>& queries) const {
+    for (Query& query : queries) {
+      Random random(range.seed * 1'000'003 + number++);
+      query.clearance = random.magnitude(-8, 1) * sensorSize(scene, query);
+      if (random.oneIn(3)) query.tolerance = random.magnitude(-12, 0) * query.clearance;
+    }
+  }
+
   /// The cases of the range from number `next` on that are in one scene with it.
   std::vector<Query> show(const CaseRange& range, uint64_t next, uint32_t size) {
     const Workload workload = sceneOf(range, next / size, size);
@@ -118,6 +126,7 @@ struct CaseRun::Stage {
       if (range.ignoreLeaving) query.ignoreLeaving = true;
       if (range.allHits) query.hits = kAllHits;
     }
+    if (range.clearances) setClearances(range, next, queries);
     if (range.family == kAtDistance) moveDistances(queries, next);
     return queries;
   }

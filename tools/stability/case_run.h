@@ -51,6 +51,7 @@ struct CaseRange {
   Company company = Company::mixed;  ///< meshes are always mixed
   bool ignoreLeaving = false;        ///< every query ignores what it leaves, not only those of bodies at rest
   bool allHits = false;              ///< every query lists the contacts with all objects
+  bool clearances = false;           ///< every query has a clearance, from far less than its sensor's size to more
 };
 
 class CaseRun {

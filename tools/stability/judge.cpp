@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "workloads/same_answer.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -127,6 +128,18 @@ void judgeSampled(const Query& query, const Result& result, const Result& exact,
   verdict.set(Fault::bracket, !query.anyHit && result.t != result.hi);
 }
 
+/// An answer to a query with a clearance, which has the CPU's bits.
+Verdict judgeWithClearance(const Result& result, const Result& exact) {
+  Verdict verdict;
+  verdict.set(Fault::missed, meets(exact) && result.status == Status::clear);
+  verdict.set(Fault::falseHit, exact.status == Status::clear && meets(result));
+  verdict.set(Fault::wrongStatus, result.status != exact.status || result.detected != exact.detected);
+  verdict.set(Fault::bracket, result.lo != exact.lo || result.hi != exact.hi);
+  verdict.set(Fault::wrongPair, !sameAnswer(result, exact));
+  verdict.found = meets(exact) && meets(result);
+  return verdict;
+}
+
 }  // namespace
 
 bool meets(const Result& result) {
@@ -172,6 +185,7 @@ Verdict judge(const Scene& scene, const Query& query, const Result& result, cons
     verdict.set(Fault::unanswered);
     return verdict;
   }
+  if (query.clearance > 0) return judgeWithClearance(result, exact);
   const double unit = unitOf(scene, query, exact);
   verdict = judge(result, exact, unit);
   const bool sampled = query.mode == Mode::sampled;

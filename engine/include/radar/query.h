@@ -60,7 +60,8 @@ struct Query {
   /// along the motion if they are in contact at the start. With `ignoreLeaving`, pairs that do not block take no part,
   /// however near they come.
   double clearance = 0;
-  /// With `clearance`, world units, at least 0. Without a value: 1e-6 of the longest side of the sensor's box.
+  /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
+  /// sensor's box.
   std::optional<double> tolerance;
   /// Mode contact: lists the first contacts with this many nearest objects (Lists::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.

@@ -45,7 +45,11 @@ class RADAR_API Recorder {
   ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away;
   /// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; there is no upper
   ///   limit;
-  /// - a direction whose components differ by a factor of more than about 2^1000.
+  /// - a direction whose components differ by a factor of more than about 2^1000;
+  /// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.
+  ///
+  /// With a clearance, hits have kFlagUnresolved until read() decides them, except decisions (`anyHit`). If something
+  /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal.
   ///
   /// If anything in the host's buffers leaves its bounds or is not finite, every answer becomes Status::invalid with
   /// kFlagBounds.
@@ -59,8 +63,8 @@ class RADAR_API Recorder {
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
   /// Throws before recording anything if a query breaks its contract, is not of mode contact, or asks for
-  /// skipOverlapping, hits, a clearance or a step; if there are more than Capacity::queries, `geometry` breaks its
-  /// contract, or something does not fit the device.
+  /// skipOverlapping, hits, a step, or a clearance with ignoreLeaving; if there are more than Capacity::queries,
+  /// `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.
   void reset();

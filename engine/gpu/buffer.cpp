@@ -138,9 +138,12 @@ void Upload::begin(VkDeviceSize bytes) {
 }
 
 void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
-  if (bytes == 0) return;
+  if (bytes != 0) std::memcpy(place(bytes, target, offset), data, bytes);
+}
+
+std::byte* Upload::place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
   assert(used_ + bytes <= staging_.capacity() && offset + bytes <= target.capacity());
-  std::memcpy(staging_.mapped() + used_, data, bytes);
+  std::byte* at = staging_.mapped() + used_;
   // Adjacent pieces of one target are merged into one copy.
   if (!copies_.empty()) {
     Copy& last = copies_.back();
@@ -148,15 +151,24 @@ void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkD
         last.region.dstOffset + last.region.size == offset) {
       last.region.size += bytes;
       used_ = aligned(used_ + bytes);
-      return;
+      return at;
     }
   }
   copies_.push_back({target.get(), {used_, offset, bytes}});
   used_ = aligned(used_ + bytes);
+  return at;
 }
 
 void Upload::record(const Commands& commands) const {
-  for (const Copy& copy : copies_) commands->CmdCopyBuffer(commands, staging_.get(), copy.target, 1, &copy.region);
+  // One command for each run of copies to one target.
+  std::vector<VkBufferCopy> regions;
+  for (size_t i = 0; i < copies_.size(); ++i) {
+    regions.push_back(copies_[i].region);
+    if (i + 1 < copies_.size() && copies_[i + 1].target == copies_[i].target) continue;
+    commands->CmdCopyBuffer(commands, staging_.get(), copies_[i].target, static_cast<uint32_t>(regions.size()),
+                            regions.data());
+    regions.clear();
+  }
 }
 
 }  // namespace radar::gpu

@@ -84,6 +84,9 @@ class Upload {
   void begin(VkDeviceSize bytes);
   /// Copies `data` to `offset` in `target`; does nothing for empty data.
   void add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset = 0);
+  /// The same for data that the caller then writes where this returns. Of consecutive calls for multiples of 8 bytes,
+  /// one place begins where the last ends.
+  std::byte* place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset);
   /// Records all copies. The caller records the barriers.
   void record(const Commands& commands) const;
 

@@ -1,10 +1,13 @@
 #include "scene/gpu_scene.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <iterator>
 
 #include "gpu/barrier.h"
 #include "gpu/limit_error.h"
+#include "scene/parallel.h"
 #include "scene/placement.h"
 
 namespace radar {
@@ -15,6 +18,8 @@ using gpu::Upload;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+// Objects that a thread encodes at a time.
+constexpr size_t kChunk = 4096;
 // Floats are stored as integers, since a device may change the bits of subnormal floats and NaNs.
 constexpr VkFormat kTexels = VK_FORMAT_R32G32B32A32_UINT;
 
@@ -57,7 +62,8 @@ void GpuScene::willOverwrite(Overwritten next) {
 }
 
 void GpuScene::forget() {
-  seenScene_ = seenMeshes_ = seenIndices_ = seenPoses_ = seenTree_ = 0;
+  seenScene_ = seenMeshes_ = seenPoses_ = seenTree_ = 0;
+  for (Place& place : places_) place.uploaded = place.uploadedIndices = 0;
   overwritten_ = {};
 }
 
@@ -65,39 +71,83 @@ VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
   if (seenScene_ != scene.identity) forget();
   checkWriteLimits(scene);
   const VkDeviceSize meshes = prepareMeshes(scene);
-  return meshes + prepareIndices(scene) + prepareObjects(scene);
+  return meshes + prepareIndices(scene) + prepareObjects(scene) + prepareTree(scene.objectTree());
 }
 
-// Assigns every mesh its place in the buffers.
+void GpuScene::removePlace(MeshId id) {
+  vertices_.free(records_[id].firstVertex, places_[id].vertices);
+  triangles_.free(records_[id].firstTriangle, places_[id].triangles);
+  nodes_.free(records_[id].firstNode, places_[id].nodes);
+  places_[id] = {};
+}
+
+// Finds ranges for a mesh; returns false if the buffers are full.
+bool GpuScene::placeMesh(MeshId id, const Mesh& mesh) {
+  const std::optional<uint64_t> vertex = vertices_.allocate(mesh.vertexCount()),
+                                triangle = triangles_.allocate(mesh.triangleCount()),
+                                node = nodes_.allocate(mesh.tree.nodes.size());
+  if (!vertex || !triangle || !node) return false;
+  places_[id] = {mesh.vertexCount(), mesh.triangleCount(), mesh.tree.nodes.size()};
+  records_[id].firstVertex = static_cast<uint32_t>(*vertex);
+  records_[id].firstTriangle = static_cast<uint32_t>(*triangle);
+  records_[id].firstNode = static_cast<uint32_t>(*node);
+  return true;
+}
+
+// Places all meshes anew, in larger buffers if need be.
 void GpuScene::layOut(const Scene::Impl& scene) {
-  records_.assign(scene.meshes.size(), {});
-  farthest_.clear();
   uint64_t vertices = 0, triangles = 0, nodes = 0;
-  for (MeshId i = 0; i < scene.meshes.size(); ++i) {
-    const Mesh& mesh = scene.meshes[i];
-    gpu::MeshRecord& record = records_[i];
-    farthest_.push_back(mesh.farthest);
-    copyPoint(mesh.origin, record.origin);
-    copyPoint(mesh.box.lo, record.lo);
-    copyPoint(mesh.box.hi, record.hi);
-    record.unit = static_cast<float>(mesh.unit);
-    record.perUnit = static_cast<float>(1 / mesh.unit);
-    record.firstVertex = static_cast<uint32_t>(vertices);
-    record.firstTriangle = static_cast<uint32_t>(triangles);
-    record.firstNode = static_cast<uint32_t>(nodes);
+  for (const Mesh& mesh : scene.meshes) {
     vertices += mesh.vertexCount();
     triangles += mesh.triangleCount();
     nodes += mesh.tree.nodes.size();
-    changedMeshes_.push_back(i);
   }
-  checkLimit<gpu::MeshRecord>(*device_, "meshes", records_.size());
   if (vertices > gpu::kLinkItem || triangles > gpu::kLinkItem || nodes > gpu::kLinkItem) {
     throw gpu::LimitError("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
+  places_.assign(scene.meshes.size(), {});
+  seenPoses_ = 0;  // placements refer to nodes
   buffers_.vertices.reserve(vertices);
   buffers_.triangles.reserve(triangles);
   buffers_.meshNodes.reserve(nodes);
-  buffers_.meshes.reserve(records_.size());
+  vertices_.reset(std::min<uint64_t>(buffers_.vertices.capacity(), gpu::kLinkItem));
+  triangles_.reset(std::min<uint64_t>(buffers_.triangles.capacity(), gpu::kLinkItem));
+  nodes_.reset(std::min<uint64_t>(buffers_.meshNodes.capacity(), gpu::kLinkItem));
+  for (MeshId id = 0; id < scene.meshes.size(); ++id) placeMesh(id, scene.meshes[id]);
+}
+
+// Keeps the places of meshes that have the same numbers of elements as before.
+void GpuScene::placeMeshes(const Scene::Impl& scene) {
+  const auto numbersOf = [](const Mesh& mesh) {
+    return std::array<uint64_t, 3>{mesh.vertexCount(), mesh.triangleCount(), mesh.tree.nodes.size()};
+  };
+  std::vector<MeshId> homeless;
+  for (MeshId id = 0; id < places_.size(); ++id) {
+    const Place& place = places_[id];
+    const std::array<uint64_t, 3> now =
+        id < scene.meshes.size() ? numbersOf(scene.meshes[id]) : std::array<uint64_t, 3>{};
+    if (now == std::array{place.vertices, place.triangles, place.nodes}) continue;
+    removePlace(id);
+    if (now[1] > 0) homeless.push_back(id);
+  }
+  for (auto id = static_cast<MeshId>(places_.size()); id < scene.meshes.size(); ++id) homeless.push_back(id);
+  places_.resize(scene.meshes.size());
+  records_.resize(scene.meshes.size());
+  const bool fits = std::ranges::all_of(homeless, [&](MeshId id) { return placeMesh(id, scene.meshes[id]); });
+  if (!fits || exceedsWriteLimits()) layOut(scene);
+}
+
+// Whether meshes that the host overwrites may end beyond what a storage buffer binds.
+bool GpuScene::exceedsWriteLimits() const {
+  if (next_.meshes.empty()) return false;
+  const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
+  for (MeshId id = 0; id < places_.size(); ++id) {
+    if ((records_[id].firstVertex + places_[id].vertices) * sizeof(gpu::Vertex) > limit ||
+        (records_[id].firstNode + places_[id].nodes) * sizeof(gpu::MeshNode) > limit) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Buffers that shaders write are bound as storage buffers, so they are subject to maxStorageBufferRange.
@@ -113,35 +163,56 @@ void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
   checkLimit<gpu::MeshNode>(*device_, "mesh nodes", nodes);
 }
 
+void GpuScene::describe(MeshId id, const Mesh& mesh) {
+  gpu::MeshRecord& record = records_[id];
+  copyPoint(mesh.origin, record.origin);
+  copyPoint(mesh.box.lo, record.lo);
+  copyPoint(mesh.box.hi, record.hi);
+  record.unit = static_cast<float>(mesh.unit);
+  record.perUnit = static_cast<float>(1 / mesh.unit);
+  farthest_[id] = mesh.farthest;
+}
+
 VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
   changedMeshes_.clear();
-  recordsChanged_ = seenMeshes_ != scene.meshVersion;
+  recordsChanged_ = seenMeshes_ != scene.meshVersion || exceedsWriteLimits();
   VkDeviceSize bytes = 0;
   if (recordsChanged_) {
-    layOut(scene);
+    checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
+    placeMeshes(scene);
+    buffers_.meshes.reserve(records_.size());
+    farthest_.resize(records_.size());
+    for (MeshId id = 0; id < scene.meshes.size(); ++id) {
+      describe(id, scene.meshes[id]);
+      if (places_[id].uploaded != scene.meshes[id].version) changedMeshes_.push_back(id);
+    }
     bytes += Upload::aligned(sizeof(gpu::MeshRecord) * records_.size());
-    seenPoses_ = 0;  // placements refer to nodes
-  } else {
-    addDifference(overwritten_.meshes, next_.meshes, changedMeshes_);
+  }
+  std::vector<MeshId> restored;
+  addDifference(overwritten_.meshes, next_.meshes, restored);
+  for (const MeshId id : restored) {
+    if (places_[id].uploaded == scene.meshes[id].version) changedMeshes_.push_back(id);
   }
   for (const MeshId id : changedMeshes_) {
-    const Mesh& mesh = scene.meshes[id];
-    bytes += Upload::aligned(sizeof(gpu::Vertex) * mesh.vertexCount()) +
-             Upload::aligned(sizeof(gpu::Triangle) * mesh.triangleCount()) +
-             Upload::aligned(sizeof(gpu::MeshNode) * mesh.tree.nodes.size());
+    bytes += Upload::aligned(sizeof(gpu::Vertex) * places_[id].vertices) +
+             Upload::aligned(sizeof(gpu::Triangle) * places_[id].triangles) +
+             Upload::aligned(sizeof(gpu::MeshNode) * places_[id].nodes);
   }
   return bytes;
 }
 
 VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
-  indicesChanged_ = hasIndices_ && seenIndices_ != scene.meshVersion;
-  if (!indicesChanged_) return 0;
-  VkDeviceSize bytes = 0, triangles = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    bytes += Upload::aligned(12 * VkDeviceSize{mesh.triangleCount()});
-    triangles += mesh.triangleCount();
+  changedIndices_.clear();
+  if (!hasIndices_) return 0;
+  if (buffers_.indices.reserve(3 * buffers_.triangles.capacity())) {
+    for (Place& place : places_) place.uploadedIndices = 0;
   }
-  buffers_.indices.reserve(3 * triangles);
+  VkDeviceSize bytes = 0;
+  for (MeshId id = 0; id < places_.size(); ++id) {
+    if (places_[id].uploadedIndices == scene.meshes[id].version) continue;
+    changedIndices_.push_back(id);
+    bytes += Upload::aligned(12 * places_[id].triangles);
+  }
   return bytes;
 }
 
@@ -150,21 +221,29 @@ VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
   const bool grew = buffers_.objects.reserve(scene.objects.size());
   if (buffers_.placements.reserve(scene.objects.size()) || grew) seenPoses_ = 0;
   changedObjects_.clear();
-  if (seenPoses_ != scene.poseVersion) {
-    for (ObjectId i = 0; i < scene.objects.size(); ++i) {
-      if (scene.objects[i].used && scene.changedAt[i] > seenPoses_) changedObjects_.push_back(i);
+  scene.changedObjects.forEachSince(seenPoses_, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      if (scene.changedAt[i] > seenPoses_ && scene.objects[i].used) changedObjects_.push_back(static_cast<ObjectId>(i));
     }
-  }
+  });
   std::vector<ObjectId> restored;
   addDifference(overwritten_.objects, next_.objects, restored);
   for (const ObjectId id : restored) {
     if (scene.objects[id].used && scene.changedAt[id] <= seenPoses_) changedObjects_.push_back(id);
   }
-  const ObjectTree& tree = scene.objectTree();
-  treeChanged_ = buffers_.objectNodes.reserve(tree.nodes().size()) || seenTree_ != tree.version();
-  return (Upload::aligned(sizeof(gpu::ObjectRecord)) + Upload::aligned(sizeof(gpu::Placement))) *
-             changedObjects_.size() +
-         (treeChanged_ ? Upload::aligned(sizeof(gpu::ObjectNode) * tree.nodes().size()) : 0);
+  std::sort(changedObjects_.begin(), changedObjects_.end());
+  return (sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement)) * changedObjects_.size();
+}
+
+VkDeviceSize GpuScene::prepareTree(const ObjectTree& tree) {
+  if (buffers_.objectNodes.reserve(tree.nodes().size())) seenTree_ = 0;
+  changedNodes_.clear();
+  VkDeviceSize bytes = 0;
+  tree.changedNodes().forEachSince(seenTree_, [&](size_t first, size_t last) {
+    changedNodes_.push_back({first, last});
+    bytes += Upload::aligned(sizeof(gpu::ObjectNode) * (last - first));
+  });
+  return bytes;
 }
 
 void GpuScene::uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, Upload& upload) {
@@ -199,32 +278,44 @@ void GpuScene::uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, Up
 }
 
 void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
-  for (const ObjectId id : changedObjects_) {
-    const Object& object = scene.objects[id].object;
-    gpu::ObjectRecord record{};
-    std::copy(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), record.pose);
-    record.mesh = object.mesh;
-    upload.add(&record, sizeof(record), buffers_.objects, sizeof(record) * VkDeviceSize{id});
-  }
-  for (const ObjectId id : changedObjects_) {
-    const Object& object = scene.objects[id].object;
-    gpu::Placement placement = placementOf(scene.meshes[object.mesh], object.worldFromMesh);
-    placement.root = records_[object.mesh].firstNode;
-    placement.mask = object.mask;
-    placement.mesh = object.mesh;
-    upload.add(&placement, sizeof(placement), buffers_.placements, sizeof(placement) * VkDeviceSize{id});
-  }
+  static_assert(sizeof(gpu::ObjectRecord) % 8 == 0 && sizeof(gpu::Placement) % 8 == 0);  // for Upload::place
+  // Where each array's changed elements begin; all follow in their order.
+  const auto places = [&](const gpu::Buffer& target, VkDeviceSize size) {
+    std::byte* first = nullptr;
+    for (size_t i = 0; i < changedObjects_.size(); ++i) {
+      std::byte* at = upload.place(size, target, size * changedObjects_[i]);
+      if (i == 0) first = at;
+    }
+    return first;
+  };
+  std::byte* records = places(buffers_.objects, sizeof(gpu::ObjectRecord));
+  std::byte* placements = places(buffers_.placements, sizeof(gpu::Placement));
+  parallelFor(changedObjects_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const Object& object = scene.objects[changedObjects_[i]].object;
+      gpu::ObjectRecord record{};
+      std::copy(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), record.pose);
+      record.mesh = object.mesh;
+      gpu::Placement placement = placementOf(scene.meshes[object.mesh], object.worldFromMesh);
+      placement.root = records_[object.mesh].firstNode;
+      placement.mask = object.mask;
+      placement.mesh = object.mesh;
+      std::memcpy(records + i * sizeof(record), &record, sizeof(record));
+      std::memcpy(placements + i * sizeof(placement), &placement, sizeof(placement));
+    }
+  });
 }
 
 void GpuScene::upload(const Scene::Impl& scene, Upload& upload) {
   for (const MeshId id : changedMeshes_) uploadMesh(scene.meshes[id], records_[id], upload);
-  for (MeshId id = 0; indicesChanged_ && id < scene.meshes.size(); ++id) {
-    uploadIndices(scene.meshes[id], records_[id], upload);
-  }
+  for (const MeshId id : changedIndices_) uploadIndices(scene.meshes[id], records_[id], upload);
   if (recordsChanged_) upload.add(records_.data(), gpu::bytesOf(records_), buffers_.meshes);
   uploadObjects(scene, upload);
   const std::vector<gpu::ObjectNode>& nodes = scene.objectTree().nodes();
-  if (treeChanged_) upload.add(nodes.data(), gpu::bytesOf(nodes), buffers_.objectNodes);
+  for (const Range& range : changedNodes_) {
+    const VkDeviceSize size = sizeof(gpu::ObjectNode);
+    upload.add(&nodes[range.first], size * (range.last - range.first), buffers_.objectNodes, size * range.first);
+  }
 }
 
 void GpuScene::sync(const Scene::Impl& scene) {
@@ -244,7 +335,8 @@ void GpuScene::sync(const Scene::Impl& scene) {
 void GpuScene::confirm(const Scene::Impl& scene) {
   seenScene_ = scene.identity;
   seenMeshes_ = scene.meshVersion;
-  if (hasIndices_) seenIndices_ = scene.meshVersion;
+  for (const MeshId id : changedMeshes_) places_[id].uploaded = scene.meshes[id].version;
+  for (const MeshId id : changedIndices_) places_[id].uploadedIndices = scene.meshes[id].version;
   seenPoses_ = scene.poseVersion;
   seenTree_ = scene.objectTree().version();
   overwritten_ = next_;

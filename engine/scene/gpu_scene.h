@@ -5,6 +5,7 @@
 
 #include "gpu/array.h"
 #include "gpu/submission.h"
+#include "scene/arena.h"
 #include "scene/scene.h"
 #include "shaders/shared/interop.h"
 
@@ -56,23 +57,40 @@ class GpuScene {
   const Vector& farthest(MeshId mesh) const { return farthest_[mesh]; }
 
  private:
+  /// A mesh on the device. Its ranges in the buffers are kept as long as it has the same numbers of elements.
+  struct Place {
+    uint64_t vertices = 0, triangles = 0, nodes = 0;  ///< numbers of elements; none: no mesh
+    uint64_t uploaded = 0, uploadedIndices = 0;       ///< Mesh::version of what is in the buffers; 0: nothing
+  };
   void checkWriteLimits(const Scene::Impl& scene) const;
   VkDeviceSize prepareMeshes(const Scene::Impl& scene);
   VkDeviceSize prepareIndices(const Scene::Impl& scene);
   VkDeviceSize prepareObjects(const Scene::Impl& scene);
+  VkDeviceSize prepareTree(const ObjectTree& tree);
+  void placeMeshes(const Scene::Impl& scene);
+  bool placeMesh(MeshId id, const Mesh& mesh);
+  void removePlace(MeshId id);
   void layOut(const Scene::Impl& scene);
+  bool exceedsWriteLimits() const;
+  void describe(MeshId id, const Mesh& mesh);
   void uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload);
   void uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload) const;
   void uploadObjects(const Scene::Impl& scene, gpu::Upload& upload);
 
   const Device::Impl* device_;
   Buffers buffers_;
+  Arena vertices_, triangles_, nodes_;  ///< of the buffers
+  std::vector<Place> places_;           ///< by mesh
   std::vector<gpu::MeshRecord> records_;
   std::vector<Vector> farthest_;  ///< of each mesh
-  uint64_t seenScene_ = 0, seenMeshes_ = 0, seenIndices_ = 0, seenPoses_ = 0, seenTree_ = 0;
-  bool hasIndices_ = false, recordsChanged_ = false, indicesChanged_ = false, treeChanged_ = false;
-  std::vector<MeshId> changedMeshes_;
-  std::vector<ObjectId> changedObjects_;
+  uint64_t seenScene_ = 0, seenMeshes_ = 0, seenPoses_ = 0, seenTree_ = 0;
+  bool hasIndices_ = false, recordsChanged_ = false;
+  std::vector<MeshId> changedMeshes_, changedIndices_;
+  std::vector<ObjectId> changedObjects_;  ///< ascending
+  struct Range {
+    size_t first, last;
+  };
+  std::vector<Range> changedNodes_;
   Overwritten overwritten_, next_;  ///< ascending
   struct Sync {
     gpu::Upload upload;

@@ -16,6 +16,7 @@ namespace {
 // The tree is rebuilt once refitting has made its cost this many times that after the last build.
 constexpr double kRebuildAt = 2.0;
 constexpr size_t kChunk = 8192;
+constexpr size_t kAhead = 16;  // nodes
 
 double halfArea(const gpu::ObjectNode& node) {
   const double x = node.halfExtent[0], y = node.halfExtent[1], z = node.halfExtent[2];
@@ -62,6 +63,7 @@ bool isInRange(const Box& box) {
 
 void ObjectTree::update(const Scene::Impl& scene, const ObjectChanges& changes) {
   if (seenPose_ == scene.poseVersion) return;
+  next_ = scene.poseVersion;
   bool isDone = !nodes_.empty() && !changes.areMany;
   if (isDone) {
     boxes_.resize(scene.objects.size());
@@ -95,6 +97,8 @@ void ObjectTree::updateAll(const Scene::Impl& scene) {
   const bool sameObjects = seenStructure_ == scene.structureVersion && edits_ == 0;
   if (sameObjects) refit();
   if (!sameObjects || isWorn()) build(scene);
+  changed_.resize(nodes_.size());
+  changed_.markAll(next_);
 }
 
 void ObjectTree::setBox(const Scene::Impl& scene, ObjectId id) {
@@ -141,8 +145,11 @@ void ObjectTree::insert(ObjectId object) {
   cost_ += halfArea(nodes_[at]);
   nodes_.push_back({.link = gpu::kLinkLeaf | object});
   parents_.resize(nodes_.size(), at);
+  changed_.resize(nodes_.size());
+  touch(first);
   fit(first + 1, boxes_[object]);
   nodes_[at].link = first;
+  touch(at);
   adopt(first);
   adopt(first + 1);
   fitUpwards(at);
@@ -161,6 +168,7 @@ void ObjectTree::remove(ObjectId object) {
   const uint32_t left = nodes_[parent].link, sibling = left + (leaf == left ? 1 : 0);
   cost_ -= halfArea(nodes_[leaf]) + halfArea(nodes_[parent]);
   nodes_[parent] = nodes_[sibling];
+  touch(parent);
   adopt(parent);
   fitUpwards(parents_[parent]);
   ++edits_;
@@ -171,6 +179,7 @@ void ObjectTree::fit(uint32_t node, const Box& box) {
   const FloatBox rounded = floatBox(box, anchor_);
   cost_ -= halfArea(nodes_[node]);
   fitBox(rounded.lo, rounded.hi, nodes_[node].centre, nodes_[node].halfExtent);
+  touch(node);
   cost_ += halfArea(nodes_[node]);
 }
 
@@ -185,6 +194,7 @@ void ObjectTree::fitUpwards(uint32_t node) {
         std::ranges::equal(before.halfExtent, nodes_[node].halfExtent)) {
       return;
     }
+    touch(node);
     cost_ += halfArea(nodes_[node]) - halfArea(before);
   }
 }
@@ -228,17 +238,26 @@ void ObjectTree::build(const Scene::Impl& scene) {
 
 void ObjectTree::refit() {
   if (!inRange_) nodes_.clear();
+  const auto isLeaf = [this](size_t node) { return (nodes_[node].link & gpu::kLinkLeaf) != 0; };
+  parallelFor(nodes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      // The boxes of neighbouring leaves are far apart in memory.
+      const size_t ahead = std::min(i + kAhead, nodes_.size() - 1);
+      if (isLeaf(ahead)) __builtin_prefetch(&boxes_[nodes_[ahead].link & gpu::kLinkItem]);
+      if (!isLeaf(i)) continue;
+      const FloatBox box = floatBox(boxes_[nodes_[i].link & gpu::kLinkItem], anchor_);
+      fitBox(box.lo, box.hi, nodes_[i].centre, nodes_[i].halfExtent);
+    }
+  });
+  cost_ = 0;
   for (size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
     gpu::ObjectNode& node = nodes_[i];
-    FloatBox box;
-    if ((node.link & gpu::kLinkLeaf) != 0) {
-      box = floatBox(boxes_[node.link & gpu::kLinkItem], anchor_);
-    } else {
-      box = around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1]));
+    if (!isLeaf(i)) {
+      const FloatBox box = around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1]));
+      fitBox(box.lo, box.hi, node.centre, node.halfExtent);
     }
-    fitBox(box.lo, box.hi, node.centre, node.halfExtent);
+    cost_ += halfArea(node);
   }
-  cost_ = cost();
 }
 
 double ObjectTree::cost() const {

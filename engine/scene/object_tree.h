@@ -7,6 +7,7 @@
 
 #include "math/box.h"
 #include "radar/scene.h"
+#include "scene/changed_pages.h"
 #include "shaders/shared/interop.h"
 
 namespace radar {
@@ -41,6 +42,8 @@ class ObjectTree {
   bool inRange() const { return inRange_; }
   /// Increases with every change of the tree; unique over all trees.
   uint64_t version() const { return version_; }
+  /// The version() at which nodes last changed.
+  const ChangedPages& changedNodes() const { return changed_; }
 
  private:
   void updateAll(const Scene::Impl& scene);
@@ -57,7 +60,10 @@ class ObjectTree {
   void fitUpwards(uint32_t node);
   void adopt(uint32_t node);
 
+  void touch(uint32_t node) { changed_.mark(node, next_); }
+
   std::vector<gpu::ObjectNode> nodes_;
+  ChangedPages changed_;
   std::vector<uint32_t> parents_;  // by node; kNone: the root
   std::vector<uint32_t> leaves_;   // by object id; kNone: not in the tree
   std::vector<Box> boxes_;         // by object id
@@ -68,6 +74,7 @@ class ObjectTree {
   double builtCost_ = 0, cost_ = 0;
   size_t edits_ = 0;  // insertions and removals since the tree was built
   uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0;
+  uint64_t next_ = 0;  // the version that an update makes
 };
 
 /// Floats hold squares and cubes of coordinates and sizes up to this, with room for the values they are compared with.

@@ -198,6 +198,7 @@ const ObjectTree& Scene::Impl::objectTree() const {
 
 void Scene::Impl::change(ObjectId object) {
   poseVersion = changedAt[object] = nextVersion();
+  changedObjects.mark(object, poseVersion);
   treeChanges_.areMany = treeChanges_.areMany || treeChanges_.objects.size() > kFewChanges + objects.size() / 16;
   if (!treeChanges_.areMany) treeChanges_.objects.push_back(object);
 }
@@ -287,6 +288,7 @@ ObjectId Scene::addObject(const Object& object) {
   ++impl_->meshes[object.mesh].objects;
   impl_->moving += isMoving(object);
   impl_->changedAt.resize(impl_->objects.size());
+  impl_->changedObjects.resize(impl_->objects.size());
   impl_->change(id);
   impl_->structureVersion = impl_->poseVersion;
   return id;

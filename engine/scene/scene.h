@@ -12,6 +12,7 @@
 
 #include "math/box.h"
 #include "radar/query.h"
+#include "scene/changed_pages.h"
 #include "scene/mesh_tree.h"
 #include "scene/object_tree.h"
 
@@ -63,8 +64,9 @@ struct Scene::Impl {
   uint64_t meshVersion = 0;
   uint64_t structureVersion = 0;  ///< objects added or removed
   uint64_t poseVersion = 0;       ///< any object changed
-  /// For each object, the poseVersion at which it last changed.
+  /// For each object, the poseVersion at which it last changed; and by pages of objects.
   std::vector<uint64_t> changedAt;
+  ChangedPages changedObjects;
   /// Records that an object was added, moved or removed.
   void change(ObjectId object);
   size_t moving = 0;               ///< number of objects that move during a step

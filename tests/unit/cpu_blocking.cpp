@@ -18,7 +18,9 @@ void check(const Scene& scene, const Query& query) {
   const Result result = sweeper.run({&query, 1})[0];
   const Lists& lists = sweeper.lists();
   const oracle::Truth truth = oracle::truthOf(scene, query);
-  REQUIRE(oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0)) == "");
+  const std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+  INFO(fault);
+  REQUIRE(fault.empty());
 }
 
 MeshId add(Scene& scene, const tools::MeshData& mesh) {

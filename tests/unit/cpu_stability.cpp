@@ -78,7 +78,9 @@ TEST_CASE("all contacts and skipped objects among bodies at rest equal brute for
       ++cases;
       const Lists& lists = sweeper.lists();
       const oracle::Truth truth = oracle::truthOf(scene, query);
-      REQUIRE(oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0)) == "");
+      const std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+      INFO(fault);
+      REQUIRE(fault.empty());
       contacts += truth.contacts.size();
       skipped += truth.overlapping.size();
     }

@@ -179,7 +179,9 @@ inline void checkContact(const radar::Scene& scene, const radar::Query& query, c
 /// Checks the status, the pair and the bracket of an answer.
 inline void checkTruth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
   const oracle::Truth truth = oracle::truthOf(scene, query);
-  REQUIRE(oracle::faultOf(truth.contacts.empty() ? nullptr : &truth.contacts[0], query, result) == "");
+  const std::string fault = oracle::faultOf(truth.contacts.empty() ? nullptr : &truth.contacts[0], query, result);
+  INFO(fault);
+  REQUIRE(fault.empty());
 }
 
 /// Checks everything that the oracle knows about an answer.

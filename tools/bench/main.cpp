@@ -53,6 +53,7 @@ int main(int argc, char** argv) try {
   radar::bench::addSearch(app, status);
   radar::bench::addRecorded(app, status);
   radar::bench::addPool(app, status);
+  radar::bench::addChanges(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

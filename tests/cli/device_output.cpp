@@ -55,7 +55,7 @@ TEST_CASE("scopes draws R, M and L and writes their values on request") {
   for (const char* name : {"p/R.f32", "p/M.f32", "p/L.f32"}) CHECK(folder.read(name).size() == 4u * 32 * 32);
 }
 
-TEST_CASE("demo writes a table, queries, answers and pictures") {
+TEST_CASE("demo writes tables, queries, answers, pictures and a film") {
   const ScratchFolder folder;
   const Run run = runProgram(folder, "demo --out d");
   INFO(run.err);
@@ -63,6 +63,13 @@ TEST_CASE("demo writes a table, queries, answers and pictures") {
   CHECK_THAT(run.out, Contains("teapot/0") && Contains("reference"));
   CHECK(isPng(folder.read("d/scene.png")));
   CHECK_FALSE(folder.read("d/table.txt").empty());
+  // What was predicted happened: surfaces are apart just before it, and not just after it.
+  const std::string flight = folder.read("d/flight.txt");
+  CHECK_THAT(flight, Contains("  yes\n") && !Contains("  no\n"));
+  const std::string film = folder.read("d/flight.png");
+  CHECK(isPng(film));
+  CHECK_THAT(film, Contains("acTL") && Contains("fdAT"));
+  for (const char* picture : {"d/flight/00.png", "d/flight/48.png"}) CHECK(isPng(folder.read(picture)));
   CHECK(runProgram(folder, "query d/queries.json --mode reference").out == folder.read("d/answers-reference.jsonl"));
 }
 

@@ -2,11 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
 
 namespace radar::tools {
+
+namespace {
+
+std::string encoded(cairo_surface_t* surface, const std::string& name) {
+  std::string png;
+  const auto append = [](void* to, const unsigned char* bytes, unsigned count) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface, append, &png);
+  if (status != CAIRO_STATUS_SUCCESS) {
+    throw std::runtime_error(name + ": expected a picture, got " + cairo_status_to_string(status));
+  }
+  return png;
+}
+
+}  // namespace
 
 Colour viridis(double where) {
   constexpr int kSteps = 8;
@@ -55,17 +73,36 @@ void Canvas::text(double x, double baseline, double size, const std::string& wor
   cairo_show_text(get(), words.c_str());
 }
 
-void Canvas::write(const std::filesystem::path& file) const {
-  std::string png;
-  const auto append = [](void* to, const unsigned char* bytes, unsigned count) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
-  if (status != CAIRO_STATUS_SUCCESS) {
-    throw std::runtime_error(file.string() + ": expected a picture, got " + cairo_status_to_string(status));
+uint32_t Canvas::width() const {
+  return static_cast<uint32_t>(cairo_image_surface_get_width(surface_.get()));
+}
+
+std::vector<uint32_t> Canvas::pixels() const {
+  cairo_surface_flush(surface_.get());
+  const unsigned char* data = cairo_image_surface_get_data(surface_.get());
+  const int stride = cairo_image_surface_get_stride(surface_.get());
+  std::vector<uint32_t> pixels(size_t{width()} * cairo_image_surface_get_height(surface_.get()));
+  for (size_t row = 0; row * width() < pixels.size(); ++row) {
+    std::memcpy(&pixels[row * width()], data + row * stride, sizeof(uint32_t) * width());
   }
-  writeAtomically(file, png);
+  return pixels;
+}
+
+void Canvas::write(const std::filesystem::path& file) const {
+  writeAtomically(file, encoded(surface_.get(), file.string()));
+}
+
+std::string pngOf(const std::vector<uint32_t>& pixels, uint32_t width) {
+  const auto columns = static_cast<int>(width), rows = static_cast<int>(pixels.size() / width);
+  const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface(
+      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, columns, rows), cairo_surface_destroy);
+  unsigned char* data = cairo_image_surface_get_data(surface.get());
+  const int stride = cairo_image_surface_get_stride(surface.get());
+  for (int row = 0; row < rows; ++row) {
+    std::memcpy(data + ptrdiff_t{row} * stride, &pixels[size_t{width} * row], sizeof(uint32_t) * width);
+  }
+  cairo_surface_mark_dirty(surface.get());
+  return encoded(surface.get(), "a picture of a film");
 }
 
 }  // namespace radar::tools

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace radar::tools {
 
@@ -26,6 +27,9 @@ class Canvas {
   void fill(double x, double y, double width, double height) const;
   void outline(double x, double y, double width, double height) const;  ///< around that area, thin and grey
   void text(double x, double baseline, double size, const std::string& words) const;
+  uint32_t width() const;
+  /// Rows from above, in the form 0xRRGGBB; the highest byte has no meaning.
+  std::vector<uint32_t> pixels() const;
   /// As PNG. Throws std::runtime_error if it cannot be written.
   void write(const std::filesystem::path& file) const;
 
@@ -33,5 +37,8 @@ class Canvas {
   std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
   std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
 };
+
+/// The bytes of a PNG file of rows of pixels in the form 0xAARRGGBB, the colours multiplied by the opacity AA.
+std::string pngOf(const std::vector<uint32_t>& pixels, uint32_t width);
 
 }  // namespace radar::tools

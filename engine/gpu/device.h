@@ -31,6 +31,7 @@ struct Device::Impl {
 
   HostDevice host;
   gpu::Api vk;
+  mutable std::mutex queueMutex;  ///< held around each submission
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;

@@ -79,9 +79,13 @@ void Submission::submit() {
   const VkFence fence = fence_.get();
   check(device_->vk.ResetFences(device_->device(), 1, &fence), "vkResetFences");
   const HostDevice& host = device_->host;
-  if (host.lockQueue) host.lockQueue();
-  const VkResult submitted = device_->vk.QueueSubmit2(host.queue, 1, &submit, fence);
-  if (host.unlockQueue) host.unlockQueue();
+  VkResult submitted;
+  {
+    const std::scoped_lock lock(device_->queueMutex);
+    if (host.lockQueue) host.lockQueue();
+    submitted = device_->vk.QueueSubmit2(host.queue, 1, &submit, fence);
+    if (host.unlockQueue) host.unlockQueue();
+  }
   check(submitted, "vkQueueSubmit2");
   pending_ = true;
 }

@@ -61,7 +61,7 @@ class Asker {
       query.hits = hits;
       const Result result = sweeper_ ? sweeper_->run({&query, 1})[0] : cpu_.run({&query, 1})[0];
       const Lists& lists = sweeper_ ? sweeper_->lists() : cpu_.lists();
-      const std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+      std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
       if (!fault.empty()) return fault;
     }
     return "";

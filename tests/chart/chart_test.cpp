@@ -32,8 +32,8 @@ Cell madeUp(const std::string& method, double us, double worst, uint32_t misses 
 }
 
 std::vector<std::string> namesOn(const std::vector<Cell>& cells) {
-  std::vector<const Cell*> all;
-  for (const Cell& cell : cells) all.push_back(&cell);
+  std::vector<const Cell*> all(cells.size());
+  std::ranges::transform(cells, all.begin(), [](const Cell& cell) { return &cell; });
   std::vector<std::string> names;
   for (const Cell* cell : frontOf(all)) names.push_back(cell->method);
   return names;

@@ -224,6 +224,7 @@ TEST_CASE("an object that floats cannot represent gives kFlagRange only to the q
   scene.addObject({mountain, at(30, 0x1p-100, 0x1p-100), ~0u});
   scene.addObject({cube, at(40, 1, 1), ~0u});
   std::vector<Query> queries;
+  queries.reserve(5);
   for (int i = 0; i < 5; ++i) {
     queries.push_back({.mesh = cube,
                        .worldFromMesh = {{0.9, 0.1, 0.2, 10.0 * i, -0.1, 0.9, 0.3, 0, -0.2, -0.3, 0.9, 0}},

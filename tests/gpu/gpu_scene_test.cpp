@@ -73,8 +73,7 @@ void checkCopy(const GpuScene& copy, const Scene& scene) {
     if (!scene.hasMesh(id)) continue;
     CAPTURE(id);
     const gpu::MeshRecord record = elementsOf(copy.buffers().meshes, id, 1)[0];
-    CHECK(std::memcmp(&record, &copy.record(id), sizeof(record)) ==
-          0);  // NOLINT(bugprone-suspicious-memory-comparison)
+    CHECK(sameBits<gpu::MeshRecord>({record}, {copy.record(id)}));
     checkMesh(inner.meshes[id], record, copy.buffers());
   }
   for (ObjectId id = 0; id < scene.objectLimit(); ++id) {

@@ -37,6 +37,7 @@ TEST_CASE("a shared object is created once per device, for all callers and threa
     const Device own = Device::open({.onValidation = test::onValidation});
     std::array<const Counted*, 8> found{};
     std::vector<std::thread> threads;
+    threads.reserve(found.size());
     for (const Counted*& one : found) threads.emplace_back([&] { one = &own.impl().shared<Counted>(); });
     for (std::thread& thread : threads) thread.join();
     CHECK(Counted::made == 1);

@@ -2,7 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <mutex>
+#include <thread>
 
+#include "gpu/device.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -20,6 +23,36 @@ struct LoadedWorkload {
   tools::Workload workload;
   tools::ScenePlayer player;
   std::vector<Query> queries;
+};
+
+/// Counts the submissions during which another thread could submit, too. Two threads that do so would be a test, too,
+/// but the layers' synchronization validation does not follow fences that several threads wait for.
+class WatchedSubmits {
+ public:
+  explicit WatchedSubmits(Device::Impl& device) : device_(device) {
+    driver = device.vk.QueueSubmit2;
+    mutex = &device.queueMutex;
+    submits = open = 0;
+    device.vk.QueueSubmit2 = [](VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
+      ++submits;
+      std::thread([] {
+        if (!mutex->try_lock()) return;
+        ++open;
+        mutex->unlock();
+      }).join();
+      return driver(queue, count, infos, fence);
+    };
+  }
+  ~WatchedSubmits() { device_.vk.QueueSubmit2 = driver; }
+  WatchedSubmits(const WatchedSubmits&) = delete;
+  WatchedSubmits& operator=(const WatchedSubmits&) = delete;
+
+  inline static int submits, open;
+
+ private:
+  inline static PFN_vkQueueSubmit2 driver;
+  inline static std::mutex* mutex;
+  Device::Impl& device_;
 };
 
 void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
@@ -135,6 +168,18 @@ TEST_CASE("answers follow objects that are moved, removed and added, and other i
   const MeshId other = scene.addMesh(ball.positions, ball.indices);
   scene.addObject({other, at(2.5), ~0u});
   CHECK(answer().t == Approx(1).epsilon(0.05));
+}
+
+TEST_CASE("while a sweeper submits, no other thread can submit to the queue of its device") {
+  const LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 200, .sensors = 8}), 32);
+  std::vector<Query> queries = loaded.queries;
+  for (size_t i = 0; i < queries.size(); i += 2) queries[i].mode = Mode::contact;
+  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = 0});
+  const WatchedSubmits watched(test::device().impl());
+  sweeper.run(queries);
+  CHECK(WatchedSubmits::submits >= 2);
+  CHECK(WatchedSubmits::open == 0);
+  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("an empty batch and a query over an empty scene are answered") {

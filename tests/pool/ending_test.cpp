@@ -81,8 +81,8 @@ TEST_CASE("cancelling a batch invalidates the queries that no device has taken a
 TEST_CASE("after drain, the futures of all earlier batches are ready") {
   const Boxes boxes(100);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
-  std::vector<std::future<PoolAnswers>> futures;
-  for (int i = 0; i < 5; ++i) futures.push_back(pool.submit(boxes.queries));
+  std::vector<std::future<PoolAnswers>> futures(5);
+  for (auto& future : futures) future = pool.submit(boxes.queries);
   pool.drain();
   for (const auto& future : futures) CHECK(isReady(future));
   pool.drain();

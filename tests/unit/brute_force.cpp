@@ -193,7 +193,7 @@ std::string faultOf(const Truth& truth, const radar::Query& query, const radar::
   if (!std::equal(overlapping.begin(), overlapping.end(), truth.overlapping.begin(), truth.overlapping.end())) {
     return "wrong list of overlapping objects";
   }
-  const std::string fault = faultOf(truth.contacts.empty() ? nullptr : &truth.contacts[0], query, result);
+  std::string fault = faultOf(truth.contacts.empty() ? nullptr : &truth.contacts[0], query, result);
   if (!fault.empty()) return fault;
   const size_t expected = query.hits == 1 ? 0 : std::min<size_t>(query.hits, truth.contacts.size());
   if (hits.size() != expected) return "wrong number of contacts: " + std::to_string(hits.size());

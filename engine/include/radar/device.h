@@ -57,18 +57,23 @@ struct HostDevice {
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
   const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's
   VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline; optional
-  /// Called around each vkQueueSubmit2, on the submitting thread. Set both if other threads use the queue too, else
-  /// none.
-  std::function<void()> lockQueue, unlockQueue;
+  /// Called around each vkQueueSubmit2, on the submitting thread. Set both if the host or another Device uses the queue
+  /// on other threads, else none: Sweepers of one Device take turns.
+  std::function<void()> lockQueue{}, unlockQueue{};
 };
 
 /// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. The host chains it into its
 /// VkDeviceCreateInfo (without pEnabledFeatures), or copies the enabled features into its own structs.
 struct Requirements {
   uint32_t apiVersion = VK_API_VERSION_1_3;  ///< of instance and device
-  VkPhysicalDeviceFeatures2 core{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-  VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceFeatures2 core{};
+  VkPhysicalDeviceVulkan12Features vulkan12{};
+  VkPhysicalDeviceVulkan13Features vulkan13{};
+  Requirements() {
+    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  }
   /// For VkDeviceCreateInfo::pNext: chains all three structs, then `next`. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
@@ -83,7 +88,7 @@ RADAR_API std::vector<std::string> unsupportedReasons(const HostDevice& host, Mo
 struct DeviceOptions {
   uint32_t index = kNone;  ///< into listDevices(); kNone: the best usable one (discrete, integrated, virtual, CPU)
   /// Receives each warning or error of active validation layers, on any thread.
-  std::function<void(const std::string&)> onValidation;
+  std::function<void(const std::string&)> onValidation{};
   bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
 };
 

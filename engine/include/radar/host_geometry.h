@@ -21,7 +21,7 @@ struct HostPositions {
 
 /// Vertices and triangles. Writes to the buffers have been made available (waiting for a fence suffices).
 struct HostMesh {
-  HostPositions positions;
+  HostPositions positions{};
   uint32_t vertexCount = 0;
 
   VkBuffer indices = VK_NULL_HANDLE;             ///< null: every three vertices are a triangle
@@ -29,7 +29,7 @@ struct HostMesh {
   VkIndexType indexType = VK_INDEX_TYPE_UINT32;  ///< or UINT16
   uint32_t indexCount = 0;
 
-  std::optional<Bounds> bounds;  ///< see Scene::addMesh
+  std::optional<Bounds> bounds{};  ///< see Scene::addMesh
 };
 
 /// Adds a copy of the mesh, read from the device once. Submits to HostDevice::queue and waits, so call it while
@@ -41,7 +41,7 @@ RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mes
 /// included.
 struct DeformedMesh {
   MeshId mesh = kNone;
-  HostPositions positions;
+  HostPositions positions{};
 };
 
 /// New transforms of objects: one VkTransformMatrixKHR each (3x4 floats, row-major; also the start of an acceleration
@@ -53,14 +53,14 @@ struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes
   VkDeviceSize stride = 48;  ///< distance between transforms, bytes
-  std::span<const ObjectId> objects;
+  std::span<const ObjectId> objects{};
 };
 
 /// The geometry that recorded commands read from the host's buffers when they execute. Everything else comes from the
 /// scene.
 struct HostGeometry {
-  std::span<const DeformedMesh> meshes;
-  std::span<const MovedObjects> objects;
+  std::span<const DeformedMesh> meshes{};
+  std::span<const MovedObjects> objects{};
 };
 
 }  // namespace radar

@@ -26,19 +26,19 @@ enum class Mode : uint32_t {
 /// One sweep: the sensor `mesh`, placed by `worldFromMesh`, moves along `direction` for `distance`.
 struct Query {
   MeshId mesh = kNone;                ///< of the scene
-  Transform worldFromMesh;            ///< invertible
+  Transform worldFromMesh{};          ///< invertible
   std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
   double distance = 0;                ///< D >= 0, finite, world units
   Mode mode = Mode::contact;
-  bool anyHit = false;            ///< asks only whether there is contact within D: see Result. Cheaper if there is
-  std::vector<ObjectId> exclude;  ///< objects to ignore, such as the sensor's own; at most a handful
-  uint32_t mask = ~0u;            ///< an object takes part if its mask shares a bit
+  bool anyHit = false;              ///< asks only whether there is contact within D: see Result. Cheaper if there is
+  std::vector<ObjectId> exclude{};  ///< objects to ignore, such as the sensor's own; at most a handful
+  uint32_t mask = ~0u;              ///< an object takes part if its mask shares a bit
 
   /// Mode contact, instead of `direction` and `distance`, which stay 0: how far the sensor moves during a step, world
   /// units, at constant velocity; may be zero. Objects move by Object::motion meanwhile. First contact is that of the
   /// relative motion, and t, lo and hi are fractions of the step. If objects move, a query with a direction takes a
   /// step, too, in which the sensor moves by D; t is then the fraction times D. Relative motions round once.
-  std::optional<std::array<double, 3>> motion;
+  std::optional<std::array<double, 3>> motion{};
 
   /// Mode contact: counts only pairs of triangles that block, as placed at the start. A pair does not block if a plane
   /// keeps the triangles apart and the motion does not go against it: what rests on something may leave it or slide
@@ -53,7 +53,7 @@ struct Query {
   /// pressed together block even so, at t = 0; crossings no deeper are no overlap. It is for rounding: far below the
   /// size of triangles. Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms'
   /// absolute values summed), which covers poses rounded once.
-  std::optional<double> slack;
+  std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
   /// rounding leaves the answer undecided, or lowers lo. `point` is of the touched surface, and `normal` may point
@@ -62,7 +62,7 @@ struct Query {
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
   /// sensor's box.
-  std::optional<double> tolerance;
+  std::optional<double> tolerance{};
   /// Mode contact: lists the first contacts with this many nearest objects (Lists::hits), one per object; kAllHits:
   /// with all in reach. 1: no list.
   uint32_t hits = 1;

@@ -60,15 +60,15 @@ struct Bounds {
 
 /// A triangle mesh, as passed to addMesh.
 struct MeshView {
-  std::span<const float> positions;   ///< 3 floats per vertex
-  std::span<const uint32_t> indices;  ///< 3 vertex numbers per triangle; triangle ids count in this order
+  std::span<const float> positions{};   ///< 3 floats per vertex
+  std::span<const uint32_t> indices{};  ///< 3 vertex numbers per triangle; triangle ids count in this order
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
 };
 
 /// An object of the scene: a placed mesh.
 struct Object {
   MeshId mesh = kNone;
-  Transform worldFromMesh;
+  Transform worldFromMesh{};
   uint32_t mask = ~0u;  ///< takes part in a query if it shares a bit with the query's mask
   /// How far it moves during the step that queries ask about, at constant velocity, world units: see Query::motion.
   std::array<double, 3> motion{};

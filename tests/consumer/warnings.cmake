@@ -1,0 +1,26 @@
+# Compiles each public header alone, and the README's example, with the warnings that careful hosts treat as errors, by each
+# of the compilers: cmake "-DCOMPILERS=g++;clang++" -DSOURCE=... -DVULKAN=... -DFOLDER=... -P warnings.cmake.
+cmake_minimum_required(VERSION 3.25)
+
+file(MAKE_DIRECTORY ${FOLDER})
+file(GLOB headers RELATIVE ${SOURCE}/engine/include ${SOURCE}/engine/include/radar/*.h)
+if(NOT headers)
+  message(FATAL_ERROR "expected headers in ${SOURCE}/engine/include/radar")
+endif()
+set(sources ${SOURCE}/tests/consumer/readme.cpp)
+foreach(header ${headers})
+  string(MAKE_C_IDENTIFIER ${header} name)
+  file(WRITE ${FOLDER}/${name}.cpp "#include <${header}>\n")
+  list(APPEND sources ${FOLDER}/${name}.cpp)
+endforeach()
+foreach(compiler ${COMPILERS})
+  foreach(source ${sources})
+    execute_process(
+      COMMAND ${compiler} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
+              -I${SOURCE}/engine/include -idirafter ${VULKAN} ${source}
+      RESULT_VARIABLE status ERROR_VARIABLE errors)
+    if(NOT status EQUAL 0)
+      message(SEND_ERROR "${compiler} ${source}:\n${errors}")
+    endif()
+  endforeach()
+endforeach()

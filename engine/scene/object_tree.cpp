@@ -94,7 +94,7 @@ void ObjectTree::updateAll(const Scene::Impl& scene) {
     world_.merge(boxes_[i]);
     inRange_ = inRange_ && isInRange(boxes_[i]);
   }
-  const bool sameObjects = seenStructure_ == scene.structureVersion && edits_ == 0;
+  const bool sameObjects = seenStructure_ == scene.structureVersion;
   if (sameObjects) refit();
   if (!sameObjects || isWorn()) build(scene);
   changed_.resize(nodes_.size());
@@ -250,7 +250,8 @@ void ObjectTree::refit() {
     }
   });
   cost_ = 0;
-  for (size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
+  // Children come after their parents. Nodes left over from removed objects are fitted, too, and count.
+  for (size_t i = nodes_.size(); i-- > 0;) {
     gpu::ObjectNode& node = nodes_[i];
     if (!isLeaf(i)) {
       const FloatBox box = around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1]));

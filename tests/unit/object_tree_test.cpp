@@ -296,3 +296,42 @@ TEST_CASE("single edits of a large scene keep its tree valid and no worse than t
   boxes.scene.addObject({boxes.mesh, boxes.anywhere(1)});
   checkTree(boxes.scene);
 }
+
+TEST_CASE("the pages of changed nodes have every node that an edit changes, and few others") {
+  Boxes boxes(12);
+  std::vector<ObjectId> objects;
+  for (int i = 0; i < 10'000; ++i) objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)}));
+  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  std::vector<gpu::ObjectNode> before = tree.nodes();
+  size_t changed = 0, missed = 0, named = 0, edits = 0;
+  for (; edits < 1'500; ++edits) {
+    const uint64_t seen = tree.version();
+    const uint32_t which = boxes.random.below(static_cast<uint32_t>(objects.size()));
+    if (edits % 3 == 0) {
+      objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)}));
+    } else if (edits % 3 == 1) {
+      boxes.scene.setTransform(objects[which], boxes.anywhere(100));
+    } else {
+      boxes.scene.removeObject(objects[which]);
+      objects.erase(objects.begin() + which);
+    }
+    const std::vector<gpu::ObjectNode>& nodes = boxes.scene.impl().objectTree().nodes();
+    std::vector<bool> isNamed(nodes.size());
+    tree.changedNodes().forEachSince(seen, [&](size_t first, size_t last) {
+      std::fill(isNamed.begin() + static_cast<ptrdiff_t>(first), isNamed.begin() + static_cast<ptrdiff_t>(last), true);
+      named += last - first;
+    });
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      const auto& now = nodes[i];
+      const bool isSame = i < before.size() && now.link == before[i].link &&
+                          std::ranges::equal(now.centre, before[i].centre) &&
+                          std::ranges::equal(now.halfExtent, before[i].halfExtent);
+      changed += isSame ? 0 : 1;
+      missed += isSame || isNamed[i] ? 0 : 1;
+    }
+    before = nodes;
+  }
+  CHECK(missed == 0);
+  CHECK(changed > edits);
+  CHECK(named < edits * tree.nodes().size() / 8);
+}

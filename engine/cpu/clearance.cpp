@@ -17,6 +17,7 @@ constexpr double kTolerance = 1e-6;
 }  // namespace
 
 double toleranceOf(const Query& query, const Mesh& sensor) {
+  if (query.clearance == 0) return 0;
   const Box box = boxOf(sensor, query.worldFromMesh.m);
   const double usual = kTolerance * std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
   return std::min(query.tolerance.value_or(usual), usual);

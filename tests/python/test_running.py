@@ -14,6 +14,17 @@ import cyber_radar
 from conftest import DOWN, FACES, at, box, fill, random_poses, same_answers
 
 
+class Hold:
+    """A progress callback that waits until its gate is set."""
+
+    def __init__(self):
+        self.begun, self.gate = threading.Event(), threading.Event()
+
+    def __call__(self, *_):
+        self.begun.set()
+        self.gate.wait()
+
+
 def many(count: int):
     rng = np.random.default_rng(10)
     return random_poses(rng, count, 20), rng.normal(size=(count, 3)) * 5
@@ -83,22 +94,15 @@ def test_cast_async_gives_the_same_answers_and_changes_wait_for_it(boxes):
     scene, mesh = boxes
     poses, displacements = many(3000)
     expected = scene.cast(mesh, poses, displacements, mode="reference")
-    gate = threading.Event()
-    given = poses.copy()
-    begun = threading.Event()
-
-    def hold(*_):
-        begun.set()
-        gate.wait()
-
+    given, hold = poses.copy(), Hold()
     first = scene.cast_async(mesh, given, displacements, mode="reference", progress=hold)
-    begun.wait()
+    hold.begun.wait()
     second = scene.cast_async(mesh, given, displacements, mode="reference")
     given[:] = 0  # the arguments were copied
     assert not first.done() and not second.done()
     mover = threading.Thread(target=lambda: scene.set_transforms(np.arange(200), at([0, 0, 99])))
     mover.start()
-    gate.set()
+    hold.gate.set()
     assert same_answers(first.result(), expected) and same_answers(second.result(), expected)
     mover.join()
     assert first.done() and first.progress == (3000, 3000)
@@ -108,20 +112,15 @@ def test_cast_async_gives_the_same_answers_and_changes_wait_for_it(boxes):
 def test_a_handle_cancels_what_runs_and_what_waits(boxes):
     scene, mesh = boxes
     poses, displacements = many(3000)
-    begun, gate = threading.Event(), threading.Event()
-
-    def hold(*_):
-        begun.set()
-        gate.wait()
-
+    hold = Hold()
     running = scene.cast_async(mesh, poses, displacements, mode="reference", progress=hold)
-    begun.wait()
+    hold.begun.wait()
     waiting = scene.cast_async(mesh, poses, displacements, mode="reference")
     with pytest.raises(concurrent.futures.TimeoutError):
         running.result(timeout=0)
     waiting.cancel()
     running.cancel()
-    gate.set()
+    hold.gate.set()
     for handle in (running, waiting):
         with pytest.raises(concurrent.futures.CancelledError):
             handle.result()

@@ -35,16 +35,17 @@ struct CastingScene::Answerers {
 CastingScene::CastingScene(DeviceChoice choice) : choice_(std::move(choice)) {}
 
 CastingScene::~CastingScene() {
-  if (answerers_ && answerers_->process != getpid()) {
-    [[maybe_unused]] Answerers* left = answerers_.release();
-  }
+  leaveForked();
+}
+
+// The threads and devices of a process that forked are not here: nothing of them can be used, nor ended.
+void CastingScene::leaveForked() {
+  if (!answerers_ || answerers_->process == getpid()) return;
+  [[maybe_unused]] Answerers* left = answerers_.release();
 }
 
 CastingScene::Answerers& CastingScene::answerers() {
-  if (answerers_ && answerers_->process != getpid()) {
-    // The threads and devices of the process that forked are not here: nothing of them can be used, nor ended.
-    [[maybe_unused]] Answerers* left = answerers_.release();
-  }
+  leaveForked();
   if (!answerers_) answerers_ = std::make_unique<Answerers>();
   return *answerers_;
 }

@@ -41,6 +41,7 @@ class CastingScene {
   struct Answerers;
   /// Those of this process: a forked process makes its own.
   Answerers& answerers();
+  void leaveForked();
 
   DeviceChoice choice_;
   Scene scene_;

@@ -233,6 +233,7 @@ TEST_CASE("text that is not JSON is refused with line, column and path") {
   CHECK_THAT(files.refusal("{\"queries\": [{}, {\"D\": 1, \"D\": 2}]}"),
              StartsWith("queries[1]") && Contains("\"D\" twice"));
   CHECK_THAT(files.refusal("{\"format\": \"\xff\"}"), StartsWith("format: ") && Contains("at line 1"));
+  CHECK_THAT(files.refusal(std::string(200'000, '[')), StartsWith("expected at most 100 levels"));
 }
 
 TEST_CASE("an instance file is read line by line, and the message about a bad line gives its number") {

@@ -11,8 +11,9 @@
 
 namespace radar::tools {
 
-/// Parses one JSON document. Beyond the grammar, refuses a key given twice in an object and a number too large for a
-/// double. Throws InputError with the path of the value at hand and, for a breach of the grammar, line and column.
+/// Parses one JSON document. Beyond the grammar, refuses a key given twice in an object, a number too large for a
+/// double, and more than 100 levels. Throws InputError with the path of the value at hand and, for a breach of the
+/// grammar, line and column.
 inline nlohmann::json parseJson(const std::string& file, std::string_view text) {
   using nlohmann::json;
   struct Level {
@@ -36,6 +37,7 @@ inline nlohmann::json parseJson(const std::string& file, std::string_view text) 
   const auto follow = [&](int, json::parse_event_t event, json& parsed) {
     using Event = json::parse_event_t;
     if (event == Event::object_start || event == Event::array_start) {
+      if (open.size() == 100) throw InputError(file, "", "expected at most 100 levels of lists and objects, got more");
       open.push_back({.isArray = event == Event::array_start});
     } else if (event == Event::key) {
       Level& level = open.back();

@@ -131,13 +131,44 @@ std::array<int32_t, 4> inOrder(const Times<Real>& times, unsigned valid) {
   return keys;
 }
 
+/// Places triangles of leaves. Keeps the last ones, as a triangle often meets several others.
+class TrianglePlacer {
+ public:
+  explicit TrianglePlacer(const PlacedMesh& placed) : placed_(placed) {}
+
+  struct Placed {
+    uint32_t triangle = kNone;
+    exact::Triangle corners;
+  };
+  /// `which`: 0 or 1, the first or the second of the leaf.
+  const Placed& operator()(const gpu::MeshNode& leaf, unsigned which) {
+    const uint32_t triangle = placed_.mesh.tree.order[(leaf.link & gpu::kLinkItem) + which];
+    Placed& last = last_[which];
+    if (last.triangle != triangle) last = {triangle, placedTriangle(placed_.mesh, placed_.pose, triangle)};
+    return last;
+  }
+
+ private:
+  const PlacedMesh& placed_;
+  Placed last_[2];
+};
+
+/// What the leaves of a pair of meshes are tested with.
+template <class Real>
+struct Leaves {
+  LeafTest<Real> test;
+  TrianglePlacer placeA, placeB;
+  explicit Leaves(const MeshPair& pair)
+      : test(pair.sensor.mesh, pair.other.mesh, pair.fromOther), placeA(pair.sensor), placeB(pair.other) {}
+};
+
 /// Passes the pairs of triangles of two leaves to `visitor`, earliest first.
 template <class Real>
-void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
+void meetLeaves(const MeshPair& pair, Leaves<Real>& leaves, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
                 PairVisitor& visitor, SearchStats& stats) {
   // Raised by more than rounding to Real may lower it.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(visitor.latest())); };
-  const LeafTimes<Real> found = test(a, b, near, latest());
+  const LeafTimes<Real> found = leaves.test(a, b, near, latest());
   stats.pairs += trianglesOf(a) * trianglesOf(b);
   for (unsigned pending = found.possible; pending != 0 && !visitor.isDecided();) {
     int lane = std::countr_zero(pending);
@@ -146,12 +177,9 @@ void meetLeaves(const MeshPair& pair, LeafTest<Real>& test, const gpu::MeshNode&
     }
     pending &= ~(1u << lane);
     if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
-    const uint32_t triA = pair.sensor.mesh.tree.order[(a.link & gpu::kLinkItem) + (lane & 1)];
-    const uint32_t triB = pair.other.mesh.tree.order[(b.link & gpu::kLinkItem) + (lane >> 1)];
+    const TrianglePlacer::Placed &ofA = leaves.placeA(a, lane & 1), &ofB = leaves.placeB(b, lane >> 1);
     const uint64_t before = exact::exactDecisions();
-    visitor.consider({pair.object, triB, triA},
-                     {placedTriangle(pair.sensor.mesh, pair.sensor.pose, triA),
-                      placedTriangle(pair.other.mesh, pair.other.pose, triB)},
+    visitor.consider({pair.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners},
                      static_cast<Axis>(found.axis[lane]));
     stats.exactPairs += exact::exactDecisions() != before;
   }
@@ -171,7 +199,7 @@ template <class Real>
 void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats) {
   const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
   const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
-  LeafTest<Real> leafTimes(pair.sensor.mesh, pair.other.mesh, pair.fromOther);
+  Leaves<Real> leaves(pair);
   const Opener opener(pair);
   const auto latestNow = [&] { return static_cast<float>((1 + 0x1p-22) * pair.motion.timeOf(visitor.latest())); };
   float latest = latestNow();
@@ -185,7 +213,7 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
     if (isLeaf(a) && isLeaf(b)) {
-      meetLeaves(pair, leafTimes, a, b, pairNow.near, visitor, stats);
+      meetLeaves(pair, leaves, a, b, pairNow.near, visitor, stats);
       latest = latestNow();
       continue;
     }

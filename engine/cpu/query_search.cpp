@@ -155,19 +155,17 @@ void QuerySearch::forObjects(const Task& task, const ObjectTree& tree, const Pai
     box.hi[k] += room;
   }
   const SweptBox meets(box, task.motion, tree);
-  // Converts its distances to t.
-  const double perUnit = !task.isStep ? 1 : task.motion.speed > 0x1p-900 ? (1 - 8 * kUnit) / task.motion.speed : 0;
-  const auto timeOf = [&](double way) { return std::isinf(way) ? way : way * perUnit; };
+  const auto isWanted = [&](double near) { return near <= task.motion.wayUntil(visitor.latest()); };
   open_.resize(size_t{tree.depth()} + 2);
   Open* top = open_.data();
   const auto push = [&](double near, const gpu::ObjectNode& node) {
-    *top = {timeOf(near), node.link};
-    top += top->near <= visitor.latest();
+    *top = {near, node.link};
+    top += isWanted(near);
   };
   push(meets(nodes[0], nodes[0])[0], nodes[0]);
   while (top != open_.data() && !visitor.isDecided()) {
     const Open next = *--top;
-    if (next.near > visitor.latest()) continue;
+    if (!isWanted(next.near)) continue;
     if ((next.link & gpu::kLinkLeaf) != 0) {
       const ObjectId id = next.link & gpu::kLinkItem;
       if (task.isEligible(id)) search(id);

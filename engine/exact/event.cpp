@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "exact/determinant.h"
+#include "exact/scaled_int.h"
 
 namespace radar::exact {
 
@@ -106,13 +107,28 @@ bool precedes(const Event& p, const Event& q) {
          std::tie(q.kind, q.from, q.to, q.x0, q.x1, q.y0, q.y1, q.direction);
 }
 
+namespace {
+
+bool isSame(const Event& p, const Event& q) {
+  return p.kind == q.kind && p.from == q.from && p.to == q.to && p.x0 == q.x0 && p.x1 == q.x1 && p.y0 == q.y0 &&
+         p.y1 == q.y1 && p.direction == q.direction;
+}
+
+}  // namespace
+
 int sign(const Event& e) {
   if (std::abs(e.s) > e.error) return signOf(e.s);
   return sign(numerator(e)) * sign(denominator(e));
 }
 
 Ratio ratio(const Event& e) {
-  return {exactly(numerator(e)), exactly(denominator(e))};
+  const Difference gap{e.from, e.to}, way{kOrigin, e.direction};
+  const auto x = scaledVector({e.x0, e.x1}), y = scaledVector({e.y0, e.y1}), g = scaledVector(gap),
+             w = scaledVector(way);
+  if (!x || !y || !g || !w) return {exactly(numerator(e)), exactly(denominator(e))};
+  const IntNormal normal = cross(x->c, y->c);
+  const int exponent = x->exponent + y->exponent;
+  return {dot(g->c, normal).value(g->exponent + exponent), dot(w->c, normal).value(w->exponent + exponent)};
 }
 
 int compare(const Ratio& p, const Ratio& q) {
@@ -123,7 +139,7 @@ int compare(const Ratio& p, const Ratio& q) {
 std::optional<int> compareRoughly(const Event& p, const Event& q) {
   const double apart = p.s - q.s, margin = (1 + 8 * kUnit) * (p.error + q.error);
   if (std::abs(apart) > margin) return signOf(apart);
-  if (!precedes(p, q) && !precedes(q, p)) return 0;
+  if (isSame(p, q)) return 0;
   // Equal estimates are most likely a tie, which only exact arithmetic can decide.
   if (apart == 0) return std::nullopt;
   const FineParameter fp = fineParameter(p), fq = fineParameter(q);
@@ -231,6 +247,19 @@ Vector point(const Event& e, double s) {
 
 namespace {
 
+/// Scales numbers by powers of two so that the largest is from 1 to 2.
+class Scale {
+ public:
+  explicit Scale(const Vector& v)
+      : size_(std::ilogb(std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}))),
+        factor_(std::abs(size_) < 1000 ? std::ldexp(1.0, -size_) : 0) {}
+  double operator()(double x) const { return factor_ != 0 ? factor_ * x : std::ldexp(x, -size_); }
+
+ private:
+  int size_;
+  double factor_;  // 0: the power may not be a number
+};
+
 /// The square root of 1 <= x < 16, by operations with the same bits on every device (double_double.glsl).
 double rootOf(double x) {
   double root = 0.5 * (1 + x);
@@ -249,16 +278,16 @@ Vector normal(const Event& e) {
   }
   // Scaled by powers of two, so that products of tiny and huge edges neither underflow nor overflow.
   for (DoubleDouble* v : {x, y}) {
-    const int size = std::ilogb(std::max({std::abs(v[0].high), std::abs(v[1].high), std::abs(v[2].high)}));
-    for (int k = 0; k < 3; ++k) v[k] = {std::ldexp(v[k].high, -size), std::ldexp(v[k].low, -size)};
+    const Scale scale({v[0].high, v[1].high, v[2].high});
+    for (int k = 0; k < 3; ++k) v[k] = {scale(v[k].high), scale(v[k].low)};
   }
   Vector n;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     n[k] = (x[i] * y[j] - x[j] * y[i]).high;
   }
-  const int size = std::ilogb(std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])}));
-  for (double& c : n) c = std::ldexp(c, -size);
+  const Scale scale(n);
+  for (double& c : n) c = scale(c);
   const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
   const double turn = sign(denominator(e)) > 0 ? -1 : 1;
   for (double& c : n) c = turn * c / root;

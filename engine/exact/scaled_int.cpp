@@ -35,7 +35,7 @@ void addProduct(Limbs& sum, Wide p, int64_t q) {
   }
 }
 
-/// Mantissa and exponent of a double; the exponent of 0 is meaningless.
+/// Mantissa and exponent of a double that is not 0.
 struct Parts {
   uint64_t digits = 0;
   int exponent = 0;
@@ -57,8 +57,8 @@ bool toScaledInts(std::span<const Vector* const> points, std::span<IntVector> ou
   int low = kNone, high = -kNone;
   for (const Vector* point : points) {
     for (double c : *point) {
+      if (c == 0) continue;
       const Parts parts(c);
-      if (parts.digits == 0) continue;
       low = std::min(low, parts.exponent + std::countr_zero(parts.digits));
       high = std::max(high, parts.exponent + 64 - std::countl_zero(parts.digits));
     }
@@ -67,9 +67,12 @@ bool toScaledInts(std::span<const Vector* const> points, std::span<IntVector> ou
   exponent = low == kNone ? 0 : low;
   for (size_t n = 0; n < points.size(); ++n) {
     for (size_t k = 0; k < 3; ++k) {
-      const Parts parts((*points[n])[k]);
+      const double c = (*points[n])[k];
+      out[n][k] = 0;
+      if (c == 0) continue;
+      const Parts parts(c);
       const int shift = parts.exponent - exponent;
-      const uint64_t size = parts.digits == 0 ? 0 : shift >= 0 ? parts.digits << shift : parts.digits >> -shift;
+      const uint64_t size = shift >= 0 ? parts.digits << shift : parts.digits >> -shift;
       out[n][k] = parts.negative ? -static_cast<int64_t>(size) : static_cast<int64_t>(size);
     }
   }
@@ -77,7 +80,12 @@ bool toScaledInts(std::span<const Vector* const> points, std::span<IntVector> ou
 }
 
 std::optional<ScaledVector> scaledVector(const Difference& v) {
-  const std::array<const Vector*, 2> points{&v.to, &v.from};
+  // Of an edge along an axis, one coordinate matters.
+  Vector to = v.to, from = v.from;
+  for (int k = 0; k < 3; ++k) {
+    if (to[k] == from[k]) to[k] = from[k] = 0;
+  }
+  const std::array<const Vector*, 2> points{&to, &from};
   std::array<IntVector, 2> at;
   ScaledVector out;
   if (!toScaledInts(points, at, out.exponent)) return std::nullopt;
@@ -97,11 +105,19 @@ Dyadic IntDeterminant::value(int exponent) const {
   return Dyadic(negative, limbs, exponent);
 }
 
-IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y) {
+IntNormal cross(const IntVector& x, const IntVector& y) {
+  IntNormal n;
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    n[k] = Wide{x[i]} * y[j] - Wide{x[j]} * y[i];
+  }
+  return n;
+}
+
+IntDeterminant dot(const IntVector& w, const IntNormal& n) {
   IntDeterminant out;
-  for (int k = 0; k < 3; ++k) {
-    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    addProduct(out.limbs_, Wide{x[i]} * y[j] - Wide{x[j]} * y[i], w[k]);
+  for (size_t k = 0; k < 3; ++k) {
+    if (n[k] != 0 && w[k] != 0) addProduct(out.limbs_, n[k], w[k]);
   }
   return out;
 }

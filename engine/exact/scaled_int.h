@@ -28,6 +28,10 @@ inline IntVector operator-(const IntVector& p, const IntVector& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 
+/// x cross y, components of x and y below 2^62: those of the product are below 2^125.
+__extension__ using IntNormal = std::array<__int128, 3>;
+IntNormal cross(const IntVector& x, const IntVector& y);
+
 /// 192 bits, two's complement.
 class IntDeterminant {
  public:
@@ -35,11 +39,16 @@ class IntDeterminant {
   Dyadic value(int exponent) const;  ///< this, times 2^exponent
 
  private:
-  friend IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y);
+  friend IntDeterminant dot(const IntVector& w, const IntNormal& n);
   std::array<uint64_t, 3> limbs_{};
 };
 
-/// w . (x cross y), components below 2^62: the minors are below 2^125, the sum is below 2^189.
-IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y);
+/// w . n, components of w below 2^62: below 2^189.
+IntDeterminant dot(const IntVector& w, const IntNormal& n);
+
+/// w . (x cross y).
+inline IntDeterminant determinant(const IntVector& w, const IntVector& x, const IntVector& y) {
+  return dot(w, cross(x, y));
+}
 
 }  // namespace radar::exact

@@ -78,8 +78,7 @@ Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const 
 }  // namespace
 
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        double tolerance, const GpuScene& scene) {
-  const Motion motion(query);
+                        const Motion& motion, double tolerance, const GpuScene& scene) {
   if (query.clearance > 0) return decideClearance(pairs, query, motion, tolerance);
   exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "exact/motion.h"
 #include "scene/gpu_scene.h"
 #include "shaders/contact/interop.h"
 
@@ -21,11 +22,12 @@ class UnresolvedPairs {
 };
 
 /// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
-/// For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its clearance (cpu/clearance.h).
+/// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
+/// clearance (cpu/clearance.h).
 /// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `scene`: the
 /// copy that was searched.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        double tolerance, const GpuScene& scene);
+                        const Motion& motion, double tolerance, const GpuScene& scene);
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();

@@ -24,6 +24,10 @@ constexpr double kLeastDistance = 0x1p-100;
 // this share of the scene's extent, which the CPU's doubles may be unable to tell from 0.
 constexpr double kMostClearance = 0x1p29, kLeastClearance = 0x1p-40;
 
+double largestOf(const Vector& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
 // Distance from `centre` to the farthest point of the scene, as a sum over the axes.
 double farthestOf(const Box& world, const Vector& centre) {
   double sum = 0;
@@ -43,6 +47,15 @@ void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farth
 
 }  // namespace
 
+Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object) {
+  if (!isStep(query, scene)) return Motion(query);
+  return {displacementOf(query), object == kNone ? Vector{} : scene.objects[object].object.motion};
+}
+
+bool searchesEach(const Query& query, const Scene::Impl& scene) {
+  return query.hits > 1 || scene.moving > 0;
+}
+
 void SensorBatch::clear() {
   sensors.clear();
   sweeps.clear();
@@ -54,10 +67,9 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
                   const ObjectTree& tree, ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;
   if (tree.nodes().empty()) return Planned::clear;
-  const Vector direction = scaledDirection(query.direction);
-  if (std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})) != 0) {
-    return Planned::outOfRange;
-  }
+  const Motion motion = motionPast(query, scene, object);
+  const Vector direction = scaledDirection(motion.direction);
+  if (std::ilogb(largestOf(direction)) != 0 || (motion.stands && query.ignoreLeaving)) return Planned::outOfRange;
   const Mesh& mesh = scene.meshes[query.mesh];
   gpu::Sensor sensor{};
   sensor.placement = placementOf(mesh, query.worldFromMesh);
@@ -75,8 +87,8 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   const double size = std::max(double{sensor.placement.size}, kLeastShare * farthest);
   if (!(size >= 1 / kMostCoordinate && farthest <= 8 * kMostCoordinate)) return Planned::outOfRange;
   const double scale = std::ldexp(1.0, -std::ilogb(size));
-  const double distance = std::min(query.distance * scale, kMostDistance);
-  if (query.distance > 0 && distance < kLeastDistance) return Planned::outOfRange;
+  const double way = motion.wayUntil(motion.distance), distance = std::min(way * scale, kMostDistance);
+  if (way > 0 && distance < kLeastDistance) return Planned::outOfRange;
   const double clearance = query.clearance;
   if (clearance > 0 && !(clearance * scale <= kMostClearance && clearance >= kLeastClearance * (size + farthest))) {
     return Planned::outOfRange;
@@ -86,7 +98,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
     box.hi[k] += clearance;
   }
 
-  const std::array<Vector, 3> axes = axesAlong(query.direction);
+  const std::array<Vector, 3> axes = axesAlong(direction);
   for (int row = 0; row < 3; ++row) {
     for (int k = 0; k < 3; ++k) sensor.frame[4 * row + k] = static_cast<float>(axes[row][k]);
     sensor.direction[row] = static_cast<float>(axes[2][row]);
@@ -103,7 +115,9 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
     sensor.frame[11] = roundUp(cpu::toleranceOf(query, mesh) * scale);
   }
   sensor.distance = roundUp(distance);
-  sensor.stopBefore = query.anyHit ? roundDown(distance) : -1.0f;
+  // A step's way has been rounded up.
+  const float certain = motion.isStep ? roundDown((1 - 0x1p-48) * distance) : sensor.distance;
+  sensor.stopBefore = query.anyHit ? std::min(certain, roundDown(distance)) : -1.0f;
   setBox(sensor, box, tree.anchor(), farthest + clearance);
   sensor.mask = query.mask;
   sensor.firstExcluded = static_cast<uint32_t>(batch.excluded.size());
@@ -115,11 +129,17 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
   std::copy(direction.begin(), direction.end(), sweep.direction);
   sweep.directionLength = exact::length(direction);
-  sweep.distance = query.distance;
+  sweep.distance = motion.distance;
+  sweep.perParameter = sweep.directionLength;
+  if (motion.isStep) {
+    sweep.perParameter = largestOf(direction) / largestOf(motion.direction);
+    if (way > 0) sweep.stepPerUnit = roundDown((1 - 0x1p-20) / (way * scale));
+    std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
+  }
   sweep.anyHit = query.anyHit ? 1 : 0;
   sweep.result = result;
   sweep.scale = sensor.scale;
-  sweep.start = sensor.distance;
+  sweep.start = certain;
   sweep.hasClearance = clearance > 0 ? 1 : 0;
   if (query.ignoreLeaving) {
     sweep.ignoreLeaving = 1;

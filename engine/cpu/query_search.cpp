@@ -18,17 +18,6 @@ Vector middleOf(const Mesh& mesh, const Placement& placement) {
   return middle;
 }
 
-/// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
-void scale(Result& result, double distance) {
-  // A bracket's ends are equal only at the start or the end.
-  const double rounding = result.lo == result.hi ? 0 : 2 * kUnit;
-  const auto scaled = [&](double t, double outwards) { return std::isinf(t) ? t : outwards * t * distance; };
-  const bool isLo = result.t == result.lo;
-  result.lo = scaled(result.lo, 1 - rounding);
-  result.t = isLo ? result.lo : scaled(result.t, 1);
-  result.hi = std::isinf(result.hi) ? result.hi : std::min(scaled(result.hi, 1 + rounding), distance);
-}
-
 /// Prefetches the child nodes or the object of a node, because a scene's tree and objects do not fit a cache.
 void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& nodes, const Scene::Impl& scene) {
   const uint32_t item = node.link & gpu::kLinkItem;
@@ -39,6 +28,16 @@ void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& n
 }
 
 }  // namespace
+
+void toDistances(Result& result, double distance) {
+  // A bracket's ends are equal only at the start or the end.
+  const double rounding = result.lo == result.hi ? 0 : 2 * kUnit;
+  const auto scaled = [&](double t, double outwards) { return std::isinf(t) ? t : outwards * t * distance; };
+  const bool isLo = result.t == result.lo;
+  result.lo = scaled(result.lo, 1 - rounding);
+  result.t = isLo ? result.lo : scaled(result.t, 1);
+  result.hi = std::isinf(result.hi) ? result.hi : std::min(scaled(result.hi, 1 + rounding), distance);
+}
 
 /// A query, prepared for the search.
 struct QuerySearch::Task {
@@ -103,11 +102,11 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     if (lists != nullptr) {
       *lists = {finder.nearest(), std::move(skipped)};
       for (Result& hit : lists->hits) {
-        if (scales) scale(hit, query.distance);
+        if (scales) toDistances(hit, query.distance);
       }
     }
     Result first = finder.first();
-    if (scales) scale(first, query.distance);
+    if (scales) toDistances(first, query.distance);
     return first;
   };
   if (query.clearance > 0) return find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
@@ -117,7 +116,7 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
 std::vector<ObjectId> QuerySearch::inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
   const Task task(query, scene, {});
   std::vector<ObjectId> found;
-  forObjects(task, tree, CrossingTest(query.distance), [&](ObjectId id) { found.push_back(id); });
+  forObjects(task, tree, CrossingTest(task.motion.distance), [&](ObjectId id) { found.push_back(id); });
   return found;
 }
 

@@ -11,13 +11,16 @@ namespace radar::cpu {
 
 struct PairRule;
 
+/// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
+void toDistances(Result& result, double distance);
+
 /// Reuses its memory between queries. For one thread at a time.
 class QuerySearch {
  public:
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
   /// the query asks for none.
   Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
-  /// The eligible objects whose boxes the sensor may meet within D.
+  /// The eligible objects whose boxes the sensor may meet before its motion ends.
   std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
   const SearchStats& stats() const { return stats_; }
 

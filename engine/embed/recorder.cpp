@@ -182,8 +182,8 @@ std::vector<Result> Recorder::read() {
     const uint32_t query = self.sensors.sweeps[i].result;
     const auto pairs = unresolved.of(i);
     if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
-    results[query] =
-        decideUnresolved(results[query], pairs, self.recordedQueries[query], self.tolerances[query], self.copy);
+    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query],
+                                      Motion(self.recordedQueries[query]), self.tolerances[query], self.copy);
   }
   return results;
 }

@@ -81,7 +81,7 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
 
 void ContactTier::leaveToCpu(std::vector<size_t> queries) {
   std::erase_if(queries, [&](size_t query) {
-    if (batch_.asked[query].hits == 1) return false;
+    if (!searchesEach(batch_.asked[query], scene_.impl())) return false;
     lists_.giveUp(query);  // other searches of it may still be under way
     return true;
   });
@@ -114,9 +114,8 @@ void ContactTier::run(std::span<const size_t> which) {
 bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   const Query& asked = batch_.asked[query];
   const Scene::Impl& scene = scene_.impl();
-  if (isStep(asked, scene)) return false;
-  if (asked.clearance > 0 && (asked.ignoreLeaving || asked.hits > 1)) return false;
-  if (asked.hits == 1) {
+  if (asked.clearance > 0 && (asked.ignoreLeaving || asked.hits > 1 || isStep(asked, scene))) return false;
+  if (!searchesEach(asked, scene)) {
     const Planned planned = planOne(query, kNone, tree);
     if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
     return planned != Planned::outOfRange;
@@ -124,7 +123,6 @@ bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   if (!tree.inRange()) return false;
   lists_.begin(query);
   for (const ObjectId object : reach_.inReach(asked, scene, tree)) {
-    // Whether floats suffice does not depend on the object.
     if (planOne(query, object, tree) == Planned::outOfRange) {
       lists_.giveUp(query);
       break;
@@ -175,8 +173,12 @@ void ContactTier::finishLists() {
       batch_.asked,
       [&](size_t query, std::vector<Result> hits) {
         if (batch_.reasons.contains(query)) return;
+        const Query& asked = batch_.asked[query];
+        if (isStep(asked, scene_.impl()) && !asked.motion) {
+          for (Result& hit : hits) cpu::toDistances(hit, asked.distance);
+        }
         batch_.answers[query] = hits.empty() ? clearAnswer() : hits.front();
-        batch_.lists[query].hits = std::move(hits);
+        if (asked.hits > 1) batch_.lists[query].hits = std::move(hits);
       },
       [&](size_t query) {
         if (!batch_.reasons.contains(query)) onlyCpu.push_back(query);
@@ -191,7 +193,7 @@ bool ContactTier::keep(size_t query, const Result& found) {
   // What meets at the start may cross, and then takes no part.
   const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
   if (asked.skipOverlapping && mayCross) return false;
-  if (asked.hits > 1) {
+  if (searchesEach(asked, scene_.impl())) {
     lists_.add(query, found);
   } else {
     batch_.answers[query] = found;
@@ -213,6 +215,7 @@ void ContactTier::collect() {
 }
 
 void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> queries) {
+  const Scene::Impl& scene = scene_.impl();
   const UnresolvedPairs unresolved(found.unresolved);
   std::vector<uint32_t> open;
   std::vector<size_t> left;
@@ -224,7 +227,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
       throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
-    } else if (found.roomier && result.flags == kFlagCandidates && batch_.asked[queries[i]].hits == 1) {
+    } else if (found.roomier && result.flags == kFlagCandidates && !searchesEach(batch_.asked[queries[i]], scene)) {
       cramped_.push_back(queries[i]);
     } else {
       left.push_back(queries[i]);
@@ -235,8 +238,10 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
     for (size_t k = first; k < last; ++k) {
       const uint32_t i = open[k];
       const Query& asked = batch_.asked[queries[i]];
-      const double tolerance = cpu::toleranceOf(asked, scene_.impl().meshes[asked.mesh]);
-      decided[k] = decideUnresolved(found.results[i], unresolved.of(i), asked, tolerance, resident_);
+      const auto pairs = unresolved.of(i);
+      const Motion motion = motionPast(asked, scene, pairs.front()->object);
+      const double tolerance = cpu::toleranceOf(asked, scene.meshes[asked.mesh]);
+      decided[k] = decideUnresolved(found.results[i], pairs, asked, motion, tolerance, resident_);
     }
   });
   for (size_t k = 0; k < open.size(); ++k) {

@@ -32,7 +32,7 @@ class ContactTier {
   /// Keeps what a search found, unless only the CPU can tell what it means; returns whether it did.
   bool keep(size_t query, const Result& found);
   void finishLists();
-  /// Leaves queries, some perhaps several times, to the CPU: those with lists when all their searches have ended.
+  /// Leaves queries, some perhaps several times, to the CPU: those of several searches when all have ended.
   void leaveToCpu(std::vector<size_t> queries);
   void answerOnCpu(std::span<const size_t> which);  ///< ascending, each once
 
@@ -47,7 +47,7 @@ class ContactTier {
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
   SensorBatch sensors_;
-  std::vector<size_t> planned_;  ///< the queries in `sensors_`: one with several hits once for each object in reach
+  std::vector<size_t> planned_;  ///< the queries in `sensors_`: some once for each object in reach
   cpu::QuerySearch reach_;
   HitLists lists_;
   Clock::time_point encoding_;  ///< since when the next submission is being planned

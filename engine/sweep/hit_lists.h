@@ -25,9 +25,7 @@ class HitLists {
   template <class Done, class Failed>
   void finish(std::span<const Query> queries, const Done& done, const Failed& failed) {
     for (auto& [query, list] : std::exchange(lists_, {})) {
-      std::optional<std::vector<Result>> nearest;
-      if (list.isComplete) nearest = nearestOf(std::move(list.hits), queries[query].hits);
-      if (nearest) {
+      if (auto nearest = nearestOf(std::move(list), queries[query])) {
         done(query, std::move(*nearest));
       } else {
         failed(query);
@@ -40,7 +38,7 @@ class HitLists {
     std::vector<Result> hits;
     bool isComplete = true;
   };
-  static std::optional<std::vector<Result>> nearestOf(std::vector<Result> hits, uint32_t most);
+  static std::optional<std::vector<Result>> nearestOf(List list, const Query& query);
 
   std::map<size_t, List> lists_;
 };

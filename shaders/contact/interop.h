@@ -35,18 +35,20 @@ INTEROP_CONST kSensorTexels = 19;
 struct Sweep {
   PreciseRows pose;
   double direction[3];
-  double directionLength;
-  double distance;  // D
+  double directionLength;  // world units
+  double distance;         // t at the end: D, of a step 1
   uint anyHit;      // the query has `anyHit`
   uint result;      // index of its answer
   float scale;      // see Sensor
-  float start;      // Sensor::distance, the initial SearchState::hi
+  float start;      // SearchState::hi below this is that of a certain contact before the end
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
   uint hasClearance;   // the CPU decides all pairs that may be first
-  uint pad;
+  float stepPerUnit;   // of a step: t per scaled length, rounded down; else 0
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default
+  double perParameter; // t per `direction`
+  double drift[3];     // of a step: the object's displacement
 };
 
 struct SearchState {

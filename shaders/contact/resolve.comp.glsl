@@ -117,10 +117,13 @@ RadarResult withinAtStart() {
   return r;
 }
 
-RadarResult undecided(bool met, uvec2 low) {
+// `low`: world units. `lowOfStep`: the same, scaled.
+RadarResult undecided(bool met, uvec2 low, float lowOfStep) {
   RadarResult r = free(RADAR_UNDECIDED);
   r.flags = RADAR_UNRESOLVED;
   if (met) r.detected = RADAR_DETECTED;
+  const float perUnit = sweeps[s].stepPerUnit;
+  if (perUnit != 0.0) low = doubleBits(floatBitsToUint(max(lowOfStep * perUnit, 0.0)));
   const uvec2 distance = bitsOf(sweeps[s].distance);
   r.lo = isAbove(low, distance) ? distance : low;
   return r;
@@ -137,7 +140,7 @@ RadarResult leaveAll(bool met) {
   if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
   uint at = reserveUnresolved(count);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
-  return undecided(met, unscaled(low, sweeps[s].scale));
+  return undecided(met, unscaled(low, sweeps[s].scale), low);
 }
 
 #ifndef RADAR_NO_DOUBLES
@@ -171,7 +174,7 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
   const Event e = eventOf(feature, corners.a, corners.b);
   const EventDetails details = describeEvent(feature, e, direction);
-  precise double t = details.s * sweeps[s].directionLength;
+  precise double t = details.s * sweeps[s].perParameter;
   precise double slack = kRounded * t;
   const double distance = sweeps[s].distance;
   const double first = min(t, distance);
@@ -185,7 +188,8 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   r.fraction = bitsOf(soundQuotient(first, distance));
   dvec3 normal;
   const bool unit = normalOf(e, details.turn, normal);
-  r.point = bitsOf(details.point);
+  precise dvec3 point = details.point + t * dvec3(sweeps[s].drift[0], sweeps[s].drift[1], sweeps[s].drift[2]);
+  r.point = bitsOf(point);
   r.normal = bitsOf(normal);
   return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
@@ -269,7 +273,7 @@ RadarResult decide(SearchState state, bool met) {
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
     if (refinedPairs[i].low <= pairs.limit) writeUnresolved(at++, refinedPairs[i]);
   }
-  return undecided(met, bitsOf(pairs.low));
+  return undecided(met, bitsOf(pairs.low), float(min(pairs.low * double(sweeps[s].scale), 1e30LF)));
 }
 #else
 RadarResult decide(SearchState state, bool met) { return leaveAll(met); }

@@ -67,6 +67,23 @@ TEST_CASE("with a clearance, hard cases of every family get the CPU's answer on 
   CHECK(all.cpuPairs > all.hits);  // the device leaves pairs to the CPU, not whole queries
 }
 
+TEST_CASE("where objects move, too, hard cases of every family get the CPU's answer on the device, to the bit") {
+  tools::CaseRun run(test::device());
+  tools::Tally all;
+  for (const std::string& family : tools::runFamilies()) {
+    CAPTURE(family);
+    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
+      UNSCOPED_INFO("case " << number << ": " << words);
+    };
+    const tools::Tally tally =
+        run.run({.family = family, .seed = 5, .cases = 64, .steps = true}, onWrong, [](uint64_t) {});
+    CHECK(tally.wrong == 0);
+    all.add(tally);
+  }
+  CHECK(all.hits > all.queries / 5);
+  CHECK(all.pairs > all.cpuPairs);  // the device searches, and leaves few pairs to the CPU
+}
+
 TEST_CASE("hard cases of every family, each alone, keep every promise of modes sampled and contact") {
   const auto onWrong = [](const std::string& words) { UNSCOPED_INFO(words); };
   const std::vector<tools::HardFamily>& families = tools::hardFamilies();

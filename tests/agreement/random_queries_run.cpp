@@ -38,7 +38,8 @@ int main(int argc, char** argv) try {
   CLI::App app("Holds the search on the device against the CPU's on seeded random queries");
   uint64_t queries = 100'000, seed = 1, first = 0;
   uint32_t index = radar::kNone;
-  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false, clearances = false;
+  bool withoutDoubles = false, composedDivision = false, ignoreLeaving = false, allHits = false, clearances = false,
+       steps = false;
   const radar::tools::MeshFamilies meshes = radar::test::realMeshes();
   const std::vector<std::string> known = radar::tools::runFamilies(meshes);
   std::vector<std::string> families;
@@ -52,6 +53,7 @@ int main(int argc, char** argv) try {
   app.add_flag("--ignore-leaving", ignoreLeaving, "Every query counts only pairs of triangles that block");
   app.add_flag("--all-hits", allHits, "Every query lists the contacts with all objects");
   app.add_flag("--clearances", clearances, "Every query has a clearance, of its own size");
+  app.add_flag("--steps", steps, "Objects move, too");
   CLI11_PARSE(app, argc, argv);
   if (families.empty()) families = known;
 
@@ -81,7 +83,8 @@ int main(int argc, char** argv) try {
                                  .cases = each,
                                  .ignoreLeaving = ignoreLeaving,
                                  .allHits = allHits,
-                                 .clearances = clearances},
+                                 .clearances = clearances,
+                                 .steps = steps},
                                 onWrong, onProgress);
     std::fprintf(stderr, "\r%40s\r", "");
     print(family, tally);

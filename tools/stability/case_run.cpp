@@ -105,6 +105,27 @@ struct CaseRun::Stage {
            std::ranges::equal(ours.hitsOf(query), exact.hitsOf(query), sameAnswer);
   }
 
+  /// Most objects move, by up to as much as some sensor; a third of the queries keep their direction. `workload`: the
+  /// scene's, so that a query is the same in any range that has it.
+  void setMotions(const CaseRange& range, uint64_t number, const Workload& workload, std::vector<Query>& queries) {
+    const auto count = static_cast<uint32_t>(workload.queries.size());
+    Random random(range.seed * 1'000'033 + number / count);
+    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+      const double way = random.magnitude(-6, 0) * workload.queries[random.below(count)].distance;
+      Vec3 motion = random.oneIn(3) ? random.axis() : random.direction();
+      for (double& c : motion) c *= std::min(way, 1e200);
+      if (!random.oneIn(4) && scene.hasObject(id)) scene.setMotion(id, motion);
+    }
+    for (Query& query : queries) {
+      if (number++ % 3 == 0 || range.family == kAtDistance) continue;
+      const double perLength = query.distance / std::hypot(query.direction[0], query.direction[1], query.direction[2]);
+      query.motion = query.direction;
+      for (double& c : *query.motion) c *= perLength;
+      query.direction = {};
+      query.distance = 0;
+    }
+  }
+
   void setClearances(const CaseRange& range, uint64_t number, std::vector<Query>& queries) const {
     for (Query& query : queries) {
       Random random(range.seed * 1'000'003 + number++);
@@ -127,6 +148,7 @@ struct CaseRun::Stage {
       if (range.allHits) query.hits = kAllHits;
     }
     if (range.clearances) setClearances(range, next, queries);
+    if (range.steps) setMotions(range, next, workload, queries);
     if (range.family == kAtDistance) moveDistances(queries, next);
     return queries;
   }
@@ -163,7 +185,8 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       tally.pairs += stage_->sweeper.stats().pairs;
       tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
       for (size_t i = 0; i < put.size(); ++i) {
-        Verdict verdict = judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
+        Verdict verdict = range.steps ? judgeByBits(results[i], exact[i])
+                                      : judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
         verdict.set(Fault::wrongList, !stage_->sameLists(i));
         tally.add(verdict, exact[i]);
         if (asked[a].method == Method::paper || verdict.right()) continue;

@@ -52,6 +52,7 @@ struct CaseRange {
   bool ignoreLeaving = false;        ///< every query ignores what it leaves, not only those of bodies at rest
   bool allHits = false;              ///< every query lists the contacts with all objects
   bool clearances = false;           ///< every query has a clearance, from far less than its sensor's size to more
+  bool steps = false;                ///< objects move, too
 };
 
 class CaseRun {

@@ -128,18 +128,6 @@ void judgeSampled(const Query& query, const Result& result, const Result& exact,
   verdict.set(Fault::bracket, !query.anyHit && result.t != result.hi);
 }
 
-/// An answer to a query with a clearance, which has the CPU's bits.
-Verdict judgeWithClearance(const Result& result, const Result& exact) {
-  Verdict verdict;
-  verdict.set(Fault::missed, meets(exact) && result.status == Status::clear);
-  verdict.set(Fault::falseHit, exact.status == Status::clear && meets(result));
-  verdict.set(Fault::wrongStatus, result.status != exact.status || result.detected != exact.detected);
-  verdict.set(Fault::bracket, result.lo != exact.lo || result.hi != exact.hi);
-  verdict.set(Fault::wrongPair, !sameAnswer(result, exact));
-  verdict.found = meets(exact) && meets(result);
-  return verdict;
-}
-
 }  // namespace
 
 bool meets(const Result& result) {
@@ -179,13 +167,24 @@ double unitOf(const Scene& scene, const Query& query, const Result& exact) {
   return std::max(sensorSize(scene, query), meets(exact) ? exact.t : 0);
 }
 
+Verdict judgeByBits(const Result& result, const Result& exact) {
+  Verdict verdict;
+  verdict.set(Fault::missed, meets(exact) && result.status == Status::clear);
+  verdict.set(Fault::falseHit, exact.status == Status::clear && meets(result));
+  verdict.set(Fault::wrongStatus, result.status != exact.status || result.detected != exact.detected);
+  verdict.set(Fault::bracket, result.lo != exact.lo || result.hi != exact.hi);
+  verdict.set(Fault::wrongPair, !sameAnswer(result, exact));
+  verdict.found = meets(exact) && meets(result);
+  return verdict;
+}
+
 Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact) {
   Verdict verdict;
   if (result.status == Status::invalid) {
     verdict.set(Fault::unanswered);
     return verdict;
   }
-  if (query.clearance > 0) return judgeWithClearance(result, exact);
+  if (query.clearance > 0) return judgeByBits(result, exact);
   const double unit = unitOf(scene, query, exact);
   verdict = judge(result, exact, unit);
   const bool sampled = query.mode == Mode::sampled;

@@ -59,6 +59,8 @@ double unitOf(const Scene& scene, const Query& query, const Result& exact);
 /// All that an answer promises, in the query's mode and with its `decide`. In mode sampled `lo` must be 0, and pair, t,
 /// point and normal are not judged.
 Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact);
+/// Of an answer that has the CPU's bits, as those to queries with a clearance and those of a step.
+Verdict judgeByBits(const Result& result, const Result& exact);
 
 /// Verdicts added up, and what the answers cost.
 struct Tally {

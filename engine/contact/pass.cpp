@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "gpu/barrier.h"
+#include "gpu/limit_error.h"
 
 // pass      reads                                writes                                 barrier after it
 // --------- ------------------------------------ -------------------------------------- ------------------------------
@@ -47,6 +48,14 @@ constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolv
 // Whether the device runs on the CPU: it then has as many lanes at work as threads times the width of a vector.
 bool runsOnCpu(const Device::Impl& device) {
   return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+// Kernels bind no more than that; all other lists are bounded by their capacities or by those of sensors.
+void checkExcluded(const Device::Impl& device, uint64_t count) {
+  const uint64_t bytes = count * sizeof(uint32_t), limit = device.properties.limits.maxStorageBufferRange;
+  if (bytes <= limit) return;
+  throw gpu::LimitError("the lists of excluded objects need a buffer of " + std::to_string(bytes) +
+                        " bytes, the device allows " + std::to_string(limit));
 }
 
 }  // namespace
@@ -134,6 +143,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   for (auto& search : searchWithClearance_) {
     if (hasClearances_ && !search) search.emplace(kernels_->searchWithClearance());
   }
+  checkExcluded(*device_, batch.excluded.size());
   const VkDeviceSize sceneBytes = scene_.prepare(scene);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));

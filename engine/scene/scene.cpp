@@ -17,6 +17,10 @@ constexpr double kMostBound = 0x1p120;
 // Least exponent of a mesh's unit: a float must hold its inverse.
 constexpr int kLeastUnit = -126;
 
+// Trees hold at most twice as many nodes as items, half as many again after edits, and a link has 30 bits for an item
+// and 31 for a node (gpu::kLinkItem).
+constexpr size_t kMostVertices = size_t{1} << 30, kMostTriangles = size_t{1} << 29, kMostObjects = size_t{1} << 29;
+
 // If more objects change than this and a sixteenth of all, looking at every object is cheaper than at each change.
 constexpr size_t kFewChanges = 16;
 
@@ -32,7 +36,7 @@ uint64_t nextVersion() {
 double edgeLength(const Mesh& mesh, uint32_t a, uint32_t b) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const double difference = double(mesh.positions[3 * a + k]) - mesh.positions[3 * b + k];
+    const double difference = double(mesh.positions[3 * size_t{a} + k]) - mesh.positions[3 * size_t{b} + k];
     sum += difference * difference;
   }
   return std::sqrt(sum);
@@ -102,6 +106,12 @@ uint32_t takeSlot(Slots& slots, FreeIds& free) {
   const uint32_t id = free.top();
   free.pop();
   return id;
+}
+
+void requireAtMost(const char* where, const char* what, size_t count, size_t most) {
+  if (count <= most) return;
+  throw Error(std::string(where) + ": expected at most " + std::to_string(most) + " " + what + ", got " +
+              std::to_string(count));
 }
 
 void requireFinite(const std::string& where, std::span<const float> positions) {
@@ -215,6 +225,8 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   if (indices.size() % 3 != 0)
     throw Error("addMesh: indices: expected 3 per triangle, got " + std::to_string(indices.size()));
   if (indices.empty()) throw Error("addMesh: expected at least one triangle, got none");
+  requireAtMost("addMesh", "vertices", positions.size() / 3, kMostVertices);
+  requireAtMost("addMesh", "triangles", indices.size() / 3, kMostTriangles);
   requireFinite("addMesh: positions", positions);
   for (size_t i = 0; i < positions.size(); ++i) {
     if (bounds && std::abs(positions[i]) > kMostBound) {
@@ -283,6 +295,7 @@ ObjectId Scene::addObject(const Object& object) {
   if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
   if (std::string wrong = validate(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
   if (std::string wrong = validateMotion(object.motion); !wrong.empty()) throw Error("addObject: motion: " + wrong);
+  if (impl_->freeObjects.empty()) requireAtMost("addObject", "objects", impl_->objects.size() + 1, kMostObjects);
   const ObjectId id = takeSlot(impl_->objects, impl_->freeObjects);
   impl_->objects[id] = {object, true};
   ++impl_->meshes[object.mesh].objects;

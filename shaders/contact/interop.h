@@ -123,7 +123,7 @@ INTEROP_CONST kMostRounds = 64;
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
   uint blockGroups[3];   // the same for the pairs that may not block
-  uint candidates;       // found; stored up to the capacity
+  uint candidates;       // found; stored up to the capacity, and above it no exact count
   uint refinedPairs;
   uint openPairs;        // that may not block
   uint unresolved;       // found; stored up to the capacity

@@ -366,7 +366,10 @@ void keepCandidate(bool keeps, uvec4 pair, float low) {
   const uvec4 who = subgroupBallot(keeps);
   uint first = 0;
   if (subgroupElect()) first = atomicAdd(counts.candidates, subgroupBallotBitCount(who));
-  const uint at = subgroupBroadcastFirst(first) + rankOf(who);
+  first = subgroupBroadcastFirst(first);
+  // So that the count cannot wrap, however many candidates are lost.
+  if (first > push.candidateCapacity && subgroupElect()) atomicMin(counts.candidates, push.candidateCapacity + 1);
+  const uint at = first + rankOf(who);
   if (keeps && at < push.candidateCapacity) {
     candidates[at] = CandidatePair(pair.w, pair.z, pair.x, pair.y, low);
   } else if (keeps) {

@@ -143,6 +143,28 @@ TEST_CASE("too many sensors for one submission are split, and a scene beyond the
   CHECK(sweeper.lists().hits.size() > 5);
 }
 
+TEST_CASE("a list of excluded objects that exceeds the device's largest storage buffer excludes all of them") {
+  LeastDevice least;
+  const Device device = Device::adopt(least.host.handles);
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  Scene scene;
+  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  scene.addObject({mesh, {{1, 0, 0, 50, 0, 1, 0, 0, 0, 0, 1, 4}}, ~0u});
+  scene.addObject({mesh, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}}, ~0u});
+  // 2^27 bytes hold 2^25 ids, and object 1 comes behind them.
+  Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
+  query.exclude.assign(1u << 25, 0);
+  query.exclude.push_back(1);
+  Sweeper sweeper(device, scene, {.cpuBatch = 0});
+  CHECK(sweeper.run({&query, 1})[0].status == Status::clear);
+  CHECK(sweeper.stats().cpuQueries == 1);
+  Recorder recorder(device, scene);
+  gpu::Submission submission(device.impl(), false);
+  const gpu::Commands commands = submission.begin();
+  CHECK_THROWS_WITH(recorder.record(commands, {&query, 1}),
+                    Catch::StartsWith("the lists of excluded objects need a buffer of 134217732 bytes"));
+}
+
 TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the device's largest storage buffer") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);

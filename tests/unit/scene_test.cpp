@@ -1,6 +1,8 @@
 // The scene: ids, contracts, boxes and frames.
 #include <catch2/catch.hpp>
 
+#include <sys/mman.h>
+
 #include <cmath>
 #include <utility>
 
@@ -16,6 +18,25 @@ MeshId addBox(Scene& scene) {
   const tools::MeshData box = tools::makeBox({1, 2, 3});
   return scene.addMesh(box.positions, box.indices);
 }
+
+// As many zeros, which take no memory until they are read.
+template <class T>
+class Zeros {
+ public:
+  explicit Zeros(size_t count)
+      : bytes_(count * sizeof(T)),
+        at_(mmap(nullptr, bytes_, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)) {
+    REQUIRE(at_ != MAP_FAILED);
+  }
+  ~Zeros() { munmap(at_, bytes_); }
+  Zeros(const Zeros&) = delete;
+  Zeros& operator=(const Zeros&) = delete;
+  std::span<const T> all() const { return {static_cast<const T*>(at_), bytes_ / sizeof(T)}; }
+
+ private:
+  size_t bytes_;
+  void* at_;
+};
 
 Box placedBox(const Mesh& mesh, const Transform& pose) {
   Box box;
@@ -39,6 +60,17 @@ TEST_CASE("ids stay valid when others are removed, and the lowest free id is giv
   CHECK(scene.addObject({mesh, {}, 8u}) == 0);
   CHECK(scene.addObject({mesh, {}, 16u}) == 1);
   CHECK(scene.addObject({mesh, {}, 32u}) == 3);
+}
+
+TEST_CASE("a mesh of more vertices or triangles than a link counts is refused before it is read") {
+  Scene scene;
+  const std::vector<float> few(9);
+  const std::vector<uint32_t> triangle{0, 1, 2};
+  const Zeros<float> positions(3 * ((size_t{1} << 30) + 1));
+  const Zeros<uint32_t> indices(3 * ((size_t{1} << 29) + 1));
+  CHECK_THROWS_WITH(scene.addMesh(positions.all(), triangle), Catch::Contains("expected at most 1073741824 vertices"));
+  CHECK_THROWS_WITH(scene.addMesh(few, indices.all()), Catch::Contains("expected at most 536870912 triangles"));
+  CHECK(scene.meshLimit() == 0);
 }
 
 TEST_CASE("a mesh in use cannot be removed, and every change changes the version") {

@@ -83,9 +83,9 @@ class RADAR_API Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Adds a mesh of positions.size()/3 vertices and indices.size()/3 triangles. Throws if it has no triangle, a size is
-  /// not a multiple of 3, a number is not finite, or an index is out of range; with `bounds`, also if a lower bound
-  /// exceeds its upper bound, or a bound or position exceeds 2^120.
+  /// Adds a mesh of positions.size()/3 vertices, at most 2^30, and indices.size()/3 triangles, at most 2^29. Throws if
+  /// it has more, or no triangle, a size is not a multiple of 3, a number is not finite, or an index is out of range;
+  /// with `bounds`, also if a lower bound exceeds its upper bound, or a bound or position exceeds 2^120.
   ///
   /// `bounds`, mesh units: declares that the host will deform the mesh on its device within them
   /// (radar/host_geometry.h). `positions` are then the rest pose: the closer they are to the deformed mesh, the faster
@@ -99,8 +99,8 @@ class RADAR_API Scene {
   /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);
 
-  /// Throws if the mesh does not exist, the pose is singular or not finite, or a component of the motion is above
-  /// 2^1000.
+  /// Throws if the mesh does not exist, the pose is singular or not finite, a component of the motion is above 2^1000,
+  /// or the scene has 2^29 objects.
   ObjectId addObject(const Object& object);
   void setTransform(ObjectId object, const Transform& worldFromMesh);
   /// Sets Object::motion. The pose stays that at the start of the step.

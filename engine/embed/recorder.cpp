@@ -1,6 +1,7 @@
 #include "radar/recorder.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "contact/decode.h"
 #include "contact/pass.h"
@@ -23,6 +24,32 @@ namespace {
 constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
 
+// Capacity of a list, if the host does not choose it.
+struct ListRoom {
+  uint64_t perQuery;  // what interlocking meshes of some thousand triangles need
+  uint64_t most;      // in total, as long as that leaves `least` per query
+  uint64_t least;
+};
+constexpr ListRoom kCandidates{1u << 11, 1u << 20, 64}, kUnresolved{1u << 7, 1u << 15, 4},
+    kUnresolvedWithoutDoubles{1u << 10, 1u << 18, 32};  // which leave every contact to the CPU
+
+uint32_t roomOf(const ListRoom& room, uint64_t queries, uint64_t limit) {
+  const uint64_t wanted = std::max(std::min(room.perQuery * queries, room.most), room.least * queries);
+  return static_cast<uint32_t>(std::clamp<uint64_t>(wanted, 1, limit));
+}
+
+Capacity chosen(Capacity capacity, const Device::Impl& device) {
+  const uint64_t limit = device.properties.limits.maxStorageBufferRange;
+  if (capacity.candidates == 0) {
+    capacity.candidates = roomOf(kCandidates, capacity.queries, limit / sizeof(gpu::RefinedPair));
+  }
+  if (capacity.unresolvedPairs == 0) {
+    capacity.unresolvedPairs = roomOf(device.doubles ? kUnresolved : kUnresolvedWithoutDoubles, capacity.queries,
+                                      limit / sizeof(gpu::UnresolvedPair));
+  }
+  return capacity;
+}
+
 SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }
@@ -40,10 +67,10 @@ struct Recorder::Impl {
   Impl(const Device::Impl& openDevice, const Scene& ownScene, const Capacity& given)
       : device(openDevice),
         scene(ownScene),
-        capacity(given),
+        capacity(chosen(given, openDevice)),
         copy(openDevice),
         geometry(openDevice, copy),
-        pass(openDevice, copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(given)),
+        pass(openDevice, copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     checkCapacity();
     pass.reserve(capacity.queries, capacity.queries, kExcluded * capacity.queries);
@@ -82,8 +109,6 @@ void Recorder::Impl::checkCapacity() const {
   if (capacity.rounds == 0 || capacity.rounds % 2 != 0) {
     throw Error("Capacity::rounds: expected an even number of at least 2, got " + std::to_string(capacity.rounds));
   }
-  if (capacity.candidates == 0 || capacity.unresolvedPairs == 0)
-    throw Error("Capacity: candidates and unresolvedPairs: expected at least 1 each, got 0");
 }
 
 void Recorder::Impl::validateAll(std::span<const Query> queries) const {
@@ -186,6 +211,25 @@ std::vector<Result> Recorder::read() {
                                       Motion(self.recordedQueries[query]), self.tolerances[query], self.copy);
   }
   return results;
+}
+
+Capacity Recorder::needed() const {
+  const Impl& self = *impl_;
+  Capacity needed = self.capacity;
+  if (self.recordedQueries.empty()) return needed;
+  const gpu::SearchCounts& counts = self.counts();
+  const auto of = [](uint32_t count, uint32_t capacity) {
+    constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max();
+    return count <= capacity ? std::max(count, 1u) : static_cast<uint32_t>(std::min<uint64_t>(kMost, 4ull * capacity));
+  };
+  needed.candidates = of(counts.candidates, needed.candidates);
+  needed.unresolvedPairs = std::max(counts.unresolved, 1u);
+  uint32_t rounds = 0;
+  while (rounds <= self.capacity.rounds && counts.rounds[rounds].tasks != 0) ++rounds;
+  const bool isUnfinished = rounds > self.capacity.rounds;
+  needed.rounds =
+      isUnfinished ? std::min(2 * self.capacity.rounds, gpu::kMostRounds) : std::max((rounds + 1) / 2 * 2, 2u);
+  return needed;
 }
 
 std::string Recorder::boundsViolation() const {

@@ -45,8 +45,7 @@ vec3[3] cornersAt(uint slot) {
 // Reserves entries for unresolved pairs and returns the first. If they do not fit, marks the remaining entries unused and
 // returns kNobody.
 uint reserveUnresolved(uint pairs) {
-  const uint before = atomicOr(counts.unresolved, 0);
-  if (before >= push.unresolvedCapacity) return kNobody;
+  // The sum cannot wrap: it is at most the number of refined pairs.
   const uint at = atomicAdd(counts.unresolved, pairs), end = at + pairs;
   if (end <= push.unresolvedCapacity) return at;
   for (uint i = at; i < push.unresolvedCapacity; ++i) unresolved[i].sensor = kNobody;

@@ -9,18 +9,21 @@
 namespace radar {
 
 /// Limits of one recording; nothing is retried with more. A query that exceeds a limit becomes Status::invalid with
-/// that flag; other queries are unaffected, unless they share the exhausted resource.
+/// that flag; other queries are unaffected, unless they share the exhausted resource. Recorder::needed() tells which
+/// limits would do.
 struct Capacity {
   uint32_t queries = 64;  ///< record() throws if there are more
   /// Pairs of triangles that may be first as far as floats can tell, during the search, over all queries: some 10 per
-  /// query among boxes, 30 among meshes, hundreds where shapes interlock. kFlagCandidates.
-  uint32_t candidates = 1u << 14;
+  /// query among boxes, 30 among meshes, 1,000 where meshes of 5,000 triangles interlock. 76 bytes of device memory
+  /// each. 0: 2,048 per query, but at most 2^20 (80 MB), or 64 per query if that is more. kFlagCandidates.
+  uint32_t candidates = 0;
   /// Dispatches of the search, each of a few milliseconds at most; unneeded ones cost next to nothing. An even number
   /// up to 64. kFlagRounds.
   uint32_t rounds = 16;
-  /// Pairs of triangles left open, over all queries. If a query's pairs do not fit, read() cannot decide them:
-  /// kFlagUnresolved stays.
-  uint32_t unresolvedPairs = 1u << 12;
+  /// Pairs of triangles left open, over all queries. 192 bytes of host memory each. 0: 128 per query, but at most 2^15
+  /// (6 MB), or 4 per query if that is more; eight times that without Device::doubles(). If a query's pairs do not fit,
+  /// read() cannot decide them: kFlagUnresolved stays.
+  uint32_t unresolvedPairs = 0;
 };
 
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own copy of the scene on
@@ -76,6 +79,11 @@ class RADAR_API Recorder {
   /// executed and been waited for (by a fence, or a semaphore's wait on the host); it does not wait itself. Later
   /// changes of the scene do not matter.
   std::vector<Result> read();
+  /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
+  /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,
+  /// twice as many rounds. If a query exceeded a limit and this is no more than there was, only a Sweeper answers it:
+  /// it alone has more than 16,384 pairs, or takes more than 64 rounds.
+  Capacity needed() const;
   /// If kFlagBounds is set, describes something that has left its bounds; else empty. Call it when read() may be
   /// called.
   std::string boundsViolation() const;

@@ -88,7 +88,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
     std::sort(sorted.a.begin(), sorted.a.end());
     std::sort(sorted.b.begin(), sorted.b.end());
     if (query.ignoreLeaving) {
-      considerBlocking(*pair, inOrder, sorted, query, motion.direction, scene, earliest);
+      considerBlocking(*pair, inOrder, sorted, query, motion.stands ? Vector{} : motion.direction, scene, earliest);
     } else {
       earliest.consider({pair->object, pair->triB, pair->triA}, sorted);
     }

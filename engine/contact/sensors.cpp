@@ -69,7 +69,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   if (tree.nodes().empty()) return Planned::clear;
   const Motion motion = motionPast(query, scene, object);
   const Vector direction = scaledDirection(motion.direction);
-  if (std::ilogb(largestOf(direction)) != 0 || (motion.stands && query.ignoreLeaving)) return Planned::outOfRange;
+  if (std::ilogb(largestOf(direction)) != 0) return Planned::outOfRange;
   const Mesh& mesh = scene.meshes[query.mesh];
   gpu::Sensor sensor{};
   sensor.placement = placementOf(mesh, query.worldFromMesh);
@@ -133,7 +133,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sweep.perParameter = sweep.directionLength;
   if (motion.isStep) {
     sweep.perParameter = largestOf(direction) / largestOf(motion.direction);
-    if (way > 0) sweep.stepPerUnit = roundDown((1 - 0x1p-20) / (way * scale));
+    sweep.stepPerUnit = way > 0 ? roundDown((1 - 0x1p-20) / (way * scale)) : -1.0f;
     std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
   }
   sweep.anyHit = query.anyHit ? 1 : 0;

@@ -6,14 +6,18 @@
 #include "contact/decode.h"
 #include "contact/pass.h"
 #include "cpu/clearance.h"
+#include "cpu/query_search.h"
+#include "embed/gather.h"
 #include "embed/host_geometry.h"
 #include "gpu/barrier.h"
 #include "scene/query_lists.h"
 
 // pass                                            reads           writes   barrier after it
 // ----------------------------------------------- --------------- -------- ------------------
-// contact/pass.cpp; host_geometry.cpp between its                          computeWriteToCopy
-//   upload and search, and after its resolve
+// gather.cpp: upload                                                       (contact/pass.cpp's)
+// contact/pass.cpp; host_geometry.cpp between its
+//   upload and search
+// gather.cpp, host_geometry.cpp: invalidate                                computeWriteToCopy
 // readback                                        counts, results readback writtenToHost
 
 namespace radar {
@@ -23,6 +27,8 @@ namespace {
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
+// Of a query past one object each: lavapipe ends longer loops silently.
+constexpr size_t kMostSearches = 1u << 15;
 
 // Capacity of a list, if the host does not choose it.
 struct ListRoom {
@@ -40,18 +46,32 @@ uint32_t roomOf(const ListRoom& room, uint64_t queries, uint64_t limit) {
 
 Capacity chosen(Capacity capacity, const Device::Impl& device) {
   const uint64_t limit = device.properties.limits.maxStorageBufferRange;
+  const uint64_t searches = uint64_t{capacity.queries} + capacity.searches;
   if (capacity.candidates == 0) {
-    capacity.candidates = roomOf(kCandidates, capacity.queries, limit / sizeof(gpu::RefinedPair));
+    capacity.candidates = roomOf(kCandidates, searches, limit / sizeof(gpu::RefinedPair));
   }
   if (capacity.unresolvedPairs == 0) {
-    capacity.unresolvedPairs = roomOf(device.doubles ? kUnresolved : kUnresolvedWithoutDoubles, capacity.queries,
-                                      limit / sizeof(gpu::UnresolvedPair));
+    capacity.unresolvedPairs =
+        roomOf(device.doubles ? kUnresolved : kUnresolvedWithoutDoubles, searches, limit / sizeof(gpu::UnresolvedPair));
   }
   return capacity;
 }
 
 SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
+}
+
+// Why a Recorder does not take a valid query; else empty.
+std::string notOffered(const Query& query, const Scene::Impl& scene) {
+  const char* others = ": only a Sweeper, a CpuSweeper and a Pool offer this";
+  const bool step = isStep(query, scene);
+  if (query.mode != Mode::contact) return "mode: expected contact";
+  if (query.skipOverlapping) return std::string("skipOverlapping") + others;
+  if (step && !query.motion) return std::string("a direction and a distance, although objects move") + others;
+  if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) {
+    return std::string("clearance with ignoreLeaving, hits or a step") + others;
+  }
+  return {};
 }
 
 Result outOfRange() {
@@ -71,16 +91,22 @@ struct Recorder::Impl {
         copy(openDevice),
         geometry(openDevice, copy),
         pass(openDevice, copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
+        gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     checkCapacity();
-    pass.reserve(capacity.queries, capacity.queries, kExcluded * capacity.queries);
-    readback.reserve(kFirstResult + capacity.queries * sizeof(Result));
+    const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
+    pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
+    readback.reserve(kFirstResult + results * sizeof(Result));
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
   void checkCapacity() const;
   void validateAll(std::span<const Query> queries) const;
+  std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
   void plan(std::span<const Query> queries);
+  void decide(std::span<Result> results) const;
+  std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
+  void planSearches(const Query& query, std::span<const ObjectId> objects, const gpu::Gathered& searches);
 
   const Device::Impl& device;
   const Scene& scene;
@@ -88,11 +114,15 @@ struct Recorder::Impl {
   GpuScene copy;
   HostGeometryPass geometry;
   ContactPass pass;
-  gpu::Buffer readback;                ///< counts, then results
-  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
-  std::vector<double> tolerances;      ///< of their clearances
+  GatherPass gathers;
+  gpu::Buffer readback;                 ///< counts, then results
+  std::vector<Query> recordedQueries;   ///< in the last record(); none if it failed
+  std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
+  std::vector<uint32_t> hitOffsets;
+  std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
-  std::vector<Result> known;
+  std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
+  cpu::QuerySearch reach;
 };
 
 void Recorder::Impl::checkCapacity() const {
@@ -103,6 +133,7 @@ void Recorder::Impl::checkCapacity() const {
                 std::to_string(got));
   };
   limitTo("queries", capacity.queries, limit / sizeof(gpu::Sweep));
+  limitTo("searches", capacity.searches, (limit / sizeof(gpu::Sweep) - capacity.queries) / 2);
   limitTo("candidates", capacity.candidates, limit / sizeof(gpu::RefinedPair));
   limitTo("rounds", capacity.rounds, gpu::kMostRounds);
   limitTo("unresolvedPairs", capacity.unresolvedPairs, limit / sizeof(gpu::UnresolvedPair));
@@ -118,25 +149,100 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    const bool combines = queries[i].clearance > 0 && queries[i].ignoreLeaving;
-    if (wrong.empty() && (hasLists(queries[i]) || combines || isStep(queries[i], scene.impl()))) {
-      wrong =
-          "skipOverlapping, hits, motion, clearance with ignoreLeaving: only a Sweeper, a CpuSweeper and a Pool offer "
-          "these";
-    }
+    if (wrong.empty()) wrong = notOffered(queries[i], scene.impl());
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
 }
 
+// Of the queries that take several searches; ascending.
+std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
+  const ObjectTree& tree = scene.impl().objectTree();
+  std::vector<std::vector<ObjectId>> objects(queries.size());
+  size_t searches = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
+    objects[i] = reach.inReach(queries[i], scene.impl(), tree);
+    std::sort(objects[i].begin(), objects[i].end());
+    searches += objects[i].size();
+    if (objects[i].size() <= kMostSearches) continue;
+    throw Error("record: query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
+                " objects in reach, got " + std::to_string(objects[i].size()));
+  }
+  if (searches > capacity.searches) {
+    throw Error("record: expected at most " + std::to_string(capacity.searches) +
+                " searches past one object each (Capacity::searches), got " + std::to_string(searches));
+  }
+  return objects;
+}
+
 void Recorder::Impl::plan(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
+  const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
   sensors.clear();
-  known.clear();
+  gathered.clear();
+  gathers.clear();
+  hitOffsets.clear();
+  auto end = static_cast<uint32_t>(queries.size());
   for (uint32_t i = 0; i < queries.size(); ++i) {
-    const Planned planned = addSensor(sensors, queries[i], i, scene.impl(), tree);
+    hitOffsets.push_back(end);
+    const auto count = static_cast<uint32_t>(objects[i].size());
+    const uint32_t listed = queries[i].hits > 1 ? std::min(queries[i].hits, count) : 0;
+    if (count > 0) gathered.push_back({.query = i, .first = 0, .count = count, .list = end, .listed = listed});
+    end += listed;
+  }
+  hitOffsets.push_back(end);
+  known.assign(end, clearAnswer());
+  auto next = gathered.begin();
+  for (uint32_t i = 0; i < queries.size(); ++i) {
+    if (objects[i].empty()) {
+      if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
+      const Planned planned = addSensor(sensors, queries[i], i, scene.impl(), tree);
+      if (planned == Planned::outOfRange) known[i] = outOfRange();
+      continue;
+    }
+    next->first = static_cast<uint32_t>(known.size());
+    planSearches(queries[i], objects[i], *next++);
+  }
+}
+
+void Recorder::Impl::planSearches(const Query& query, std::span<const ObjectId> objects,
+                                  const gpu::Gathered& searches) {
+  gathers.add(searches);
+  for (const ObjectId object : objects) {
+    const auto result = static_cast<uint32_t>(known.size());
+    const Planned planned = addSensor(sensors, query, result, scene.impl(), scene.impl().objectTree(), object);
     known.push_back(planned == Planned::outOfRange ? outOfRange() : clearAnswer());
   }
+}
+
+// Decides the answers of searches that are open.
+void Recorder::Impl::decide(std::span<Result> results) const {
+  const UnresolvedPairs unresolved(pass.unresolved(counts()));
+  auto next = gathered.begin();
+  for (uint32_t i = 0; i < sensors.count(); ++i) {
+    const gpu::Sweep& sweep = sensors.sweeps[i];
+    while (next != gathered.end() && sweep.result >= next->first + next->count) ++next;
+    const bool isOneOfSeveral = sweep.result >= hitOffsets.back();
+    const uint32_t number = isOneOfSeveral ? next->query : sweep.result;
+    const auto pairs = unresolved.of(i);
+    if (results[sweep.result].flags != kFlagUnresolved || pairs.empty()) continue;
+    const Query& query = recordedQueries[number];
+    const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
+    results[sweep.result] =
+        decideUnresolved(results[sweep.result], pairs, query,
+                         query.motion ? Motion(*query.motion, drift) : Motion(query), tolerances[number], copy);
+  }
+}
+
+// Returns the answers to the queries, from all that the device wrote.
+std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lists* lists) const {
+  std::vector<Result> answers(all.begin(), all.begin() + static_cast<ptrdiff_t>(recordedQueries.size()));
+  std::vector<QueryLists> own(answers.size());
+  for (const gpu::Gathered& several : gathered) {
+    answers[several.query] = gather(all.subspan(several.first, several.count), several.listed, own[several.query].hits);
+  }
+  if (lists != nullptr && std::any_of(recordedQueries.begin(), recordedQueries.end(), hasLists)) *lists = joined(own);
+  return answers;
 }
 
 Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity)
@@ -154,6 +260,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   self.plan(queries);
   self.copy.willOverwrite(self.geometry.overwritten());
   self.pass.stage(self.sensors, self.known, self.scene.impl());
+  self.gathers.stage();
 
   const gpu::Commands commands{&self.device.vk, commandBuffer};
   const char* open = nullptr;
@@ -162,20 +269,24 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
     self.device.beginLabel(commands, name);
     open = name;
   };
+  self.gathers.recordUpload(commands);
   self.pass.recordUpload(commands, stage);
   if (!self.geometry.empty()) {
     stage("geometry");
     self.geometry.record(commands);
   }
   self.pass.record(commands, stage, self.capacity.rounds, true);
-  if (!self.geometry.empty()) {
-    self.geometry.recordInvalidate(commands, self.pass.results(), static_cast<uint32_t>(queries.size()));
+  const auto resultCount = static_cast<uint32_t>(self.known.size());
+  if (!self.gathers.empty()) {
+    stage("gather");
+    self.gathers.record(commands, self.pass.results(), resultCount - self.gathers.searchCount());
   }
+  if (!self.geometry.empty()) self.geometry.recordInvalidate(commands, self.pass.results(), resultCount);
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
   commands->CmdCopyBuffer(commands, self.pass.counts().get(), self.readback.get(), 1, &counts);
-  const VkBufferCopy results{0, kFirstResult, queries.size() * sizeof(Result)};
+  const VkBufferCopy results{0, kFirstResult, resultCount * sizeof(Result)};
   if (results.size != 0) {
     commands->CmdCopyBuffer(commands, self.pass.results().get(), self.readback.get(), 1, &results);
   }
@@ -197,20 +308,18 @@ VkBuffer Recorder::results() const {
   return impl_->pass.results().get();
 }
 
-std::vector<Result> Recorder::read() {
+std::span<const uint32_t> Recorder::hitOffsets() const {
+  return impl_->hitOffsets;
+}
+
+std::vector<Result> Recorder::read(Lists* lists) {
   Impl& self = *impl_;
-  std::vector<Result> results(self.recordedQueries.size());
-  if (results.empty()) return results;
+  if (lists != nullptr) *lists = {};
+  if (self.recordedQueries.empty()) return {};
+  std::vector<Result> results(self.known.size());
   std::copy_n(reinterpret_cast<const Result*>(self.readback.mapped() + kFirstResult), results.size(), results.begin());
-  const UnresolvedPairs unresolved(self.pass.unresolved(self.counts()));
-  for (uint32_t i = 0; i < self.sensors.count(); ++i) {
-    const uint32_t query = self.sensors.sweeps[i].result;
-    const auto pairs = unresolved.of(i);
-    if (results[query].flags != kFlagUnresolved || pairs.empty()) continue;
-    results[query] = decideUnresolved(results[query], pairs, self.recordedQueries[query],
-                                      Motion(self.recordedQueries[query]), self.tolerances[query], self.copy);
-  }
-  return results;
+  self.decide(results);
+  return self.putTogether(results, lists);
 }
 
 Capacity Recorder::needed() const {

@@ -162,6 +162,9 @@ int isMirroring(PreciseRows pose) {
   return isPositive(negative(inner(rowOf(pose, 0), crossProduct(rowOf(pose, 1), rowOf(pose, 2)))));
 }
 
+// A step without relative motion, in which only what crosses blocks.
+bool isAtRest(Sweep sweep) { return sweep.stepPerUnit < 0.0; }
+
 // `isLate`: the pair counts only if it is pressed together.
 int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3], bool isLate, out bool mayBePressed) {
   for (int i = 0; i < 3; ++i) {
@@ -176,6 +179,7 @@ int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3], bool isLate, out 
   const int facing = signed(isPositive(inner(normalA, normalB)), -signed(mirroredA, mirroredB));
   const int flush = areFlush(facing, normalA, normalB);
   mayBePressed = flush != kNo;
+  if (flush == kYes && isAtRest(sweep)) return kNo;
   if (flush == kYes) return signed(isPositive(inner(direction, normalB)), mirroredB);
   return flush == kOpen ? kOpen : isLate ? kNo : areInseparable(normalA, normalB);
 }
@@ -191,7 +195,8 @@ void main() {
   dvec3 a[3], b[3];
   cornersInOrder(sweep.pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
-  direction = exactly(dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]));
+  const dvec3 way = dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]);
+  direction = exactly(isAtRest(sweep) ? dvec3(0.0LF) : way);
   slack = slackOf(sweep, c);
   // Too late, or never because it has parted.
   const bool isLate = scaledDown(c.low, sweep) > hi;

@@ -44,7 +44,7 @@ struct Sweep {
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
   uint hasClearance;   // the CPU decides all pairs that may be first
-  float stepPerUnit;   // of a step: t per scaled length, rounded down; else 0
+  float stepPerUnit;   // of a step: t per scaled length, rounded down; negative if nothing moves; of a sweep 0
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default
   double perParameter; // t per `direction`

@@ -30,6 +30,15 @@ struct Moved {
   Point halfExtent;  // of its bounds about the anchor
 };
 
+// A search past one object, one of several that answer a query together.
+struct Gathered {
+  uint query;   // index of the query's answer
+  uint first;   // of the searches' answers, which ascend by object
+  uint count;   // of searches
+  uint list;    // index of the first entry of the query's list
+  uint listed;  // entries
+};
+
 struct DeformPush {
   uint count;      // vertices
   uint mesh;
@@ -48,13 +57,18 @@ struct MovePush {
 struct InvalidatePush {
   uint count;  // results
 };
-// Invocations in a workgroup of deform, refit, move and invalidate.
+struct GatherPush {
+  uint count;  // searches
+  uint first;  // index of the first one's answer
+};
+// Invocations in a workgroup of the passes.
 INTEROP_CONST kHostGroup = 64;
 
 INTEROP_SLOT(kSlotWords, 5, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 6, Moved);
 INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
+INTEROP_SLOT(kSlotGathered, 9, Gathered);
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

@@ -121,6 +121,10 @@ const std::vector<Expected>& sharedStructs() {
       {"BoundsViolation",
        sizeof(BoundsViolation),
        {MEMBER(BoundsViolation, mesh), MEMBER(BoundsViolation, vertex), MEMBER(BoundsViolation, object)}},
+      {"Gathered",
+       sizeof(Gathered),
+       {MEMBER(Gathered, query), MEMBER(Gathered, first), MEMBER(Gathered, count), MEMBER(Gathered, list),
+        MEMBER(Gathered, listed)}},
       {"Moved",
        sizeof(Moved),
        {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, firstByte), MEMBER(Moved, anchor),
@@ -203,6 +207,7 @@ const std::vector<Expected>& sharedStructs() {
       {"RefitPush", sizeof(RefitPush), {MEMBER(RefitPush, first), MEMBER(RefitPush, count), MEMBER(RefitPush, mesh)}},
       {"MovePush", sizeof(MovePush), {MEMBER(MovePush, count)}},
       {"InvalidatePush", sizeof(InvalidatePush), {MEMBER(InvalidatePush, count)}},
+      {"GatherPush", sizeof(GatherPush), {MEMBER(GatherPush, count), MEMBER(GatherPush, first)}},
   };
   return all;
 }

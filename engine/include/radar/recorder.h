@@ -24,6 +24,9 @@ struct Capacity {
   /// (6 MB), or 4 per query if that is more; eight times that without Device::doubles(). If a query's pairs do not fit,
   /// read() cannot decide them: kFlagUnresolved stays.
   uint32_t unresolvedPairs = 0;
+  /// Searches past one object each, which count as queries above: a query with Query::hits above 1, and where objects
+  /// move every query, takes one for each object in reach. record() throws if there are more.
+  uint32_t searches = 0;
 };
 
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own copy of the scene on
@@ -51,6 +54,11 @@ class RADAR_API Recorder {
   /// - a direction whose components differ by a factor of more than about 2^1000;
   /// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.
   ///
+  /// Lists of hits (Query::hits) follow the answers in results(): those of query i are answers hitOffsets()[i] to
+  /// hitOffsets()[i + 1], nearest first, then clear ones. Objects whose contacts are less than a rounding apart are
+  /// ordered by t as given, then by number, and a step's answer is the first of them. An entry may be invalid or have
+  /// kFlagUnresolved; it stands where its contact may be.
+  ///
   /// With a clearance, hits have kFlagUnresolved until read() decides them, except decisions (`anyHit`). If something
   /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal.
   ///
@@ -65,20 +73,23 @@ class RADAR_API Recorder {
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
-  /// Throws before recording anything if a query breaks its contract, is not of mode contact, or asks for
-  /// skipOverlapping, hits, a step, or a clearance with ignoreLeaving; if there are more than Capacity::queries,
-  /// `geometry` breaks its contract, or something does not fit the device.
+  /// Throws before recording anything if a query breaks its contract, is not of mode contact, asks for skipOverlapping
+  /// or for a clearance with ignoreLeaving, hits or a step, or has no `motion` although objects move; if there are more
+  /// queries or searches than Capacity says, a query has more than 2^15 objects in reach, `geometry` breaks its
+  /// contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.
   void reset();
 
   /// The answers on the device: one buffer for storage and transfer, owned by the engine.
   VkBuffer results() const;
+  /// Where the last recording's lists are in results(), in answers: one number per query, and the end of the last list.
+  std::span<const uint32_t> hitOffsets() const;
 
-  /// The answers on the CPU, one per recorded query, with open ones decided. Call it once the last recording has
-  /// executed and been waited for (by a fence, or a semaphore's wait on the host); it does not wait itself. Later
-  /// changes of the scene do not matter.
-  std::vector<Result> read();
+  /// The answers on the CPU, one per recorded query, with open ones decided, and if wanted their lists. Call it once
+  /// the last recording has executed and been waited for (by a fence, or a semaphore's wait on the host); it does not
+  /// wait itself. Later changes of the scene do not matter.
+  std::vector<Result> read(Lists* lists = nullptr);
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
   /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,
   /// twice as many rounds. If a query exceeded a limit and this is no more than there was, only a Sweeper answers it:

@@ -47,12 +47,12 @@ exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query
 // Considers a pair by the rule of a query that ignores what does not block.
 void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& inOrder,
                       const exact::PlacedPair& sorted, const Query& query, const Vector& direction,
-                      const GpuScene& scene, exact::EarliestContact& earliest) {
+                      std::span<const Vector> farthest, exact::EarliestContact& earliest) {
   const Transform worldFromObject = poseOf(pair);
-  const double slack =
-      query.slack ? *query.slack
-                  : exact::defaultSlack(std::max(placedMagnitude(scene.farthest(query.mesh), query.worldFromMesh),
-                                                 placedMagnitude(scene.farthest(pair.mesh), worldFromObject)));
+  const double slack = query.slack
+                           ? *query.slack
+                           : exact::defaultSlack(std::max(placedMagnitude(farthest[query.mesh], query.worldFromMesh),
+                                                          placedMagnitude(farthest[pair.mesh], worldFromObject)));
   const exact::Mirrored mirrored{exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)};
   const exact::PairName name{pair.object, pair.triB, pair.triA};
   if (exact::arePressed(inOrder.a, inOrder.b, direction, slack, mirrored)) {
@@ -78,7 +78,7 @@ Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const 
 }  // namespace
 
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const Motion& motion, double tolerance, const GpuScene& scene) {
+                        const Motion& motion, double tolerance, std::span<const Vector> farthest) {
   if (query.clearance > 0) return decideClearance(pairs, query, motion, tolerance);
   exact::EarliestContact earliest(motion);
   for (const gpu::UnresolvedPair* pair : pairs) {
@@ -88,7 +88,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
     std::sort(sorted.a.begin(), sorted.a.end());
     std::sort(sorted.b.begin(), sorted.b.end());
     if (query.ignoreLeaving) {
-      considerBlocking(*pair, inOrder, sorted, query, motion.stands ? Vector{} : motion.direction, scene, earliest);
+      considerBlocking(*pair, inOrder, sorted, query, motion.stands ? Vector{} : motion.direction, farthest, earliest);
     } else {
       earliest.consider({pair->object, pair->triB, pair->triA}, sorted);
     }

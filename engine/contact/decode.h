@@ -4,7 +4,8 @@
 #include <span>
 
 #include "exact/motion.h"
-#include "scene/gpu_scene.h"
+#include "math/vector.h"
+#include "radar/query.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {
@@ -24,10 +25,10 @@ class UnresolvedPairs {
 /// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
 /// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
 /// clearance (cpu/clearance.h).
-/// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `scene`: the
-/// copy that was searched.
+/// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `farthest`:
+/// Mesh::farthest of the meshes that were searched.
 Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair* const> pairs, const Query& query,
-                        const Motion& motion, double tolerance, const GpuScene& scene);
+                        const Motion& motion, double tolerance, std::span<const Vector> farthest);
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();

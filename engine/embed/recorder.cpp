@@ -83,14 +83,26 @@ Result outOfRange() {
 
 }  // namespace
 
+struct SceneCopy::Impl {
+  const Device::Impl& device;
+  const Scene& scene;
+  std::shared_ptr<GpuScene> copy;
+};
+
+SceneCopy::SceneCopy(const Device& device, const Scene& scene)
+    : impl_(new Impl{device.impl(), scene, std::make_shared<GpuScene>(device.impl())}) {}
+SceneCopy::~SceneCopy() = default;
+SceneCopy::SceneCopy(SceneCopy&&) noexcept = default;
+SceneCopy& SceneCopy::operator=(SceneCopy&&) noexcept = default;
+
 struct Recorder::Impl {
-  Impl(const Device::Impl& openDevice, const Scene& ownScene, const Capacity& given)
+  Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy, const Capacity& given)
       : device(openDevice),
         scene(ownScene),
         capacity(chosen(given, openDevice)),
-        copy(openDevice),
-        geometry(openDevice, copy),
-        pass(openDevice, copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
+        copy(std::move(ownCopy)),
+        geometry(openDevice, *copy),
+        pass(openDevice, *copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
         gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     checkCapacity();
@@ -111,7 +123,10 @@ struct Recorder::Impl {
   const Device::Impl& device;
   const Scene& scene;
   Capacity capacity;
-  GpuScene copy;
+  std::shared_ptr<GpuScene> copy;
+  bool isShared = false;                                 ///< with other recorders
+  std::shared_ptr<const GpuScene::Buffers> usedBuffers;  ///< by the last recording
+  GpuScene::Farthest farthest;                           ///< of the meshes that it searched
   HostGeometryPass geometry;
   ContactPass pass;
   GatherPass gathers;
@@ -230,7 +245,7 @@ void Recorder::Impl::decide(std::span<Result> results) const {
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
     results[sweep.result] =
         decideUnresolved(results[sweep.result], pairs, query,
-                         query.motion ? Motion(*query.motion, drift) : Motion(query), tolerances[number], copy);
+                         query.motion ? Motion(*query.motion, drift) : Motion(query), tolerances[number], *farthest);
   }
 }
 
@@ -246,7 +261,11 @@ std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lis
 }
 
 Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity)
-    : impl_(std::make_unique<Impl>(device.impl(), scene, capacity)) {}
+    : impl_(std::make_unique<Impl>(device.impl(), scene, std::make_shared<GpuScene>(device.impl()), capacity)) {}
+Recorder::Recorder(SceneCopy& copy, const Capacity& capacity)
+    : impl_(std::make_unique<Impl>(copy.impl_->device, copy.impl_->scene, copy.impl_->copy, capacity)) {
+  impl_->isShared = true;
+}
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
@@ -258,7 +277,8 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
-  self.copy.willOverwrite(self.geometry.overwritten());
+  self.copy->willOverwrite(self.geometry.overwritten());
+  self.usedBuffers.reset();
   self.pass.stage(self.sensors, self.known, self.scene.impl());
   self.gathers.stage();
 
@@ -269,6 +289,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
     self.device.beginLabel(commands, name);
     open = name;
   };
+  if (self.isShared) gpu::computeToOverwrite(commands);
   self.gathers.recordUpload(commands);
   self.pass.recordUpload(commands, stage);
   if (!self.geometry.empty()) {
@@ -292,7 +313,9 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
   }
   gpu::writtenToHost(commands);
   self.device.endLabel(commands);
-  self.copy.confirm(self.scene.impl());
+  self.copy->confirm(self.scene.impl());
+  self.usedBuffers = self.copy->shareBuffers();
+  self.farthest = self.copy->farthest();
   self.recordedQueries.assign(queries.begin(), queries.end());
   self.tolerances.clear();
   for (const Query& query : queries) {
@@ -301,7 +324,7 @@ void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> quer
 }
 
 void Recorder::reset() {
-  impl_->copy.forget();
+  impl_->copy->forget();
 }
 
 VkBuffer Recorder::results() const {

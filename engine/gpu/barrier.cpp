@@ -60,6 +60,11 @@ void computeWriteToComputeReadWrite(const Commands& commands) {
                 VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kComputeReadWrite);
 }
 
+void computeToOverwrite(const Commands& commands) {
+  memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+}
+
 void computeWriteToIndirect(const Commands& commands) {
   memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                 VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,

@@ -11,6 +11,8 @@ void uploadToRead(const Commands& commands);
 void transferToComputeReadWrite(const Commands& commands);
 /// The next compute shader reads (also as texels) or overwrites a compute shader's buffers.
 void computeWriteToComputeReadWrite(const Commands& commands);
+/// Copies overwrite what earlier compute shaders, also of earlier submissions, read or wrote.
+void computeToOverwrite(const Commands& commands);
 /// An indirect dispatch reads (also as texels) or overwrites a compute shader's buffers, one of which holds its
 /// workgroup counts. After any later barrier from compute shaders the counts may be overwritten.
 void computeWriteToIndirect(const Commands& commands);

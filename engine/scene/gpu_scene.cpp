@@ -44,21 +44,40 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
 
 }  // namespace
 
+GpuScene::Buffers::Buffers(const Device::Impl& device)
+    : vertices(device, "vertices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels),
+      triangles(device, "triangles", BufferDomain::device, kUploaded, kTexels),
+      meshNodes(device, "mesh nodes", BufferDomain::device, kUploaded, kTexels),
+      meshes(device, "meshes", BufferDomain::device, kUploaded),
+      objects(device, "objects", BufferDomain::device, kUploaded),
+      placements(device, "placements", BufferDomain::device, kUploaded, kTexels),
+      objectNodes(device, "object nodes", BufferDomain::device, kUploaded, kTexels),
+      indices(device, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT) {}
+
 GpuScene::GpuScene(const Device::Impl& device)
     : device_(&device),
-      buffers_{{device, "vertices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels},
-               {device, "triangles", BufferDomain::device, kUploaded, kTexels},
-               {device, "mesh nodes", BufferDomain::device, kUploaded, kTexels},
-               {device, "meshes", BufferDomain::device, kUploaded},
-               {device, "objects", BufferDomain::device, kUploaded},
-               {device, "placements", BufferDomain::device, kUploaded, kTexels},
-               {device, "object nodes", BufferDomain::device, kUploaded, kTexels},
-               {device, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT}} {}
+      buffers_(std::make_shared<Buffers>(device)),
+      farthest_(std::make_shared<const std::vector<Vector>>()) {}
 
 void GpuScene::willOverwrite(Overwritten next) {
   next_ = std::move(next);
   std::sort(next_.meshes.begin(), next_.meshes.end());
   std::sort(next_.objects.begin(), next_.objects.end());
+}
+
+// Whether no buffer that searches use need grow.
+bool GpuScene::fits(const Scene::Impl& scene) const {
+  uint64_t vertices = 0, triangles = 0, nodes = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    vertices += mesh.vertexCount();
+    triangles += mesh.triangleCount();
+    nodes += mesh.tree.nodes.size();
+  }
+  const uint64_t objects = scene.objects.size();
+  return vertices <= buffers_->vertices.capacity() && triangles <= buffers_->triangles.capacity() &&
+         nodes <= buffers_->meshNodes.capacity() && scene.meshes.size() <= buffers_->meshes.capacity() &&
+         objects <= std::min(buffers_->objects.capacity(), buffers_->placements.capacity()) &&
+         scene.objectTree().nodes().size() <= buffers_->objectNodes.capacity();
 }
 
 void GpuScene::forget() {
@@ -70,6 +89,12 @@ void GpuScene::forget() {
 VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
   if (seenScene_ != scene.identity) forget();
   checkWriteLimits(scene);
+  if (buffers_.use_count() > 1 && !fits(scene)) {
+    buffers_ = std::make_shared<Buffers>(*device_);
+    for (Arena* arena : {&vertices_, &triangles_, &nodes_}) arena->reset(0);
+    places_.clear();
+    forget();
+  }
   const VkDeviceSize meshes = prepareMeshes(scene);
   return meshes + prepareIndices(scene) + prepareObjects(scene) + prepareTree(scene.objectTree());
 }
@@ -107,12 +132,12 @@ void GpuScene::layOut(const Scene::Impl& scene) {
   }
   places_.assign(scene.meshes.size(), {});
   seenPoses_ = 0;  // placements refer to nodes
-  buffers_.vertices.reserve(vertices);
-  buffers_.triangles.reserve(triangles);
-  buffers_.meshNodes.reserve(nodes);
-  vertices_.reset(std::min<uint64_t>(buffers_.vertices.capacity(), gpu::kLinkItem));
-  triangles_.reset(std::min<uint64_t>(buffers_.triangles.capacity(), gpu::kLinkItem));
-  nodes_.reset(std::min<uint64_t>(buffers_.meshNodes.capacity(), gpu::kLinkItem));
+  buffers_->vertices.reserve(vertices);
+  buffers_->triangles.reserve(triangles);
+  buffers_->meshNodes.reserve(nodes);
+  vertices_.reset(std::min<uint64_t>(buffers_->vertices.capacity(), gpu::kLinkItem));
+  triangles_.reset(std::min<uint64_t>(buffers_->triangles.capacity(), gpu::kLinkItem));
+  nodes_.reset(std::min<uint64_t>(buffers_->meshNodes.capacity(), gpu::kLinkItem));
   for (MeshId id = 0; id < scene.meshes.size(); ++id) placeMesh(id, scene.meshes[id]);
 }
 
@@ -170,7 +195,6 @@ void GpuScene::describe(MeshId id, const Mesh& mesh) {
   copyPoint(mesh.box.hi, record.hi);
   record.unit = static_cast<float>(mesh.unit);
   record.perUnit = static_cast<float>(1 / mesh.unit);
-  farthest_[id] = mesh.farthest;
 }
 
 VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
@@ -180,8 +204,10 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
   if (recordsChanged_) {
     checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
     placeMeshes(scene);
-    buffers_.meshes.reserve(records_.size());
-    farthest_.resize(records_.size());
+    buffers_->meshes.reserve(records_.size());
+    std::vector<Vector> farthest;
+    for (const Mesh& mesh : scene.meshes) farthest.push_back(mesh.farthest);
+    farthest_ = std::make_shared<const std::vector<Vector>>(std::move(farthest));
     for (MeshId id = 0; id < scene.meshes.size(); ++id) {
       describe(id, scene.meshes[id]);
       if (places_[id].uploaded != scene.meshes[id].version) changedMeshes_.push_back(id);
@@ -204,7 +230,7 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
 VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
   changedIndices_.clear();
   if (!hasIndices_) return 0;
-  if (buffers_.indices.reserve(3 * buffers_.triangles.capacity())) {
+  if (buffers_->indices.reserve(3 * buffers_->triangles.capacity())) {
     for (Place& place : places_) place.uploadedIndices = 0;
   }
   VkDeviceSize bytes = 0;
@@ -218,8 +244,8 @@ VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
 
 VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
   checkLimit<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
-  const bool grew = buffers_.objects.reserve(scene.objects.size());
-  if (buffers_.placements.reserve(scene.objects.size()) || grew) seenPoses_ = 0;
+  const bool grew = buffers_->objects.reserve(scene.objects.size());
+  if (buffers_->placements.reserve(scene.objects.size()) || grew) seenPoses_ = 0;
   changedObjects_.clear();
   scene.changedObjects.forEachSince(seenPoses_, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
@@ -236,7 +262,7 @@ VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
 }
 
 VkDeviceSize GpuScene::prepareTree(const ObjectTree& tree) {
-  if (buffers_.objectNodes.reserve(tree.nodes().size())) seenTree_ = 0;
+  if (buffers_->objectNodes.reserve(tree.nodes().size())) seenTree_ = 0;
   changedNodes_.clear();
   VkDeviceSize bytes = 0;
   tree.changedNodes().forEachSince(seenTree_, [&](size_t first, size_t last) {
@@ -260,11 +286,11 @@ void GpuScene::uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, Uploa
   for (gpu::MeshNode& node : nodes) {
     node.link += (node.link & gpu::kLinkLeaf) != 0 ? record.firstTriangle : record.firstNode;
   }
-  upload.add(vertices.data(), gpu::bytesOf(vertices), buffers_.vertices,
+  upload.add(vertices.data(), gpu::bytesOf(vertices), buffers_->vertices,
              sizeof(gpu::Vertex) * VkDeviceSize{record.firstVertex});
-  upload.add(triangles.data(), gpu::bytesOf(triangles), buffers_.triangles,
+  upload.add(triangles.data(), gpu::bytesOf(triangles), buffers_->triangles,
              sizeof(gpu::Triangle) * VkDeviceSize{record.firstTriangle});
-  upload.add(nodes.data(), gpu::bytesOf(nodes), buffers_.meshNodes,
+  upload.add(nodes.data(), gpu::bytesOf(nodes), buffers_->meshNodes,
              sizeof(gpu::MeshNode) * VkDeviceSize{record.firstNode});
 }
 
@@ -274,7 +300,7 @@ void GpuScene::uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, Up
   for (const uint32_t id : mesh.tree.order) {
     for (int i = 0; i < 3; ++i) indices.push_back(record.firstVertex + mesh.indices[3 * size_t{id} + i]);
   }
-  upload.add(indices.data(), gpu::bytesOf(indices), buffers_.indices, 12 * VkDeviceSize{record.firstTriangle});
+  upload.add(indices.data(), gpu::bytesOf(indices), buffers_->indices, 12 * VkDeviceSize{record.firstTriangle});
 }
 
 void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
@@ -288,8 +314,8 @@ void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
     }
     return first;
   };
-  std::byte* records = places(buffers_.objects, sizeof(gpu::ObjectRecord));
-  std::byte* placements = places(buffers_.placements, sizeof(gpu::Placement));
+  std::byte* records = places(buffers_->objects, sizeof(gpu::ObjectRecord));
+  std::byte* placements = places(buffers_->placements, sizeof(gpu::Placement));
   parallelFor(changedObjects_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       const Object& object = scene.objects[changedObjects_[i]].object;
@@ -309,12 +335,12 @@ void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
 void GpuScene::upload(const Scene::Impl& scene, Upload& upload) {
   for (const MeshId id : changedMeshes_) uploadMesh(scene.meshes[id], records_[id], upload);
   for (const MeshId id : changedIndices_) uploadIndices(scene.meshes[id], records_[id], upload);
-  if (recordsChanged_) upload.add(records_.data(), gpu::bytesOf(records_), buffers_.meshes);
+  if (recordsChanged_) upload.add(records_.data(), gpu::bytesOf(records_), buffers_->meshes);
   uploadObjects(scene, upload);
   const std::vector<gpu::ObjectNode>& nodes = scene.objectTree().nodes();
   for (const Range& range : changedNodes_) {
     const VkDeviceSize size = sizeof(gpu::ObjectNode);
-    upload.add(&nodes[range.first], size * (range.last - range.first), buffers_.objectNodes, size * range.first);
+    upload.add(&nodes[range.first], size * (range.last - range.first), buffers_->objectNodes, size * range.first);
   }
 }
 

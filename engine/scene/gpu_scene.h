@@ -16,6 +16,7 @@ class GpuScene {
   explicit GpuScene(const Device::Impl& device);
 
   struct Buffers {
+    explicit Buffers(const Device::Impl& device);
     gpu::TexelArray<gpu::Vertex> vertices;
     gpu::TexelArray<gpu::Triangle> triangles;  ///< in the order of the mesh's tree
     gpu::TexelArray<gpu::MeshNode> meshNodes;
@@ -50,11 +51,14 @@ class GpuScene {
   /// Marks all uploads as uncertain: everything is staged again.
   void forget();
 
-  const Buffers& buffers() const { return buffers_; }
+  const Buffers& buffers() const { return *buffers_; }
+  /// Keeps the buffers while submitted commands use them: if they must grow meanwhile, others take their place.
+  std::shared_ptr<const Buffers> shareBuffers() const { return buffers_; }
   /// A mesh's place in the buffers, after prepare().
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
-  /// Mesh::farthest, as of the last prepare().
-  const Vector& farthest(MeshId mesh) const { return farthest_[mesh]; }
+  /// Mesh::farthest of each mesh, as of the last prepare().
+  using Farthest = std::shared_ptr<const std::vector<Vector>>;
+  const Farthest& farthest() const { return farthest_; }
 
  private:
   /// A mesh on the device. Its ranges in the buffers are kept as long as it has the same numbers of elements.
@@ -62,6 +66,7 @@ class GpuScene {
     uint64_t vertices = 0, triangles = 0, nodes = 0;  ///< numbers of elements; none: no mesh
     uint64_t uploaded = 0, uploadedIndices = 0;       ///< Mesh::version of what is in the buffers; 0: nothing
   };
+  bool fits(const Scene::Impl& scene) const;
   void checkWriteLimits(const Scene::Impl& scene) const;
   VkDeviceSize prepareMeshes(const Scene::Impl& scene);
   VkDeviceSize prepareIndices(const Scene::Impl& scene);
@@ -78,11 +83,11 @@ class GpuScene {
   void uploadObjects(const Scene::Impl& scene, gpu::Upload& upload);
 
   const Device::Impl* device_;
-  Buffers buffers_;
+  std::shared_ptr<Buffers> buffers_;
   Arena vertices_, triangles_, nodes_;  ///< of the buffers
   std::vector<Place> places_;           ///< by mesh
   std::vector<gpu::MeshRecord> records_;
-  std::vector<Vector> farthest_;  ///< of each mesh
+  Farthest farthest_;
   uint64_t seenScene_ = 0, seenMeshes_ = 0, seenPoses_ = 0, seenTree_ = 0;
   bool hasIndices_ = false, recordsChanged_ = false;
   std::vector<MeshId> changedMeshes_, changedIndices_;

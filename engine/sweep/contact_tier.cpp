@@ -241,7 +241,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
       const auto pairs = unresolved.of(i);
       const Motion motion = motionPast(asked, scene, pairs.front()->object);
       const double tolerance = cpu::toleranceOf(asked, scene.meshes[asked.mesh]);
-      decided[k] = decideUnresolved(found.results[i], pairs, asked, motion, tolerance, resident_);
+      decided[k] = decideUnresolved(found.results[i], pairs, asked, motion, tolerance, *resident_.farthest());
     }
   });
   for (size_t k = 0; k < open.size(); ++k) {

@@ -2,12 +2,15 @@
 #include <catch2/catch.hpp>
 
 #include <array>
+#include <fstream>
 
 #include "embed/host.h"
 #include "embed/on_device.h"
 #include "embed/renderer.h"
+#include "radar/cpu_sweeper.h"
 #include "radar/host_geometry.h"
 #include "radar/pool.h"
+#include "workloads/shapes.h"
 
 namespace {
 
@@ -113,6 +116,133 @@ TEST_CASE("recording frames in which objects move allocates nothing, and queries
     CHECK(test::counts().allocations == allocations);
   }
   CHECK(test::counts().live == 0);
+}
+
+TEST_CASE("three recorders in flight share one copy of a scene that moves, deforms, grows and shrinks") {
+  tools::Random random(3);
+  Scene scene;
+  std::vector<MeshId> meshes;
+  const auto addMesh = [&] {
+    const tools::MeshData soup = tools::makeSoup(tools::Soup::plain, 1 + random.below(40), random);
+    meshes.push_back(scene.addMesh(soup.positions, soup.indices));
+  };
+  const auto anyMesh = [&] { return meshes[random.below(static_cast<uint32_t>(meshes.size()))]; };
+  const auto somewhere = [&] { return random.affine(random.inCube(12)); };
+  const auto edit = [&](uint32_t frame) {
+    // Every tenth frame needs larger buffers while two others are in use.
+    for (uint32_t added = frame % 10 == 5 ? 40 + 3 * frame : 2; added-- > 0;) scene.addObject({anyMesh(), somewhere()});
+    if (frame % 10 == 7) addMesh();
+    const ObjectId id = random.below(scene.objectLimit());
+    if (scene.hasObject(id)) scene.removeObject(id);
+    for (int i = 0; i < 5; ++i) {
+      const ObjectId moved = random.below(scene.objectLimit());
+      if (scene.hasObject(moved)) scene.setTransform(moved, somewhere());
+    }
+    const MeshId deformed = anyMesh();
+    std::vector<float> positions(scene.mesh(deformed).positions.begin(), scene.mesh(deformed).positions.end());
+    for (float& p : positions) p += static_cast<float>(random.uniform(-0.1, 0.1));
+    scene.setPositions(deformed, positions);
+  };
+  for (int i = 0; i < 3; ++i) addMesh();
+  SceneCopy copy(test::device(), scene);
+  struct Frame {
+    Frame(SceneCopy& copy) : renderer(test::device()), recorder(copy, {.queries = 30}) {}
+    Renderer renderer;
+    Recorder recorder;
+    std::vector<Result> expected;
+  };
+  std::vector<std::unique_ptr<Frame>> frames;
+  for (int i = 0; i < 3; ++i) frames.push_back(std::make_unique<Frame>(copy));
+  CpuSweeper sweeper(scene);
+  size_t hits = 0;
+  for (uint32_t number = 0; number < 90; ++number) {
+    Frame& frame = *frames[number % 3];
+    if (number >= 3) {
+      frame.renderer.wait();
+      const std::vector<Result> read = frame.recorder.read();
+      for (size_t i = 0; i < read.size(); ++i) {
+        CAPTURE(number, i);
+        REQUIRE(sameBits(read[i], frame.expected[i]));
+        hits += read[i].status == Status::hit;
+      }
+    }
+    edit(number);
+    std::vector<Query> queries(30);
+    for (Query& query : queries) {
+      query = {.mesh = anyMesh(), .worldFromMesh = somewhere()};
+      query.direction = random.direction();
+      query.distance = random.uniform(1, 20);
+      query.ignoreLeaving = random.oneIn(3);
+    }
+    frame.expected = sweeper.run(queries);
+    for (Result& result : frame.expected) result.tier = Tier::contact;
+    frame.renderer.record(frame.recorder, queries);
+    frame.renderer.submit();
+  }
+  for (const auto& frame : frames) frame->renderer.wait();
+  CHECK(hits > 300);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("two recorders that share a copy may record into one command buffer, one of them with a host's geometry") {
+  Row row(12);
+  constexpr ObjectId kMoved = 4;
+  row.scene.setBounds(kMoved, {{-50, -50, -50}, {50, 50, 50}});
+  const Transform elsewhere{{1, 0, 0, 4.5, 0, 1, 0, 0.25, 0, 0, 1, 3.5}};
+  std::vector<std::byte> bytes;
+  for (const double entry : elsewhere.m) test::append(bytes, {static_cast<float>(entry)});
+  const test::OnDevice transforms(bytes);
+  const MovedObjects moved{.transforms = transforms.get(), .objects = {&kMoved, 1}};
+  SceneCopy copy(test::device(), row.scene);
+  Recorder first(copy), second(copy);
+  gpu::Submission submission(test::device().impl(), false);
+  const gpu::Commands commands = submission.begin();
+  first.record(commands, row.queries, {.objects = {&moved, 1}});
+  second.record(commands, row.queries);  // puts the object back
+  submission.submitAndWait();
+  const std::vector<Result> back = CpuSweeper(row.scene).run(row.queries), readBack = second.read();
+  row.scene.setTransform(kMoved, elsewhere);
+  const std::vector<Result> there = CpuSweeper(row.scene).run(row.queries), readThere = first.read();
+  size_t differ = 0;
+  for (size_t i = 0; i < row.queries.size(); ++i) {
+    CAPTURE(i);
+    CHECK((readBack[i].object == back[i].object && readBack[i].t == back[i].t));
+    CHECK((readThere[i].object == there[i].object && readThere[i].t == there[i].t));
+    differ += back[i].t != there[i].t;
+  }
+  CHECK(differ > 0);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("three recorders that share a scene's copy need its memory once", "[.long]") {
+  const auto residentBytes = [] {
+    size_t all = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> all >> resident;
+    return 4096 * resident;
+  };
+  tools::Random random(4);
+  const tools::MeshData soup = tools::makeSoup(tools::Soup::plain, 300'000, random);
+  Scene scene;
+  const MeshId mesh = scene.addMesh(soup.positions, soup.indices);
+  scene.addObject({mesh, {}});
+  const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 1};
+  const auto memoryOf = [&](auto&& make) {
+    std::vector<Recorder> recorders;
+    std::vector<size_t> sizes;
+    for (int i = 0; i < 3; ++i) {
+      recorders.push_back(make());
+      gpu::Submission submission(test::device().impl(), false);
+      recorders.back().record(submission.begin(), {&query, 1});
+      submission.submitAndWait();
+      sizes.push_back(residentBytes());
+    }
+    return sizes[2] - sizes[0];  // of the second and the third
+  };
+  SceneCopy copy(test::device(), scene);
+  const size_t shared = memoryOf([&] { return Recorder(copy); });
+  const size_t own = memoryOf([&] { return Recorder(test::device(), scene); });
+  WARN("two more recorders need " << shared / 1e6 << " MB with a shared copy, " << own / 1e6 << " MB with their own");
+  CHECK(shared < own / 4);
 }
 
 TEST_CASE("an engine without a queue records, submits nothing, and names the queue when it refuses what submits") {

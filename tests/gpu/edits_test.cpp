@@ -1,8 +1,11 @@
 // Answers after any sequence of edits are those of a scene that is built anew, to the bit.
 #include <catch2/catch.hpp>
+#include <fstream>
 
+#include "radar/cpu_sweeper.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
+#include "workloads/same_answer.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -32,11 +35,22 @@ class Edited {
       scene_.removeObject(id);
     } else if (what < 16) {
       deform(anyMesh());
-    } else if (what < 18) {
+    } else if (what < 18 && meshes_.size() < 12) {
       addMesh();
     } else {
       replaceMesh(random_.below(static_cast<uint32_t>(meshes_.size())));
     }
+  }
+
+  std::vector<Query> queries() {
+    std::vector<Query> queries(24);
+    for (Query& query : queries) {
+      query = {.mesh = anyMesh(), .worldFromMesh = somewhere()};
+      query.direction = random_.direction();
+      query.distance = random_.uniform(1, 40);
+      query.mask = random_.oneIn(4) ? 1u : ~0u;
+    }
+    return queries;
   }
 
   /// A new scene with the same ids.
@@ -92,13 +106,7 @@ TEST_CASE("after random edits, a sweeper's answers on the device have the bits o
   size_t hits = 0;
   for (int round = 0; round < 25; ++round) {
     for (uint32_t edits = edited.random().below(round % 5 == 0 ? 200 : 6); edits-- > 0;) edited.edit();
-    std::vector<Query> queries(24);
-    for (Query& query : queries) {
-      query = {.mesh = edited.anyMesh(), .worldFromMesh = edited.somewhere()};
-      query.direction = edited.random().direction();
-      query.distance = edited.random().uniform(1, 40);
-      query.mask = edited.random().oneIn(4) ? 1u : ~0u;
-    }
+    const std::vector<Query> queries = edited.queries();
     const Scene again = edited.again();
     Sweeper fresh(test::device(), again, {.cpuBatch = 0});
     const std::vector<Result> results = sweeper.run(queries), expected = fresh.run(queries);
@@ -110,4 +118,26 @@ TEST_CASE("after random edits, a sweeper's answers on the device have the bits o
   }
   CHECK(hits > 100);
   CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("10,000 steps of edits and queries leave the process no larger than the first 2,000", "[.long]") {
+  Edited edited(4);
+  Sweeper sweeper(test::device(), edited.scene(), {.cpuBatch = 0});
+  CpuSweeper cpu(edited.scene());
+  const auto residentPages = [] {
+    size_t all = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> all >> resident;
+    return resident;
+  };
+  size_t before = 0;
+  for (int step = 0; step < 10'000; ++step) {
+    if (step == 2'000) before = residentPages();
+    for (int edits = 0; edits < 10; ++edits) edited.edit();
+    const std::vector<Query> queries = edited.queries();
+    const std::vector<Result> results = sweeper.run(queries), expected = cpu.run(queries);
+    for (size_t i = 0; i < queries.size(); ++i) REQUIRE(tools::sameAnswer(results[i], expected[i]));
+  }
+  const size_t after = residentPages();
+  INFO(before << " pages before, " << after << " after");
+  CHECK(after < before + before / 50);
 }

@@ -29,13 +29,34 @@ struct Capacity {
   uint32_t searches = 0;
 };
 
-/// Records batches of mode contact. Make one per frame in flight, while loading: each has its own copy of the scene on
-/// the device and its own lists. The first one of a Device creates the pipelines, which belong to the Device. Keep the
-/// Recorder and the Device until the recorded commands have executed: destructors do not wait.
+/// A scene's copy on a device that several Recorders share, so that each change is uploaded once. All their recordings
+/// are made by one thread at a time, and submitted to one queue in the order in which they were made; if one is not
+/// submitted, none made after it is: reset() their recorders. Its buffers live as long as its recorders need them.
+class RADAR_API SceneCopy {
+ public:
+  /// `device` and `scene` outlive it and its recorders.
+  SceneCopy(const Device& device, const Scene& scene);
+  ~SceneCopy();
+  SceneCopy(SceneCopy&&) noexcept;
+  SceneCopy& operator=(SceneCopy&&) noexcept;
+
+  struct Impl;
+
+ private:
+  friend class Recorder;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Records batches of mode contact. Make one per frame in flight, while loading: each has its own lists. The first one
+/// of a Device creates the pipelines, which belong to the Device. Keep the Recorder and the Device until the recorded
+/// commands have executed: destructors do not wait.
 class RADAR_API Recorder {
  public:
-  /// `device` and `scene` outlive it. Throws, naming the member, if the device's buffers cannot hold `capacity`.
+  /// With a copy of the scene of its own. `device` and `scene` outlive it. Throws, naming the member, if the device's
+  /// buffers cannot hold `capacity`.
   Recorder(const Device& device, const Scene& scene, const Capacity& capacity = {});
+  /// With a copy that it shares.
+  explicit Recorder(SceneCopy& copy, const Capacity& capacity = {});
   ~Recorder();
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) noexcept;

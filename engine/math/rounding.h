@@ -6,13 +6,18 @@
 
 namespace radar {
 
+/// The least float above `x`, which is finite: std::nextafter, inline.
+inline float nextAbove(float x) {
+  const auto bits = std::bit_cast<uint32_t>(x);
+  return std::bit_cast<float>(bits << 1 == 0 ? 1 : (bits >> 31) == 0 ? bits + 1 : bits - 1);
+}
+
 /// The least float not below `x`; infinity if there is none.
 inline float roundUp(double x) {
   const auto nearest = static_cast<float>(x);
-  if (nearest >= x) return nearest;
-  // std::nextafter, inline.
-  const auto bits = std::bit_cast<uint32_t>(nearest);
-  return std::bit_cast<float>(bits << 1 == 0 ? 1 : (bits >> 31) == 0 ? bits + 1 : bits - 1);
+  // nextAbove without branches, which would be mispredicted every other time; 0 has no sign if it is below x.
+  const auto bits = std::bit_cast<uint32_t>(nearest), step = static_cast<uint32_t>(nearest < x);
+  return std::bit_cast<float>((bits >> 31) == 0 ? bits + step : bits - step);
 }
 
 /// The greatest float not above `x`; minus infinity if there is none.

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
+
+#include "math/rounding.h"
 
 namespace radar {
 
@@ -23,6 +26,17 @@ inline FloatBox around(const FloatBox& p, const FloatBox& q) {
   return box;
 }
 
+/// Centre and half extents of a box that contains another despite rounding.
+inline void fitBox(const FloatBox& box, float (&centre)[3], float (&half)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = 0.5f * box.lo[k] + 0.5f * box.hi[k];
+    const float reach = std::max(box.hi[k] - centre[k], centre[k] - box.lo[k]);
+    // Flat boxes stay flat, and other extents are normal numbers: subnormal numbers are slow, and devices flush them.
+    constexpr float kLeast = std::numeric_limits<float>::min();
+    half[k] = reach == 0 ? 0 : std::max(nextAbove(reach), kLeast);
+  }
+}
+
 struct BoxTree {
   /// A leaf holds the items order[first] to order[first + count - 1]; for an inner node, the leaves below hold them.
   struct Node {
@@ -30,7 +44,9 @@ struct BoxTree {
     uint32_t first = 0, count = 0;
     uint32_t child = 0;  ///< left child; the right one follows it; 0: a leaf
   };
-  std::vector<Node> nodes;      ///< the root first, children after their parents; empty without items
+  /// The root first, children after their parents; empty without items. The nodes below one are consecutive, its
+  /// children first.
+  std::vector<Node> nodes;
   std::vector<uint32_t> order;  ///< indices of the boxes, leaf by leaf
   uint32_t depth = 0;           ///< nodes on the longest path from the root to a leaf
 };

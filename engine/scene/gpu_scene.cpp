@@ -257,7 +257,7 @@ VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
   for (const ObjectId id : restored) {
     if (scene.objects[id].used && scene.changedAt[id] <= seenPoses_) changedObjects_.push_back(id);
   }
-  std::sort(changedObjects_.begin(), changedObjects_.end());
+  if (!restored.empty()) std::sort(changedObjects_.begin(), changedObjects_.end());
   return (sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement)) * changedObjects_.size();
 }
 
@@ -308,8 +308,9 @@ void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
   // Where each array's changed elements begin; all follow in their order.
   const auto places = [&](const gpu::Buffer& target, VkDeviceSize size) {
     std::byte* first = nullptr;
-    for (size_t i = 0; i < changedObjects_.size(); ++i) {
-      std::byte* at = upload.place(size, target, size * changedObjects_[i]);
+    for (size_t i = 0, end = 0; i < changedObjects_.size(); i = end) {
+      for (end = i + 1; end < changedObjects_.size() && changedObjects_[end] == changedObjects_[end - 1] + 1;) ++end;
+      std::byte* at = upload.place(size * (end - i), target, size * changedObjects_[i]);
       if (i == 0) first = at;
     }
     return first;

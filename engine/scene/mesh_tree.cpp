@@ -111,7 +111,7 @@ class Builder {
 
   void fill(MeshTree& tree, const BoxTree::Node& from, size_t i) const {
     gpu::MeshNode& node = tree.nodes[i];
-    fitBox(from.box.lo, from.box.hi, node.centre, node.halfExtent);
+    fitBox(from.box, node.centre, node.halfExtent);
     node.normal[0] = node.normal[1] = node.normal[2] = node.slabMiddle = node.slabHalf = 0;
     if (from.child == 0) {
       node.link = gpu::kLinkLeaf | (from.count > 1 ? gpu::kLinkPair : 0) | from.first;
@@ -151,23 +151,13 @@ class Builder {
     node.slabMiddle = static_cast<float>(0.5 * (least + most));
     // Rounding errors of the sums are at most 2^-51 of coordinates below 4.
     const double half = std::max(most - node.slabMiddle, node.slabMiddle - least) + 0x1p-48;
-    node.slabHalf = std::nextafter(static_cast<float>(half), std::numeric_limits<float>::max());
+    node.slabHalf = nextAbove(static_cast<float>(half));
   }
 
   const Mesh& mesh_;
 };
 
 }  // namespace
-
-void fitBox(const Point& lo, const Point& hi, float (&centre)[3], float (&half)[3]) {
-  for (int k = 0; k < 3; ++k) {
-    centre[k] = 0.5f * lo[k] + 0.5f * hi[k];
-    const float reach = std::max(hi[k] - centre[k], centre[k] - lo[k]);
-    // Flat boxes stay flat, and other extents are normal numbers: subnormal numbers are slow, and devices flush them.
-    constexpr float kLeast = std::numeric_limits<float>::min(), kMost = std::numeric_limits<float>::max();
-    half[k] = reach == 0 ? 0 : std::max(std::nextafter(reach, kMost), kLeast);
-  }
-}
 
 MeshTree buildMeshTree(const Mesh& mesh) {
   return Builder(mesh).build();

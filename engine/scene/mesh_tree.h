@@ -31,7 +31,4 @@ MeshTree buildMeshTree(const Mesh& mesh);
 /// that has made it much worse.
 MeshTree refitMeshTree(const Mesh& mesh, MeshTree before);
 
-/// Centre and half extents of a box that contains [lo, hi] despite rounding.
-void fitBox(const std::array<float, 3>& lo, const std::array<float, 3>& hi, float (&centre)[3], float (&half)[3]);
-
 }  // namespace radar

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "math/rounding.h"
@@ -16,7 +17,9 @@ namespace {
 // The tree is rebuilt once refitting has made its cost this many times that after the last build.
 constexpr double kRebuildAt = 2.0;
 constexpr size_t kChunk = 8192;
-constexpr size_t kAhead = 16;  // nodes
+constexpr size_t kAhead = 16;  // objects
+// Objects of a subtree that is refitted on one core.
+constexpr uint32_t kSubtree = 1u << 13;
 
 double halfArea(const gpu::ObjectNode& node) {
   const double x = node.halfExtent[0], y = node.halfExtent[1], z = node.halfExtent[2];
@@ -81,24 +84,41 @@ bool ObjectTree::isWorn() const {
 }
 
 void ObjectTree::updateAll(const Scene::Impl& scene) {
+  const bool sameObjects = seenStructure_ == scene.structureVersion;
   boxes_.resize(scene.objects.size());
-  parallelFor(boxes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      if (scene.objects[i].used && scene.changedAt[i] > seenPose_) setBox(scene, static_cast<ObjectId>(i));
-    }
-  });
+  leaves_.resize(scene.objects.size(), kNone);
+  std::mutex merging;
   world_ = {};
   inRange_ = true;
-  for (size_t i = 0; i < boxes_.size(); ++i) {
-    if (!scene.objects[i].used) continue;
-    world_.merge(boxes_[i]);
-    inRange_ = inRange_ && isInRange(boxes_[i]);
-  }
-  const bool sameObjects = seenStructure_ == scene.structureVersion;
+  parallelFor(boxes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    const Around around = setBoxes(scene, first, last, sameObjects && !nodes_.empty());
+    const std::lock_guard lock(merging);
+    world_.merge(around.box);
+    inRange_ = inRange_ && around.inRange;
+  });
   if (sameObjects) refit();
   if (!sameObjects || isWorn()) build(scene);
   changed_.resize(nodes_.size());
   changed_.markAll(next_);
+}
+
+// Sets the boxes of a range of objects. `fits`: their leaves are fitted, too.
+ObjectTree::Around ObjectTree::setBoxes(const Scene::Impl& scene, size_t first, size_t last, bool fits) {
+  Around around;
+  for (size_t i = first; i < last; ++i) {
+    // The leaves of neighbouring objects are far apart in memory.
+    const uint32_t ahead = leaves_[std::min(i + kAhead, leaves_.size() - 1)];
+    if (ahead < nodes_.size()) __builtin_prefetch(&nodes_[ahead], 1);
+    if (!scene.objects[i].used) continue;
+    const bool changed = scene.changedAt[i] > seenPose_;
+    if (changed) setBox(scene, static_cast<ObjectId>(i));
+    around.box.merge(boxes_[i]);
+    around.inRange = around.inRange && isInRange(boxes_[i]);
+    if (!changed || !fits || leaves_[i] == kNone) continue;
+    gpu::ObjectNode& leaf = nodes_[leaves_[i]];
+    fitBox(floatBox(boxes_[i], anchor_), leaf.centre, leaf.halfExtent);
+  }
+  return around;
 }
 
 void ObjectTree::setBox(const Scene::Impl& scene, ObjectId id) {
@@ -131,7 +151,7 @@ void ObjectTree::insert(ObjectId object) {
   const auto grown = [&](uint32_t node) {
     gpu::ObjectNode both{};
     const FloatBox sum = around(boxAround(nodes_[node]), box);
-    fitBox(sum.lo, sum.hi, both.centre, both.halfExtent);
+    fitBox(sum, both.centre, both.halfExtent);
     return halfArea(both) - halfArea(nodes_[node]);
   };
   uint32_t at = 0, level = 1;
@@ -178,7 +198,7 @@ void ObjectTree::remove(ObjectId object) {
 void ObjectTree::fit(uint32_t node, const Box& box) {
   const FloatBox rounded = floatBox(box, anchor_);
   cost_ -= halfArea(nodes_[node]);
-  fitBox(rounded.lo, rounded.hi, nodes_[node].centre, nodes_[node].halfExtent);
+  fitBox(rounded, nodes_[node].centre, nodes_[node].halfExtent);
   touch(node);
   cost_ += halfArea(nodes_[node]);
 }
@@ -189,7 +209,7 @@ void ObjectTree::fitUpwards(uint32_t node) {
     const uint32_t left = nodes_[node].link;
     const FloatBox box = around(boxAround(nodes_[left]), boxAround(nodes_[left + 1]));
     const gpu::ObjectNode before = nodes_[node];
-    fitBox(box.lo, box.hi, nodes_[node].centre, nodes_[node].halfExtent);
+    fitBox(box, nodes_[node].centre, nodes_[node].halfExtent);
     if (std::ranges::equal(before.centre, nodes_[node].centre) &&
         std::ranges::equal(before.halfExtent, nodes_[node].halfExtent)) {
       return;
@@ -227,38 +247,57 @@ void ObjectTree::build(const Scene::Impl& scene) {
   nodes_.resize(tree.nodes.size());
   for (size_t i = 0; i < nodes_.size(); ++i) {
     const BoxTree::Node& from = tree.nodes[i];
-    fitBox(from.box.lo, from.box.hi, nodes_[i].centre, nodes_[i].halfExtent);
+    fitBox(from.box, nodes_[i].centre, nodes_[i].halfExtent);
     nodes_[i].link = from.child != 0 ? from.child : gpu::kLinkLeaf | ids[tree.order[from.first]];
   }
   parents_.assign(nodes_.size(), kNone);
   for (uint32_t i = 0; i < nodes_.size(); ++i) adopt(i);
+  listSubtrees(tree);
   depth_ = tree.depth;
   builtCost_ = cost_ = cost();
 }
 
+// Divides the tree: the nodes below one are consecutive (box_tree.h).
+void ObjectTree::listSubtrees(const BoxTree& tree) {
+  builtNodes_ = tree.nodes.size();
+  subtrees_.clear();
+  topNodes_.assign(1, 0);
+  for (size_t i = 0; i < topNodes_.size(); ++i) {
+    const BoxTree::Node& node = tree.nodes[topNodes_[i]];
+    if (node.child == 0) continue;
+    if (node.count <= kSubtree) {
+      subtrees_.push_back({node.child, node.child + 2 * node.count - 2});
+    } else {
+      topNodes_.insert(topNodes_.end(), {node.child, node.child + 1});
+    }
+  }
+}
+
+// Fits the inner nodes, children before their parents: those that edits have added, then those of large subtrees, on
+// all cores, then those above. Nodes left over from removed objects are fitted, too, and count.
 void ObjectTree::refit() {
   if (!inRange_) nodes_.clear();
-  const auto isLeaf = [this](size_t node) { return (nodes_[node].link & gpu::kLinkLeaf) != 0; };
-  parallelFor(nodes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      // The boxes of neighbouring leaves are far apart in memory.
-      const size_t ahead = std::min(i + kAhead, nodes_.size() - 1);
-      if (isLeaf(ahead)) __builtin_prefetch(&boxes_[nodes_[ahead].link & gpu::kLinkItem]);
-      if (!isLeaf(i)) continue;
-      const FloatBox box = floatBox(boxes_[nodes_[i].link & gpu::kLinkItem], anchor_);
-      fitBox(box.lo, box.hi, nodes_[i].centre, nodes_[i].halfExtent);
-    }
-  });
   cost_ = 0;
-  // Children come after their parents. Nodes left over from removed objects are fitted, too, and count.
-  for (size_t i = nodes_.size(); i-- > 0;) {
+  if (nodes_.empty()) return;
+  const auto fitInner = [&](size_t i) {
     gpu::ObjectNode& node = nodes_[i];
-    if (!isLeaf(i)) {
-      const FloatBox box = around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1]));
-      fitBox(box.lo, box.hi, node.centre, node.halfExtent);
+    if ((node.link & gpu::kLinkLeaf) == 0) {
+      fitBox(around(boxAround(nodes_[node.link]), boxAround(nodes_[node.link + 1])), node.centre, node.halfExtent);
     }
-    cost_ += halfArea(node);
-  }
+    return halfArea(node);
+  };
+  const auto fitRange = [&](size_t first, size_t last) {
+    double cost = 0;
+    for (size_t i = last; i-- > first;) cost += fitInner(i);
+    return cost;
+  };
+  cost_ += fitRange(builtNodes_, nodes_.size());
+  std::vector<double> costs(subtrees_.size());
+  parallelFor(subtrees_.size(), 1, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) costs[i] = fitRange(subtrees_[i].first, subtrees_[i].last);
+  });
+  for (const double cost : costs) cost_ += cost;
+  for (size_t i = topNodes_.size(); i-- > 0;) cost_ += fitInner(topNodes_[i]);
 }
 
 double ObjectTree::cost() const {

@@ -12,6 +12,8 @@
 
 namespace radar {
 
+struct BoxTree;
+
 /// Objects that were added, moved or removed.
 struct ObjectChanges {
   std::vector<ObjectId> objects;  ///< some perhaps several times
@@ -48,6 +50,12 @@ class ObjectTree {
  private:
   void updateAll(const Scene::Impl& scene);
   void build(const Scene::Impl& scene);
+  struct Around {
+    Box box;
+    bool inRange = true;
+  };
+  Around setBoxes(const Scene::Impl& scene, size_t first, size_t last, bool fits);
+  void listSubtrees(const BoxTree& tree);
   void refit();
   double cost() const;
 
@@ -67,6 +75,12 @@ class ObjectTree {
   std::vector<uint32_t> parents_;  // by node; kNone: the root
   std::vector<uint32_t> leaves_;   // by object id; kNone: not in the tree
   std::vector<Box> boxes_;         // by object id
+  struct Range {
+    uint32_t first, last;
+  };
+  std::vector<Range> subtrees_;     // of the tree as built: large ones without their roots
+  std::vector<uint32_t> topNodes_;  // of the tree as built: those above, parents before children
+  size_t builtNodes_ = 0;           // nodes of the tree as built
   Vector anchor_{};
   Box world_;
   uint32_t depth_ = 0;

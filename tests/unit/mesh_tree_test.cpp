@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "exact/dyadic.h"
+#include "scene/box_tree.h"
 #include "scene/scene.h"
 #include "workloads/shapes.h"
 
@@ -239,7 +240,7 @@ TEST_CASE("a box of centre and half extent contains both of its ends despite rou
       hi[k] = static_cast<float>(lo[k] + random.uniform(0, size));
     }
     gpu::MeshNode node{};
-    fitBox(lo, hi, node.centre, node.halfExtent);
+    fitBox({lo, hi}, node.centre, node.halfExtent);
     if (!boxHolds(node, lo) || !boxHolds(node, hi)) FAIL("box " << i);
   }
 }

@@ -1,8 +1,6 @@
 #include <catch2/catch.hpp>
-#include <csignal>
 
 #include "chart/charts.h"
-#include "chart/in_child.h"
 #include "chart/run.h"
 #include "support/answer.h"
 #include "support/scratch_folder.h"
@@ -226,21 +224,4 @@ TEST_CASE("growing work is described from its first row to its last, beside the 
   const std::string csv = csvOf(growthTable(record));
   CHECK_THAT(csv, Contains("\ntable1,contact,10000,4,30000,4,1\ntable1,FCL steps 64,10000,2,30000,6,3\n"));
   CHECK_THAT(csv, Contains("\ntable1,the paper's OPCODE,10000,11270,30000,85480,7.58"));
-}
-
-TEST_CASE("a child hands over numbers, an exception's words, the signal that ended it, or that it took too long") {
-  CHECK(inChild([] { return std::vector<double>{1, 2.5}; }, 60).values == std::vector<double>{1, 2.5});
-  const auto throws = []() -> std::vector<double> { throw std::runtime_error("no such thing"); };
-  CHECK(inChild(throws, 60).failed == "no such thing");
-  const auto dies = [] {
-    std::raise(SIGKILL);
-    return std::vector<double>();
-  };
-  CHECK_THAT(inChild(dies, 60).failed, Contains("crashes: Killed"));
-  const auto never = [] {
-    for (volatile bool on = true; on;) {
-    }
-    return std::vector<double>();
-  };
-  CHECK(inChild(never, 1).failed == "stopped after 1 s of processor time");
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -10,8 +11,8 @@
 
 #include "bench/harness.h"
 #include "bench/statistics.h"
-#include "chart/in_child.h"
 #include "chart/run.h"
+#include "child/in_child.h"
 #include "radar/cpu_sweeper.h"
 
 namespace radar::tools {
@@ -171,16 +172,18 @@ std::vector<Result> castInChild(Cell& cell, const Workload& workload, const Base
     std::vector<double> values{static_cast<double>(cell.passes)};
     for (const double* time : timesOf(cell)) values.push_back(*time);
     for (const Result& result : results) values.push_back(result.t);
-    return values;
+    return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   };
-  const ChildOutcome outcome = inChild(work, kMostSeconds);
+  const ChildOutcome outcome = inChild(work, {.seconds = kMostSeconds});
   cell.failed = outcome.failed;
   if (!cell.failed.empty()) return {};
-  auto next = outcome.values.begin();
+  std::vector<double> values(outcome.bytes.size() / sizeof(double));
+  std::memcpy(values.data(), outcome.bytes.data(), values.size() * sizeof(double));
+  auto next = values.begin();
   cell.passes = static_cast<uint32_t>(*next++);
   for (double* time : timesOf(cell)) *time = *next++;
   std::vector<Result> results;
-  std::transform(next, outcome.values.end(), std::back_inserter(results), resultOf);
+  std::transform(next, values.end(), std::back_inserter(results), resultOf);
   return results;
 }
 

@@ -1,181 +1,160 @@
 #include "import/mesh_import.h"
 
-#include <assimp/config.h>
-#include <assimp/scene.h>
+#include <unistd.h>
 
-#include <assimp/DefaultLogger.hpp>
-#include <assimp/Importer.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <new>
+#include <set>
 #include <sstream>
 
-#include "import/mesh_file_validation.h"
+#include "child/in_child.h"
+#include "import/readers.h"
+#include "import/regular_file.h"
 
 namespace radar::tools {
 
 namespace {
 
-/// Assimp repairs some broken files, such as those with an index out of range, and says so only in its log. Most lines
-/// of the log are about materials.
-class ImportLog : public Assimp::LogStream {
- public:
-  explicit ImportLog(std::vector<std::string>& lines) : lines_(lines) {
-    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Err | Assimp::Logger::Warn);
-  }
-  ~ImportLog() override {
-    Assimp::DefaultLogger::get()->detachStream(this, Assimp::Logger::Err | Assimp::Logger::Warn);
-    Assimp::DefaultLogger::kill();
-  }
-  void write(const char* message) override {
-    std::string line = message;
-    while (!line.empty() && line.back() == '\n') line.pop_back();
-    lines_.push_back(line);
-  }
+/// Own readers number vertices with 32 bits; none stores more than one in 2 bytes.
+constexpr uint64_t kMostBytes = uint64_t(1) << 33;
 
- private:
-  std::vector<std::string>& lines_;
-};
+/// Of a mesh that nodes place several times, vertices and triangles.
+constexpr uint64_t kMostCopied = uint64_t(1) << 27;
 
-bool tellsOfBrokenGeometry(const std::string& logLine) {
-  for (const char* words : {"out of range", "out-of-range", "out of bounds", "nvalid vertex", "nvalid index",
-                            "nvalid face", "faces were dropped", "Unexpected EOF"}) {
-    if (logLine.find(words) != std::string::npos) return true;
-  }
-  return false;
-}
-
-Transform product(const Transform& a, const aiMatrix4x4& b) {
-  Transform result;
-  for (unsigned row = 0; row < 3; ++row) {
-    for (unsigned column = 0; column < 4; ++column) {
-      double sum = column == 3 ? a.m[4 * row + 3] : 0.0;
-      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * double(b[k][column]);
-      result.m[4 * row + column] = sum;
-    }
-  }
-  return result;
-}
-
-/// The triangles of parts of a file, as one mesh.
-struct Collector {
-  const std::string& file;
-  const aiScene& scene;
-  MeshData mesh;
-  uint64_t points = 0, lines = 0;
-
-  void add(const aiNode& node, const Transform& meshFromNode);
-  void add(const aiMesh& part, const Transform& meshFromPart, const std::string& place);
-};
-
-std::string placeOf(const aiNode& node) {
-  return "node \"" + std::string(node.mName.C_Str()) + "\"";
-}
-
-void Collector::add(const aiNode& node, const Transform& meshFromNode) {
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const unsigned number = node.mMeshes[i];
-    add(*scene.mMeshes[number], meshFromNode, placeOf(node) + ": mesh " + std::to_string(number));
-  }
-}
-
-void Collector::add(const aiMesh& part, const Transform& meshFromPart, const std::string& place) {
-  const size_t first = mesh.vertexCount();
-  if (first + part.mNumVertices > std::numeric_limits<uint32_t>::max() / 3) {
-    throw InputError(file, place, "expected at most 2^32 / 3 vertices, got more");
-  }
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& vertex = part.mVertices[i];
-    for (const double coordinate : transformPoint(meshFromPart, &vertex.x)) {
-      const float value = static_cast<float>(coordinate);
-      if (!std::isfinite(value)) {
-        std::ostringstream problem;
-        problem << "expected 3 finite numbers, got " << vertex.x << " " << vertex.y << " " << vertex.z
-                << " before the node's transform";
-        throw InputError(file, place + ": vertex " + std::to_string(i), problem.str());
-      }
-      mesh.positions.push_back(value);
-    }
-  }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      if (face.mIndices[k] >= part.mNumVertices) {
-        throw InputError(file, place + ": face " + std::to_string(i),
-                         "expected vertex numbers below " + std::to_string(part.mNumVertices) + ", got " +
-                             std::to_string(face.mIndices[k]));
-      }
-    }
-    if (face.mNumIndices == 1) ++points;
-    if (face.mNumIndices == 2) ++lines;
-    for (unsigned k = 2; k < face.mNumIndices; ++k) {
-      for (unsigned corner : {0u, k - 1, k})
-        mesh.indices.push_back(static_cast<uint32_t>(first + face.mIndices[corner]));
-    }
-  }
-}
+constexpr unsigned kMostSeconds = 600;  // of assimp
 
 std::string plural(uint64_t count, const char* noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+std::string placeOf(const MeshFile::Node& node) {
+  return "node \"" + node.name + "\"";
+}
+
+// Assimp crashes on some broken files, and is led to take any amount of memory by others.
+MeshFile readInChild(const std::filesystem::path& file) {
+  const auto work = [&] {
+    try {
+      return bytesOf(readWithAssimp(file));
+    } catch (const std::bad_alloc&) {
+      throw InputError(file.string(), "", "expected a mesh file, got one that takes half of this machine's memory");
+    }
+  };
+  const auto memory = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  const ChildOutcome outcome = inChild(work, {.seconds = kMostSeconds, .bytes = memory / 2});
+  if (outcome.threw) throw InputError(outcome.failed);
+  if (outcome.failed.empty()) return meshFileFrom(outcome.bytes);
+  throw InputError(file.string(), "", "expected a mesh file that assimp reads, but it " + outcome.failed);
+}
+
+MeshFile openFile(const std::filesystem::path& file) {
+  using Reader = MeshFile (*)(Text);
+  static const std::map<std::string, Reader> kReaders{
+      {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}};
+  const std::string name = file.string();
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  requireRegular(file, "a mesh file");
+  const auto reader = kReaders.find(extension);
+  if (reader == kReaders.end()) return readInChild(file);
+  if (std::filesystem::file_size(file) > kMostBytes) throw InputError(name, "", "expected at most 8 GiB, got more");
+  const std::string content = readRegularFile(file, "a mesh file");
+  if (content.empty()) throw InputError(name, "", "expected a mesh file, got an empty one");
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  std::string_view text = content;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return reader->second({name, text});
+}
+
+/// The triangles of nodes of a file, as one mesh.
+struct Collector {
+  const std::string& name;
+  const MeshFile& file;
+  MeshData mesh;
+  uint64_t points = 0, lines = 0;
+
+  void add(const MeshFile::Node& node, const Transform& meshFromNode);
+  void add(const MeshFile::Part& part, const Transform& meshFromPart, const std::string& place);
+};
+
+void Collector::add(const MeshFile::Node& node, const Transform& meshFromNode) {
+  for (const uint32_t number : node.parts) {
+    add(file.parts[number], meshFromNode, placeOf(node) + ": mesh " + std::to_string(number));
+  }
+}
+
+void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, const std::string& place) {
+  const size_t first = mesh.vertexCount(), count = part.positions.size() / 3;
+  for (size_t i = 0; i < count; ++i) {
+    const float* vertex = &part.positions[3 * i];
+    for (const double coordinate : transformPoint(meshFromPart, vertex)) {
+      const float value = static_cast<float>(coordinate);
+      if (!std::isfinite(value)) {
+        std::ostringstream problem;
+        problem << "expected 3 finite numbers, got " << vertex[0] << " " << vertex[1] << " " << vertex[2]
+                << " before the node's transform";
+        throw InputError(name, place + ": vertex " + std::to_string(i), problem.str());
+      }
+      mesh.positions.push_back(value);
+    }
+  }
+  for (const uint32_t index : part.indices) {
+    if (index >= count) {
+      throw InputError(name, place,
+                       "expected vertex numbers below " + std::to_string(count) + ", got " + std::to_string(index));
+    }
+    mesh.indices.push_back(static_cast<uint32_t>(first + index));
+  }
+  points += part.points;
+  lines += part.lines;
+}
+
+/// Refuses, before anything is copied, what would be too large: a few bytes for a node may place a large mesh again.
+/// `shared`: nodes that place the same parts share one copy.
+void requireSize(const std::string& name, const MeshFile& file, bool shared) {
+  uint64_t stored = 0, placed = 0;
+  const auto sizeOf = [](const MeshFile::Part& part) {
+    return std::max(part.positions.size(), part.indices.size()) / 3;
+  };
+  for (const MeshFile::Part& part : file.parts) stored += sizeOf(part);
+  std::set<std::vector<uint32_t>> known;
+  for (const MeshFile::Node& node : file.nodes) {
+    if (shared && !known.insert(node.parts).second) continue;
+    for (const uint32_t number : node.parts) placed += sizeOf(file.parts.at(number));
+  }
+  constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max() / 3;
+  const uint64_t limit = std::min(std::max(stored, kMostCopied), kMost);
+  if (placed <= limit) return;
+  throw InputError(name, "",
+                   "expected at most " + std::to_string(limit) +
+                       " vertices and triangles, counted as often as nodes place them, got " + std::to_string(placed));
+}
+
 void warnOfDropped(const Collector& collected, std::vector<std::string>& warnings) {
   if (collected.points + collected.lines == 0) return;
-  warnings.push_back(collected.file + ": dropped " + plural(collected.points, "point") + " and " +
+  warnings.push_back(printable(collected.name) + ": dropped " + plural(collected.points, "point") + " and " +
                      plural(collected.lines, "line") + ", which are no surface");
 }
 
 void requireTriangles(bool some, const Collector& collected) {
   if (some) return;
-  throw InputError(collected.file, "",
+  throw InputError(collected.name, "",
                    "expected at least one triangle, got " + plural(collected.points, "point") + " and " +
                        plural(collected.lines, "line"));
 }
 
-/// Calls `use` with each node and its pose, depth-first.
-template <class Use>
-void forEachNode(const aiNode& node, const Transform& fileFromParent, const Use& use) {
-  const Transform fileFromNode = product(fileFromParent, node.mTransformation);
-  use(node, fileFromNode);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) forEachNode(*node.mChildren[i], fileFromNode, use);
-}
-
-const aiScene& openFile(Assimp::Importer& importer, const std::filesystem::path& file) {
-  const std::string name = file.string();
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(name, "",
-                     std::string("expected a mesh file, got ") +
-                         (std::filesystem::exists(file, error) ? "a folder" : "no such file"));
-  }
-  requireIntact(file);
-  // Without this, assimp invents a mesh for a file that holds only bones.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  std::vector<std::string> logLines;
-  const aiScene* scene = nullptr;
-  {
-    ImportLog log(logLines);
-    scene = importer.ReadFile(name, 0);
-  }
-  if (!scene || !scene->mRootNode) {
-    throw InputError(name, "",
-                     "expected a mesh file that assimp reads, got: " + std::string(importer.GetErrorString()));
-  }
-  for (const std::string& line : logLines) {
-    if (tellsOfBrokenGeometry(line)) throw InputError(name, "", "expected an intact mesh file, got: " + line);
-  }
-  return *scene;
-}
-
-MeshData readWholeFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  Assimp::Importer importer;
-  const aiScene& scene = openFile(importer, file);
-  const std::string name = file.string();
-  Collector collector{name, scene, {file.filename().string(), {}, {}}};
-  forEachNode(*scene.mRootNode, {},
-              [&](const aiNode& node, const Transform& fileFromNode) { collector.add(node, fileFromNode); });
+MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  const std::string name = path.string();
+  const MeshFile file = openFile(path);
+  requireSize(name, file, false);
+  Collector collector{name, file, {path.filename().string(), {}, {}}};
+  for (const MeshFile::Node& node : file.nodes) collector.add(node, node.fileFromNode);
   requireTriangles(!collector.mesh.indices.empty(), collector);
   warnOfDropped(collector, warnings);
   return std::move(collector.mesh);
@@ -183,26 +162,25 @@ MeshData readWholeFile(const std::filesystem::path& file, std::vector<std::strin
 
 }  // namespace
 
-Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  Assimp::Importer importer;
-  const aiScene& scene = openFile(importer, file);
-  const std::string name = file.string();
+Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  const std::string name = path.string();
+  const MeshFile file = openFile(path);
+  requireSize(name, file, true);
   Assembly assembly;
-  Collector collector{name, scene, {}};
-  std::map<std::vector<unsigned>, uint32_t> known;  // what nodes list -> its mesh
-  forEachNode(*scene.mRootNode, {}, [&](const aiNode& node, const Transform& fileFromNode) {
-    const std::vector<unsigned> listed(node.mMeshes, node.mMeshes + node.mNumMeshes);
-    auto found = known.find(listed);
+  Collector collector{name, file, {}};
+  std::map<std::vector<uint32_t>, uint32_t> known;  // what nodes place -> its mesh
+  for (const MeshFile::Node& node : file.nodes) {
+    auto found = known.find(node.parts);
     if (found == known.end()) {
-      collector.mesh = {file.filename().string() + "#" + std::to_string(assembly.parts.size()), {}, {}};
+      collector.mesh = {path.filename().string() + "#" + std::to_string(assembly.parts.size()), {}, {}};
       collector.add(node, {});
-      if (collector.mesh.indices.empty()) return;
-      found = known.emplace(listed, static_cast<uint32_t>(assembly.meshes.size())).first;
+      if (collector.mesh.indices.empty()) continue;
+      found = known.emplace(node.parts, static_cast<uint32_t>(assembly.meshes.size())).first;
       assembly.meshes.push_back(std::move(collector.mesh));
     }
-    if (std::string wrong = validate(fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
-    assembly.parts.push_back({node.mName.C_Str(), found->second, fileFromNode});
-  });
+    if (std::string wrong = validate(node.fileFromNode); !wrong.empty()) throw InputError(name, placeOf(node), wrong);
+    assembly.parts.push_back({node.name, found->second, node.fileFromNode});
+  }
   requireTriangles(!assembly.parts.empty(), collector);
   warnOfDropped(collector, warnings);
   return assembly;

@@ -1,4 +1,4 @@
-// Mesh files to triangles, by assimp.
+// Mesh files to triangles.
 #pragma once
 
 #include <filesystem>
@@ -35,18 +35,22 @@ struct MeshName {
 /// of a file.
 MeshName splitMeshName(const std::filesystem::path& name);
 
-/// Reads any file assimp reads as one mesh: nodes depth-first, each node's meshes in order, their vertices and faces in
-/// order, as often as nodes place them. Node transforms are multiplied in double precision and each vertex is rounded
-/// once to float. Faces of more than three corners are fanned from their first corner; points and lines are dropped and
-/// counted in a warning. No vertex is joined, moved or left out, no face removed. Assimp itself gives floats: numbers
-/// written in text, or in doubles, are what its importer makes of them. With a FILE#NODE, reads that node's meshes
+/// Reads a file as one mesh: nodes depth-first, each node's meshes in order, their vertices and faces in order, as
+/// often as nodes place them. Node transforms are multiplied in double precision and each vertex is rounded once to
+/// float. Faces of more than three corners are fanned from their first corner; points and lines are dropped and counted
+/// in a warning. No vertex is joined, moved or left out, no face removed. With a FILE#NODE, reads that node's meshes
 /// only, in the node's own frame.
 ///
+/// Files whose names end in .obj, .stl, .ply or .off are read here: a number in text becomes the nearest float. Assimp
+/// reads all others, in a child process, which it may crash; numbers in text, or doubles, are the floats that it makes
+/// of them.
+///
 /// Appends to `warnings` what a person should know, each beginning with the file. Throws InputError if the file is
-/// missing or broken, holds no triangle, a vertex that is not finite or a face that names a vertex that does not exist.
+/// missing, no regular file or broken, holds no triangle, a vertex that is not finite or a face that names a vertex
+/// that does not exist, or if its nodes place so much so often that the mesh would be too large.
 MeshData readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings);
 
-/// Reads any file assimp reads as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
+/// Reads a file as an assembly, otherwise as above. Also throws InputError if a node's pose is singular.
 Assembly readAssembly(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace radar::tools

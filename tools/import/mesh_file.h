@@ -1,0 +1,35 @@
+// What a mesh file holds, before its nodes are put together.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "radar/scene.h"
+
+namespace radar::tools {
+
+struct MeshFile {
+  /// Faces of more than three corners are already split into a fan from their first corner.
+  struct Part {
+    std::vector<float> positions;    ///< 3 per vertex; may be infinite or no number
+    std::vector<uint32_t> indices;   ///< 3 vertex numbers per triangle; may name vertices that do not exist
+    uint64_t points = 0, lines = 0;  ///< which are no surface; their vertices are among the positions
+
+    /// Adds a face, or counts it if it is a point or a line. `corners` are vertex numbers.
+    void addFace(const std::vector<uint32_t>& corners);
+  };
+  struct Node {
+    std::string name;
+    Transform fileFromNode;       ///< the transforms of the node and those above it, multiplied in double precision
+    std::vector<uint32_t> parts;  ///< their numbers; parts may be placed by several nodes
+  };
+  std::vector<Part> parts;
+  std::vector<Node> nodes;  ///< depth-first; those without parts may be missing
+};
+
+/// As bytes, to pass it on to another process. The way back throws std::runtime_error for bytes that are no MeshFile.
+std::string bytesOf(const MeshFile& file);
+MeshFile meshFileFrom(std::string_view bytes);
+
+}  // namespace radar::tools

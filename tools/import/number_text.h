@@ -1,0 +1,18 @@
+// Numbers in text, whatever the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace radar::tools {
+
+/// The number nearest to the decimal number that `text` is, of two equally near ones the even one; infinite if it is
+/// too large. Takes "nan" and "inf", too. Nothing if `text` is anything else, or only begins with a number.
+template <class Real>
+std::optional<Real> nearest(std::string_view text);
+
+/// A whole number without a sign.
+std::optional<uint64_t> wholeNumber(std::string_view text);
+
+}  // namespace radar::tools

@@ -1,0 +1,31 @@
+// The readers of OBJ, STL, PLY and OFF, whose numbers become the nearest floats, and that of all other formats.
+//
+// A file that ends early, names a vertex that does not exist or is otherwise broken is refused with an InputError.
+#pragma once
+
+#include <filesystem>
+
+#include "import/mesh_file.h"
+#include "import/text.h"
+
+namespace radar::tools {
+
+/// A node for each object or group, in the order in which they begin; each has a vertex for each corner of its faces,
+/// lines and points. Homogeneous coordinates are divided in double precision. Ignores normals, texture coordinates,
+/// colours and material libraries. Refuses free-form surfaces.
+MeshFile readObj(Text text);
+
+/// A node for each solid; binary files are one. Three vertices for each facet. Ignores normals and colours.
+MeshFile readStl(Text text);
+
+/// One node; ASCII and both kinds of binary files. Refuses triangle strips.
+MeshFile readPly(Text text);
+
+/// One node. Vertices and faces have a line each, whose rest (normals, colours) is ignored. Homogeneous coordinates are
+/// divided in double precision.
+MeshFile readOff(Text text);
+
+/// A file of another format, by assimp. May crash or run for ever on a broken file.
+MeshFile readWithAssimp(const std::filesystem::path& file);
+
+}  // namespace radar::tools

@@ -72,7 +72,7 @@ TEST_CASE("a bad query file ends with status 2, a message that names the place, 
   const std::string whole = queryFile(kGood);
   requireRefused(folder, whole.substr(0, whole.size() - 9), "line 2", "unexpected end of input");
   requireRefused(folder, queryFile(query("p", R"("sensor": [0], "rotation": [0,0,1])")), "queries[0].rotation",
-                 "not available in this version");
+                 "\"rotation\", which is reserved for a later version");
 }
 
 TEST_CASE("the message about a missing query file names it") {

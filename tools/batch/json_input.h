@@ -12,7 +12,7 @@
 namespace radar::tools {
 
 /// Parses one JSON document. Beyond the grammar, refuses a key given twice in an object, a number too large for a
-/// double, and more than 100 levels. Throws InputError with the path of the value at hand and, for a breach of the
+/// double and more than 100 levels. Throws InputError with the path of the value at hand and, for a breach of the
 /// grammar, line and column.
 inline nlohmann::json parseJson(const std::string& file, std::string_view text) {
   using nlohmann::json;
@@ -22,6 +22,7 @@ inline nlohmann::json parseJson(const std::string& file, std::string_view text) 
     std::string key;
     std::set<std::string> keys;
   };
+  constexpr size_t kDeepest = 100;  // what is nested without end overflows the stack
   std::vector<Level> open;
   const auto path = [&] {
     std::string result;
@@ -37,13 +38,15 @@ inline nlohmann::json parseJson(const std::string& file, std::string_view text) 
   const auto follow = [&](int, json::parse_event_t event, json& parsed) {
     using Event = json::parse_event_t;
     if (event == Event::object_start || event == Event::array_start) {
-      if (open.size() == 100) throw InputError(file, "", "expected at most 100 levels of lists and objects, got more");
+      if (open.size() == kDeepest) {
+        throw InputError(file, "", "expected at most 100 levels of lists and objects, got more");
+      }
       open.push_back({.isArray = event == Event::array_start});
     } else if (event == Event::key) {
       Level& level = open.back();
       level.key = parsed.get<std::string>();
       if (!level.keys.insert(level.key).second) {
-        throw InputError(file, path(), "expected each key once, got \"" + level.key + "\" twice");
+        throw InputError(file, path(), "expected each key once, got \"" + printable(level.key, 60) + "\" twice");
       }
     } else {
       if (event != Event::value) open.pop_back();
@@ -56,7 +59,7 @@ inline nlohmann::json parseJson(const std::string& file, std::string_view text) 
   } catch (const json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": without the bracket.
     const std::string what = error.what();
-    throw InputError(file, path(), "expected valid JSON, got " + what.substr(what.find("] ") + 2));
+    throw InputError(file, path(), "expected valid JSON, got " + printable(what.substr(what.find("] ") + 2), 300));
   }
 }
 

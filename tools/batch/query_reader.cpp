@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <iostream>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -13,6 +13,7 @@
 #include "batch/json_input.h"
 #include "batch/query_file.h"
 #include "import/mesh_import.h"
+#include "import/regular_file.h"
 
 namespace radar::tools {
 
@@ -21,27 +22,16 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kLater[] = {"rotation"};
 
-std::string readWhole(const std::filesystem::path& file, const char* kind) {
-  std::error_code error;
-  const bool isFolder = std::filesystem::is_directory(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (isFolder || !stream) {
-    throw InputError(file.string(), "",
-                     std::string("expected ") + kind + (isFolder ? ", got a folder" : ", got no readable file"));
-  }
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
   object.requireObject();
   for (const auto& [key, value] : object.json().items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    if (std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater)) {
-      object.member(key.c_str()).refuse("expected no such key: \"" + key + "\" is not available in this version");
-    }
     std::string list;
     for (std::string_view name : known) list.append(list.empty() ? "" : ", ").append(name);
-    object.member(key.c_str()).refuse("expected one of the keys " + list + ", got \"" + key + "\"");
+    const bool isLater = std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater);
+    object.member(key.c_str())
+        .refuse("expected one of the keys " + list + ", got \"" + printable(key, 60) + "\"" +
+                (isLater ? ", which is reserved for a later version" : ""));
   }
 }
 
@@ -78,11 +68,12 @@ std::array<double, 3> readVector(const JsonValue& list) {
 class Reader {
  public:
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings)
-      : file_(file), name_(file.string()), warnings_(warnings) {}
+      : file_(file), name_(file == "-" ? "standard input" : file.string()), warnings_(warnings) {}
 
   Workload read();
 
  private:
+  std::string content() const;
   void readMesh(const JsonValue& value);
   void readScene(const JsonValue& scene);
   void readInstances(const JsonValue& scene, SceneSpec& spec);
@@ -105,8 +96,13 @@ class Reader {
   std::unordered_set<std::string> sceneIds_, queryIds_;
 };
 
+std::string Reader::content() const {
+  if (file_ == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  return readRegularFile(file_, "a query file, or - for standard input");
+}
+
 Workload Reader::read() {
-  const nlohmann::json document = parseJson(name_, readWhole(file_, "a query file"));
+  const nlohmann::json document = parseJson(name_, content());
   const JsonValue root(name_, document);
   requireKnownKeys(root, {"format", "meshes", "scenes", "queries"});
   const JsonValue format = root.member("format");
@@ -214,7 +210,7 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
 
 std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) const {
   static_assert(std::endian::native == std::endian::little);
-  const std::string bytes = readWhole(file, "a file of vertex positions");
+  const std::string bytes = readRegularFile(file, "a file of vertex positions");
   std::vector<float> positions(mesh.positions.size());
   const size_t expected = positions.size() * sizeof(float);
   if (bytes.size() != expected) {
@@ -242,7 +238,7 @@ Instance Reader::readInstance(const JsonValue& list) const {
 }
 
 std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) const {
-  const std::string content = readWhole(file, "an instance file");
+  const std::string content = readRegularFile(file, "an instance file");
   std::string_view rest = content;
   std::vector<Instance> instances;
   // Only the last line may be blank.

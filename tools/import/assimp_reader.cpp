@@ -5,6 +5,7 @@
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <map>
+#include <new>
 
 #include "import/readers.h"
 
@@ -37,9 +38,12 @@ class ImportLog : public Assimp::LogStream {
 /// Files may name others, such as buffers of glTF: a device or a pipe among them would be read for ever.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
+  bool Exists(const char* file) const override {
     std::error_code error;
-    return std::filesystem::is_regular_file(file, error) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    return std::filesystem::is_regular_file(file, error);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
   }
 };
 
@@ -118,6 +122,7 @@ MeshFile readWithAssimp(const std::filesystem::path& file) {
     ImportLog log(logLines);
     scene = importer.ReadFile(name, 0);
   }
+  if (!scene && std::string_view(importer.GetErrorString()) == std::bad_alloc().what()) throw std::bad_alloc();
   if (!scene || !scene->mRootNode) {
     throw InputError(name, "",
                      "expected a mesh file that assimp reads, got: " + printable(importer.GetErrorString(), 200));

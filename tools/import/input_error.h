@@ -14,7 +14,7 @@ std::string printable(std::string_view text, size_t most = 1000);
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& file, const std::string& place, const std::string& problem)
-      : std::runtime_error(printable(file) + ": " + (place.empty() ? "" : printable(place) + ": ") +
+      : std::runtime_error(printable(file) + ": " + (place.empty() ? "" : printable(place, 200) + ": ") +
                            printable(problem)) {}
   /// With the words of another InputError.
   explicit InputError(const std::string& words) : std::runtime_error(words) {}

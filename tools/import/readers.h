@@ -25,7 +25,7 @@ MeshFile readPly(Text text);
 /// divided in double precision.
 MeshFile readOff(Text text);
 
-/// A file of another format, by assimp. May crash or run for ever on a broken file.
+/// A file of another format, by assimp. May crash or run for ever on a broken file; throws std::bad_alloc, too.
 MeshFile readWithAssimp(const std::filesystem::path& file);
 
 }  // namespace radar::tools

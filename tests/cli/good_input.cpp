@@ -68,6 +68,32 @@ TEST_CASE("query answers in the order of the file and respects base scenes, mask
   CHECK(answers[0]["fraction"] == 5.0 / 8);
 }
 
+TEST_CASE("query reads a query file from standard input, whose paths are relative to the current folder") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  const Run run = runProgram(folder, "query - --mode reference <q.json");
+  CHECK(run.status == 0);
+  CHECK_FALSE(run.out.empty());
+  CHECK(run.out == runProgram(folder, "query q.json --mode reference").out);
+  const Run refused = runProgram(folder, "query -");
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.err, Contains("standard input: expected valid JSON"));
+}
+
+TEST_CASE("query answers once for its statistics, and --repeat asks for more") {
+  const ScratchFolder folder;
+  writeTriangles(folder);
+  for (const auto& [options, passes] : {std::pair{"", 1}, std::pair{"--repeat 2", 3}}) {
+    const Run run = runProgram(folder, std::string("query q.json --stats s.json --device all ") + options);
+    CHECK(run.status == 0);
+    const auto stats = nlohmann::json::parse(folder.read("s.json"));
+    CHECK_FALSE(stats["stages"].empty());
+    int answered = 0;
+    for (const auto& device : stats["devices"]) answered += device["queries"].get<int>();
+    CHECK(answered == 7 * passes);
+  }
+}
+
 TEST_CASE("answers about an assembly name the objects") {
   const ScratchFolder folder;
   writeTriangles(folder);

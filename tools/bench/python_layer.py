@@ -66,8 +66,9 @@ def main() -> None:
             start = time.perf_counter()
             scene.cast(**arguments, mode="reference", out=out)
             of_package.append(time.perf_counter() - start)
-            command = ["query", file, "--mode", "reference", "--stats", stats, "--out", stats.with_suffix(".jsonl")]
-            subprocess.run([options.program, *command], check=True, capture_output=True)
+            command = ["query", file, "--mode", "reference", "--repeat", "1", "--stats", stats]
+            command += ["--out", stats.with_suffix(".jsonl")]
+            subprocess.run([options.program, *map(str, command)], check=True, capture_output=True)
             of_program.append(json.loads(stats.read_text())["sweep_ms"] / 1e3)
         package, program = statistics.median(of_package), statistics.median(of_program)
         print(f"{len(out.distance)} casts: package {package:.3f} s, C++ {program:.3f} s, ratio {package / program:.3f}")

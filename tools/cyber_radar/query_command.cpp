@@ -27,7 +27,7 @@ struct Options {
   EngineOptions engine;
   std::string file, out, stats;
   uint32_t repeat = 1;
-  bool measure = false;
+  bool repeated = false;
 };
 
 std::string statsOf(const Workload& workload, const Answering& answering, const Answering::Pass& pass, double loadMs,
@@ -64,9 +64,10 @@ int query(const Options& options) {
   const double loadMs = 1e3 * (bench::now() - start);
   printWarnings(warnings);
 
+  engine.timestamps = !options.stats.empty() && !options.repeated;
   Answering answering(workload, engine);
   const double setupMs = answering.setUp();
-  if (options.measure) {
+  if (options.repeated) {
     answering.run("warming up");
     answering.setUp();
   }
@@ -77,11 +78,13 @@ int query(const Options& options) {
     times.push_back(answering.run("answering again").ms);
   }
   if (!options.stats.empty()) {
-    // A separate pass measures the stages, since timestamps slow the others.
-    engine.timestamps = true;
-    Answering profile(workload, engine);
-    profile.setUp();
-    pass.stages = profile.run("measuring stages").stages;
+    if (options.repeated) {
+      // A separate pass measures the stages, since timestamps slow the others.
+      engine.timestamps = true;
+      Answering profile(workload, engine);
+      profile.setUp();
+      pass.stages = profile.run("measuring stages").stages;
+    }
     writeAtomically(options.stats, statsOf(workload, answering, pass, loadMs, setupMs, median(times)));
   }
   const std::string lines = answerLines(workload, pass.answers);
@@ -107,20 +110,22 @@ void addQueryCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILE.json", options->file, "Query file")->required();
+  command->add_option("FILE.json", options->file, "Query file; - for standard input")->required();
   command->add_option("--out", options->out, "Where the answers go; else to standard output")->type_name("FILE.jsonl");
   options->engine.severalDevices = true;
   options->engine.addTo(*command);
   CLI::Option* repeat =
-      command->add_option("--repeat", options->repeat, "Answers N times, after one warm-up, and takes the median time")
+      command
+          ->add_option("--repeat", options->repeat,
+                       "Answers N times, after one warm-up, and takes the median time; with --stats once more, for the "
+                       "times of the stages")
           ->check(CLI::Range(1u, 1'000'000u))
           ->type_name("N")
           ->capture_default_str();
-  CLI::Option* stats =
-      command->add_option("--stats", options->stats, "Writes times and counts here, as one JSON object")
-          ->type_name("FILE.json");
+  command->add_option("--stats", options->stats, "Writes times and counts here, as one JSON object")
+      ->type_name("FILE.json");
   command->callback([=, &status] {
-    options->measure = repeat->count() > 0 || stats->count() > 0;
+    options->repeated = repeat->count() > 0;
     status = query(*options);
   });
 }

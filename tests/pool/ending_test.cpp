@@ -98,8 +98,8 @@ TEST_CASE("a pool that is destroyed with work queued fulfils every future, with 
     hold();
     for (int i = 0; i < 4; ++i) futures.push_back(pool.submit(boxes.queries));
     for (size_t i : {0, 1}) faults(i).awaitHeld();
-    releasing = std::jthread([] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    releasing = std::jthread([&] {
+      futures.back().wait();  // the destructor has closed the queue
       release();
     });
   }

@@ -29,6 +29,7 @@ Json madeUp() {
   device["limits"] = {{{"limit", "maxThings"}, {"has", 7}, {"needed", 5}, {"mode", "sampled"}}};
   Json& parts = device["parts"];
   for (Json& part : parts) part["state"] = "done";
+  report["together"]["state"] = "impossible";
   parts["arithmetic"]["rows"] = {{{"operation", "float addition"}, {"worst_ulps", 0.5}, {"found", "rounded up"}},
                                  {{"operation", "float copies"}, {"worst_ulps", NAN}, {"found", "the \"same\", all"}}};
   parts["exactness"]["rows"] = {{{"family", "convex"}, {"doubles", true}, {"queries", 64}, {"wrong", 0}}};
@@ -62,7 +63,7 @@ TEST_CASE("a selftest's report tells every number as text, JSON, tables and a pa
   const std::string text = selftestText(report);
   for (const char* said : {"command: cyber-radar selftest\n", "device 3: A <device>\n", "maxThings", "rounded up",
                            "    convex  yes           64      0\n", "exactness: done", "lanes: done",
-                           "1065 answers checked, 0 wrong: nothing is wrong", "all devices together: not begun"}) {
+                           "1065 answers checked, 0 wrong: nothing is wrong", "all devices together: impossible"}) {
     CHECK_THAT(text, Contains(said));
   }
   const std::map<std::string, std::string> files = selftestFiles(report);
@@ -84,6 +85,18 @@ TEST_CASE("a selftest's report tells every number as text, JSON, tables and a pa
        {"--share:2.5%\">50000<", "--share:40.0%\">0.1<", "--share:50.0%\">1<", "--share:100.0%\">7<"}) {
     CHECK_THAT(page, Contains(bar));
   }
+}
+
+TEST_CASE("a selftest that was interrupted says so, what was checked, and what is wrong so far") {
+  Json report = madeUp();
+  report["devices"][0]["parts"]["lanes"]["state"] = "running";
+  report["devices"][0]["parts"]["passes"]["state"] = "not begun";
+  conclude(report);
+  CHECK(report["right"] == false);
+  CHECK_THAT(selftestText(report), Contains("1065 answers checked, 0 wrong: interrupted when 4 of 6 parts had ended"));
+  report["devices"][0]["parts"]["exactness"]["rows"][0]["wrong"] = 1;
+  conclude(report);
+  CHECK_THAT(selftestText(report), Contains("1065 answers checked, 1 wrong: SOMETHING IS WRONG"));
 }
 
 TEST_CASE("a wrong answer, an answer that differs and a part that failed make the report say so") {
@@ -116,6 +129,19 @@ TEST_CASE("a selftest can be read whenever it is interrupted, and every part has
     const std::map<std::string, std::string> files = selftestFiles(report);
     CHECK(nlohmann::json::parse(files.at("report.json"))["together"].is_object());
     CHECK_THAT(files.at("index.html"), Contains("</html>"));
+    // What the files say if the run is interrupted now.
+    if (other["parts"]["arithmetic"]["state"] == "not begun") {
+      CHECK(report["right"] == false);
+      for (const char* file : {"report.txt", "index.html"}) {
+        CHECK_THAT(files.at(file), Contains("0 answers checked, 0 wrong: interrupted when 0 of 6 parts had ended"));
+      }
+      CHECK(device["right"] == (device["parts_ended"] == 6));
+      CHECK_THAT(
+          files.at("report.txt"),
+          Contains(device["right"] ? device["answers_checked"].dump() + " answers checked, 0 wrong: nothing is wrong"
+                                   : device["answers_checked"].dump() + " answers checked, 0 wrong: interrupted when " +
+                                         device["parts_ended"].dump() + " of 6 parts"));
+    }
     for (const auto& [name, part] : device["parts"].items()) {
       if (!isUnderWay(part)) continue;
       begun.push_back(name);

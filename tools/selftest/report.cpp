@@ -32,9 +32,17 @@ std::string stateText(const Json& part) {
   return print("%s, %.1f s", state.c_str(), part["seconds"].get<double>()) + (note.empty() ? "" : ": " + note);
 }
 
+// Before its end, a report is read only if the selftest was interrupted.
 std::string verdictText(const Json& device) {
-  return device["answers_checked"].dump() + " answers checked, " + device["answers_wrong"].dump() +
-         " wrong: " + (device["right"] ? "nothing is wrong" : "SOMETHING IS WRONG");
+  const Json& parts = device["parts"];
+  const std::string counts =
+      device["answers_checked"].dump() + " answers checked, " + device["answers_wrong"].dump() + " wrong: ";
+  if (device["right"]) return counts + "nothing is wrong";
+  const bool failed =
+      std::any_of(parts.begin(), parts.end(), [](const Json& part) { return part["state"] == "failed"; });
+  if (failed || device["answers_wrong"] > 0) return counts + "SOMETHING IS WRONG";
+  return counts + "interrupted when " + device["parts_ended"].dump() + " of " + std::to_string(parts.size()) +
+         " parts had ended";
 }
 
 std::string partText(const std::string& name, const Json& part) {

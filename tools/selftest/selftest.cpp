@@ -19,11 +19,14 @@ Json newPart() {
 
 // All keys are there from the start, so that no reference to a value becomes invalid.
 Json newDevice(uint32_t number, const DeviceReport& facts) {
-  Json device{{"number", number},           {"name", facts.name},           {"type", facts.type},
-              {"driver", facts.driver},     {"vulkan", facts.version},      {"memory_bytes", facts.memory},
-              {"subgroup", facts.subgroup}, {"has_doubles", facts.doubles}, {"uses_doubles", false},
-              {"usable", facts.usable()},   {"reasons", facts.reasons},     {"sampled_reasons", facts.sampledReasons},
-              {"answers_checked", 0},       {"answers_wrong", 0},           {"right", true},
+  Json device{{"number", number},           {"name", facts.name},
+              {"type", facts.type},         {"driver", facts.driver},
+              {"vulkan", facts.version},    {"memory_bytes", facts.memory},
+              {"subgroup", facts.subgroup}, {"has_doubles", facts.doubles},
+              {"uses_doubles", false},      {"usable", facts.usable()},
+              {"reasons", facts.reasons},   {"sampled_reasons", facts.sampledReasons},
+              {"answers_checked", 0},       {"answers_wrong", 0},
+              {"parts_ended", 0},           {"right", false},
               {"limits", Json::array()},    {"parts", Json::object()}};
   for (const DeviceLimit& limit : facts.limits) {
     device["limits"].push_back({{"limit", limit.name},
@@ -86,8 +89,8 @@ Json lookAtDevices(const std::vector<uint32_t>& asked) {
   if (numbers.empty()) {
     for (uint32_t i = 0; i < all.size(); ++i) numbers.push_back(i);
   }
-  Json report{{"command", ""},        {"commit", ""},   {"date", ""},    {"processor", ""},
-              {"minutes", 0.0},       {"seconds", 0.0}, {"right", true}, {"devices", Json::array()},
+  Json report{{"command", ""},        {"commit", ""},   {"date", ""},     {"processor", ""},
+              {"minutes", 0.0},       {"seconds", 0.0}, {"right", false}, {"devices", Json::array()},
               {"together", newPart()}};
   std::vector<std::string> reasons;
   for (const uint32_t number : numbers) {
@@ -110,12 +113,15 @@ Json lookAtDevices(const std::vector<uint32_t>& asked) {
 }
 
 void conclude(Json& report) {
-  bool allRight = report["together"]["state"] != "failed";
+  const auto hasEnded = [](const Json& part) { return part["state"] != "not begun" && part["state"] != "running"; };
+  bool allRight = hasEnded(report["together"]) && report["together"]["state"] != "failed";
   for (Json& device : report["devices"]) {
     uint64_t checked = 0, wrong = 0;
+    size_t ended = 0;
     bool failed = false;
     for (const Json& part : device["parts"]) {
       failed = failed || part["state"] == "failed";
+      ended += hasEnded(part);
       for (const Json& row : part["rows"]) {
         checked += row.value("queries", uint64_t{0}) + row.value("batch", uint64_t{0});
         wrong += row.value("wrong", uint64_t{0}) + row.value("differ", uint64_t{0});
@@ -123,7 +129,8 @@ void conclude(Json& report) {
     }
     device["answers_checked"] = checked;
     device["answers_wrong"] = wrong;
-    device["right"] = wrong == 0 && !failed;
+    device["parts_ended"] = ended;
+    device["right"] = wrong == 0 && !failed && (ended == device["parts"].size() || !device["usable"]);
     allRight = allRight && device["right"];
   }
   report["right"] = allRight;

@@ -2,7 +2,7 @@
 // document that is complete whenever it is read:
 //
 //   {"command", "commit", "date", "processor", "minutes", "seconds", "right", "devices": [...], "together": part}
-//   device: {"number", "name", ..., "answers_checked", "answers_wrong", "right", "limits": table, "parts": {name:
+//   device: {"number", "name", ..., "answers_checked", "answers_wrong", "parts_ended", "right", "limits": table, "parts": {name:
 //   part}} part: {"state", "note", "seconds", "rows": table}
 #pragma once
 
@@ -25,7 +25,8 @@ Json lookAtDevices(const std::vector<uint32_t>& numbers);
 /// begins or ends.
 void runSelftest(Json& report, double minutes, const std::function<void()>& onChange);
 
-/// Sums up the parts: sets "answers_checked", "answers_wrong" and "right".
+/// Sums up the parts: sets "answers_checked", "answers_wrong", "parts_ended" and "right", which is false until all
+/// parts have ended.
 void conclude(Json& report);
 
 /// The report as text.

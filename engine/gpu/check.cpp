@@ -35,4 +35,8 @@ void check(VkResult result, const std::string& call) {
   throw Error(call + ": " + resultName(result) + " (" + std::to_string(result) + ")", result);
 }
 
+bool isOutOfMemory(const Error& error) {
+  return error.result == VK_ERROR_OUT_OF_HOST_MEMORY || error.result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+}
+
 }  // namespace radar::gpu

@@ -6,13 +6,11 @@
 
 #include <algorithm>
 
+#include "gpu/check.h"
+
 namespace radar {
 
 namespace {
-
-bool isOutOfMemory(VkResult result) {
-  return result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-}
 
 void nameThread([[maybe_unused]] uint32_t number) {
 #ifdef __linux__
@@ -92,7 +90,7 @@ void Worker::finish(Lane& lane) {
   // A lost device retires the worker; so does a lack of memory, unless it is the last worker or the chunk has run out
   // of memory on another device, too. Any other failure makes the chunk's queries invalid.
   if (sweep.failure) {
-    const bool forMemory = isOutOfMemory(sweep.failure->result);
+    const bool forMemory = gpu::isOutOfMemory(*sweep.failure);
     const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
     if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);

@@ -33,6 +33,9 @@ class SampledSubmitter {
   /// Waits for the submission, and adds each stage's time to `stages`.
   SampledAnswers collect(const SampledBatch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
                          StoredScopes* scopes = nullptr);
+  /// Frees the memory of all pictures, whose contents and layouts are unknown after a failed submission. None may be
+  /// pending.
+  void freePictures() { pictures_.clear(); }
 
  private:
   struct Pictures {

@@ -151,6 +151,11 @@ void ContactTier::submit() {
     } catch (const gpu::LimitError&) {
       leaveToCpu({queries.begin(), queries.end()});
       return false;
+    } catch (const Error& error) {
+      if (!batch_.survives(error)) throw;
+      submitter_.reset();  // its lists may have grown too large
+      leaveToCpu({queries.begin(), queries.end()});
+      return false;
     }
   });
   sensors_.clear();
@@ -203,7 +208,13 @@ bool ContactTier::keep(size_t query, const Result& found) {
 
 void ContactTier::collect() {
   pending_.collect([&](std::span<const size_t> queries) {
-    const SearchAnswers found = submitter_->collect(scene_.impl(), batch_.stats.stages);
+    SearchAnswers found;
+    try {
+      found = submitter_->collect(scene_.impl(), batch_.stats.stages);
+    } catch (const Error& error) {
+      if (!batch_.survives(error)) throw;
+      return leaveToCpu({queries.begin(), queries.end()});
+    }
     batch_.deviceDone = Clock::now();
     batch_.stats.submissions += submitter_->submissions();
     batch_.stats.nodePairs += found.nodePairs;

@@ -1,5 +1,6 @@
 #include "sweep/query_batch.h"
 
+#include "gpu/check.h"
 #include "gpu/submission.h"
 
 namespace radar {
@@ -9,6 +10,12 @@ void QueryBatch::fail(size_t query, const Error& error) {
   if (!failure) failure = error;
   answers[query] = Result();
   reasons[query] = error.what();
+}
+
+bool QueryBatch::survives(const Error& error) {
+  if (!gpu::isOutOfMemory(error)) return false;
+  if (!failure) failure = error;
+  return true;
 }
 
 void QueryBatch::addCpuTime(const char* name, double ms) {

@@ -25,12 +25,14 @@ struct QueryBatch {
   std::vector<QueryLists> lists;  ///< one for each query, or none if no query has lists
   SweepStats stats;
   std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its index
-  std::optional<Error> failure;           ///< the first Vulkan call that failed
+  std::optional<Error> failure;           ///< the first Vulkan call that failed, also if all queries were answered
   Clock::time_point deviceDone;
   bool timestamps = false;
 
   /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
   void fail(size_t query, const Error& error);
+  /// If a call failed for lack of memory, records that, and returns true: its queries can be answered otherwise.
+  bool survives(const Error& error);
   void addCpuTime(const char* name, double ms);
 };
 

@@ -49,9 +49,7 @@ ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
   return planSampled(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
 }
 
-void SampledTier::submit(std::span<Planned> part) {
-  if (part.empty()) return;
-  collect();
+bool SampledTier::trySubmit(std::span<Planned> part, bool isLast) {
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
   std::vector<size_t> queries;
@@ -61,13 +59,34 @@ void SampledTier::submit(std::span<Planned> part) {
   }
   packBatch(drawn_, plans);
   batch_.addCpuTime("encode", msSince(start));
-  ++batch_.stats.submissions;
-  batch_.stats.drawnObjects += drawn_.objects;
-  batch_.stats.drawnTriangles += drawn_.triangles;
+  bool fits = true;
   pending_.submit(std::move(queries), [&](std::span<const size_t>) {
-    submitter_.submit(drawn_, scene_.impl());
+    try {
+      submitter_.submit(drawn_, scene_.impl());
+    } catch (const Error& error) {
+      submitter_.freePictures();
+      if (isLast || !batch_.survives(error)) throw;
+      fits = false;
+      return false;
+    }
+    ++batch_.stats.submissions;
+    batch_.stats.drawnObjects += drawn_.objects;
+    batch_.stats.drawnTriangles += drawn_.triangles;
     return true;
   });
+  return fits;
+}
+
+void SampledTier::submit(std::span<Planned> part) {
+  if (part.empty()) return;
+  collect();
+  if (trySubmit(part, false)) return;
+  if (part.size() == 1) {
+    trySubmit(part, true);  // pictures of other queries have been freed
+    return;
+  }
+  submit(part.first(part.size() / 2));
+  submit(part.subspan(part.size() / 2));
 }
 
 void SampledTier::collect() {

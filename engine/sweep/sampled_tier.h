@@ -36,7 +36,10 @@ class SampledTier {
   std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;
   void flush(std::vector<Planned>& slice);
+  /// Submits a part, in halves if the device's memory does not suffice.
   void submit(std::span<Planned> part);
+  /// Returns false, and submits nothing, if memory does not suffice; if `isLast`, the part's queries fail instead.
+  bool trySubmit(std::span<Planned> part, bool isLast);
 
   const Device::Impl& device_;
   const Scene& scene_;

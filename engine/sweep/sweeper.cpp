@@ -3,6 +3,7 @@
 
 #include <cassert>
 
+#include "gpu/check.h"
 #include "gpu/limit_error.h"
 
 namespace radar {
@@ -56,6 +57,8 @@ void Sweeper::Impl::sync() {
     copy->sync(scene.impl());
   } catch (const gpu::LimitError&) {
     if (copy->hasIndices()) throw;  // mode sampled draws it; mode contact is answered on the CPU
+  } catch (const Error& error) {
+    if (!gpu::isOutOfMemory(error)) throw;  // else the next batch tries again, and answers for what it lacks
   }
 }
 

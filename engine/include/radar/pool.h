@@ -55,8 +55,8 @@ struct PoolDevice {
 /// of them gives, whatever the number of devices.
 ///
 /// A device that is lost, fails to allocate, or cannot hold the scene is retired, and the other devices redo its
-/// chunks. If a chunk runs out of memory on a second device too, or on the last one, its queries become invalid and the
-/// device is kept.
+/// chunks. If a chunk runs out of memory on a second device too, or on the last one, the device is kept and the chunk
+/// is answered as Sweeper::run() says.
 class RADAR_API Pool {
  public:
   /// Starts a thread per device, which creates its pipelines; does not wait. `devices` and `scene` must outlive the

@@ -1,0 +1,171 @@
+// Devices without enough memory: the tests make the engine's allocations fail. Queries are answered even so.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include "gpu/buffer.h"
+#include "support/same_bits.h"
+#include "support/test_device.h"
+#include "workloads/generate.h"
+
+namespace {
+
+using namespace radar;
+
+/// Makes calls of the device fail for lack of memory.
+class ScarceMemory {
+ public:
+  ScarceMemory() : device_(test::device().impl()) {
+    allocateMemory = device_.vk.AllocateMemory;
+    queueSubmit = device_.vk.QueueSubmit2;
+    most = std::numeric_limits<VkDeviceSize>::max();
+    failing = -1;
+    calls = 0;
+    device_.vk.AllocateMemory = [](VkDevice device, const VkMemoryAllocateInfo* info,
+                                   const VkAllocationCallbacks* allocator, VkDeviceMemory* memory) {
+      const bool fails = calls++ == failing || info->allocationSize > most;
+      return fails ? VK_ERROR_OUT_OF_DEVICE_MEMORY : allocateMemory(device, info, allocator, memory);
+    };
+    device_.vk.QueueSubmit2 = [](VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
+      return calls++ == failing ? VK_ERROR_OUT_OF_HOST_MEMORY : queueSubmit(queue, count, infos, fence);
+    };
+  }
+  ~ScarceMemory() {
+    device_.vk.AllocateMemory = allocateMemory;
+    device_.vk.QueueSubmit2 = queueSubmit;
+  }
+  ScarceMemory(const ScarceMemory&) = delete;
+  ScarceMemory& operator=(const ScarceMemory&) = delete;
+
+  inline static VkDeviceSize most;   ///< larger allocations fail
+  inline static int failing, calls;  ///< the number of the call that fails, of both kinds together; and calls so far
+
+ private:
+  inline static PFN_vkAllocateMemory allocateMemory;
+  inline static PFN_vkQueueSubmit2 queueSubmit;
+  Device::Impl& device_;
+};
+
+constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
+
+// Teapots among boxes, in one mode or in both by turns.
+struct Teapots {
+  explicit Teapots(uint32_t sensors, std::optional<Mode> mode = {})
+      : workload(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = sensors})), player(workload) {
+    player.show(0);
+    for (const tools::QuerySpec& spec : workload.queries) {
+      const Mode own = mode.value_or(queries.size() % 2 == 0 ? Mode::contact : Mode::sampled);
+      queries.push_back(tools::toQuery(spec, own, own == Mode::sampled ? 128 : 0));
+    }
+    answers = Sweeper(test::device(), player.scene(), kOnDevice).run(queries);
+  }
+  tools::Workload workload;
+  tools::ScenePlayer player;
+  std::vector<Query> queries;
+  std::vector<Result> answers;
+};
+
+size_t differences(const std::vector<Result>& a, const std::vector<Result>& b) {
+  REQUIRE(a.size() == b.size());
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += test::sameBits(a[i], b[i]) ? 0 : 1;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("queries of mode contact that do not fit the device's memory are answered on the CPU, later ones there") {
+  const Teapots teapots(64, Mode::contact);
+  Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+  {
+    const ScarceMemory scarce;
+    ScarceMemory::most = 1u << 16;
+    CHECK_NOTHROW(sweeper.sync());
+    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+    CHECK(sweeper.stats().cpuQueries == teapots.queries.size());
+    for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
+  }
+  CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+  CHECK(sweeper.stats().submissions > 0);
+  CHECK(sweeper.stats().cpuQueries == 0);
+}
+
+TEST_CASE("lists of hits do not change if the device runs out of memory") {
+  Teapots teapots(64, Mode::contact);
+  for (size_t i = 0; i < teapots.queries.size(); i += 3) teapots.queries[i].hits = 4;
+  Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+  const std::vector<Result> expected = sweeper.run(teapots.queries);
+  const Lists lists = sweeper.lists();
+  Sweeper poor(test::device(), teapots.player.scene(), kOnDevice);
+  const ScarceMemory scarce;
+  ScarceMemory::most = 1u << 16;
+  CHECK(differences(poor.run(teapots.queries), expected) == 0);
+  CHECK(poor.lists().hitOffsets == lists.hitOffsets);
+  CHECK(differences(poor.lists().hits, lists.hits) == 0);
+}
+
+TEST_CASE("a batch of mode sampled whose pictures do not fit the device's memory is split") {
+  const Teapots teapots(64, Mode::sampled);
+  Sweeper sweeper(test::device(), teapots.player.scene());
+  sweeper.run(std::span(teapots.queries).first(1));  // uploads the scene
+  const ScarceMemory scarce;
+  ScarceMemory::most = 20 * 128 * 128 * sizeof(float);
+  CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+  CHECK(sweeper.stats().submissions >= 4);
+  for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
+}
+
+TEST_CASE("a query of mode sampled whose own picture does not fit the device's memory is invalid, and no other is") {
+  Teapots teapots(24, Mode::sampled);
+  const auto drawn = std::ranges::find(teapots.answers, Tier::sampled, &Result::tier);
+  REQUIRE(drawn != teapots.answers.end());
+  const auto large = static_cast<size_t>(drawn - teapots.answers.begin());
+  teapots.queries[large].resolution = 512;
+  Sweeper sweeper(test::device(), teapots.player.scene());
+  sweeper.run(std::span(teapots.queries).first(1));
+  const ScarceMemory scarce;
+  ScarceMemory::most = 26 * 128 * 128 * sizeof(float) / 2;
+  const std::vector<Result> found = sweeper.run(teapots.queries);
+  for (size_t i = 0; i < found.size(); ++i) {
+    CAPTURE(i);
+    if (i == large) {
+      CHECK(found[i].status == Status::invalid);
+      CHECK_THAT(sweeper.reason(i), Catch::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+    } else {
+      CHECK(test::sameBits(found[i], teapots.answers[i]));
+      CHECK(sweeper.reason(i).empty());
+    }
+  }
+}
+
+TEST_CASE("whichever allocation or submission fails for lack of memory, every query has its answer") {
+  const Teapots teapots(40);
+  const std::span<const Query> first = std::span(teapots.queries).first(2);
+  int failed = 0;
+  for (int failing = 0;; ++failing) {
+    CAPTURE(failing);
+    Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+    sweeper.run(first);  // makes both modes ready
+    const ScarceMemory scarce;
+    ScarceMemory::failing = failing;
+    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+    for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
+    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+    if (ScarceMemory::calls <= failing) break;
+    ++failed;
+  }
+  CHECK(failed > 10);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("a buffer takes at most a quarter more memory than asked for, and grows in few steps") {
+  gpu::Buffer buffer(test::device().impl(), "grown", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  int steps = 0;
+  for (VkDeviceSize bytes = 1024; bytes < 1u << 20; bytes += 1000) {
+    steps += buffer.reserve(bytes);
+    REQUIRE(buffer.capacity() >= bytes);
+    REQUIRE(4 * buffer.capacity() <= 5 * bytes + 4 * 1000);
+  }
+  CHECK(steps <= 4 * 10);
+}

@@ -159,8 +159,9 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.meshes[deformed.mesh];
     const HostPositions& positions = deformed.positions;
-    meshes_.push_back({deformed.mesh, mesh.vertexCount(),
-                       copyFrom(positions.buffer, positions.first, spanOf(positions, mesh.vertexCount())),
+    const VkDeviceSize first = positions.first + positions.stride * mesh.firstHostVertex;
+    meshes_.push_back({deformed.mesh, mesh.vertexCount(), mesh.firstHostVertex,
+                       copyFrom(positions.buffer, first, spanOf(positions, mesh.vertexCount())),
                        static_cast<uint32_t>(positions.stride), HostFormat(positions.format).component()});
   }
   for (const MovedObjects& objects : geometry.objects) addMoved(objects, scene);
@@ -236,9 +237,10 @@ void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu
 std::string HostGeometryPass::boundsViolation() const {
   if (empty()) return {};
   const gpu::BoundsViolation& violation = *violation_.mapped();
-  if (violation.mesh != kNone) {
-    return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(violation.vertex) +
-           " is outside its bounds or not finite";
+  for (const Deformed& deformed : meshes_) {
+    if (violation.mesh != deformed.mesh) continue;
+    return "mesh " + std::to_string(violation.mesh) + ": vertex " +
+           std::to_string(deformed.firstHostVertex + violation.vertex) + " is outside its bounds or not finite";
   }
   if (violation.object == kNone) return {};
   return "object " + std::to_string(violation.object) +

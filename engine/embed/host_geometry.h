@@ -34,7 +34,7 @@ class HostGeometryPass {
  private:
   struct Deformed {
     MeshId mesh;
-    uint32_t vertices, firstByte, stride, component;
+    uint32_t vertices, firstHostVertex, firstByte, stride, component;
   };
   struct Source {
     VkBuffer buffer;

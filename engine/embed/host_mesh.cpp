@@ -1,70 +1,83 @@
 #include "radar/host_geometry.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "embed/host_format.h"
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
+#include "scene/scene.h"
 
 namespace radar {
 
 namespace {
 
-struct Range {
-  VkBuffer buffer;
-  VkDeviceSize first, bytes;
-};
-
-/// Reads the ranges' bytes, concatenated.
-std::vector<std::byte> download(const Device::Impl& device, const std::vector<Range>& ranges) {
-  VkDeviceSize total = 0;
-  for (const Range& range : ranges) total += range.bytes;
+/// Reads bytes of a buffer.
+std::vector<std::byte> download(const Device::Impl& device, VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
   gpu::Buffer readback(device, "host mesh", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  readback.reserve(total);
+  readback.reserve(bytes);
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();
   submission.stage("host mesh");
-  VkDeviceSize at = 0;
-  for (const Range& range : ranges) {
-    const VkBufferCopy copy{range.first, at, range.bytes};
-    commands->CmdCopyBuffer(commands, range.buffer, readback.get(), 1, &copy);
-    at += range.bytes;
-  }
+  const VkBufferCopy copy{first, 0, bytes};
+  commands->CmdCopyBuffer(commands, buffer, readback.get(), 1, &copy);
   gpu::copyToHost(commands);
   submission.submitAndWait();
-  return {readback.mapped(), readback.mapped() + total};
+  return {readback.mapped(), readback.mapped() + bytes};
+}
+
+void validate(const HostMesh& mesh) {
+  if (std::string wrong = validate(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
+  if (mesh.positions.buffer == VK_NULL_HANDLE) throw Error("addMesh: positions: expected a buffer");
+  if (mesh.indexType != VK_INDEX_TYPE_UINT16 && mesh.indexType != VK_INDEX_TYPE_UINT32) {
+    throw Error("addMesh: indexType: expected 16 or 32 bits, got VkIndexType " + std::to_string(mesh.indexType));
+  }
+  const uint32_t indexCount = mesh.indices == VK_NULL_HANDLE ? mesh.vertexCount : mesh.indexCount;
+  if (mesh.vertexCount == 0 || indexCount == 0) throw Error("addMesh: expected at least one triangle, got none");
+}
+
+std::vector<uint32_t> indicesOf(const Device::Impl& device, const HostMesh& mesh) {
+  std::vector<uint32_t> indices(mesh.indices == VK_NULL_HANDLE ? mesh.vertexCount : mesh.indexCount);
+  if (mesh.indices == VK_NULL_HANDLE) {
+    std::iota(indices.begin(), indices.end(), 0u);
+    return indices;
+  }
+  const size_t size = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
+  const std::vector<std::byte> bytes = download(device, mesh.indices, mesh.firstIndex, size * indices.size());
+  for (size_t i = 0; i < indices.size(); ++i) {
+    indices[i] = size == 2 ? loadAs<uint16_t>(&bytes[2 * i]) : loadAs<uint32_t>(&bytes[4 * i]);
+    if (indices[i] < mesh.vertexCount) continue;
+    throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
+                std::to_string(indices[i]) + " of " + std::to_string(mesh.vertexCount));
+  }
+  return indices;
 }
 
 }  // namespace
 
 MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   device.impl().requireQueue("addMesh of a HostMesh");
-  if (std::string wrong = validate(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
-  if (mesh.positions.buffer == VK_NULL_HANDLE) throw Error("addMesh: positions: expected a buffer");
-  const HostFormat format(mesh.positions.format);
-  const VkDeviceSize indexSize = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
-  if (mesh.indexType != VK_INDEX_TYPE_UINT16 && mesh.indexType != VK_INDEX_TYPE_UINT32) {
-    throw Error("addMesh: indexType: expected 16 or 32 bits, got VkIndexType " + std::to_string(mesh.indexType));
-  }
-  const uint32_t indexCount = mesh.indices == VK_NULL_HANDLE ? mesh.vertexCount : mesh.indexCount;
-  if (mesh.vertexCount == 0 || indexCount == 0) throw Error("addMesh: expected at least one triangle, got none");
-
-  std::vector<Range> ranges{{mesh.positions.buffer, mesh.positions.first, spanOf(mesh.positions, mesh.vertexCount)}};
-  if (mesh.indices != VK_NULL_HANDLE) ranges.push_back({mesh.indices, mesh.firstIndex, indexSize * indexCount});
-  const std::vector<std::byte> bytes = download(device.impl(), ranges);
+  validate(mesh);
+  std::vector<uint32_t> indices = indicesOf(device.impl(), mesh);
+  const auto [least, greatest] = std::ranges::minmax(indices);
+  // Where the host's vertices go; a host deforms a range of its vertices, but else only those in use matter.
+  std::vector<uint32_t> places(size_t{greatest} - least + 1, mesh.bounds ? 1 : 0);
+  for (const uint32_t vertex : indices) places[vertex - least] = 1;
+  const HostPositions& from = mesh.positions;
+  const HostFormat format(from.format);
+  const std::vector<std::byte> bytes = download(device.impl(), from.buffer, from.first + from.stride * least,
+                                                spanOf(from, static_cast<uint32_t>(places.size())));
   std::vector<float> positions;
-  for (VkDeviceSize v = 0; v < mesh.vertexCount; ++v) {
-    for (int k = 0; k < 3; ++k) positions.push_back(format.load(&bytes[mesh.positions.stride * v], k));
+  for (size_t v = 0; v < places.size(); ++v) {
+    if (places[v] == 0) continue;
+    places[v] = static_cast<uint32_t>(positions.size() / 3);
+    for (int k = 0; k < 3; ++k) positions.push_back(format.load(&bytes[from.stride * v], k));
   }
-  std::vector<uint32_t> indices(indexCount);
-  for (uint32_t i = 0; i < indexCount; ++i) {
-    if (mesh.indices == VK_NULL_HANDLE) {
-      indices[i] = i;
-    } else {
-      const std::byte* at = &bytes[ranges[0].bytes + indexSize * i];
-      indices[i] = indexSize == 2 ? loadAs<uint16_t>(at) : loadAs<uint32_t>(at);
-    }
-  }
-  return scene.addMesh(positions, indices, mesh.bounds);
+  for (uint32_t& vertex : indices) vertex = places[vertex - least];
+  const MeshId id = scene.addMesh(positions, indices, mesh.bounds);
+  scene.impl_->meshes[id].firstHostVertex = least;
+  return id;
 }
 
 }  // namespace radar

@@ -22,9 +22,10 @@ struct Mesh {
   std::vector<float> positions;
   std::vector<uint32_t> indices;
   bool used = false;
-  bool deforms = false;  ///< a host may move its vertices, within `reach` of the origin
-  uint32_t objects = 0;  ///< number of objects that use it
-  uint64_t version = 0;  ///< unique over all meshes of all scenes; compared with a device copy's
+  bool deforms = false;          ///< a host may move its vertices, within `reach` of the origin
+  uint32_t objects = 0;          ///< number of objects that use it
+  uint32_t firstHostVertex = 0;  ///< of a mesh that a host deforms: the number in its buffer of vertex 0
+  uint64_t version = 0;          ///< unique over all meshes of all scenes; compared with a device copy's
 
   /// Derived. A local vertex is position - origin, so that a part modelled far from its origin keeps its float
   /// precision. The origin's components are floats that make this difference exact: 0 on axes where the mesh spans or

@@ -406,3 +406,37 @@ TEST_CASE(
   CHECK(inRange > (smallest == -30 ? 1100 : smallest == -79 ? 700 : 400));
   CHECK(used.inverse > 0.01);
 }
+
+TEST_CASE("a mesh that a host deforms in a buffer shared with others reads its own vertices, whose numbers stay") {
+  // Vertices 4 to 6 are a triangle; the others belong to another mesh, and are outside this one's bounds.
+  const auto bytesAt = [](float z) {
+    std::vector<std::byte> bytes;
+    for (int v = 0; v < 4; ++v) append<float>(bytes, {1000, 1000, NAN});
+    append<float>(bytes, {-1, -1, z, 1, -1, z, 0, 1, z, 1000, 1000, 1000});
+    return bytes;
+  };
+  std::vector<std::byte> corners;
+  append<uint16_t>(corners, {4, 5, 6});
+  const OnDevice rest(bytesAt(5)), indices(corners), moved(bytesAt(3)), outside(bytesAt(50));
+  Scene scene;
+  const MeshId wall = addMesh(scene, test::device(),
+                              {.positions = {.buffer = rest.get()},
+                               .vertexCount = 8,
+                               .indices = indices.get(),
+                               .indexType = VK_INDEX_TYPE_UINT16,
+                               .indexCount = 3,
+                               .bounds = Bounds{{-1, -1, 0}, {1, 1, 10}}});
+  scene.addObject({.mesh = wall});
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  const Query query{.mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0.001, 1}, .distance = 20};
+  Recorder recorder(test::device(), scene, kRoom);
+  const auto at = [&](const OnDevice& buffer) {
+    const DeformedMesh deformed{wall, {.buffer = buffer.get()}};
+    return execute(recorder, {&query, 1}, {.meshes = {&deformed, 1}})[0];
+  };
+  CHECK(at(moved).t == Approx(2.5));
+  CHECK(recorder.boundsViolation().empty());
+  CHECK(at(outside).flags == kFlagBounds);
+  CHECK_THAT(recorder.boundsViolation(),
+             Catch::Contains("vertex 4 ") || Catch::Contains("vertex 5 ") || Catch::Contains("vertex 6 "));
+}

@@ -51,6 +51,30 @@ TEST_CASE("interleaved float vertices and 16-bit or 32-bit indices are read at t
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("meshes that share a host's buffer keep only the vertices that their triangles use") {
+  // 100,000 vertices, of which each mesh uses four, far apart.
+  constexpr uint32_t kVertices = 100'000;
+  std::vector<std::byte> vertices, corners;
+  for (uint32_t v = 0; v < kVertices; ++v) append<float>(vertices, {float(v), float(v % 7), v == 5 ? NAN : 1});
+  append<uint32_t>(corners, {90'000, 7, 30'000, 30'000, 7, 99'999, 0, 1, 3, 3, 1, 4});
+  const OnDevice positions(vertices), indices(corners);
+  HostMesh mesh{
+      .positions = {.buffer = positions.get()}, .vertexCount = kVertices, .indices = indices.get(), .indexCount = 6};
+  Scene scene;
+  const MeshId far = addMesh(scene, test::device(), mesh);
+  CHECK(positionsOf(scene, far) == std::vector<float>{7, 0, 1, 30'000, 5, 1, 90'000, 1, 1, 99'999, 4, 1});
+  CHECK(indicesOf(scene, far) == std::vector<uint32_t>{2, 0, 1, 1, 0, 3});
+  mesh.firstIndex = 24;
+  const MeshId near = addMesh(scene, test::device(), mesh);
+  CHECK(positionsOf(scene, near) == std::vector<float>{0, 0, 1, 1, 1, 1, 3, 3, 1, 4, 4, 1});
+  CHECK(indicesOf(scene, near) == std::vector<uint32_t>{0, 1, 2, 2, 1, 3});
+  // A host that deforms a mesh writes a range of vertices.
+  mesh.bounds = Bounds{{0, 0, 0}, {10, 10, 10}};
+  const MeshId deforms = addMesh(scene, test::device(), mesh);
+  CHECK(positionsOf(scene, deforms) == std::vector<float>{0, 0, 1, 1, 1, 1, 2, 2, 1, 3, 3, 1, 4, 4, 1});
+  CHECK(indicesOf(scene, deforms) == std::vector<uint32_t>{0, 1, 3, 3, 1, 4});
+}
+
 TEST_CASE("16-bit positions are read as a vertex shader would see them") {
   std::vector<std::byte> half, snorm, unorm;
   // In half precision: 1, -2, 65504; the smallest normal and subnormal numbers and 1/3; -0, 0 and pi; each with a

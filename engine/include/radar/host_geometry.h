@@ -19,7 +19,8 @@ struct HostPositions {
   VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;
 };
 
-/// Vertices and triangles. Writes to the buffers have been made available (waiting for a fence suffices).
+/// Vertices and a list of triangles (VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, without primitive restart); strips and fans
+/// are not read. Writes to the buffers have been made available (waiting for a fence suffices).
 struct HostMesh {
   HostPositions positions{};
   uint32_t vertexCount = 0;
@@ -32,13 +33,14 @@ struct HostMesh {
   std::optional<Bounds> bounds{};  ///< see Scene::addMesh
 };
 
-/// Adds a copy of the mesh, read from the device once. Submits to HostDevice::queue and waits, so call it while
-/// loading. Throws as Scene::addMesh does, and if there is no queue, a format or index type is not listed, a stride is
-/// shorter than a position, or a Vulkan call fails.
+/// Adds a copy of the mesh, read from the device once: of the vertices those that a triangle uses, in their order, or,
+/// with `bounds`, all from the first to the last of those. So meshes may share one buffer. Submits to HostDevice::queue
+/// and waits, so call it while loading. Throws as Scene::addMesh does, and if there is no queue, a format or index type
+/// is not listed, a stride is shorter than a position, or a Vulkan call fails.
 RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);
 
-/// New vertex positions of a mesh: as many as it has, each within the bounds given to addMesh, unused vertices
-/// included.
+/// New vertex positions of a mesh, numbered as its indices were. Those that addMesh kept are read, each of which is
+/// within the bounds given to it.
 struct DeformedMesh {
   MeshId mesh = kNone;
   HostPositions positions{};

@@ -37,6 +37,9 @@ class RADAR_API Error : public std::runtime_error {
   std::vector<std::string> reasons;
 };
 
+class Device;
+struct HostMesh;
+
 /// A placement: world = M p + t, with row-major rows (m0 m1 m2 t). M is any invertible matrix, mirrors included.
 /// Vertices are placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add; this result *is*
 /// the geometry.
@@ -49,7 +52,9 @@ struct Transform {
 RADAR_API std::array<double, 3> transformPoint(const Transform& pose, const float* p);
 
 /// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed. New
-/// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ...
+/// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ..., and arrays by id stay small. A stale
+/// id is not recognised: once its item is removed, calls refuse it only until an item is added, which may get it. So
+/// forget an item's id wherever it is kept (such as in Query::exclude) when the item is removed.
 using MeshId = uint32_t;
 using ObjectId = uint32_t;
 
@@ -128,6 +133,7 @@ class RADAR_API Scene {
   const Impl& impl() const { return *impl_; }
 
  private:
+  friend RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);  // radar/host_geometry.h
   std::unique_ptr<Impl> impl_;
 };
 

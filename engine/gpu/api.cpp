@@ -35,7 +35,8 @@ void* findLoader() {
 
 PFN_vkVoidFunction required(PFN_vkVoidFunction function, const char* name) {
   if (function == nullptr)
-    throw Error(std::string("the Vulkan function ") + name + " is missing; Vulkan 1.3 requires it");
+    throw Error(std::string("the Vulkan function ") + name +
+                " is missing: instance (VkApplicationInfo::apiVersion) and device need Vulkan 1.3");
   return function;
 }
 

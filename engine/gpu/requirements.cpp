@@ -1,6 +1,7 @@
 #include "gpu/requirements.h"
 
 #include <algorithm>
+#include <span>
 
 #include "gpu/kernel.h"
 #include "shaders/contact/interop.h"
@@ -14,21 +15,22 @@ struct Requirement {
   const char* name;
   const char* why;
   Mode mode;
+  bool isOf13;  // see MissingFeature
   VkBool32& (*in)(Requirements&);
 };
 
 const Requirement kRequired[] = {
-    {"scalarBlockLayout", "buffers have the layout of the C++ structs", Mode::contact,
+    {"scalarBlockLayout", "buffers have the layout of the C++ structs", Mode::contact, false,
      [](Requirements& f) -> VkBool32& { return f.vulkan12.scalarBlockLayout; }},
-    {"synchronization2", "barriers name exact stages", Mode::contact,
+    {"synchronization2", "barriers name exact stages", Mode::contact, true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.synchronization2; }},
-    {"maintenance4", "shaders are compiled for Vulkan 1.3", Mode::contact,
+    {"maintenance4", "shaders are compiled for Vulkan 1.3", Mode::contact, true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.maintenance4; }},
-    {"subgroupSizeControl", "a workgroup of the search is one subgroup", Mode::contact,
+    {"subgroupSizeControl", "a workgroup of the search is one subgroup", Mode::contact, true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.subgroupSizeControl; }},
-    {"computeFullSubgroups", "a workgroup of the search is one subgroup", Mode::contact,
+    {"computeFullSubgroups", "a workgroup of the search is one subgroup", Mode::contact, true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.computeFullSubgroups; }},
-    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage", Mode::sampled,
+    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage", Mode::sampled, false,
      [](Requirements& f) -> VkBool32& { return f.vulkan12.shaderOutputLayer; }},
 };
 
@@ -111,7 +113,8 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   facts.doubles = features.core.features.shaderFloat64 == VK_TRUE;
   for (const Requirement& required : kRequired) {
     if (required.in(features)) continue;
-    facts.missingFeatures.push_back({std::string(required.name) + " (" + required.why + ")", required.mode});
+    facts.missingFeatures.push_back(
+        {std::string(required.name) + " (" + required.why + ")", required.mode, required.isOf13});
   }
   return facts;
 }
@@ -120,6 +123,11 @@ std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode)
   std::vector<std::string> reasons;
   if (facts.apiVersion < VK_API_VERSION_1_3) {
     return {"needs Vulkan 1.3, has " + versionText(facts.apiVersion)};
+  }
+  for (const MissingFeature& feature : facts.missingFeatures) {
+    if (!feature.isOf13) continue;
+    return {"needs an instance of Vulkan 1.3 (VkApplicationInfo::apiVersion): here the device, of Vulkan " +
+            versionText(facts.apiVersion) + ", lacks the feature " + feature.text};
   }
   for (const MissingFeature& feature : facts.missingFeatures) {
     if (isNeeded(feature.mode, mode)) reasons.push_back("lacks the feature " + feature.text);
@@ -158,11 +166,100 @@ bool doesGraphics(const Api& vk, VkPhysicalDevice device, uint32_t family) {
 
 namespace radar {
 
+namespace {
+
+// The structs of single features that a struct of a whole version replaces, and must not be chained with.
+struct Replaced {
+  VkStructureType type;
+  const char* name;
+};
+#define RADAR_REPLACED(type, name) \
+  { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##type##_FEATURES, "VkPhysicalDevice" name "Features" }
+constexpr Replaced kReplacedBy12[] = {RADAR_REPLACED(8BIT_STORAGE, "8BitStorage"),
+                                      RADAR_REPLACED(SHADER_ATOMIC_INT64, "ShaderAtomicInt64"),
+                                      RADAR_REPLACED(SHADER_FLOAT16_INT8, "ShaderFloat16Int8"),
+                                      RADAR_REPLACED(DESCRIPTOR_INDEXING, "DescriptorIndexing"),
+                                      RADAR_REPLACED(SCALAR_BLOCK_LAYOUT, "ScalarBlockLayout"),
+                                      RADAR_REPLACED(IMAGELESS_FRAMEBUFFER, "ImagelessFramebuffer"),
+                                      RADAR_REPLACED(UNIFORM_BUFFER_STANDARD_LAYOUT, "UniformBufferStandardLayout"),
+                                      RADAR_REPLACED(SHADER_SUBGROUP_EXTENDED_TYPES, "ShaderSubgroupExtendedTypes"),
+                                      RADAR_REPLACED(SEPARATE_DEPTH_STENCIL_LAYOUTS, "SeparateDepthStencilLayouts"),
+                                      RADAR_REPLACED(HOST_QUERY_RESET, "HostQueryReset"),
+                                      RADAR_REPLACED(TIMELINE_SEMAPHORE, "TimelineSemaphore"),
+                                      RADAR_REPLACED(BUFFER_DEVICE_ADDRESS, "BufferDeviceAddress"),
+                                      RADAR_REPLACED(VULKAN_MEMORY_MODEL, "VulkanMemoryModel")};
+constexpr Replaced kReplacedBy13[] = {
+    RADAR_REPLACED(DYNAMIC_RENDERING, "DynamicRendering"),
+    RADAR_REPLACED(IMAGE_ROBUSTNESS, "ImageRobustness"),
+    RADAR_REPLACED(INLINE_UNIFORM_BLOCK, "InlineUniformBlock"),
+    RADAR_REPLACED(MAINTENANCE_4, "Maintenance4"),
+    RADAR_REPLACED(PIPELINE_CREATION_CACHE_CONTROL, "PipelineCreationCacheControl"),
+    RADAR_REPLACED(PRIVATE_DATA, "PrivateData"),
+    RADAR_REPLACED(SHADER_DEMOTE_TO_HELPER_INVOCATION, "ShaderDemoteToHelperInvocation"),
+    RADAR_REPLACED(SHADER_INTEGER_DOT_PRODUCT, "ShaderIntegerDotProduct"),
+    RADAR_REPLACED(SHADER_TERMINATE_INVOCATION, "ShaderTerminateInvocation"),
+    RADAR_REPLACED(SUBGROUP_SIZE_CONTROL, "SubgroupSizeControl"),
+    RADAR_REPLACED(SYNCHRONIZATION_2, "Synchronization2"),
+    RADAR_REPLACED(TEXTURE_COMPRESSION_ASTC_HDR, "TextureCompressionASTCHDR"),
+    RADAR_REPLACED(ZERO_INITIALIZE_WORKGROUP_MEMORY, "ZeroInitializeWorkgroupMemory")};
+#undef RADAR_REPLACED
+
+// The chain's struct of that type, or null.
+template <class T>
+T* findIn(void* chain, VkStructureType type) {
+  for (auto* at = static_cast<VkBaseOutStructure*>(chain); at != nullptr; at = at->pNext) {
+    if (at->sType == type) return reinterpret_cast<T*>(at);
+  }
+  return nullptr;
+}
+
+void refuse(std::span<const Replaced> replaced, void* chain, const char* by) {
+  for (const Replaced& single : replaced) {
+    if (findIn<VkBaseOutStructure>(chain, single.type) == nullptr) continue;
+    throw Error(std::string("Requirements::chain: the host's chain has ") + single.name +
+                ", which Vulkan does not allow beside " + by + ": chain that instead, or copy what is needed");
+  }
+}
+
+// Sets what is set in `from`, from its member `first` to its member `last`, which are all VkBool32.
+template <class T>
+void enable(T& to, const T& from, VkBool32 T::*first, VkBool32 T::*last) {
+  VkBool32* out = &(to.*first);
+  for (const VkBool32* in = &(from.*first); in <= &(from.*last); ++in, ++out) *out |= *in;
+}
+
+}  // namespace
+
 const void* Requirements::chain(void* next) {
-  core.pNext = &vulkan12;
-  vulkan12.pNext = &vulkan13;
-  vulkan13.pNext = next;
-  return &core;
+  auto* const own2 = findIn<VkPhysicalDeviceFeatures2>(next, core.sType);
+  auto* const own12 = findIn<VkPhysicalDeviceVulkan12Features>(next, vulkan12.sType);
+  auto* const own13 = findIn<VkPhysicalDeviceVulkan13Features>(next, vulkan13.sType);
+  if (own12 == nullptr) refuse(kReplacedBy12, next, "VkPhysicalDeviceVulkan12Features");
+  if (own13 == nullptr) refuse(kReplacedBy13, next, "VkPhysicalDeviceVulkan13Features");
+  void* first = next;
+  const auto prepend = [&](auto& features) {
+    features.pNext = first;
+    first = &features;
+  };
+  if (own13 == nullptr) {
+    prepend(vulkan13);
+  } else {
+    using Features = VkPhysicalDeviceVulkan13Features;
+    enable(*own13, vulkan13, &Features::robustImageAccess, &Features::maintenance4);
+  }
+  if (own12 == nullptr) {
+    prepend(vulkan12);
+  } else {
+    using Features = VkPhysicalDeviceVulkan12Features;
+    enable(*own12, vulkan12, &Features::samplerMirrorClampToEdge, &Features::subgroupBroadcastDynamicId);
+  }
+  if (own2 == nullptr) {
+    prepend(core);
+  } else {
+    using Features = VkPhysicalDeviceFeatures;
+    enable(own2->features, core.features, &Features::robustBufferAccess, &Features::inheritedQueries);
+  }
+  return first;
 }
 
 Requirements requirements(Mode mode, bool doubles) {

@@ -19,8 +19,9 @@ struct SubgroupFacts {
 SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device);
 
 struct MissingFeature {
-  std::string text;  ///< its name, with its purpose in brackets
-  Mode mode;         ///< the least mode that needs it: sampled needs everything that contact needs
+  std::string text;     ///< its name, with its purpose in brackets
+  Mode mode;            ///< the least mode that needs it: sampled needs everything that contact needs
+  bool isOf13 = false;  ///< every device of Vulkan 1.3 has it, but no instance of an older version shows it
 };
 
 struct DeviceFacts {

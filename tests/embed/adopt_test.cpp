@@ -129,3 +129,15 @@ TEST_CASE("two sweepers on one device follow the same scene") {
 TEST_CASE("opening a device that does not exist throws and names its number") {
   CHECK_THROWS_WITH(Device::open({.index = 1000}), Catch::Contains("device 1000 does not exist"));
 }
+
+TEST_CASE("a host with an instance of Vulkan 1.0 is told that it needs one of Vulkan 1.3") {
+  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  HostDevice host{.getInstanceProcAddr = vkGetInstanceProcAddr};
+  REQUIRE(vkCreateInstance(&info, nullptr, &host.instance) == VK_SUCCESS);
+  uint32_t count = 1;
+  vkEnumeratePhysicalDevices(host.instance, &count, &host.physicalDevice);
+  const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
+  REQUIRE(reasons.size() == 1);
+  CHECK_THAT(reasons[0], Catch::StartsWith("needs an instance of Vulkan 1.3 (VkApplicationInfo::apiVersion)"));
+  vkDestroyInstance(host.instance, nullptr);
+}

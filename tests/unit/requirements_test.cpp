@@ -79,7 +79,7 @@ TEST_CASE("each thing that a device lacks is a separate reason in words") {
   facts.apiVersion = VK_API_VERSION_1_1;
   CHECK(gpu::unsupportedReasons(facts, Mode::contact) == std::vector<std::string>{"needs Vulkan 1.3, has 1.1.0"});
   facts = goodDevice();
-  facts.missingFeatures = {{"maintenance4 (shaders are compiled for Vulkan 1.3)", Mode::contact}};
+  facts.missingFeatures = {{"scalarBlockLayout (buffers have the layout of the C++ structs)", Mode::contact}};
   facts.computeQueue = facts.graphicsAndComputeQueue = false;
   facts.subgroups = {.size = 32};
   VkPhysicalDeviceLimits limits = leastLimits();
@@ -88,7 +88,7 @@ TEST_CASE("each thing that a device lacks is a separate reason in words") {
   facts.limits = gpu::limitsOf(limits, kSubgroups);
   const std::vector<std::string> reasons = gpu::unsupportedReasons(facts, Mode::contact);
   REQUIRE(reasons.size() == 6);
-  CHECK(reasons[0] == "lacks the feature maintenance4 (shaders are compiled for Vulkan 1.3)");
+  CHECK(reasons[0] == "lacks the feature scalarBlockLayout (buffers have the layout of the C++ structs)");
   CHECK(reasons[1].find("queue family") != std::string::npos);
   CHECK(reasons[2].find("votes and ballots") != std::string::npos);
   CHECK(reasons[3].find("subgroup size varies") != std::string::npos);
@@ -173,4 +173,39 @@ TEST_CASE("the requirements are chained in front of a host's own features") {
   CHECK(needed.core.pNext == &needed.vulkan12);
   CHECK(needed.vulkan12.pNext == &needed.vulkan13);
   CHECK(needed.vulkan13.pNext == &own);
+}
+
+TEST_CASE("the requirements are set in the host's own structs, and the other features there stay as they are") {
+  VkPhysicalDeviceVulkan13Features own13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                         .dynamicRendering = VK_TRUE};
+  VkPhysicalDeviceFeatures2 own{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &own13};
+  own.features.samplerAnisotropy = VK_TRUE;
+  Requirements needed = requirements(Mode::sampled, true);
+  CHECK(needed.chain(&own) == &needed.vulkan12);
+  CHECK(needed.vulkan12.pNext == &own);
+  CHECK(own.pNext == &own13);
+  CHECK(own.features.samplerAnisotropy == VK_TRUE);
+  CHECK(own.features.shaderFloat64 == VK_TRUE);
+  CHECK(own.features.shaderInt64 == VK_FALSE);
+  CHECK(own13.dynamicRendering == VK_TRUE);
+  CHECK(own13.synchronization2 == VK_TRUE);
+  CHECK(own13.maintenance4 == VK_TRUE);
+  CHECK(own13.privateData == VK_FALSE);
+  VkPhysicalDeviceVulkan12Features own12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &own};
+  CHECK(needed.chain(&own12) == &own12);
+  CHECK(own12.scalarBlockLayout == VK_TRUE);
+  CHECK(own12.shaderOutputLayer == VK_TRUE);
+  CHECK(own12.subgroupBroadcastDynamicId == VK_FALSE);
+}
+
+TEST_CASE("a host's struct of single features that would break the chain is refused by name") {
+  VkPhysicalDeviceVulkan12Features own12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceSynchronization2Features single{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
+                                                  .pNext = &own12};
+  Requirements needed = requirements(Mode::contact, true);
+  CHECK_THROWS_WITH(needed.chain(&single),
+                    Catch::Contains("VkPhysicalDeviceSynchronization2Features, which Vulkan does not allow beside "
+                                    "VkPhysicalDeviceVulkan13Features"));
+  CHECK(own12.scalarBlockLayout == VK_FALSE);
+  CHECK(needed.vulkan13.pNext == nullptr);
 }

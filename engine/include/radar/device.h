@@ -63,7 +63,7 @@ struct HostDevice {
 };
 
 /// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. The host chains it into its
-/// VkDeviceCreateInfo (without pEnabledFeatures), or copies the enabled features into its own structs.
+/// VkDeviceCreateInfo, without pEnabledFeatures, or copies the enabled features into its own structs.
 struct Requirements {
   uint32_t apiVersion = VK_API_VERSION_1_3;  ///< of instance and device
   VkPhysicalDeviceFeatures2 core{};
@@ -74,7 +74,10 @@ struct Requirements {
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   }
-  /// For VkDeviceCreateInfo::pNext: chains all three structs, then `next`. Valid until this object moves or ends.
+  /// For VkDeviceCreateInfo::pNext: the host's chain `next`, with these features. Sets them in the host's own structs of
+  /// these three types, and puts the ones that it lacks in front. Throws, and changes nothing, if it has a struct of
+  /// single features that Vulkan 1.2 or 1.3 took over, such as VkPhysicalDeviceSynchronization2Features, without the
+  /// struct of that version: Vulkan allows only one of both. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
 /// `mode`: sampled needs everything that contact needs, and graphics. `doubles`: includes shaderFloat64, which is

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-// shaders/contact/double_double.glsl has the same operations in the same order.
+#include "exact/determinant.h"
+
+// shaders/contact/double_double.glsl has the same operations in the same order, but for exactCrossing.
 
 namespace radar::exact {
 
@@ -49,6 +52,28 @@ void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
   }
 }
 
+/// How exact arithmetic has the first crossing of an edge of `other` with `face`.
+std::optional<Vector> exactCrossing(const Triangle& face, const Triangle& other) {
+  const Difference x{face[0], face[1]}, y{face[0], face[2]};
+  for (int i = 0; i < 3; ++i) {
+    const Vector &p = other[i], &q = other[(i + 1) % 3];
+    const Determinant above{{face[0], p}, x, y}, below{{face[0], q}, x, y};
+    if (sign(above) * sign(below) > 0 || (sign(above) == 0 && sign(below) == 0)) continue;
+    int least = 1, greatest = -1;
+    for (int k = 0; k < 3; ++k) {
+      const int side = sign(Determinant{{p, q}, {p, face[k]}, {p, face[(k + 1) % 3]}});
+      least = std::min(least, side);
+      greatest = std::max(greatest, side);
+    }
+    if (least < 0 && greatest > 0) continue;
+    const Dyadic height = exactly(above);
+    const double share = quotient(height, height - exactly(below));
+    const Vector edge = minus(q, p);
+    return Vector{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Vector commonPoint(const Triangle& first, const Triangle& second) {
@@ -70,9 +95,14 @@ Vector commonPoint(const Triangle& first, const Triangle& second) {
       for (double& c : p) c /= size;
     }
   }
-  Candidate best{-1e-9, {kNaN, kNaN, kNaN}};
+  Candidate best{-1, {kNaN, kNaN, kNaN}};
   pierce(pb, pa, best);
   pierce(pa, pb, best);
+  // Where triangles cross by little more than rounding errors, the crossing may seem to be outside.
+  if (!(best.inside >= 0)) {
+    const std::optional<Vector> ofA = exactCrossing(b, a), crossing = ofA ? ofA : exactCrossing(a, b);
+    return withoutZeroSigns(crossing.value_or(Vector{kNaN, kNaN, kNaN}));
+  }
   for (int k = 0; k < 3; ++k) best.at[k] = best.at[k] * size + origin[k];
   return withoutZeroSigns(best.at);
 }

@@ -5,9 +5,10 @@
 
 namespace radar::exact {
 
-/// The clearest crossing of an edge of one triangle with the other, in plain doubles: for pictures and messages only,
-/// no decision depends on it. The order of corners does not matter. NaN if no edge crosses (triangles in one plane, or
-/// degenerate).
+/// The clearest crossing of an edge of one triangle with the other, in plain doubles, or one that exact arithmetic
+/// finds if none is clear: for pictures and messages only, no decision depends on it. It is on both triangles but for
+/// rounding of their coordinates. The order of corners does not matter. NaN if no edge crosses (triangles in one plane,
+/// or degenerate).
 Vector commonPoint(const Triangle& a, const Triangle& b);
 
 }  // namespace radar::exact

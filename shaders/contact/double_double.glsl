@@ -230,7 +230,7 @@ bool normalOf(Event e, double turn, out dvec3 normal) {
   return max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
 }
 
-// Finds a common point of two triangles, as engine/exact/common_point.cpp does. `inside`: least barycentric coordinate of the
+// Finds a common point of two triangles, as engine/exact/common_point.cpp does in plain doubles. `inside`: least barycentric coordinate of the
 // best point so far.
 void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, inout double inside, inout dvec3 best) {
   precise dvec3 x = face1 - face0, y = face2 - face0;
@@ -267,6 +267,7 @@ void pierce(dvec3 face0, dvec3 face1, dvec3 face2, dvec3 p, dvec3 q, dvec3 r, in
   }
 }
 
+// Returns false if only exact arithmetic finds one.
 bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
   const dvec3 origin = b[0];
   double size = 0.0LF;
@@ -280,7 +281,7 @@ bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
     a[i] = dvec3(soundQuotient(a[i].x, size), soundQuotient(a[i].y, size), soundQuotient(a[i].z, size));
     b[i] = dvec3(soundQuotient(b[i].x, size), soundQuotient(b[i].y, size), soundQuotient(b[i].z, size));
   }
-  double inside = -1e-9LF;
+  double inside = -1.0LF;
   dvec3 best = dvec3(0.0LF);
   for (uint side = 0; side < three() - 1; ++side) {
     const bool first = side == 0;
@@ -289,5 +290,5 @@ bool commonPoint(dvec3 a[3], dvec3 b[3], out dvec3 point) {
   }
   precise dvec3 placed = best * size + origin;
   point = placed;
-  return inside > -1e-9LF;
+  return inside >= 0.0LF;
 }

@@ -193,13 +193,16 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
-void setOverlap(Corners corners, inout RadarResult r) {
-  dvec3 point;
+// Sets the refined pair's overlap. Returns whether its numbers certainly have the CPU's bits.
+bool setOverlap(Corners corners, inout RadarResult r) {
   r.status = RADAR_OVERLAP;
   // The contact certainly begins before the start and ends after it.
   r.featureA = r.featureB = RADAR_FACE;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
-  if (commonPoint(corners.a, corners.b, point)) r.point = bitsOf(point);
+  dvec3 point;
+  const bool found = commonPoint(corners.a, corners.b, point);
+  r.point = bitsOf(point);
+  return sound && found;
 }
 
 // A summary of a sensor's refined pairs.
@@ -256,9 +259,7 @@ bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
-  if (!pierces) return setHit(one.flags & 0xffu, corners, r);
-  setOverlap(corners, r);
-  return sound;
+  return pierces ? setOverlap(corners, r) : setHit(one.flags & 0xffu, corners, r);
 }
 
 RadarResult decide(SearchState state, bool met) {

@@ -1,6 +1,7 @@
 // Compares the contact interval of two triangles with separating axes in exact rationals.
 #include <catch2/catch.hpp>
 
+#include "exact/common_point.h"
 #include "exact/contact.h"
 #include "exact_oracle.h"
 #include "soups.h"
@@ -287,4 +288,70 @@ TEST_CASE("contact point and normal are those of the touching features") {
                         ->first;
   REQUIRE(parameter(flat) == 4);
   REQUIRE(std::isnan(normal(flat)[0]));
+}
+
+namespace {
+
+using Long = long double;
+using LongVector = std::array<Long, 3>;
+
+LongVector longOf(const Vector& v) {
+  return {v[0], v[1], v[2]};
+}
+Long dot(const LongVector& p, const LongVector& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+LongVector between(const LongVector& from, const LongVector& to) {
+  return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+}
+LongVector crossed(const LongVector& p, const LongVector& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// The distance of a point from a triangle that is not degenerate.
+Long distanceFrom(const Triangle& triangle, const Vector& point) {
+  const LongVector at = longOf(point);
+  const LongVector normal =
+      crossed(between(longOf(triangle[0]), longOf(triangle[1])), between(longOf(triangle[0]), longOf(triangle[2])));
+  Long nearest = INFINITY;
+  bool isOver = true;
+  for (size_t i = 0; i < 3; ++i) {
+    const LongVector from = longOf(triangle[i]), to = longOf(triangle[(i + 1) % 3]), edge = between(from, to);
+    isOver = isOver && dot(normal, crossed(edge, between(from, at))) >= 0;
+    const Long share = std::clamp(dot(edge, between(from, at)) / dot(edge, edge), Long{0}, Long{1});
+    const LongVector rest =
+        between({from[0] + share * edge[0], from[1] + share * edge[1], from[2] + share * edge[2]}, at);
+    nearest = std::min(nearest, std::sqrt(dot(rest, rest)));
+  }
+  if (!isOver) return nearest;
+  return std::abs(dot(normal, between(longOf(triangle[0]), at))) / std::sqrt(dot(normal, normal));
+}
+
+}  // namespace
+
+TEST_CASE("a common point is on both triangles, also where only their corners or borders cross, by rounding errors") {
+  Random random(77);
+  size_t crossing = 0;
+  for (int round = 0; round < 40'000; ++round) {
+    const auto ball = [&] { return random.inBall(); };
+    const Triangle face{ball(), ball(), ball()};
+    Triangle other{ball(), ball(), ball()};
+    // Corner 0 of the other is near corner 0 of the face, or near its first side.
+    const double depth = std::pow(10, random.uniform(-16, -3)),
+                 share = random.chance(0.5) ? 0 : random.uniform(0.1, 0.9);
+    const Vector by = ball();
+    for (size_t k = 0; k < 3; ++k) {
+      other[0][k] = face[0][k] + share * (face[1][k] - face[0][k]) + depth * by[k];
+    }
+    const auto interval = contact(face, other, {0.3, 0.2, 0.9});
+    if (!interval || sign(interval->first) > 0 || sign(interval->last) < 0) continue;
+    ++crossing;
+    for (const Vector& point : {commonPoint(face, other), commonPoint(other, face)}) {
+      const auto ofFace = static_cast<double>(distanceFrom(face, point)),
+                 ofOther = static_cast<double>(distanceFrom(other, point));
+      CAPTURE(round, depth, 1e15 * ofFace, 1e15 * ofOther);
+      REQUIRE(std::max(ofFace, ofOther) < 1e-14);  // nor NaN
+    }
+  }
+  CHECK(crossing > 5'000);
 }

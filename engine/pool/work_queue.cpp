@@ -21,6 +21,13 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }
 
+void validateAll(std::span<const Query> queries, const Scene& scene) {
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const std::string wrong = validate(queries[i], scene);
+    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+  }
+}
+
 std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, size_t workers) {
   auto job = std::make_shared<Job>();
   job->took.resize(workers);
@@ -44,13 +51,23 @@ std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, std::stop_t
   const double submitted = now();
   Lock lock(mutex_);
   edited_.wait(lock, [&] { return !editing_; });
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene);
-    if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
+  // Workers go on while the batch is checked and sorted, but the scene must not change.
+  ++posting_;
+  lock.unlock();
+  std::shared_ptr<Job> job;
+  try {
+    validateAll(queries, scene);
+    job = jobOf(std::move(queries), std::move(stop), devices_.size());
+  } catch (...) {
+    lock.lock();
+    --posting_;
+    settled_.notify_all();
+    throw;
   }
-  const std::shared_ptr<Job> job = jobOf(std::move(queries), std::move(stop), devices_.size());
   job->answers.submitted = submitted;
   std::future<PoolAnswers> future = job->promise.get_future();
+  lock.lock();
+  --posting_;
   open_.push_back(job);
   if (job->queries.empty()) {
     settle(*job, 0);
@@ -80,7 +97,7 @@ void WorkQueue::edit(const std::function<void()>& change) {
     Lock lock(mutex_);
     edited_.wait(lock, [&] { return !editing_; });
     editing_ = true;
-    settled_.wait(lock, [&] { return open_.empty(); });
+    settled_.wait(lock, [&] { return open_.empty() && posting_ == 0; });
   }
   const Editing editing{*this};
   change();

@@ -82,6 +82,7 @@ class WorkQueue {
   std::deque<std::shared_ptr<Job>> jobs_;   // with queries not yet taken
   std::deque<Chunk> returned_;              // from retired workers
   std::vector<std::shared_ptr<Job>> open_;  // not yet answered, in the order of submission
+  size_t posting_ = 0;                      // batches that are being checked
   bool editing_ = false, closed_ = false;
 };
 

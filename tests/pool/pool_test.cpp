@@ -132,6 +132,9 @@ TEST_CASE("submit throws for a query that breaks its contract, names it and star
   CHECK_THROWS_WITH(pool.submit(queries), Catch::Contains("query 5"));
   pool.drain();
   CHECK(pool.devices()[0].queries + pool.devices()[1].queries == 0);
+  bool isEdited = false;
+  pool.edit([&] { isEdited = true; });  // does not wait for the batch that was refused
+  CHECK(isEdited);
 }
 
 TEST_CASE("a pool runs one named thread per device and ends them when it is destroyed") {

@@ -52,7 +52,7 @@ std::vector<Chunk> Worker::chunksInFlight() const {
 
 // Takes a chunk, or finishes one. Returns whether there is more to do.
 bool Worker::serve() {
-  if (inFlight_ < kLanes) {
+  if (inFlight_ < (isSynced_ ? kLanes : 1)) {
     size_t queries = 0;
     for (const Chunk& chunk : chunksInFlight()) queries += chunk.count;
     if (std::optional<Chunk> chunk = queue_.take(number_, queries)) {
@@ -73,8 +73,10 @@ void Worker::begin(Lane& lane, Chunk chunk) {
   if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_, scene_, options_, copy_);
   // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
   if (const uint64_t version = scene_.version(); version != seenVersion_) {
-    lane.sweep->sync();
-    seenVersion_ = version;
+    const std::optional<Error> error = lane.sweep->sync();
+    if (error && queue_.leave(number_)) throw Error(*error);
+    isSynced_ = !error;
+    if (isSynced_) seenVersion_ = version;
   }
   lane.sweep->begin(lane.chunk.queries(), lane.results);
   lane.trace.submitted = queue_.now();

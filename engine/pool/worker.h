@@ -42,6 +42,7 @@ class Worker {
   std::array<Lane, kLanes> lanes_;
   size_t oldest_ = 0, inFlight_ = 0;  // a ring: `inFlight_` lanes from `oldest_` on
   uint64_t seenVersion_ = 0;
+  bool isSynced_ = true;  // else memory did not suffice for the copy, and one lane at a time tries again
   double lastDone_ = 0;
   std::thread thread_;  // last, since it uses the others
 };

@@ -151,6 +151,15 @@ SampledSubmitter::Readback SampledSubmitter::readbackOf(const SampledBatch& batc
 }
 
 void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
+  try {
+    recordAndSubmit(batch, scene, scopes);
+  } catch (...) {
+    pictures_.clear();  // the images' layouts are unknown
+    throw;
+  }
+}
+
+void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
   bind(pictures);

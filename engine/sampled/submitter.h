@@ -28,14 +28,11 @@ class SampledSubmitter {
   SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// Submits one upload, one command buffer and one readback without waiting; call collect() next, with the same
-  /// arguments. `scopes`: also reads back the pictures of view 0.
+  /// arguments. `scopes`: also reads back the pictures of view 0. If this throws, the memory of all pictures is free.
   void submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes = false);
   /// Waits for the submission, and adds each stage's time to `stages`.
   SampledAnswers collect(const SampledBatch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
                          StoredScopes* scopes = nullptr);
-  /// Frees the memory of all pictures, whose contents and layouts are unknown after a failed submission. None may be
-  /// pending.
-  void freePictures() { pictures_.clear(); }
 
  private:
   struct Pictures {
@@ -48,6 +45,7 @@ class SampledSubmitter {
   };
 
   static Readback readbackOf(const SampledBatch& batch, bool scopes);
+  void recordAndSubmit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes);
   Pictures& picturesFor(const SampledBatch& batch);
   void stage(const SampledBatch& batch, const Scene::Impl& scene);
   void bind(const Pictures& pictures);

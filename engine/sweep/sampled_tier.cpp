@@ -64,7 +64,6 @@ bool SampledTier::trySubmit(std::span<Planned> part, bool isLast) {
     try {
       submitter_.submit(drawn_, scene_.impl());
     } catch (const Error& error) {
-      submitter_.freePictures();
       if (isLast || !batch_.survives(error)) throw;
       fits = false;
       return false;

@@ -48,18 +48,20 @@ void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
   }
 }
 
-void Sweeper::Impl::sync() {
+std::optional<Error> Sweeper::Impl::sync() {
   if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
-    return;
+    return {};
   }
   try {
     copy->sync(scene.impl());
   } catch (const gpu::LimitError&) {
     if (copy->hasIndices()) throw;  // mode sampled draws it; mode contact is answered on the CPU
   } catch (const Error& error) {
-    if (!gpu::isOutOfMemory(error)) throw;  // else the next batch tries again, and answers for what it lacks
+    if (!gpu::isOutOfMemory(error)) throw;
+    return error;
   }
+  return {};
 }
 
 void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {

@@ -12,7 +12,8 @@ struct Sweeper::Impl : QueryBatch {
   Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchRoom& room = {}, std::shared_ptr<const ContactKernels> kernels = nullptr);
 
-  void sync();
+  /// Returns the error if memory does not suffice: then each batch tries again, and answers as run() says.
+  std::optional<Error> sync();
   /// Encodes and submits valid `queries`; on return the last submission may still be running. `queries` and `results`,
   /// of the same length, must stay in place until finish(); call that next.
   void begin(std::span<const Query> queries, std::span<Result> results);

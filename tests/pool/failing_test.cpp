@@ -56,6 +56,26 @@ TEST_CASE("a device that is out of memory is retired, and the other answers") {
   CHECK_THAT(pool.devices()[0].retired, Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
 }
 
+TEST_CASE("the last device is kept if it is out of memory, and queries of mode contact are answered all the same") {
+  Boxes boxes(200);
+  std::erase_if(boxes.queries, [](const Query& query) { return query.mode == Mode::sampled; });
+  const std::vector<Result> expected = boxes.answers();
+  for (const int after : {8, 12, 16, 20, 30}) {  // while the scene is uploaded or a batch is searched
+    CAPTURE(after);
+    const FaultReset reset;
+    faults(0).failFrom("vkAllocateMemory", after, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    Pool pool(twoDevices().first(1), boxes.player.scene(), test::kOnDevice);
+    for (const bool isOver : {false, true}) {
+      if (isOver) faults(0).clear();
+      const PoolAnswers answers = pool.submit(boxes.queries).get();
+      CHECK(differences(answers.results, expected) == 0);
+      CHECK(answers.reasons.empty());
+      if (isOver) CHECK(answers.stats.submissions > 0);
+    }
+    CHECK(pool.devices()[0].retired.empty());
+  }
+}
+
 TEST_CASE("with no device left, every query is invalid with the reasons, also in later batches") {
   const Boxes boxes(100);
   const FaultReset reset;

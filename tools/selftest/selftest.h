@@ -2,8 +2,9 @@
 // document that is complete whenever it is read:
 //
 //   {"command", "commit", "date", "processor", "minutes", "seconds", "right", "devices": [...], "together": part}
-//   device: {"number", "name", ..., "answers_checked", "answers_wrong", "parts_ended", "right", "limits": table, "parts": {name:
-//   part}} part: {"state", "note", "seconds", "rows": table}
+//   device: {"number", "name", ..., "answers_checked", "answers_wrong", "parts_ended", "right", "limits": table,
+//            "parts": {name: part}}
+//   part: {"state", "note", "seconds", "rows": table}
 #pragma once
 
 #include <cstdint>

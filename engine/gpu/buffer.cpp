@@ -28,9 +28,11 @@ Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain
 
 bool Buffer::reserve(VkDeviceSize bytes) {
   if (bytes <= capacity_) return false;
-  // At most a quarter more than is needed, so that a buffer that grows a little each time is seldom made anew.
-  const VkDeviceSize step = std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256);
-  const VkDeviceSize size = (bytes + step - 1) / step * step;
+  // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
+  // seldom made and filled anew.
+  const auto roundedUp = [](VkDeviceSize n, VkDeviceSize step) { return (n + step - 1) / step * step; };
+  const VkDeviceSize size = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
+                                     roundedUp(capacity_ + capacity_ / 2, 256));
   const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   VkBuffer handle;

@@ -21,8 +21,8 @@ class Buffer {
  public:
   Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage);
 
-  /// Makes the buffer hold at least `bytes`; growing loses the contents. Returns whether the handle changed. The device
-  /// must not be using it.
+  /// Makes the buffer hold at least `bytes`, and at most half as many more; growing loses the contents. Returns whether
+  /// the handle changed. The device must not be using it.
   bool reserve(VkDeviceSize bytes);
 
   VkBuffer get() const { return buffer_.get(); }

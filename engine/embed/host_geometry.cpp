@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "embed/host_format.h"
+#include "embed/host_transforms.h"
 #include "gpu/barrier.h"
 #include "math/rounding.h"
 #include "shaders/contact/interop.h"
@@ -30,8 +31,6 @@ namespace radar {
 using gpu::BufferDomain;
 
 namespace {
-
-constexpr VkDeviceSize kTransformBytes = 48;
 
 // Created once per device.
 struct HostGeometryKernels {
@@ -65,8 +64,10 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
   std::vector<ObjectId> objects;
   for (const MovedObjects& moved : geometry.objects) {
     if (moved.transforms == VK_NULL_HANDLE) return "objects: expected a buffer of transforms";
-    if (moved.stride < kTransformBytes) {
-      return "objects: stride: expected at least 48 bytes, got " + std::to_string(moved.stride);
+    if (std::string wrong = validate(moved.layout); !wrong.empty()) return "objects: layout: " + wrong;
+    if (const uint64_t least = extentOf(moved.layout); moved.stride < least) {
+      return "objects: stride: expected at least " + std::to_string(least) + " bytes, got " +
+             std::to_string(moved.stride);
     }
     for (const ObjectId object : moved.objects) {
       const std::string name = "object " + std::to_string(object);
@@ -109,14 +110,16 @@ uint32_t HostGeometryPass::copyFrom(VkBuffer buffer, VkDeviceSize first, VkDevic
 
 void HostGeometryPass::addMoved(const MovedObjects& objects, const Scene::Impl& scene) {
   if (objects.objects.empty()) return;
-  const uint32_t firstByte =
-      copyFrom(objects.transforms, objects.first, spanOf(objects.stride, objects.objects.size(), kTransformBytes));
+  const uint32_t firstByte = copyFrom(objects.transforms, objects.first,
+                                      spanOf(objects.stride, objects.objects.size(), extentOf(objects.layout)));
   for (size_t i = 0; i < objects.objects.size(); ++i) {
     const ObjectId id = objects.objects[i];
     const Box& box = *scene.boundsOf(id);
     gpu::Moved moved{.object = id,
                      .mesh = scene.objects[id].object.mesh,
-                     .firstByte = static_cast<uint32_t>(firstByte + i * objects.stride)};
+                     .mask = scene.objects[id].object.mask,
+                     .firstByte = static_cast<uint32_t>(firstByte + i * objects.stride),
+                     .format = encoded(objects.layout)};
     for (int k = 0; k < 3; ++k) {
       moved.anchor[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
       moved.halfExtent[k] = roundDown(std::min(box.hi[k] - moved.anchor[k], moved.anchor[k] - box.lo[k]));

@@ -21,11 +21,20 @@ struct BoundsViolation {
   uint object;
 };
 
+// How a transform lies in memory: radar/host_transforms.h.
+struct TransformLayout {
+  uint parts;       // kMatrix, or the number of scales beside a position and a quaternion
+  uint offsets[3];  // bytes: of a matrix from row to row and from column to column; of position, quaternion and scales
+};
+INTEROP_CONST kMatrix = 4;
+
 // An object that a host moves.
 struct Moved {
   uint object;
   uint mesh;
-  uint firstByte;    // of its transform, which is 12 floats
+  uint mask;
+  uint firstByte;  // of its transform
+  TransformLayout format;
   Point anchor;      // middle of its bounds, world
   Point halfExtent;  // of its bounds about the anchor
 };

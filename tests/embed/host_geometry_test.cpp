@@ -8,11 +8,10 @@
 #include <random>
 
 #include "embed/host_format.h"
-#include "embed/host_geometry.h"
 #include "embed/on_device.h"
+#include "embed/on_device_scene.h"
 #include "embed/renderer.h"
 #include "exact/dyadic.h"
-#include "gpu/barrier.h"
 #include "radar/recorder.h"
 #include "support/buffer_words.h"
 #include "support/exact_placement.h"
@@ -26,6 +25,7 @@ using test::append;
 using test::execute;
 using test::kRoom;
 using test::OnDevice;
+using test::OnDeviceScene;
 using test::sameBits;
 
 /// The smallest bounds of the vertices.
@@ -138,28 +138,6 @@ class HostWorkload {
   std::vector<ObjectId> movedIds_;
   std::vector<DeformedMesh> deformed_;
   std::vector<MovedObjects> moved_;
-};
-
-/// A scene's copy on the device, overwritten with a host's geometry.
-struct OnDeviceScene {
-  OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : copy(test::device().impl()) {
-    CHECK(validate(geometry, scene).empty());
-    const Device::Impl& device = test::device().impl();
-    HostGeometryPass pass(device, copy);
-    gpu::Upload upload(device);
-    pass.stage(geometry, scene.impl());
-    upload.begin(copy.prepare(scene.impl()));
-    copy.upload(scene.impl(), upload);
-    gpu::Submission submission(device, false);
-    const gpu::Commands commands = submission.begin();
-    upload.record(commands);
-    gpu::uploadToRead(commands);
-    gpu::transferToComputeReadWrite(commands);
-    pass.record(commands);
-    submission.submitAndWait();
-    CHECK(pass.boundsViolation().empty());
-  }
-  GpuScene copy;
 };
 
 /// The vertices and nodes of a deformed mesh, read back from the device.

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "radar/device.h"
+#include "radar/host_transforms.h"
 
 namespace radar {
 
@@ -46,16 +47,16 @@ struct DeformedMesh {
   HostPositions positions{};
 };
 
-/// New transforms of objects: one VkTransformMatrixKHR each (3x4 floats, row-major; also the start of an acceleration
-/// structure's instance), in this order. The box of the object's mesh, transformed in float arithmetic, lies within
-/// Scene::setBounds, or exceeds it by at most a millionth of the bounds' largest coordinate. Without Device::doubles(),
-/// a mesh whose transformed middle is farther from its own origin than the bounds' largest coordinate needs room within
-/// the bounds instead: two millionths of that distance.
+/// New transforms of objects, one each, in this order. The box of the object's mesh, transformed in float arithmetic,
+/// lies within Scene::setBounds, or exceeds it by at most a millionth of the bounds' largest coordinate. Without
+/// Device::doubles(), a mesh whose transformed middle is farther from its own origin than the bounds' largest
+/// coordinate needs room within the bounds instead: two millionths of that distance.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes
-  VkDeviceSize stride = 48;  ///< distance between transforms, bytes
+  VkDeviceSize stride = 48;  ///< distance between transforms, bytes; at least a transform's extent
   std::span<const ObjectId> objects{};
+  TransformLayout layout = kRowMajor;
 };
 
 /// The geometry that recorded commands read from the host's buffers when they execute. Everything else comes from the

@@ -1,0 +1,153 @@
+// Where a host's transform puts a mesh, with error bounds (docs/method.md, "A host's geometry"). Included after
+// transform.glsl.
+
+const float kUnit = 5.9604645e-8;  // 2^-24
+
+float sum3(vec3 v) { return v.x + v.y + v.z; }
+
+// The greatest coordinates, times `factor`.
+vec3 coordinatesOf(MeshRecord mesh, float factor) {
+  return factor * abs(mesh.origin) + factor * max(abs(mesh.lo), abs(mesh.hi));
+}
+
+// Whether the absolute terms that place a vertex add up to less than about 2^123. The test itself cannot overflow.
+bool fitsFloats(Transform t, MeshRecord mesh) {
+  const float small = 1.3552527e-20;  // 2^-66
+  const vec3 coordinates = coordinatesOf(mesh, small);
+  bool fits = t.isFinite;
+  for (int row = 0; row < 3; ++row) {
+    const vec4 m = uintBitsToFloat(t.bits[row]);
+    fits = fits && dot(abs(m.xyz) * small, coordinates) <= 0.001953125 && abs(m.w) <= 1e37;
+  }
+  return fits;
+}
+
+// The mesh's origin in the world is high + low, within `error`.
+struct Position {
+  vec3 high, low, error;
+};
+
+Position positionOf(Transform t, vec3 origin) {
+  Position p;
+  for (int row = 0; row < 3; ++row) {
+    const vec4 m = uintBitsToFloat(t.bits[row]);
+    const float sum = dot(abs(m.xyz), abs(origin));
+#ifdef RADAR_NO_DOUBLES
+    // Exact if the origin is 0.
+    p.high[row] = origin == vec3(0.0) ? m.w : dot(m.xyz, origin) + m.w;
+    p.low[row] = 0.0;
+    p.error[row] = origin == vec3(0.0) ? 0.0 : 16.0 * kUnit * (sum + abs(m.w));
+#else
+    const double at = dot(dvec3(m.xyz), dvec3(origin)) + double(m.w);
+    p.high[row] = float(at);
+    p.low[row] = float(at - double(p.high[row]));
+    p.error[row] = 5.7e-14 * (sum + abs(m.w));  // 2^-44
+#endif
+  }
+  return p;
+}
+
+// The box of a placed mesh about an anchor, with room for rounding.
+struct PlacedBox {
+  vec3 centre, halfExtent;
+  bool isFinite;
+};
+
+PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor) {
+  const vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
+  const vec3 flushed = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
+  vec3 at, sum, reach;
+  for (int row = 0; row < 3; ++row) {
+    const vec3 m = uintBitsToFloat(t.bits[row].xyz);
+    const float offset = (position.high[row] - anchor[row]) + position.low[row];
+    at[row] = dot(m, middle) + offset;
+    sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 16.0;
+    reach[row] = dot(abs(m), halfExtent);
+  }
+  return PlacedBox(at, reach + (16.0 * kUnit * (sum + reach) + flushed), all(lessThanEqual(sum + reach, vec3(1e37))));
+}
+
+// Approximate rows of the inverse of a matrix whose largest entry is 1 to 2. Any rows are valid, since the caller bounds
+// their error. All components are smaller than `most`.
+void inverseRows(vec3 m0, vec3 m1, vec3 m2, float most, out vec3 n[3]) {
+  const vec3 c0 = vec3(m0.x, m1.x, m2.x), c1 = vec3(m0.y, m1.y, m2.y), c2 = vec3(m0.z, m1.z, m2.z);
+  const vec3 r0 = cross(c1, c2), r1 = cross(c2, c0), r2 = cross(c0, c1);
+  const float determinant = dot(c0, r0);
+  const bool usable = abs(determinant) > 1e-37;
+  n = vec3[3](r0, r1, r2);
+  for (int k = 0; k < 3; ++k) {
+    const vec3 row = n[k] / (usable ? determinant : 1.0);
+    n[k] = usable && all(lessThan(abs(row), vec3(most))) ? row : vec3(0.0);
+  }
+}
+
+// A power of two, -126 <= exponent <= 127.
+float powerOfTwo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
+
+// Exponents of the matrix's largest entry times the mesh's unit, and of the unit. A matrix that may flush to 0 gets an
+// exponent out of range.
+ivec2 exponentsOf(Transform t, MeshRecord mesh) {
+  uint most = 0;
+  for (int row = 0; row < 3; ++row) {
+    const uvec3 m = t.bits[row].xyz & 0x7fffffffu;
+    most = max(most, max(m.x, max(m.y, m.z)));
+  }
+  const int entry = int(most >> 23) - 127, unit = int(floatBitsToUint(mesh.unit) >> 23) - 127;
+  return ivec2(entry == -127 ? -1000 : entry + unit, unit);
+}
+
+// All members but `mask` and `mesh`. perUnit is 0 if floats cannot hold the mesh or its pose.
+Placement placementOf(MeshRecord mesh, Transform t, Position position) {
+  Placement p;
+  const ivec2 exponents = exponentsOf(t, mesh);
+  // 2^80, tested before multiplying. Out of range, perUnit becomes 0 and the other members do not count.
+  const bool inRange = all(lessThan(exponents, ivec2(80))) && all(greaterThanEqual(exponents, ivec2(-80)));
+  const float unit = inRange ? mesh.unit : 0.0, large = powerOfTwo(inRange ? exponents.x : 0),
+              perLarge = powerOfTwo(inRange ? -exponents.x : 0);
+  const vec3 m[3] = vec3[3](uintBitsToFloat(t.bits[0].xyz) * unit, uintBitsToFloat(t.bits[1].xyz) * unit,
+                            uintBitsToFloat(t.bits[2].xyz) * unit);
+  const vec3 scaled[3] = vec3[3](m[0] * perLarge, m[1] * perLarge, m[2] * perLarge);
+  const vec3 reach = max(abs(mesh.lo), abs(mesh.hi)) * mesh.perUnit;
+  const float flushed = 1.2e-38 * (unit * sum3(reach)) + sum3(1.2e-38 * abs(mesh.origin));
+  vec3 n[3];
+  inverseRows(scaled[0], scaled[1], scaled[2], 1e18 * min(1e12 * large, 1.0), n);
+  float size = 0.0, error = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    const vec3 leading = uintBitsToFloat(floatBitsToUint(m[row]) & 0xffffff00u);
+    p.coarse[row] = vec4(leading, position.high[row]);
+    p.fine[row] = vec4(m[row] - leading, position.low[row]);
+    // Residual: n . matrix - unit vector, times the mesh's reach.
+    float off = 0.0;
+    for (int j = 0; j < 3; ++j) {
+      const vec3 column = vec3(scaled[0][j], scaled[1][j], scaled[2][j]);
+      off += (abs(dot(n[row], column) - (j == row ? 1.0 : 0.0)) + 8.0 * kUnit * (dot(abs(n[row]), abs(column)) + 1.0)) * reach[j];
+    }
+    p.inverse[row] = vec4(n[row] * perLarge, 1.00001 * off);
+    size += dot(abs(m[row]), reach);
+    error = max(error, position.error[row] + 5.7e-14 * abs(position.high[row]) + (t.flushes[row] ? flushed : 0.0));
+  }
+  p.reach = reach;
+  p.root = mesh.firstNode;
+  p.origin = mesh.origin;
+  // 2^-35 of the size, and 1e-37 for numbers that flush to 0.
+  p.error = 1.00001 * (error + 3e-11 * size) + 1e-37;
+  p.size = 1.00001 * size + 1e-37;
+  p.perUnit = inRange && size <= 1.2e24 ? mesh.perUnit : 0.0;
+  return p;
+}
+
+// The transform in doubles, exactly.
+PreciseRows preciseRows(Transform t) {
+  PreciseRows pose;
+  for (uint row = 0; row < 3; ++row) {
+    const uvec2 x = doubleBits(t.bits[row].x), y = doubleBits(t.bits[row].y), z = doubleBits(t.bits[row].z),
+                w = doubleBits(t.bits[row].w);
+#ifdef RADAR_NO_DOUBLES
+    pose[2 * row] = uvec4(x, y);
+    pose[2 * row + 1] = uvec4(z, w);
+#else
+    pose[row] = dvec4(packDouble2x32(x), packDouble2x32(y), packDouble2x32(z), packDouble2x32(w));
+#endif
+  }
+  return pose;
+}

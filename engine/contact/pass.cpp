@@ -68,7 +68,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
       room_(room),
       upload_(device),
       sensors_(device, "sensors", BufferDomain::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
-      sweeps_(device, "sweeps", BufferDomain::device, kUploaded),
+      sweeps_(device, "sweeps", BufferDomain::device, kReadBack),
       states_(device, "search states", BufferDomain::device, kUploaded),
       heads_(device, "refined pair lists", BufferDomain::device, kUploaded),
       excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
@@ -155,9 +155,6 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
     stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
     taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
   }
-  gpu::SearchCounts counts{};
-  counts.blockGroups[2] = 1;
-  counts.rounds[0].tasks = sensorCount_;
   upload_.begin(sceneBytes + reservedBytes_);
   scene_.upload(scene, upload_);
   upload_.add(batch.sensors.data(), bytesOf(batch.sensors), sensors_);
@@ -166,8 +163,27 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   upload_.add(taskList_.data(), bytesOf(taskList_), tasks_);
   upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
   upload_.add(known.data(), known.size_bytes(), results_);
-  upload_.add(&counts, sizeof(counts), counts_);
+  addCounts(sensorCount_);
   setArguments();
+}
+
+void ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene) {
+  sensorCount_ = sensors;
+  ignoresLeaving_ = hasClearances_ = false;
+  const VkDeviceSize sceneBytes = scene_.prepare(scene);
+  reserve(sensors, sensors, sensors);
+  upload_.begin(sceneBytes + reservedBytes_);
+  scene_.upload(scene, upload_);
+  addCounts(0);
+  setArguments();
+}
+
+// Uploads the counts of a search that begins with this many tasks.
+void ContactPass::addCounts(uint32_t tasks) {
+  gpu::SearchCounts counts{};
+  counts.blockGroups[2] = 1;
+  counts.rounds[0].tasks = tasks;
+  upload_.add(&counts, sizeof(counts), counts_);
 }
 
 void ContactPass::stageMore(const gpu::SearchCounts& before) {

@@ -32,6 +32,19 @@ class ContactPass {
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
   /// given, they include placeholders for those of the batch. The device is idle.
   void stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene);
+  /// The same for `sensors` that a shader encodes after the upload. None has a clearance or ignores what does not
+  /// block.
+  void stageEncoded(uint32_t sensors, const Scene::Impl& scene);
+  /// What that shader writes: sensors, sweeps and states, one per result; tasks, whose number it adds to counts(); and
+  /// excluded objects, for which there is room for one per sensor.
+  struct Encoded {
+    const gpu::TexelArray<gpu::Sensor>& sensors;
+    const gpu::Array<gpu::Sweep>& sweeps;
+    const gpu::Array<gpu::SearchState>& states;
+    const gpu::Array<gpu::SearchTask>& tasks;
+    const gpu::Array<uint32_t>& excluded;
+  };
+  Encoded encoded() const { return {sensors_, sweeps_, states_, tasks_, excluded_}; }
 
   using OpenStage = std::function<void(const char*)>;
   /// Records the copies and the barrier after them.
@@ -57,6 +70,7 @@ class ContactPass {
 
  private:
   gpu::KernelArguments& search(int list) { return hasClearances_ ? *searchWithClearance_[list] : search_[list]; }
+  void addCounts(uint32_t tasks);
   void setArguments();
   void reserveLists(uint32_t sensors);
   uint32_t groupsFor(uint32_t sensors) const;

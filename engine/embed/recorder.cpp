@@ -9,16 +9,19 @@
 #include "cpu/query_search.h"
 #include "embed/gather.h"
 #include "embed/host_geometry.h"
+#include "embed/host_queries.h"
 #include "gpu/barrier.h"
 #include "scene/query_lists.h"
 
 // pass                                            reads           writes   barrier after it
 // ----------------------------------------------- --------------- -------- ------------------
 // gather.cpp: upload                                                       (contact/pass.cpp's)
-// contact/pass.cpp; host_geometry.cpp between its
-//   upload and search
+// contact/pass.cpp; host_geometry.cpp and
+//   host_queries.cpp between its upload and
+//   search
 // gather.cpp, host_geometry.cpp: invalidate                                computeWriteToCopy
-// readback                                        counts, results readback writtenToHost
+// readback                                        counts,         readback writtenToHost
+//                                                 results, sweeps
 
 namespace radar {
 
@@ -114,11 +117,16 @@ struct Recorder::Impl {
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
   void checkCapacity() const;
   void validateAll(std::span<const Query> queries) const;
+  void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
   void plan(std::span<const Query> queries);
+  void planSearches(const Query& query, std::span<const ObjectId> objects, const gpu::Gathered& searches);
+  void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
   void decide(std::span<Result> results) const;
   std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
-  void planSearches(const Query& query, std::span<const ObjectId> objects, const gpu::Gathered& searches);
+  std::vector<Result> readHost() const;
+  std::vector<Result> copyResults(size_t count) const;
+  VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
 
   const Device::Impl& device;
   const Scene& scene;
@@ -128,9 +136,11 @@ struct Recorder::Impl {
   std::shared_ptr<const GpuScene::Buffers> usedBuffers;  ///< by the last recording
   GpuScene::Farthest farthest;                           ///< of the meshes that it searched
   HostGeometryPass geometry;
+  std::optional<HostQueriesPass> hostQueries;  ///< made when first needed
+  uint32_t mostWritten = 0;  ///< HostQueries::count of the last record(); 0 if it failed, or had others
   ContactPass pass;
   GatherPass gathers;
-  gpu::Buffer readback;                 ///< counts, then results
+  gpu::Buffer readback;                 ///< counts, then results; then sweeps, if a host's shader wrote the queries
   std::vector<Query> recordedQueries;   ///< in the last record(); none if it failed
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
   std::vector<uint32_t> hitOffsets;
@@ -167,6 +177,12 @@ void Recorder::Impl::validateAll(std::span<const Query> queries) const {
     if (wrong.empty()) wrong = notOffered(queries[i], scene.impl());
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
+}
+
+void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {
+  if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
+  if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
 }
 
 // Of the queries that take several searches; ascending.
@@ -270,57 +286,85 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-void Recorder::record(VkCommandBuffer commandBuffer, std::span<const Query> queries, const HostGeometry& geometry) {
+// Records what either kind of record() has staged. `areWritten`: a host's shader has written the queries.
+void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten) {
+  const gpu::Commands commands{&device.vk, commandBuffer};
+  const char* open = nullptr;
+  const auto stage = [&](const char* name) {
+    if (open != nullptr) device.endLabel(commands);
+    device.beginLabel(commands, name);
+    open = name;
+  };
+  if (isShared) gpu::computeToOverwrite(commands);
+  if (!gathers.empty()) gathers.recordUpload(commands);
+  pass.recordUpload(commands, stage);
+  if (!geometry.empty()) {
+    stage("geometry");
+    geometry.record(commands);
+  }
+  if (areWritten && results != 0) {
+    stage("plan");
+    hostQueries->record(commands, pass, *copy, scene.impl());
+  }
+  pass.record(commands, stage, capacity.rounds, true);
+  if (!gathers.empty()) {
+    stage("gather");
+    gathers.record(commands, pass.results(), results - gathers.searchCount());
+  }
+  if (!geometry.empty()) geometry.recordInvalidate(commands, pass.results(), results);
+  gpu::computeWriteToCopy(commands);
+  stage("readback");
+  const auto readBack = [&](const gpu::Buffer& from, VkDeviceSize to, VkDeviceSize bytes) {
+    const VkBufferCopy region{0, to, bytes};
+    if (bytes != 0) commands->CmdCopyBuffer(commands, from.get(), readback.get(), 1, &region);
+  };
+  readBack(pass.counts(), 0, sizeof(gpu::SearchCounts));
+  readBack(pass.results(), kFirstResult, results * sizeof(Result));
+  if (areWritten) readBack(pass.encoded().sweeps, firstSweep(), results * sizeof(gpu::Sweep));
+  gpu::writtenToHost(commands);
+  device.endLabel(commands);
+  copy->confirm(scene.impl());
+  usedBuffers = copy->shareBuffers();
+  farthest = copy->farthest();
+}
+
+void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   Impl& self = *impl_;
   self.validateAll(queries);
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
+  self.mostWritten = 0;
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
   self.copy->willOverwrite(self.geometry.overwritten());
   self.usedBuffers.reset();
   self.pass.stage(self.sensors, self.known, self.scene.impl());
   self.gathers.stage();
-
-  const gpu::Commands commands{&self.device.vk, commandBuffer};
-  const char* open = nullptr;
-  const auto stage = [&](const char* name) {
-    if (open != nullptr) self.device.endLabel(commands);
-    self.device.beginLabel(commands, name);
-    open = name;
-  };
-  if (self.isShared) gpu::computeToOverwrite(commands);
-  self.gathers.recordUpload(commands);
-  self.pass.recordUpload(commands, stage);
-  if (!self.geometry.empty()) {
-    stage("geometry");
-    self.geometry.record(commands);
-  }
-  self.pass.record(commands, stage, self.capacity.rounds, true);
-  const auto resultCount = static_cast<uint32_t>(self.known.size());
-  if (!self.gathers.empty()) {
-    stage("gather");
-    self.gathers.record(commands, self.pass.results(), resultCount - self.gathers.searchCount());
-  }
-  if (!self.geometry.empty()) self.geometry.recordInvalidate(commands, self.pass.results(), resultCount);
-  gpu::computeWriteToCopy(commands);
-  stage("readback");
-  const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
-  commands->CmdCopyBuffer(commands, self.pass.counts().get(), self.readback.get(), 1, &counts);
-  const VkBufferCopy results{0, kFirstResult, resultCount * sizeof(Result)};
-  if (results.size != 0) {
-    commands->CmdCopyBuffer(commands, self.pass.results().get(), self.readback.get(), 1, &results);
-  }
-  gpu::writtenToHost(commands);
-  self.device.endLabel(commands);
-  self.copy->confirm(self.scene.impl());
-  self.usedBuffers = self.copy->shareBuffers();
-  self.farthest = self.copy->farthest();
+  self.recordSearch(commands, static_cast<uint32_t>(self.known.size()), false);
   self.recordedQueries.assign(queries.begin(), queries.end());
   self.tolerances.clear();
   for (const Query& query : queries) {
     self.tolerances.push_back(cpu::toleranceOf(query, self.scene.impl().meshes[query.mesh]));
   }
+}
+
+void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
+  Impl& self = *impl_;
+  self.validateHost(queries, geometry);
+  self.recordedQueries.clear();
+  self.mostWritten = 0;
+  self.geometry.stage(geometry, self.scene.impl());
+  self.gathers.clear();
+  self.gathered.clear();
+  self.hitOffsets.assign(queries.count + 1, queries.count);
+  self.copy->willOverwrite(self.geometry.overwritten());
+  self.usedBuffers.reset();
+  self.pass.stageEncoded(queries.count, self.scene.impl());
+  self.readback.reserve(self.firstSweep() + self.capacity.queries * sizeof(gpu::Sweep));
+  if (!self.hostQueries) self.hostQueries.emplace(self.device);
+  if (queries.count != 0) self.hostQueries->stage(queries);
+  self.recordSearch(commands, queries.count, true);
+  self.mostWritten = queries.count;
 }
 
 void Recorder::reset() {
@@ -331,6 +375,24 @@ VkBuffer Recorder::results() const {
   return impl_->pass.results().get();
 }
 
+std::vector<Result> Recorder::Impl::copyResults(size_t count) const {
+  const auto* results = reinterpret_cast<const Result*>(readback.mapped() + kFirstResult);
+  return {results, results + count};
+}
+
+std::vector<Result> Recorder::Impl::readHost() const {
+  const UnresolvedPairs unresolved(pass.unresolved(counts()));
+  const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(readback.mapped() + firstSweep());
+  std::vector<Result> results = copyResults(counts().queries);
+  for (uint32_t i = 0; i < results.size(); ++i) {
+    const auto pairs = unresolved.of(i);
+    if (results[i].flags != kFlagUnresolved || pairs.empty()) continue;
+    const Query query = queryOf(sweeps[i]);
+    results[i] = decideUnresolved(results[i], pairs, query, Motion(query), 0, *farthest);
+  }
+  return results;
+}
+
 std::span<const uint32_t> Recorder::hitOffsets() const {
   return impl_->hitOffsets;
 }
@@ -338,9 +400,9 @@ std::span<const uint32_t> Recorder::hitOffsets() const {
 std::vector<Result> Recorder::read(Lists* lists) {
   Impl& self = *impl_;
   if (lists != nullptr) *lists = {};
+  if (self.mostWritten != 0) return self.readHost();
   if (self.recordedQueries.empty()) return {};
-  std::vector<Result> results(self.known.size());
-  std::copy_n(reinterpret_cast<const Result*>(self.readback.mapped() + kFirstResult), results.size(), results.begin());
+  std::vector<Result> results = self.copyResults(self.known.size());
   self.decide(results);
   return self.putTogether(results, lists);
 }
@@ -348,7 +410,7 @@ std::vector<Result> Recorder::read(Lists* lists) {
 Capacity Recorder::needed() const {
   const Impl& self = *impl_;
   Capacity needed = self.capacity;
-  if (self.recordedQueries.empty()) return needed;
+  if (self.recordedQueries.empty() && self.mostWritten == 0) return needed;
   const gpu::SearchCounts& counts = self.counts();
   const auto of = [](uint32_t count, uint32_t capacity) {
     constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max();
@@ -356,6 +418,7 @@ Capacity Recorder::needed() const {
   };
   needed.candidates = of(counts.candidates, needed.candidates);
   needed.unresolvedPairs = std::max(counts.unresolved, 1u);
+  needed.searches = self.gathers.searchCount();
   uint32_t rounds = 0;
   while (rounds <= self.capacity.rounds && counts.rounds[rounds].tasks != 0) ++rounds;
   const bool isUnfinished = rounds > self.capacity.rounds;

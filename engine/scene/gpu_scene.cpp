@@ -193,7 +193,7 @@ void GpuScene::describe(MeshId id, const Mesh& mesh) {
   copyPoint(mesh.origin, record.origin);
   copyPoint(mesh.box.lo, record.lo);
   copyPoint(mesh.box.hi, record.hi);
-  record.unit = static_cast<float>(mesh.unit);
+  record.unit = mesh.used ? static_cast<float>(mesh.unit) : 0.0f;
   record.perUnit = static_cast<float>(1 / mesh.unit);
 }
 

@@ -43,7 +43,7 @@ struct Sweep {
   float start;      // SearchState::hi below this is that of a certain contact before the end
   uint ignoreLeaving;  // only pairs that block count
   uint isMirrored;     // the pose turns the mesh inside out
-  uint hasClearance;   // the CPU decides all pairs that may be first
+  uint hasClearance;   // the CPU decides all pairs that may be first; also where the length is not known to the last bit
   float stepPerUnit;   // of a step: t per scaled length, rounded down; negative if nothing moves; of a sweep 0
   double slack;        // radar::Query::slack; negative: by default
   double magnitude;    // of the placed mesh, for the default
@@ -60,6 +60,7 @@ INTEROP_CONST kSearchLost = 1;        // a list was full
 INTEROP_CONST kSearchOutOfRange = 2;  // an object in reach is too large or too small relative to the sensor, for floats
 INTEROP_CONST kSearchUnfinished = 4;  // more rounds were needed than recorded
 INTEROP_CONST kSearchWithin = 8;      // something certainly is within the clearance at the start: the search has ended
+INTEROP_CONST kSearchNoQuery = 16;    // a host's shader has written no valid query
 
 // A pair of nodes, or a node of the tree over objects, still to be searched.
 struct SearchTask {
@@ -134,6 +135,7 @@ struct SearchCounts {
   uint trianglePairsHigh;
   uint solves;
   uint solvesHigh;
+  uint queries;          // written by a host's shader, as far as they count
   SearchRound rounds[kMostRounds + 1];
 };
 

@@ -291,7 +291,8 @@ void main() {
   const SearchState state = states[s];
   const uint missing = ((state.flags & kSearchLost) != 0 ? RADAR_TOO_MANY_CANDIDATES : 0) |
                        ((state.flags & kSearchUnfinished) != 0 ? RADAR_TOO_LONG : 0) |
-                       ((state.flags & kSearchOutOfRange) != 0 ? RADAR_OUT_OF_RANGE : 0);
+                       ((state.flags & kSearchOutOfRange) != 0 ? RADAR_OUT_OF_RANGE : 0) |
+                       ((state.flags & kSearchNoQuery) != 0 ? RADAR_BAD_QUERY : 0);
   RadarResult r;
   if ((state.flags & kSearchWithin) != 0) {
     r = withinAtStart();

@@ -63,6 +63,18 @@ struct RefitPush {
 struct MovePush {
   uint count;  // objects
 };
+struct PlanPush {
+  uint queries;     // the most
+  uint stride;      // bytes from one query to the next, in the copied words
+  uint countByte;   // of the number of queries, in the copied words; kNobody: all count
+  uint meshes;      // in the list of meshes
+  uint start;       // link of the tree over objects at which each search starts; kNobody: there are no objects
+  uint inRange;     // floats can hold the tree over objects
+  Point anchor;     // of that tree, which is the sum of this
+  Point anchorLow;  // and this
+  Point lo;         // of the objects, about the anchor
+  Point hi;
+};
 struct InvalidatePush {
   uint count;  // results
 };
@@ -70,10 +82,18 @@ struct GatherPush {
   uint count;  // searches
   uint first;  // index of the first one's answer
 };
+// Members of a radar::HostQuery, bytes from its beginning.
+INTEROP_CONST kQueryDirection = 48;
+INTEROP_CONST kQueryDistance = 60;
+INTEROP_CONST kQueryMesh = 64;
+INTEROP_CONST kQueryMask = 68;
+INTEROP_CONST kQueryExclude = 72;
+INTEROP_CONST kQueryFlags = 76;
+INTEROP_CONST kQueryAnyHit = 1;
 // Invocations in a workgroup of the passes.
 INTEROP_CONST kHostGroup = 64;
 
-INTEROP_SLOT(kSlotWords, 5, uint);  // words copied from the host's buffers
+INTEROP_SLOT(kSlotWords, 19, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 6, Moved);
 INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first

@@ -22,7 +22,7 @@ layout(push_constant) uniform PushConstants { MovePush push; };
 
 // Whether the mesh's box may leave the object's bounds.
 bool leavesBounds(Transform t, Moved moved, MeshRecord mesh, Position position) {
-  const PlacedBox box = boxOf(t, mesh, position, moved.anchor);
+  const PlacedBox box = boxOf(t, mesh, position, moved.anchor, vec3(0.0));
   return !box.isFinite || any(greaterThan(abs(box.centre) + box.halfExtent, moved.halfExtent));
 }
 

@@ -53,13 +53,14 @@ struct PlacedBox {
   bool isFinite;
 };
 
-PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor) {
+// The anchor is the sum of two floats.
+PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor, vec3 anchorLow) {
   const vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
   const vec3 flushed = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
   vec3 at, sum, reach;
   for (int row = 0; row < 3; ++row) {
     const vec3 m = uintBitsToFloat(t.bits[row].xyz);
-    const float offset = (position.high[row] - anchor[row]) + position.low[row];
+    const float offset = (position.high[row] - anchor[row]) + (position.low[row] - anchorLow[row]);
     at[row] = dot(m, middle) + offset;
     sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 16.0;
     reach[row] = dot(abs(m), halfExtent);
@@ -82,7 +83,7 @@ void inverseRows(vec3 m0, vec3 m1, vec3 m2, float most, out vec3 n[3]) {
 }
 
 // A power of two, -126 <= exponent <= 127.
-float powerOfTwo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
+float twoTo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 
 // Exponents of the matrix's largest entry times the mesh's unit, and of the unit. A matrix that may flush to 0 gets an
 // exponent out of range.
@@ -101,9 +102,9 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   Placement p;
   const ivec2 exponents = exponentsOf(t, mesh);
   // 2^80, tested before multiplying. Out of range, perUnit becomes 0 and the other members do not count.
-  const bool inRange = all(lessThan(exponents, ivec2(80))) && all(greaterThanEqual(exponents, ivec2(-80)));
-  const float unit = inRange ? mesh.unit : 0.0, large = powerOfTwo(inRange ? exponents.x : 0),
-              perLarge = powerOfTwo(inRange ? -exponents.x : 0);
+  const bool inRange = all(lessThan(exponents, ivec2(80, 81))) && all(greaterThanEqual(exponents, ivec2(-80)));
+  const float unit = inRange ? mesh.unit : 0.0, large = twoTo(inRange ? exponents.x : 0),
+              perLarge = twoTo(inRange ? -exponents.x : 0);
   const vec3 m[3] = vec3[3](uintBitsToFloat(t.bits[0].xyz) * unit, uintBitsToFloat(t.bits[1].xyz) * unit,
                             uintBitsToFloat(t.bits[2].xyz) * unit);
   const vec3 scaled[3] = vec3[3](m[0] * perLarge, m[1] * perLarge, m[2] * perLarge);

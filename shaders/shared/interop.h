@@ -82,7 +82,7 @@ struct MeshRecord {
   Point origin;   // of local vertices
   Point lo;       // of local vertices
   Point hi;
-  float unit;     // normalised vertices = local * perUnit
+  float unit;     // normalised vertices = local * perUnit; 0: the mesh has been removed
   float perUnit;  // 1 / unit
   uint firstVertex;
   uint firstTriangle;

@@ -181,7 +181,7 @@ TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the dev
   const DeformedMesh deformed{mesh, {.buffer = host.get()}};
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
-  CHECK_THROWS_WITH(recorder.record(commands, {}, {.meshes = {&deformed, 1}}),
+  CHECK_THROWS_WITH(recorder.record(commands, std::span<const Query>(), {.meshes = {&deformed, 1}}),
                     Catch::StartsWith("the scene's vertices need a buffer of 134217744 bytes"));
 }
 

@@ -10,14 +10,14 @@
 
 namespace radar::test {
 
-std::vector<uint32_t> wordsOf(const gpu::Buffer& buffer, size_t count) {
+std::vector<uint32_t> wordsOf(VkBuffer buffer, size_t count) {
   if (count == 0) return {};
   const Device::Impl& device = test::device().impl();
   Bindings bindings(device, 2, 4);
   const gpu::Pipeline pipeline = gpu::computePipeline(device, bindings.layout(), k_copy_words_comp, "copy words");
   gpu::Buffer out(device, "words", gpu::BufferDomain::readback, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   out.reserve(4 * count);
-  bindings.setBuffer(0, buffer.get());
+  bindings.setBuffer(0, buffer);
   bindings.setBuffer(1, out.get());
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();

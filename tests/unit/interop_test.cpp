@@ -11,11 +11,14 @@
 #include <string>
 
 #include "engine_shaders.h"
+#include "radar/host_queries.h"
 #include "radar/radar.h"
 #include "shaders/arithmetic/interop.h"
 #include "shaders/contact/interop.h"
 #include "shaders/embed/interop.h"
 #include "shaders/sampled/interop.h"
+#include "spirv/host_query_comp.h"
+#include "spirv/host_query_comp_SCALAR.h"
 #include "spirv/shared_structs_comp.h"
 #include "spirv/shared_structs_comp_RADAR_NO_DOUBLES.h"
 
@@ -190,7 +193,7 @@ const std::vector<Expected>& sharedStructs() {
         MEMBER(SearchCounts, refinedPairs), MEMBER(SearchCounts, openPairs), MEMBER(SearchCounts, unresolved),
         MEMBER(SearchCounts, broken), MEMBER(SearchCounts, nodePairs), MEMBER(SearchCounts, nodePairsHigh),
         MEMBER(SearchCounts, trianglePairs), MEMBER(SearchCounts, trianglePairsHigh), MEMBER(SearchCounts, solves),
-        MEMBER(SearchCounts, solvesHigh), MEMBER(SearchCounts, rounds)}},
+        MEMBER(SearchCounts, solvesHigh), MEMBER(SearchCounts, queries), MEMBER(SearchCounts, rounds)}},
       {"SearchPush",
        sizeof(SearchPush),
        {MEMBER(SearchPush, round), MEMBER(SearchPush, taskCapacity), MEMBER(SearchPush, candidateCapacity),
@@ -207,6 +210,11 @@ const std::vector<Expected>& sharedStructs() {
         MEMBER(DeformPush, format)}},
       {"RefitPush", sizeof(RefitPush), {MEMBER(RefitPush, first), MEMBER(RefitPush, count), MEMBER(RefitPush, mesh)}},
       {"MovePush", sizeof(MovePush), {MEMBER(MovePush, count)}},
+      {"PlanPush",
+       sizeof(PlanPush),
+       {MEMBER(PlanPush, queries), MEMBER(PlanPush, stride), MEMBER(PlanPush, countByte), MEMBER(PlanPush, meshes),
+        MEMBER(PlanPush, start), MEMBER(PlanPush, inRange), MEMBER(PlanPush, anchor), MEMBER(PlanPush, anchorLow),
+        MEMBER(PlanPush, lo), MEMBER(PlanPush, hi)}},
       {"InvalidatePush", sizeof(InvalidatePush), {MEMBER(InvalidatePush, count)}},
       {"GatherPush", sizeof(GatherPush), {MEMBER(GatherPush, count), MEMBER(GatherPush, first)}},
   };
@@ -292,6 +300,21 @@ TEST_CASE("the engine's shaders lay out shared structs and results as C++ does")
        {"RadarResult", "SearchCounts", "SearchPush", "RefinedPair", "Placement", "MeshNode", "View"}) {
     CAPTURE(name);
     CHECK(seen.count(name) == 1);
+  }
+}
+
+TEST_CASE("a host's query has one layout in C++ and in shaders, std430 or scalar") {
+  using radar::HostQuery;
+  const Expected query{
+      "RadarQuery",
+      sizeof(HostQuery),
+      {MEMBER(HostQuery, worldFromMesh), MEMBER(HostQuery, direction), MEMBER(HostQuery, distance),
+       MEMBER(HostQuery, mesh), MEMBER(HostQuery, mask), MEMBER(HostQuery, exclude), MEMBER(HostQuery, flags)}};
+  for (const std::span<const uint32_t> spirv :
+       {std::span<const uint32_t>(k_host_query_comp), std::span<const uint32_t>(k_host_query_comp_SCALAR)}) {
+    const Layouts layouts = layoutsOf(spirv);
+    REQUIRE(layouts.strides.count("RadarQuery") == 1);
+    checkLayout(layouts, query);
   }
 }
 

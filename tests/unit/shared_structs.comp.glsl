@@ -50,6 +50,7 @@ layout(scalar, binding = 36) readonly buffer B36 { InvalidatePush b36[]; };
 layout(scalar, binding = 38) readonly buffer B38 { Gathered b38[]; };
 layout(scalar, binding = 39) readonly buffer B39 { GatherPush b39[]; };
 layout(scalar, binding = 37) readonly buffer B37 { TransformLayout b37[]; };
+layout(scalar, binding = 38) readonly buffer B38 { PlanPush b38[]; };
 
 layout(local_size_x = 1) in;
 

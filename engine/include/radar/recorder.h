@@ -5,6 +5,7 @@
 #pragma once
 
 #include "radar/host_geometry.h"
+#include "radar/host_queries.h"
 
 namespace radar {
 
@@ -99,6 +100,21 @@ class RADAR_API Recorder {
   /// queries or searches than Capacity says, a query has more than 2^15 objects in reach, `geometry` breaks its
   /// contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
+  /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
+  /// shaders read has kFlagUnresolved as above; read() decides it. Answers beyond the number of queries, up to
+  /// HostQueries::count, become Status::invalid with kFlagQuery, as do queries that break the contract of HostQuery.
+  /// Matrices of nothing but subnormal floats are out of range, too. Without Device::doubles(), a sensor modelled far
+  /// from its own origin is placed with the precision of floats, and may need more candidates.
+  ///
+  /// - Before: writes to the buffers of `queries` are visible to VK_PIPELINE_STAGE_2_COPY_BIT,
+  ///   VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them wait for that stage.
+  /// - Allocates device memory also if the queries' span has grown. The first such recording of a Device, be it of no
+  ///   query, creates a pipeline.
+  ///
+  /// Throws before recording anything if there is no buffer of queries, their stride is shorter than a HostQuery, there
+  /// may be more than Capacity::queries, an object of the scene has a motion, `geometry` breaks its contract, or
+  /// something does not fit the device.
+  void record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.
   void reset();
 
@@ -107,9 +123,9 @@ class RADAR_API Recorder {
   /// Where the last recording's lists are in results(), in answers: one number per query, and the end of the last list.
   std::span<const uint32_t> hitOffsets() const;
 
-  /// The answers on the CPU, one per recorded query, with open ones decided, and if wanted their lists. Call it once
-  /// the last recording has executed and been waited for (by a fence, or a semaphore's wait on the host); it does not
-  /// wait itself. Later changes of the scene do not matter.
+  /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided, and
+  /// if wanted their lists. Call it once the last recording has executed and been waited for (by a fence, or a
+  /// semaphore's wait on the host); it does not wait itself. Later changes of the scene do not matter.
   std::vector<Result> read(Lists* lists = nullptr);
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
   /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,

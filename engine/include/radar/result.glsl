@@ -62,6 +62,7 @@ const uint RADAR_TOO_MANY_CANDIDATES = 2;
 const uint RADAR_TOO_LONG = 4;
 const uint RADAR_OUT_OF_RANGE = 8;
 const uint RADAR_OUT_OF_BOUNDS = 16;
+const uint RADAR_BAD_QUERY = 32;
 
 // Rounds a double, given as its bits, low word first, to float, towards 0.
 float radarFloat(uvec2 bits) {

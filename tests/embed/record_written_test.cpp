@@ -1,0 +1,134 @@
+// A host's shader writes queries and their number in the command buffer that answers them.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "embed/host.h"
+#include "embed/renderer.h"
+#include "embed/written_queries.h"
+#include "radar/cpu_sweeper.h"
+#include "spirv/write_queries_comp.h"
+
+// In record_written.cpp.
+struct Asked {
+  VkBuffer queries, number;
+};
+void recordAsked(VkCommandBuffer commands, radar::Recorder& recorder, const Asked& asked);
+
+namespace {
+
+using namespace radar;
+
+struct WritePush {
+  uint32_t number;
+  float height;
+};
+
+/// The query that write_queries.comp writes.
+HostQuery queryOfShader(uint32_t i, float height) {
+  return {.worldFromMesh = {0.5f, 0, 0, 0.25f * static_cast<float>(i), 0, 0.5f, 0.125f, 0, 0, -0.125f, 0.5f, height},
+          .direction = {0, 0.015625f * static_cast<float>(i % 4), 1},
+          .distance = 20,
+          .mesh = 0,
+          .mask = ~0u,
+          .exclude = i % 2 == 0 ? kNone : i % 8,
+          .flags = i % 5 == 4 ? HostQuery::kAnyHit : 0};
+}
+
+/// A host's shader that asks, with its buffers.
+class Asker {
+ public:
+  explicit Asker(const Device& device)
+      : impl_(device.impl()),
+        queries_(impl_, "asked", gpu::BufferDomain::device, kUsage),
+        number_(impl_, "number", gpu::BufferDomain::device, kUsage),
+        bindings_(impl_, 2, sizeof(WritePush)),
+        pipeline_(gpu::computePipeline(impl_, bindings_.layout(), k_write_queries_comp, "ask")),
+        submission_(impl_, false) {
+    queries_.reserve(256 * sizeof(HostQuery));
+    number_.reserve(4);
+    bindings_.setBuffer(0, queries_.get());
+    bindings_.setBuffer(1, number_.get());
+  }
+
+  std::vector<Result> ask(Recorder& recorder, const WritePush& push, bool withBarrier = true) {
+    const gpu::Commands commands = submission_.begin();
+    bindings_.bind(commands);
+    commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+    commands->CmdPushConstants(commands, bindings_.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(push), &push);
+    commands->CmdDispatch(commands, 4, 1, 1);
+    if (withBarrier) {
+      recordAsked(commands, recorder, {queries_.get(), number_.get()});
+    } else {
+      recorder.record(commands, HostQueries{.buffer = queries_.get(), .count = 256, .countBuffer = number_.get()});
+    }
+    submission_.submitAndWait();
+    return recorder.read();
+  }
+
+ private:
+  static constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  const Device::Impl& impl_;
+  gpu::Buffer queries_, number_;
+  test::Bindings bindings_;
+  gpu::Pipeline pipeline_;
+  gpu::Submission submission_;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "frames in which a shader writes queries and their number are answered, and allocate, submit and wait for "
+    "nothing") {
+  test::Host host;
+  const Device hosts = Device::adopt(host.handles);
+  host.handles.getInstanceProcAddr = test::countingLoader();
+  host.handles.allocator = test::countingAllocator();
+  test::resetCounts();
+  {
+    const Device device = Device::adopt(host.handles);
+    test::Row row(1);
+    Asker asker(hosts);
+    Recorder recorder(device, row.scene, {.queries = 256, .candidates = 1u << 16, .unresolvedPairs = 1u << 14});
+    CpuSweeper sweeper(row.scene, 1);
+    const test::Counts before = test::counts();
+    int64_t allocations = 0;
+    size_t hits = 0, clear = 0;
+    const uint32_t numbers[] = {40, 0, 1, 256, 64, 65};
+    for (uint32_t frame = 0; frame < 60; ++frame) {
+      if (frame == 2) allocations = test::counts().allocations;
+      const WritePush push{numbers[frame % 6], static_cast<float>(frame) / 64};
+      const std::vector<Result> read = asker.ask(recorder, push);
+      std::vector<Query> queries;
+      for (uint32_t i = 0; i < push.number; ++i) queries.push_back(test::queryOf(queryOfShader(i, push.height)));
+      std::vector<Result> expected = sweeper.run(queries);
+      REQUIRE(read.size() == expected.size());
+      for (size_t i = 0; i < read.size(); ++i) {
+        CAPTURE(frame, i, read[i].flags);
+        expected[i].tier = Tier::contact;
+        CHECK(test::sameBits(read[i], expected[i]));
+        hits += read[i].status == Status::hit;
+        clear += read[i].status == Status::clear;
+      }
+    }
+    CHECK(hits > 500);
+    CHECK(clear > 500);
+    const test::Counts after = test::counts();
+    CHECK(after.allocations == allocations);
+    CHECK(after.submissions == before.submissions);
+    CHECK(after.waits == before.waits);
+  }
+  CHECK(test::counts().live == 0);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("a shader that writes queries without the documented barrier causes a hazard") {
+  test::Row row(1);
+  Asker asker(test::device());
+  Recorder recorder(test::device(), row.scene, {.queries = 256});
+  for (const bool withBarrier : {true, false, true}) {
+    asker.ask(recorder, {40, 0}, withBarrier);
+    const std::vector<std::string> messages = test::takeValidationMessages();
+    CHECK(messages.empty() == withBarrier);
+    if (!messages.empty()) CHECK(messages[0].find("SYNC-HAZARD-READ-AFTER-WRITE") != std::string::npos);
+  }
+}

@@ -47,8 +47,8 @@ layout(scalar, binding = 33) readonly buffer B33 { DeformPush b33[]; };
 layout(scalar, binding = 34) readonly buffer B34 { RefitPush b34[]; };
 layout(scalar, binding = 35) readonly buffer B35 { MovePush b35[]; };
 layout(scalar, binding = 36) readonly buffer B36 { InvalidatePush b36[]; };
-layout(scalar, binding = 38) readonly buffer B38 { Gathered b38[]; };
-layout(scalar, binding = 39) readonly buffer B39 { GatherPush b39[]; };
+layout(scalar, binding = 39) readonly buffer B39 { Gathered b39[]; };
+layout(scalar, binding = 40) readonly buffer B40 { GatherPush b40[]; };
 layout(scalar, binding = 37) readonly buffer B37 { TransformLayout b37[]; };
 layout(scalar, binding = 38) readonly buffer B38 { PlanPush b38[]; };
 

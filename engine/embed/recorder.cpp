@@ -120,7 +120,7 @@ struct Recorder::Impl {
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
   void plan(std::span<const Query> queries);
-  void planSearches(const Query& query, std::span<const ObjectId> objects, const gpu::Gathered& searches);
+  void planSearches(const Query& query, std::span<const ObjectId> objects);
   void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
   void decide(std::span<Result> results) const;
   std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
@@ -232,13 +232,12 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
       continue;
     }
     next->first = static_cast<uint32_t>(known.size());
-    planSearches(queries[i], objects[i], *next++);
+    gathers.add(*next++);
+    planSearches(queries[i], objects[i]);
   }
 }
 
-void Recorder::Impl::planSearches(const Query& query, std::span<const ObjectId> objects,
-                                  const gpu::Gathered& searches) {
-  gathers.add(searches);
+void Recorder::Impl::planSearches(const Query& query, std::span<const ObjectId> objects) {
   for (const ObjectId object : objects) {
     const auto result = static_cast<uint32_t>(known.size());
     const Planned planned = addSensor(sensors, query, result, scene.impl(), scene.impl().objectTree(), object);

@@ -13,6 +13,7 @@ void addSearch(CLI::App& app, int& status);
 void addRecorded(CLI::App& app, int& status);
 void addPool(CLI::App& app, int& status);
 void addChanges(CLI::App& app, int& status);
+void addDeform(CLI::App& app, int& status);
 
 /// What the figures are measured on, as lines that begin with #, and the names of the columns.
 void printHead(std::span<const Device> devices);

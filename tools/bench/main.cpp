@@ -54,6 +54,7 @@ int main(int argc, char** argv) try {
   radar::bench::addRecorded(app, status);
   radar::bench::addPool(app, status);
   radar::bench::addChanges(app, status);
+  radar::bench::addDeform(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

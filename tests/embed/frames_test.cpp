@@ -152,6 +152,7 @@ TEST_CASE("three recorders in flight share one copy of a scene that moves, defor
     std::vector<Result> expected;
   };
   std::vector<std::unique_ptr<Frame>> frames;
+  frames.reserve(3);
   for (int i = 0; i < 3; ++i) frames.push_back(std::make_unique<Frame>(copy));
   CpuSweeper sweeper(scene);
   size_t hits = 0;

@@ -218,6 +218,7 @@ void compareFamilies(uint32_t rounds, bool written = false) {
     for (size_t q = 0; q < queries.size(); q += 7) queries[q].anyHit = true;
     if (written && (family.ignoresLeaving || (!test::device().doubles() && family.name == "far baked"))) continue;
     std::vector<HostQuery> inBuffer;
+    inBuffer.reserve(queries.size());
     for (Query& query : queries) inBuffer.push_back(test::hostQueryOf(query));
     for (size_t q = 0; q < queries.size() && written; ++q) queries[q] = test::queryOf(inBuffer[q]);
     const std::vector<Result> expected = sweeper.run(queries);

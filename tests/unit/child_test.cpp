@@ -9,7 +9,7 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("a child hands over bytes, an exception's words, the signal that ended it, or that it took too long") {
   const std::string bytes("a\0b", 3);
-  CHECK(inChild([&] { return bytes; }, {.seconds = 60}).bytes == bytes);
+  CHECK(inChild([&] { return std::string(bytes); }, {.seconds = 60}).bytes == bytes);
   const ChildOutcome thrown =
       inChild([]() -> std::string { throw std::runtime_error("no such thing"); }, {.seconds = 60});
   CHECK(thrown.failed == "no such thing");

@@ -245,6 +245,7 @@ TEST_CASE("a locale with decimal commas changes nothing that is read") {
   const MeshData before = read(folder.write("binary.stl", binaryStlOf(rows)));
   const std::locale original = std::locale::global(std::locale(std::locale(), new Commas));
   std::vector<MeshData> meshes;
+  meshes.reserve(files.size());
   for (const std::string& file : files) meshes.push_back(read(file));
   std::locale::global(original);
   for (const MeshData& mesh : meshes) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "contact/decode.h"
 #include "contact/pass.h"
 #include "cpu/clearance.h"
 #include "cpu/query_search.h"
+#include "embed/capacity.h"
 #include "embed/gather.h"
 #include "embed/host_geometry.h"
 #include "embed/host_queries.h"
@@ -33,48 +35,15 @@ constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
 // Of a query past one object each: lavapipe ends longer loops silently.
 constexpr size_t kMostSearches = 1u << 15;
 
-// Capacity of a list, if the host does not choose it.
-struct ListRoom {
-  uint64_t perQuery;  // what interlocking meshes of some thousand triangles need
-  uint64_t most;      // in total, as long as that leaves `least` per query
-  uint64_t least;
-};
-constexpr ListRoom kCandidates{1u << 11, 1u << 20, 64}, kUnresolved{1u << 7, 1u << 15, 4},
-    kUnresolvedWithoutDoubles{1u << 10, 1u << 18, 32};  // which leave every contact to the CPU
-
-uint32_t roomOf(const ListRoom& room, uint64_t queries, uint64_t limit) {
-  const uint64_t wanted = std::max(std::min(room.perQuery * queries, room.most), room.least * queries);
-  return static_cast<uint32_t>(std::clamp<uint64_t>(wanted, 1, limit));
-}
-
-Capacity chosen(Capacity capacity, const Device::Impl& device) {
-  const uint64_t limit = device.properties.limits.maxStorageBufferRange;
-  const uint64_t searches = uint64_t{capacity.queries} + capacity.searches;
-  if (capacity.candidates == 0) {
-    capacity.candidates = roomOf(kCandidates, searches, limit / sizeof(gpu::RefinedPair));
-  }
-  if (capacity.unresolvedPairs == 0) {
-    capacity.unresolvedPairs =
-        roomOf(device.doubles ? kUnresolved : kUnresolvedWithoutDoubles, searches, limit / sizeof(gpu::UnresolvedPair));
-  }
-  return capacity;
-}
-
 SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }
 
-// Why a Recorder does not take a valid query; else empty.
-std::string notOffered(const Query& query, const Scene::Impl& scene) {
-  const char* others = ": only a Sweeper, a CpuSweeper and a Pool offer this";
+// Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
+bool isForCpu(const Query& query, const Scene::Impl& scene) {
   const bool step = isStep(query, scene);
-  if (query.mode != Mode::contact) return "mode: expected contact";
-  if (query.skipOverlapping) return std::string("skipOverlapping") + others;
-  if (step && !query.motion) return std::string("a direction and a distance, although objects move") + others;
-  if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) {
-    return std::string("clearance with ignoreLeaving, hits or a step") + others;
-  }
-  return {};
+  if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) return true;
+  return query.skipOverlapping || (step && !query.motion);
 }
 
 Result outOfRange() {
@@ -102,23 +71,22 @@ struct Recorder::Impl {
   Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy, const Capacity& given)
       : device(openDevice),
         scene(ownScene),
-        capacity(chosen(given, openDevice)),
+        capacity(completed(given, openDevice)),
         copy(std::move(ownCopy)),
         geometry(openDevice, *copy),
         pass(openDevice, *copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
         gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
-    checkCapacity();
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
     pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
     readback.reserve(kFirstResult + results * sizeof(Result));
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  void checkCapacity() const;
-  void validateAll(std::span<const Query> queries) const;
+  void validateAll(std::span<const Query> queries, bool besideGeometry) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
+  size_t answerOnCpu(const Query& query, uint32_t number);
   void plan(std::span<const Query> queries);
   void planSearches(const Query& query, std::span<const ObjectId> objects);
   void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
@@ -140,41 +108,34 @@ struct Recorder::Impl {
   uint32_t mostWritten = 0;  ///< HostQueries::count of the last record(); 0 if it failed, or had others
   ContactPass pass;
   GatherPass gathers;
-  gpu::Buffer readback;                 ///< counts, then results; then sweeps, if a host's shader wrote the queries
-  std::vector<Query> recordedQueries;   ///< in the last record(); none if it failed
+  gpu::Buffer readback;                ///< counts, then results; then sweeps, if a host's shader wrote the queries
+  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
+  struct Answered {
+    Result first;
+    QueryLists lists;
+  };
+  std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
   std::vector<uint32_t> hitOffsets;
   std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
   std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
-  cpu::QuerySearch reach;
+  cpu::QuerySearch reach;     ///< what is in reach, and answers
 };
 
-void Recorder::Impl::checkCapacity() const {
-  const uint64_t limit = device.properties.limits.maxStorageBufferRange;
-  const auto limitTo = [](const char* what, uint64_t got, uint64_t most) {
-    if (got <= most) return;
-    throw Error(std::string("Capacity::") + what + ": this device allows " + std::to_string(most) + ", got " +
-                std::to_string(got));
-  };
-  limitTo("queries", capacity.queries, limit / sizeof(gpu::Sweep));
-  limitTo("searches", capacity.searches, (limit / sizeof(gpu::Sweep) - capacity.queries) / 2);
-  limitTo("candidates", capacity.candidates, limit / sizeof(gpu::RefinedPair));
-  limitTo("rounds", capacity.rounds, gpu::kMostRounds);
-  limitTo("unresolvedPairs", capacity.unresolvedPairs, limit / sizeof(gpu::UnresolvedPair));
-  if (capacity.rounds == 0 || capacity.rounds % 2 != 0) {
-    throw Error("Capacity::rounds: expected an even number of at least 2, got " + std::to_string(capacity.rounds));
-  }
-}
-
-void Recorder::Impl::validateAll(std::span<const Query> queries) const {
+void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeometry) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty()) wrong = notOffered(queries[i], scene.impl());
+    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
+    if (wrong.empty() && besideGeometry && isForCpu(queries[i], scene.impl())) {
+      wrong =
+          "skipOverlapping, a clearance with ignoreLeaving, hits or a step, a direction while objects move: the CPU "
+          "answers these, and cannot beside a HostGeometry";
+    }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
 }
@@ -185,12 +146,27 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
 }
 
-// Of the queries that take several searches; ascending.
+// Returns the number of hits.
+size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
+  Answered& answered = onCpu[number];
+  answered.first =
+      reach.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
+  answered.first.tier = Tier::contact;
+  if (query.hits == 1) answered.lists.hits.clear();
+  for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
+  return answered.lists.hits.size();
+}
+
+// Of the queries that take several searches; ascending. Answers those that are for the CPU.
 std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
   std::vector<std::vector<ObjectId>> objects(queries.size());
   size_t searches = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
+    if (isForCpu(queries[i], scene.impl())) {
+      searches += answerOnCpu(queries[i], static_cast<uint32_t>(i));
+      continue;
+    }
     if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
     objects[i] = reach.inReach(queries[i], scene.impl(), tree);
     std::sort(objects[i].begin(), objects[i].end());
@@ -208,6 +184,7 @@ std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<cons
 
 void Recorder::Impl::plan(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
+  onCpu.clear();
   const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
   sensors.clear();
   gathered.clear();
@@ -217,14 +194,21 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
   for (uint32_t i = 0; i < queries.size(); ++i) {
     hitOffsets.push_back(end);
     const auto count = static_cast<uint32_t>(objects[i].size());
+    const auto answered = onCpu.find(i);
+    if (answered != onCpu.end()) end += static_cast<uint32_t>(answered->second.lists.hits.size());
     const uint32_t listed = queries[i].hits > 1 ? std::min(queries[i].hits, count) : 0;
     if (count > 0) gathered.push_back({.query = i, .first = 0, .count = count, .list = end, .listed = listed});
     end += listed;
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());
+  for (const auto& [query, answered] : onCpu) {
+    known[query] = answered.first;
+    std::copy(answered.lists.hits.begin(), answered.lists.hits.end(), known.begin() + hitOffsets[query]);
+  }
   auto next = gathered.begin();
   for (uint32_t i = 0; i < queries.size(); ++i) {
+    if (onCpu.contains(i)) continue;
     if (objects[i].empty()) {
       if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
       const Planned planned = addSensor(sensors, queries[i], i, scene.impl(), tree);
@@ -268,6 +252,7 @@ void Recorder::Impl::decide(std::span<Result> results) const {
 std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lists* lists) const {
   std::vector<Result> answers(all.begin(), all.begin() + static_cast<ptrdiff_t>(recordedQueries.size()));
   std::vector<QueryLists> own(answers.size());
+  for (const auto& [query, answered] : onCpu) own[query] = answered.lists;
   for (const gpu::Gathered& several : gathered) {
     answers[several.query] = gather(all.subspan(several.first, several.count), several.listed, own[several.query].hits);
   }
@@ -329,7 +314,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
 
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   Impl& self = *impl_;
-  self.validateAll(queries);
+  self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.mostWritten = 0;
@@ -355,6 +340,7 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.geometry.stage(geometry, self.scene.impl());
   self.gathers.clear();
   self.gathered.clear();
+  self.onCpu.clear();
   self.hitOffsets.assign(queries.count + 1, queries.count);
   self.copy->willOverwrite(self.geometry.overwritten());
   self.usedBuffers.reset();

@@ -30,6 +30,23 @@ std::vector<Query> withDistances(const Scene& scene, const tools::Workload& work
   return queries;
 }
 
+/// Checks the cases of every family, and adds them up.
+tools::Tally tallyOf(tools::CaseRange range) {
+  tools::CaseRun run(test::device());
+  tools::Tally all;
+  const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
+    UNSCOPED_INFO("case " << number << ": " << words);
+  };
+  for (const std::string& family : tools::runFamilies()) {
+    CAPTURE(family);
+    range.family = family;
+    const tools::Tally tally = run.run(range, onWrong, [](uint64_t) {});
+    CHECK(tally.wrong == 0);
+    all.add(tally);
+  }
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU's answer on the device") {
@@ -50,36 +67,14 @@ TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU
 }
 
 TEST_CASE("with a clearance, hard cases of every family get the CPU's answer on the device, to the bit") {
-  tools::CaseRun run(test::device());
-  tools::Tally all;
-  for (const std::string& family : tools::runFamilies()) {
-    CAPTURE(family);
-    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
-      UNSCOPED_INFO("case " << number << ": " << words);
-    };
-    const tools::Tally tally =
-        run.run({.family = family, .seed = 4, .cases = 64, .clearances = true}, onWrong, [](uint64_t) {});
-    CHECK(tally.wrong == 0);
-    all.add(tally);
-  }
+  const tools::Tally all = tallyOf({.seed = 4, .cases = 64, .clearances = true});
   CHECK(all.hits > all.queries / 5);
   CHECK(all.overlaps > all.queries / 5);
   CHECK(all.cpuPairs > all.hits);  // the device leaves pairs to the CPU, not whole queries
 }
 
 TEST_CASE("where objects move, too, hard cases of every family get the CPU's answer on the device, to the bit") {
-  tools::CaseRun run(test::device());
-  tools::Tally all;
-  for (const std::string& family : tools::runFamilies()) {
-    CAPTURE(family);
-    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
-      UNSCOPED_INFO("case " << number << ": " << words);
-    };
-    const tools::Tally tally =
-        run.run({.family = family, .seed = 5, .cases = 64, .steps = true}, onWrong, [](uint64_t) {});
-    CHECK(tally.wrong == 0);
-    all.add(tally);
-  }
+  const tools::Tally all = tallyOf({.seed = 5, .cases = 64, .steps = true});
   CHECK(all.hits > all.queries / 5);
   CHECK(all.pairs > all.cpuPairs);  // the device searches, and leaves few pairs to the CPU
 }

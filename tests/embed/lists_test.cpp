@@ -184,6 +184,64 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("what the device's search does not offer is answered by the CPU while it is recorded, lists included") {
+  Scene scene;
+  Recorder recorder(test::device(), scene, kRoom);
+  CpuSweeper sweeper(scene);
+  tools::Random random(5);
+  size_t listed = 0, skipped = 0, steps = 0;
+  for (const char* name : {"convex", "touching", "assembly", "crossing", "sunk"}) {
+    const tools::Workload workload =
+        tools::hardScene(tools::hardFamily(name), 13, 0, kRoom.queries, tools::Company::mixed);
+    tools::replaceBy(workload, 0, scene);
+    std::vector<Query> queries = queriesOf(workload);
+    const bool moves = random.oneIn(2);
+    if (moves) setMotions(scene, queries, random);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      queries[i].skipOverlapping = i % 4 == 0;
+      queries[i].clearance = i % 4 == 1 || i % 4 == 2 ? 0.02 * tools::sensorSize(scene, queries[i]) : 0;
+      queries[i].ignoreLeaving = i % 4 == 1;
+      queries[i].hits = i % 4 == 2 || i % 8 == 0 ? kAllHits : 1;
+      if (moves && i % 3 == 0) takeStep(queries[i]);
+    }
+    const Recorded recorded = execute(recorder, queries);
+    const std::vector<Result> expected = sweeper.run(queries);
+    for (uint32_t i = 0; i < queries.size(); ++i) {
+      CAPTURE(name, i, moves);
+      Result answer = expected[i];
+      answer.tier = Tier::contact;
+      CHECK(agree(recorded.answers[i], answer));
+      const auto found = recorded.lists.hitsOf(i), wanted = sweeper.lists().hitsOf(i);
+      REQUIRE(found.size() == wanted.size());
+      for (size_t k = 0; k < found.size(); ++k) CHECK(found[k].object == wanted[k].object);
+      CHECK(std::ranges::equal(recorded.lists.overlappingOf(i), sweeper.lists().overlappingOf(i)));
+      checkOnDevice(recorder, recorded, i);
+      listed += found.size();
+      skipped += recorded.lists.overlappingOf(i).size();
+      steps += moves && answer.status == Status::hit;
+    }
+  }
+  CHECK(listed > 50);
+  CHECK(skipped > 10);
+  CHECK(steps > 5);
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("queries for the CPU are refused beside a host's geometry") {
+  test::Row row(2);
+  row.scene.setBounds(3, {{-9, -9, -9}, {9, 9, 9}});
+  std::vector<std::byte> bytes;
+  for (int i = 0; i < 12; ++i) test::append(bytes, {i % 5 == 0 ? 1.0f : 0.0f});
+  const OnDevice transforms(bytes);
+  const ObjectId moved = 3;
+  const MovedObjects objects{.transforms = transforms.get(), .objects = {&moved, 1}};
+  Recorder recorder(test::device(), row.scene, kRoom);
+  row.queries[1].skipOverlapping = true;
+  gpu::Submission submission(test::device().impl(), false);
+  CHECK_THROWS_WITH(recorder.record(submission.begin(), row.queries, {.objects = {&objects, 1}}),
+                    Catch::Contains("record: query 1: skipOverlapping") && Catch::Contains("beside a HostGeometry"));
+}
+
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {
   const tools::Workload workload =
       tools::hardScene(tools::hardFamily("interlocking"), 12, 0, kRoom.queries, tools::Company::mixed);

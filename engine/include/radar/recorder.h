@@ -95,10 +95,12 @@ class RADAR_API Recorder {
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
-  /// Throws before recording anything if a query breaks its contract, is not of mode contact, asks for skipOverlapping
-  /// or for a clearance with ignoreLeaving, hits or a step, or has no `motion` although objects move; if there are more
-  /// queries or searches than Capacity says, a query has more than 2^15 objects in reach, `geometry` breaks its
-  /// contract, or something does not fit the device.
+  /// While recording, the CPU answers queries that ask for skipOverlapping or for a clearance with ignoreLeaving, hits
+  /// or a step, and those that have a direction although objects move. Their hits count as searches.
+  ///
+  /// Throws before recording anything if a query breaks its contract, is not of mode contact, or is one for the CPU
+  /// although there is a `geometry`; if there are more queries or searches than Capacity says, a query has more than
+  /// 2^15 objects in reach, `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
   /// shaders read has kFlagUnresolved as above; read() decides it. Answers beyond the number of queries, up to
@@ -123,8 +125,8 @@ class RADAR_API Recorder {
   /// Where the last recording's lists are in results(), in answers: one number per query, and the end of the last list.
   std::span<const uint32_t> hitOffsets() const;
 
-  /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided, and
-  /// if wanted their lists. Call it once the last recording has executed and been waited for (by a fence, or a
+  /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided,
+  /// and if wanted their lists. Call it once the last recording has executed and been waited for (by a fence, or a
   /// semaphore's wait on the host); it does not wait itself. Later changes of the scene do not matter.
   std::vector<Result> read(Lists* lists = nullptr);
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when

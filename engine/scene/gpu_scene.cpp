@@ -42,6 +42,20 @@ void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std:
   std::set_difference(all.begin(), all.end(), less.begin(), less.end(), std::back_inserter(out));
 }
 
+// Numbers of elements, of all meshes together.
+struct Elements {
+  uint64_t vertices = 0, triangles = 0, nodes = 0;
+};
+Elements elementsOf(const Scene::Impl& scene) {
+  Elements all;
+  for (const Mesh& mesh : scene.meshes) {
+    all.vertices += mesh.vertexCount();
+    all.triangles += mesh.triangleCount();
+    all.nodes += mesh.tree.nodes.size();
+  }
+  return all;
+}
+
 }  // namespace
 
 GpuScene::Buffers::Buffers(const Device::Impl& device)
@@ -67,12 +81,7 @@ void GpuScene::willOverwrite(Overwritten next) {
 
 // Whether no buffer that searches use need grow.
 bool GpuScene::fits(const Scene::Impl& scene) const {
-  uint64_t vertices = 0, triangles = 0, nodes = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    vertices += mesh.vertexCount();
-    triangles += mesh.triangleCount();
-    nodes += mesh.tree.nodes.size();
-  }
+  const auto [vertices, triangles, nodes] = elementsOf(scene);
   const uint64_t objects = scene.objects.size();
   return vertices <= buffers_->vertices.capacity() && triangles <= buffers_->triangles.capacity() &&
          nodes <= buffers_->meshNodes.capacity() && scene.meshes.size() <= buffers_->meshes.capacity() &&
@@ -121,12 +130,7 @@ bool GpuScene::placeMesh(MeshId id, const Mesh& mesh) {
 
 // Places all meshes anew, in larger buffers if need be.
 void GpuScene::layOut(const Scene::Impl& scene) {
-  uint64_t vertices = 0, triangles = 0, nodes = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    vertices += mesh.vertexCount();
-    triangles += mesh.triangleCount();
-    nodes += mesh.tree.nodes.size();
-  }
+  const auto [vertices, triangles, nodes] = elementsOf(scene);
   if (vertices > gpu::kLinkItem || triangles > gpu::kLinkItem || nodes > gpu::kLinkItem) {
     throw gpu::LimitError("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
@@ -179,13 +183,9 @@ bool GpuScene::exceedsWriteLimits() const {
 void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
   if (!next_.objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
   if (next_.meshes.empty()) return;
-  uint64_t vertices = 0, nodes = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    vertices += mesh.vertexCount();
-    nodes += mesh.tree.nodes.size();
-  }
-  checkLimit<gpu::Vertex>(*device_, "vertices", vertices);
-  checkLimit<gpu::MeshNode>(*device_, "mesh nodes", nodes);
+  const Elements elements = elementsOf(scene);
+  checkLimit<gpu::Vertex>(*device_, "vertices", elements.vertices);
+  checkLimit<gpu::MeshNode>(*device_, "mesh nodes", elements.nodes);
 }
 
 void GpuScene::describe(MeshId id, const Mesh& mesh) {

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include <array>
-#include <fstream>
 
 #include "embed/host.h"
 #include "embed/on_device.h"
@@ -10,6 +9,7 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/host_geometry.h"
 #include "radar/pool.h"
+#include "support/resident.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -216,11 +216,6 @@ TEST_CASE("two recorders that share a copy may record into one command buffer, o
 }
 
 TEST_CASE("three recorders that share a scene's copy need its memory once", "[.long]") {
-  const auto residentBytes = [] {
-    size_t all = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> all >> resident;
-    return 4096 * resident;
-  };
   tools::Random random(4);
   const tools::MeshData soup = tools::makeSoup(tools::Soup::plain, 300'000, random);
   Scene scene;
@@ -235,7 +230,7 @@ TEST_CASE("three recorders that share a scene's copy need its memory once", "[.l
       gpu::Submission submission(test::device().impl(), false);
       recorders.back().record(submission.begin(), {&query, 1});
       submission.submitAndWait();
-      sizes.push_back(residentBytes());
+      sizes.push_back(test::residentBytes());
     }
     return sizes[2] - sizes[0];  // of the second and the third
   };

@@ -69,24 +69,6 @@ void checkOnDevice(const Recorder& recorder, const Recorded& recorded, uint32_t 
   }
 }
 
-/// Most objects move by up to as much as a sensor.
-void setMotions(Scene& scene, const std::vector<Query>& queries, tools::Random& random) {
-  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-    const double way = random.uniform(0, 1) * queries[random.below(static_cast<uint32_t>(queries.size()))].distance;
-    tools::Vec3 motion = random.direction();
-    for (double& c : motion) c *= std::min(way, 1e12);
-    if (!random.oneIn(4) && scene.hasObject(id)) scene.setMotion(id, motion);
-  }
-}
-
-void takeStep(Query& query) {
-  const double length = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
-  query.motion = query.direction;
-  for (double& c : *query.motion) c *= query.distance / length;
-  query.direction = {};
-  query.distance = 0;
-}
-
 }  // namespace
 
 TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back", "[subgroups]") {
@@ -100,11 +82,11 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries = queriesOf(workload);
     const bool moves = number++ % 2 == 0;
-    if (moves) setMotions(scene, queries, random);
+    if (moves) tools::setMotions(workload, random, scene);
     for (size_t i = 0; i < queries.size(); ++i) {
       queries[i].hits = i % 3 == 0 ? kAllHits : i % 3 == 1 ? 2 : 1;
       queries[i].anyHit = i % 6 == 2;
-      if (moves || i % 2 == 0) takeStep(queries[i]);
+      if (moves || i % 2 == 0) tools::takeStep(queries[i]);
     }
     const Recorded recorded = execute(recorder, queries);
     std::vector<Result> expected = sweeper.run(queries);
@@ -138,7 +120,7 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
     Scene scene;
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries = queriesOf(workload);
-    setMotions(scene, queries, random);
+    tools::setMotions(workload, random, scene);
     std::vector<std::byte> bytes;
     std::vector<ObjectId> objects;
     for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
@@ -152,7 +134,7 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
       objects.push_back(id);
     }
     for (size_t i = 0; i < queries.size(); ++i) {
-      takeStep(queries[i]);
+      tools::takeStep(queries[i]);
       queries[i].hits = i % 2 == 0 ? kAllHits : 1;
     }
     CpuSweeper sweeper(scene);
@@ -196,13 +178,13 @@ TEST_CASE("what the device's search does not offer is answered by the CPU while 
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries = queriesOf(workload);
     const bool moves = random.oneIn(2);
-    if (moves) setMotions(scene, queries, random);
+    if (moves) tools::setMotions(workload, random, scene);
     for (size_t i = 0; i < queries.size(); ++i) {
       queries[i].skipOverlapping = i % 4 == 0;
       queries[i].clearance = i % 4 == 1 || i % 4 == 2 ? 0.02 * tools::sensorSize(scene, queries[i]) : 0;
       queries[i].ignoreLeaving = i % 4 == 1;
       queries[i].hits = i % 4 == 2 || i % 8 == 0 ? kAllHits : 1;
-      if (moves && i % 3 == 0) takeStep(queries[i]);
+      if (moves && i % 3 == 0) tools::takeStep(queries[i]);
     }
     const Recorded recorded = execute(recorder, queries);
     const std::vector<Result> expected = sweeper.run(queries);

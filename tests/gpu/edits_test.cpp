@@ -1,8 +1,8 @@
 // Answers after any sequence of edits are those of a scene that is built anew, to the bit.
 #include <catch2/catch.hpp>
-#include <fstream>
 
 #include "radar/cpu_sweeper.h"
+#include "support/resident.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/same_answer.h"
@@ -124,20 +124,15 @@ TEST_CASE("10,000 steps of edits and queries leave the process no larger than th
   Edited edited(4);
   Sweeper sweeper(test::device(), edited.scene(), {.cpuBatch = 0});
   CpuSweeper cpu(edited.scene());
-  const auto residentPages = [] {
-    size_t all = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> all >> resident;
-    return resident;
-  };
   size_t before = 0;
   for (int step = 0; step < 10'000; ++step) {
-    if (step == 2'000) before = residentPages();
+    if (step == 2'000) before = test::residentBytes();
     for (int edits = 0; edits < 10; ++edits) edited.edit();
     const std::vector<Query> queries = edited.queries();
     const std::vector<Result> results = sweeper.run(queries), expected = cpu.run(queries);
     for (size_t i = 0; i < queries.size(); ++i) REQUIRE(tools::sameAnswer(results[i], expected[i]));
   }
-  const size_t after = residentPages();
-  INFO(before << " pages before, " << after << " after");
+  const size_t after = test::residentBytes();
+  INFO(before << " bytes before, " << after << " after");
   CHECK(after < before + before / 50);
 }

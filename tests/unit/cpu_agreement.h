@@ -2,17 +2,14 @@
 // a new one, with and without `anyHit`. Other tests compare it with brute force.
 #pragma once
 
-#include <cstring>
-
 #include "radar/cpu_sweeper.h"
 #include "soups.h"
+#include "support/same_bits.h"
 #include "workloads/workload.h"
 
 namespace agreement {
 
-inline bool sameBits(const radar::Result& p, const radar::Result& q) {
-  return std::memcmp(&p, &q, sizeof p) == 0;
-}
+using radar::test::sameBits;
 
 /// Sweepers of 1, 2 and 5 threads that follow one scene.
 class ThreadedSweepers {

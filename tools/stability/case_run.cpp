@@ -108,21 +108,10 @@ struct CaseRun::Stage {
   /// Most objects move, by up to as much as some sensor; a third of the queries keep their direction. `workload`: the
   /// scene's, so that a query is the same in any range that has it.
   void setMotions(const CaseRange& range, uint64_t number, const Workload& workload, std::vector<Query>& queries) {
-    const auto count = static_cast<uint32_t>(workload.queries.size());
-    Random random(range.seed * 1'000'033 + number / count);
-    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-      const double way = random.magnitude(-6, 0) * workload.queries[random.below(count)].distance;
-      Vec3 motion = random.oneIn(3) ? random.axis() : random.direction();
-      for (double& c : motion) c *= std::min(way, 1e200);
-      if (!random.oneIn(4) && scene.hasObject(id)) scene.setMotion(id, motion);
-    }
+    Random random(range.seed * 1'000'033 + number / workload.queries.size());
+    tools::setMotions(workload, random, scene);
     for (Query& query : queries) {
-      if (number++ % 3 == 0 || range.family == kAtDistance) continue;
-      const double perLength = query.distance / std::hypot(query.direction[0], query.direction[1], query.direction[2]);
-      query.motion = query.direction;
-      for (double& c : *query.motion) c *= perLength;
-      query.direction = {};
-      query.distance = 0;
+      if (number++ % 3 != 0 && range.family != kAtDistance) takeStep(query);
     }
   }
 

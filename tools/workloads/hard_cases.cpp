@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "workloads/shapes.h"
@@ -110,6 +111,24 @@ Workload hardScene(const HardFamily& family, uint64_t seed, uint64_t first, uint
   std::vector<HardCase> cases;
   for (uint64_t i = first; i < first + count; ++i) cases.push_back(hardCase(family, seed, i));
   return sceneOf(cases, company);
+}
+
+void setMotions(const Workload& workload, Random& random, Scene& scene) {
+  const auto count = static_cast<uint32_t>(workload.queries.size());
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    const double way = random.magnitude(-6, 0) * workload.queries[random.below(count)].distance;
+    Vec3 motion = random.oneIn(3) ? random.axis() : random.direction();
+    for (double& c : motion) c *= std::min(way, 1e200);
+    if (!random.oneIn(4) && scene.hasObject(id)) scene.setMotion(id, motion);
+  }
+}
+
+void takeStep(Query& query) {
+  const double perLength = query.distance / std::hypot(query.direction[0], query.direction[1], query.direction[2]);
+  query.motion = query.direction;
+  for (double& c : *query.motion) c *= perLength;
+  query.direction = {};
+  query.distance = 0;
 }
 
 }  // namespace radar::tools

@@ -64,4 +64,9 @@ Workload sceneOf(const std::vector<HardCase>& cases, Company company);
 /// `count` cases from number `first` on.
 Workload hardScene(const HardFamily& family, uint64_t seed, uint64_t first, uint32_t count, Company company);
 
+/// Lets most objects of a scene, made of `workload`, move by up to the D of one of its queries.
+void setMotions(const Workload& workload, Random& random, Scene& scene);
+/// Makes a query with a direction that of a step in which the sensor moves by D.
+void takeStep(Query& query);
+
 }  // namespace radar::tools

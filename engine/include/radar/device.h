@@ -74,8 +74,8 @@ struct Requirements {
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   }
-  /// For VkDeviceCreateInfo::pNext: the host's chain `next`, with these features. Sets them in the host's own structs of
-  /// these three types, and puts the ones that it lacks in front. Throws, and changes nothing, if it has a struct of
+  /// For VkDeviceCreateInfo::pNext: the host's chain `next`, with these features. Sets them in the host's own structs
+  /// of these three types, and puts the ones that it lacks in front. Throws, and changes nothing, if it has a struct of
   /// single features that Vulkan 1.2 or 1.3 took over, such as VkPhysicalDeviceSynchronization2Features, without the
   /// struct of that version: Vulkan allows only one of both. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);

@@ -52,9 +52,9 @@ struct Transform {
 RADAR_API std::array<double, 3> transformPoint(const Transform& pose, const float* p);
 
 /// Ids are small integers. An id names one mesh or object until that is removed, whatever else is added or removed. New
-/// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ..., and arrays by id stay small. A stale
-/// id is not recognised: once its item is removed, calls refuse it only until an item is added, which may get it. So
-/// forget an item's id wherever it is kept (such as in Query::exclude) when the item is removed.
+/// items get the least free id, so objects added to a fresh scene are 0, 1, 2, ..., and arrays by id stay small. A
+/// stale id is not recognised: once its item is removed, calls refuse it only until an item is added, which may get it.
+/// So forget an item's id wherever it is kept (such as in Query::exclude) when the item is removed.
 using MeshId = uint32_t;
 using ObjectId = uint32_t;
 

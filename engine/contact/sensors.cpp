@@ -56,6 +56,10 @@ bool searchesEach(const Query& query, const Scene::Impl& scene) {
   return query.hits > 1 || scene.moving > 0;
 }
 
+bool combinesClearance(const Query& query, const Scene::Impl& scene) {
+  return query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || isStep(query, scene));
+}
+
 void SensorBatch::clear() {
   sensors.clear();
   sweeps.clear();

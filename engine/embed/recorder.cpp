@@ -41,9 +41,8 @@ SearchRoom roomFor(const Capacity& capacity) {
 
 // Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
 bool isForCpu(const Query& query, const Scene::Impl& scene) {
-  const bool step = isStep(query, scene);
-  if (query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || step)) return true;
-  return query.skipOverlapping || (step && !query.motion);
+  const bool isDirected = isStep(query, scene) && !query.motion;
+  return query.skipOverlapping || isDirected || combinesClearance(query, scene);
 }
 
 Result outOfRange() {

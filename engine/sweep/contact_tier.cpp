@@ -114,7 +114,7 @@ void ContactTier::run(std::span<const size_t> which) {
 bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   const Query& asked = batch_.asked[query];
   const Scene::Impl& scene = scene_.impl();
-  if (asked.clearance > 0 && (asked.ignoreLeaving || asked.hits > 1 || isStep(asked, scene))) return false;
+  if (combinesClearance(asked, scene)) return false;
   if (!searchesEach(asked, scene)) {
     const Planned planned = planOne(query, kNone, tree);
     if (planned == Planned::clear) batch_.answers[query] = clearAnswer();

@@ -35,6 +35,7 @@ const gpu::SearchCounts& ContactSubmitter::counts() const {
 
 void ContactSubmitter::recordAndSubmit() {
   const gpu::Commands commands = submission_.begin();
+  gpu::computeToOverwrite(commands);  // a recording that shares the scene's copy may still be searching it
   const auto stage = [this](const char* name) { submission_.stage(name); };
   pass_.recordUpload(commands, stage);
   pass_.record(commands, stage, kRounds, false);

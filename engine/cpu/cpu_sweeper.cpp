@@ -1,6 +1,7 @@
 #include "radar/cpu_sweeper.h"
 
 #include "cpu/search.h"
+#include "math/float_environment.h"
 
 namespace radar {
 
@@ -19,10 +20,12 @@ CpuSweeper::CpuSweeper(CpuSweeper&&) noexcept = default;
 CpuSweeper& CpuSweeper::operator=(CpuSweeper&&) noexcept = default;
 
 void CpuSweeper::sync() {
+  const FloatEnvironment floats;
   impl_->scene.impl().objectTree();
 }
 
 std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
+  const FloatEnvironment floats;
   for (size_t i = 0; i < queries.size(); ++i) {
     if (const std::string wrong = validate(queries[i], impl_->scene); !wrong.empty()) {
       throw Error("run: query " + std::to_string(i) + ": " + wrong);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cpu/clearance.h"
 #include "cpu/swept_box.h"
@@ -30,13 +31,14 @@ void prefetch(const gpu::ObjectNode& node, const std::vector<gpu::ObjectNode>& n
 }  // namespace
 
 void toDistances(Result& result, double distance) {
-  // A bracket's ends are equal only at the start or the end.
-  const double rounding = result.lo == result.hi ? 0 : 2 * kUnit;
+  // A bracket's ends are equal only at the start or the end. The floor is what a product may lose if it is subnormal.
+  const bool isExact = result.lo == result.hi;
+  const double rounding = isExact ? 0 : 2 * kUnit, floor = isExact ? 0 : std::numeric_limits<double>::denorm_min();
   const auto scaled = [&](double t, double outwards) { return std::isinf(t) ? t : outwards * t * distance; };
   const bool isLo = result.t == result.lo;
-  result.lo = scaled(result.lo, 1 - rounding);
+  result.lo = std::max(scaled(result.lo, 1 - rounding) - floor, 0.0);
   result.t = isLo ? result.lo : scaled(result.t, 1);
-  result.hi = std::isinf(result.hi) ? result.hi : std::min(scaled(result.hi, 1 + rounding), distance);
+  result.hi = std::isinf(result.hi) ? result.hi : std::min(scaled(result.hi, 1 + rounding) + floor, distance);
 }
 
 /// A query, prepared for the search.

@@ -5,12 +5,9 @@
 #include "embed/host_format.h"
 #include "embed/host_transforms.h"
 #include "gpu/barrier.h"
-#include "math/rounding.h"
 #include "shaders/contact/interop.h"
 #include "spirv/embed_deform_comp.h"
 #include "spirv/embed_invalidate_comp.h"
-#include "spirv/embed_move_comp.h"
-#include "spirv/embed_move_comp_RADAR_NO_DOUBLES.h"
 #include "spirv/embed_refit_comp.h"
 
 // pass        reads                         writes                         barrier after it
@@ -18,9 +15,13 @@
 // copy        staging, the host's buffers   moved, words, refit nodes,     transferToComputeReadWrite
 //                                           violation
 // deform      words, meshes                 vertices, violation            (none)
-// move        words, moved, meshes          placements, objects, violation computeWriteToComputeReadWrite
-// refit       vertices, triangles, meshes,  nodes                          computeWriteToComputeReadWrite
-//   per depth   refit nodes, nodes
+// move        words, moved, meshes          placements, objects, object    computeWriteToComputeReadWrite
+//                                             nodes, violation
+// refit       vertices, triangles, meshes,  mesh nodes                     computeWriteToComputeReadWrite
+//   per depth   refit nodes, mesh nodes
+// fit         fit nodes, object nodes       object nodes                   computeWriteToComputeReadWrite
+//   per depth
+// reach       object nodes                  sensors, states                computeWriteToComputeReadWrite
 //
 // After the answers and a computeWriteToComputeReadWrite:
 //
@@ -37,10 +38,8 @@ struct HostGeometryKernels {
   explicit HostGeometryKernels(const Device::Impl& device)
       : deform(device, k_embed_deform_comp, "deform"),
         refit(device, k_embed_refit_comp, "refit"),
-        move(device, device.doubles ? std::span<const uint32_t>(k_embed_move_comp) : k_embed_move_comp_RADAR_NO_DOUBLES,
-             "move"),
         invalidate(device, k_embed_invalidate_comp, "invalidate") {}
-  gpu::Kernel deform, refit, move, invalidate;
+  gpu::Kernel deform, refit, invalidate;
 };
 
 bool repeats(std::vector<uint32_t> ids) {
@@ -50,18 +49,17 @@ bool repeats(std::vector<uint32_t> ids) {
 
 }  // namespace
 
-std::string validate(const HostGeometry& geometry, const Scene& scene) {
+std::string validate(const HostGeometry& geometry, const Scene& scene, bool needsBounds) {
   std::vector<MeshId> meshes;
   for (const DeformedMesh& deformed : geometry.meshes) {
     std::string name = "mesh " + std::to_string(deformed.mesh);
     if (!scene.hasMesh(deformed.mesh)) return name + " does not exist";
-    if (!scene.impl().meshes[deformed.mesh].deforms) return name + " was added without bounds";
+    if (needsBounds && !scene.impl().meshes[deformed.mesh].deforms) return name + " was added without bounds";
     if (deformed.positions.buffer == VK_NULL_HANDLE) return name + ": expected a buffer of positions";
     if (std::string wrong = validate(deformed.positions); !wrong.empty()) return name.append(": ").append(wrong);
     meshes.push_back(deformed.mesh);
   }
   if (repeats(std::move(meshes))) return "meshes: expected each at most once";
-  std::vector<ObjectId> objects;
   for (const MovedObjects& moved : geometry.objects) {
     if (moved.transforms == VK_NULL_HANDLE) return "objects: expected a buffer of transforms";
     if (std::string wrong = validate(moved.layout); !wrong.empty()) return "objects: layout: " + wrong;
@@ -69,14 +67,7 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
       return "objects: stride: expected at least " + std::to_string(least) + " bytes, got " +
              std::to_string(moved.stride);
     }
-    for (const ObjectId object : moved.objects) {
-      const std::string name = "object " + std::to_string(object);
-      if (!scene.hasObject(object)) return name + " does not exist";
-      if (scene.impl().boundsOf(object) == nullptr) return name + " has no bounds: see Scene::setBounds";
-      objects.push_back(object);
-    }
   }
-  if (repeats(std::move(objects))) return "objects: expected each at most once";
   return {};
 }
 
@@ -85,13 +76,12 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
       resident_(resident),
       deform_(device.shared<HostGeometryKernels>().deform),
       refit_(device.shared<HostGeometryKernels>().refit),
-      move_(device.shared<HostGeometryKernels>().move),
       invalidate_(device.shared<HostGeometryKernels>().invalidate),
       upload_(device),
       words_(device, "host words", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       refitNodes_(device, "nodes to refit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      movedBuffer_(device, "moved objects", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+      violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      moved_(device, resident) {
   violation_.reserve(1);
 }
 
@@ -106,26 +96,6 @@ uint32_t HostGeometryPass::copyFrom(VkBuffer buffer, VkDeviceSize first, VkDevic
   }
   sources_.push_back({buffer, {first, at, bytes}});
   return static_cast<uint32_t>(at);
-}
-
-void HostGeometryPass::addMoved(const MovedObjects& objects, const Scene::Impl& scene) {
-  if (objects.objects.empty()) return;
-  const uint32_t firstByte = copyFrom(objects.transforms, objects.first,
-                                      spanOf(objects.stride, objects.objects.size(), extentOf(objects.layout)));
-  for (size_t i = 0; i < objects.objects.size(); ++i) {
-    const ObjectId id = objects.objects[i];
-    const Box& box = *scene.boundsOf(id);
-    gpu::Moved moved{.object = id,
-                     .mesh = scene.objects[id].object.mesh,
-                     .mask = scene.objects[id].object.mask,
-                     .firstByte = static_cast<uint32_t>(firstByte + i * objects.stride),
-                     .format = encoded(objects.layout)};
-    for (int k = 0; k < 3; ++k) {
-      moved.anchor[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
-      moved.halfExtent[k] = roundDown(std::min(box.hi[k] - moved.anchor[k], moved.anchor[k] - box.lo[k]));
-    }
-    moved_.push_back(moved);
-  }
 }
 
 // Lists the nodes by depth, because a node is refitted after its children.
@@ -158,7 +128,6 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   sources_.clear();
   copied_ = 0;
   meshes_.clear();
-  moved_.clear();
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.meshes[deformed.mesh];
     const HostPositions& positions = deformed.positions;
@@ -167,21 +136,24 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
                        copyFrom(positions.buffer, first, spanOf(positions, mesh.vertexCount())),
                        static_cast<uint32_t>(positions.stride), HostFormat(positions.format).component()});
   }
-  for (const MovedObjects& objects : geometry.objects) addMoved(objects, scene);
+  std::vector<uint32_t> firstBytes;
+  for (const MovedObjects& moved : geometry.objects) {
+    const VkDeviceSize bytes = spanOf(moved.stride, moved.objects.size(), extentOf(moved.layout));
+    firstBytes.push_back(moved.objects.empty() ? 0 : copyFrom(moved.transforms, moved.first, bytes));
+  }
+  moved_.stage(geometry.objects, firstBytes, scene);
   if (empty()) return;
   listNodes(scene);
   words_.reserve(copied_ / sizeof(uint32_t) + 1);
-  movedBuffer_.reserve(moved_.size());
   refitNodes_.reserve(nodeList_.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(moved_)) + gpu::Upload::aligned(gpu::bytesOf(nodeList_)));
-  upload_.add(moved_.data(), gpu::bytesOf(moved_), movedBuffer_);
+  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(nodeList_)));
   upload_.add(nodeList_.data(), gpu::bytesOf(nodeList_), refitNodes_);
 }
 
 GpuScene::Overwritten HostGeometryPass::overwritten() const {
   GpuScene::Overwritten overwritten;
   for (const Deformed& deformed : meshes_) overwritten.meshes.push_back(deformed.mesh);
-  for (const gpu::Moved& moved : moved_) overwritten.objects.push_back(moved.object);
+  overwritten.moved = moved_.overwritten();
   return overwritten;
 }
 
@@ -197,16 +169,11 @@ void HostGeometryPass::setArguments() {
               {kSlotMeshes, scene.meshes},
               {kSlotMeshNodes, scene.meshNodes},
               {kSlotRefitNodes, refitNodes_}});
-  move_.set({{kSlotMeshes, scene.meshes},
-             {kSlotObjects, scene.objects},
-             {kSlotPlacements, scene.placements},
-             {kSlotMoved, movedBuffer_},
-             {kSlotBoundsViolation, violation_},
-             {kSlotWords, words_}});
 }
 
 void HostGeometryPass::record(const gpu::Commands& commands) {
   upload_.record(commands);
+  moved_.recordUpload(commands);
   for (const Source& source : sources_) {
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
   }
@@ -217,17 +184,16 @@ void HostGeometryPass::record(const gpu::Commands& commands) {
     deform_.dispatch(commands, gpu::groupsFor(d.vertices, gpu::kHostGroup),
                      gpu::DeformPush{d.vertices, d.mesh, d.firstByte, d.stride, d.component});
   }
-  const auto moved = static_cast<uint32_t>(moved_.size());
-  move_.dispatch(commands, gpu::groupsFor(moved, gpu::kHostGroup), gpu::MovePush{moved});
+  moved_.recordMove(commands, words_, violation_);
   gpu::computeWriteToComputeReadWrite(commands);
-  if (meshes_.empty()) return;
-  for (size_t depth = levels_.size(); depth-- > 0;) {
+  for (size_t depth = meshes_.empty() ? 0 : levels_.size(); depth-- > 0;) {
     for (const Level& level : levels_[depth]) {
       refit_.dispatch(commands, gpu::groupsFor(level.count, gpu::kHostGroup),
                       gpu::RefitPush{level.first, level.count, level.mesh});
     }
     gpu::computeWriteToComputeReadWrite(commands);
   }
+  moved_.recordFit(commands);
 }
 
 void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results,
@@ -245,9 +211,7 @@ std::string HostGeometryPass::boundsViolation() const {
     return "mesh " + std::to_string(violation.mesh) + ": vertex " +
            std::to_string(deformed.firstHostVertex + violation.vertex) + " is outside its bounds or not finite";
   }
-  if (violation.object == kNone) return {};
-  return "object " + std::to_string(violation.object) +
-         ": its mesh's box is outside its bounds, or its transform is not finite";
+  return violation.object == kNone ? std::string() : moved_.describeViolation(violation.object);
 }
 
 }  // namespace radar

@@ -1,10 +1,10 @@
 // Copies geometry from a host's buffers to a recorder's copy of the scene, in the host's command buffer: vertices that
-// it deforms, and objects that it moves. Keeps a copy of its input.
+// it deforms, and objects that it moves (moved_objects.h). Keeps a copy of its input.
 #pragma once
 
-#include <map>
 #include <span>
 
+#include "embed/moved_objects.h"
 #include "gpu/kernel.h"
 #include "radar/host_geometry.h"
 #include "scene/gpu_scene.h"
@@ -12,24 +12,32 @@
 
 namespace radar {
 
-/// Empty if `geometry` is valid.
-std::string validate(const HostGeometry& geometry, const Scene& scene);
+/// Empty if `geometry` is valid, but for the numbers of the objects. `needsBounds`: deformed meshes must have bounds.
+std::string validate(const HostGeometry& geometry, const Scene& scene, bool needsBounds);
 
 class HostGeometryPass {
  public:
   HostGeometryPass(const Device::Impl& device, const GpuScene& resident);
 
-  /// Stores `geometry` and makes room for it, while the device is idle. Throws if it does not fit the device.
+  /// Stores `geometry` and makes room for it, while the device is idle. Throws if it does not fit the device, or
+  /// MovedObjectsPass::stage() does.
   void stage(const HostGeometry& geometry, const Scene::Impl& scene);
   bool empty() const { return meshes_.empty() && moved_.empty(); }
+  /// Objects of which only the device knows where they are. Ascending.
+  std::span<const ObjectId> unbounded() const { return moved_.unbounded(); }
   GpuScene::Overwritten overwritten() const;
   /// Call after recording the scene's upload. The geometry is then visible to compute shaders.
   void record(const gpu::Commands& commands);
+  /// Then call it for a search whose sensors the CPU has encoded.
+  void recordReach(const gpu::Commands& commands, const ContactPass& search) { moved_.recordReach(commands, search); }
   /// Call after recording the answers: invalidates them if anything has left its bounds. The caller records the barrier
   /// from compute shaders to their readers.
   void recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
   /// Describes something that left its bounds, once the device is done; empty if nothing did.
   std::string boundsViolation() const;
+  /// Marks what has been recorded as executed, unless forget() is called.
+  void confirm() { moved_.confirm(); }
+  void forget() { moved_.forget(); }
 
  private:
   struct Deformed {
@@ -46,21 +54,19 @@ class HostGeometryPass {
     uint32_t first, count;  ///< in the list of nodes
   };
   uint32_t copyFrom(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes);
-  void addMoved(const MovedObjects& objects, const Scene::Impl& scene);
   void listNodes(const Scene::Impl& scene);
   void setArguments();
 
   const Device::Impl* device_;
   const GpuScene& resident_;
-  gpu::KernelArguments deform_, refit_, move_, invalidate_;
+  gpu::KernelArguments deform_, refit_, invalidate_;
   gpu::Upload upload_;
   gpu::Array<uint32_t> words_, refitNodes_;
-  gpu::Array<gpu::Moved> movedBuffer_;
   gpu::Array<gpu::BoundsViolation> violation_;  ///< in host memory: rarely written
   std::vector<Source> sources_;
   VkDeviceSize copied_ = 0;  ///< bytes, over all sources
   std::vector<Deformed> meshes_;
-  std::vector<gpu::Moved> moved_;
+  MovedObjectsPass moved_;
   std::vector<uint32_t> nodeList_;
   std::vector<std::vector<Level>> levels_;  ///< over all meshes; the deepest last
   std::vector<uint64_t> listed_;            ///< versions of the meshes whose nodes are listed

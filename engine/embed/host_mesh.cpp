@@ -3,29 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "embed/download.h"
 #include "embed/host_format.h"
-#include "gpu/barrier.h"
-#include "gpu/buffer.h"
-#include "gpu/submission.h"
+#include "math/float_environment.h"
 #include "scene/scene.h"
 
 namespace radar {
 
 namespace {
-
-/// Reads bytes of a buffer.
-std::vector<std::byte> download(const Device::Impl& device, VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
-  gpu::Buffer readback(device, "host mesh", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  readback.reserve(bytes);
-  gpu::Submission submission(device, false);
-  const gpu::Commands commands = submission.begin();
-  submission.stage("host mesh");
-  const VkBufferCopy copy{first, 0, bytes};
-  commands->CmdCopyBuffer(commands, buffer, readback.get(), 1, &copy);
-  gpu::copyToHost(commands);
-  submission.submitAndWait();
-  return {readback.mapped(), readback.mapped() + bytes};
-}
 
 void validate(const HostMesh& mesh) {
   if (std::string wrong = validate(mesh.positions); !wrong.empty()) throw Error("addMesh: positions: " + wrong);
@@ -44,9 +29,12 @@ std::vector<uint32_t> indicesOf(const Device::Impl& device, const HostMesh& mesh
     return indices;
   }
   const size_t size = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
-  const std::vector<std::byte> bytes = download(device, mesh.indices, mesh.firstIndex, size * indices.size());
+  Download download(device);
+  download.add(mesh.indices, mesh.firstIndex, size * indices.size());
+  download.run();
   for (size_t i = 0; i < indices.size(); ++i) {
-    indices[i] = size == 2 ? loadAs<uint16_t>(&bytes[2 * i]) : loadAs<uint32_t>(&bytes[4 * i]);
+    const std::byte* at = download.bytes(0) + size * i;
+    indices[i] = size == 2 ? loadAs<uint16_t>(at) : loadAs<uint32_t>(at);
     if (indices[i] < mesh.vertexCount) continue;
     throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
                 std::to_string(indices[i]) + " of " + std::to_string(mesh.vertexCount));
@@ -57,6 +45,7 @@ std::vector<uint32_t> indicesOf(const Device::Impl& device, const HostMesh& mesh
 }  // namespace
 
 MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
+  const FloatEnvironment floats;
   device.impl().requireQueue("addMesh of a HostMesh");
   validate(mesh);
   std::vector<uint32_t> indices = indicesOf(device.impl(), mesh);
@@ -66,17 +55,22 @@ MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   for (const uint32_t vertex : indices) places[vertex - least] = 1;
   const HostPositions& from = mesh.positions;
   const HostFormat format(from.format);
-  const std::vector<std::byte> bytes = download(device.impl(), from.buffer, from.first + from.stride * least,
-                                                spanOf(from, static_cast<uint32_t>(places.size())));
+  Download download(device.impl());
+  download.add(from.buffer, from.first + from.stride * least, spanOf(from, static_cast<uint32_t>(places.size())));
+  download.run();
   std::vector<float> positions;
+  std::vector<uint32_t> numbers;
   for (size_t v = 0; v < places.size(); ++v) {
     if (places[v] == 0) continue;
-    places[v] = static_cast<uint32_t>(positions.size() / 3);
-    for (int k = 0; k < 3; ++k) positions.push_back(format.load(&bytes[from.stride * v], k));
+    places[v] = static_cast<uint32_t>(numbers.size());
+    numbers.push_back(least + static_cast<uint32_t>(v));
+    for (int k = 0; k < 3; ++k) positions.push_back(format.load(download.bytes(0) + from.stride * v, k));
   }
   for (uint32_t& vertex : indices) vertex = places[vertex - least];
   const MeshId id = scene.addMesh(positions, indices, mesh.bounds);
-  scene.impl_->meshes[id].firstHostVertex = least;
+  Mesh& added = scene.impl_->meshes[id];
+  added.firstHostVertex = least;
+  if (numbers.size() < places.size()) added.hostVertices = std::move(numbers);
   return id;
 }
 

@@ -1,7 +1,6 @@
 #include "embed/host_queries.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "embed/host_format.h"
@@ -13,7 +12,7 @@
 // pass        reads                         writes                                   barrier after it
 // ----------- ----------------------------- ---------------------------------------- ------------------------------
 // copy        the host's buffers            words                                    transferToComputeReadWrite
-// plan        words, meshes                 sensors, sweeps, states, tasks, counts,  computeWriteToComputeReadWrite
+// plan        words, meshes, object nodes   sensors, sweeps, states, tasks, counts,  computeWriteToComputeReadWrite
 //                                           excluded
 
 namespace radar {
@@ -39,13 +38,9 @@ void describe(const ObjectTree& tree, gpu::PlanPush& push) {
   push.start = tree.nodes().empty() ? gpu::kNobody : tree.nodes()[0].link;
   if (push.start == gpu::kNobody) return;
   for (int k = 0; k < 3; ++k) {
-    const double anchor = tree.anchor()[k];
-    push.anchor[k] = static_cast<float>(anchor);
-    push.anchorLow[k] = static_cast<float>(anchor - push.anchor[k]);
-    // Covers the rounding of the differences.
-    const double lo = tree.worldBox().lo[k] - anchor, hi = tree.worldBox().hi[k] - anchor;
-    push.lo[k] = roundDown(lo - 0x1p-52 * std::abs(lo));
-    push.hi[k] = roundUp(hi + 0x1p-52 * std::abs(hi));
+    const TwoFloats anchor = twoFloats(tree.anchor()[k]);
+    push.anchor[k] = anchor.high;
+    push.anchorLow[k] = anchor.low;
   }
 }
 
@@ -95,6 +90,7 @@ void HostQueriesPass::record(const gpu::Commands& commands, const ContactPass& s
   const ContactPass::Encoded to = search.encoded();
   plan_.set({{gpu::kSlotWords, words_},
              {gpu::kSlotMeshes, resident.buffers().meshes},
+             {gpu::kSlotObjectNodes, resident.buffers().objectNodes},
              {gpu::kSlotSensors, to.sensors},
              {gpu::kSlotSweeps, to.sweeps},
              {gpu::kSlotStates, to.states},

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "embed/host_format.h"
+#include "math/float_environment.h"
 
 namespace radar {
 
@@ -47,6 +48,7 @@ Transform read(const std::byte* bytes, const MatrixLayout& layout) {
 }  // namespace
 
 Transform readTransform(const std::byte* bytes, const TransformLayout& layout) {
+  const FloatEnvironment floats;
   return std::visit([&](const auto& known) { return read(bytes, known); }, layout);
 }
 

@@ -13,7 +13,9 @@
 #include "embed/host_geometry.h"
 #include "embed/host_queries.h"
 #include "gpu/barrier.h"
+#include "math/float_environment.h"
 #include "scene/query_lists.h"
+#include "scene/scene_copy.h"
 
 // pass                                            reads           writes   barrier after it
 // ----------------------------------------------- --------------- -------- ------------------
@@ -54,18 +56,6 @@ Result outOfRange() {
 
 }  // namespace
 
-struct SceneCopy::Impl {
-  const Device::Impl& device;
-  const Scene& scene;
-  std::shared_ptr<GpuScene> copy;
-};
-
-SceneCopy::SceneCopy(const Device& device, const Scene& scene)
-    : impl_(new Impl{device.impl(), scene, std::make_shared<GpuScene>(device.impl())}) {}
-SceneCopy::~SceneCopy() = default;
-SceneCopy::SceneCopy(SceneCopy&&) noexcept = default;
-SceneCopy& SceneCopy::operator=(SceneCopy&&) noexcept = default;
-
 struct Recorder::Impl {
   Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy, const Capacity& given)
       : device(openDevice),
@@ -85,6 +75,7 @@ struct Recorder::Impl {
   void validateAll(std::span<const Query> queries, bool besideGeometry) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
+  void addUnbounded(const Query& query, std::vector<ObjectId>& objects) const;
   size_t answerOnCpu(const Query& query, uint32_t number);
   void plan(std::span<const Query> queries);
   void planSearches(const Query& query, std::span<const ObjectId> objects);
@@ -142,7 +133,8 @@ void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeom
 void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {
   if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
   if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
-  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(hostGeometry, scene, true); !wrong.empty())
+    throw Error("record: geometry: " + wrong);
 }
 
 // Returns the number of hits.
@@ -154,6 +146,18 @@ size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
   if (query.hits == 1) answered.lists.hits.clear();
   for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
   return answered.lists.hits.size();
+}
+
+// Adds the objects that may be in reach, wherever the host moves them, and sorts all.
+void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& objects) const {
+  std::vector<ObjectId> exclude = query.exclude;
+  std::sort(exclude.begin(), exclude.end());
+  for (const ObjectId object : geometry.unbounded()) {
+    const bool isMasked = (scene.impl().objects[object].object.mask & query.mask) == 0;
+    if (!isMasked && !std::binary_search(exclude.begin(), exclude.end(), object)) objects.push_back(object);
+  }
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
 }
 
 // Of the queries that take several searches; ascending. Answers those that are for the CPU.
@@ -168,7 +172,7 @@ std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<cons
     }
     if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
     objects[i] = reach.inReach(queries[i], scene.impl(), tree);
-    std::sort(objects[i].begin(), objects[i].end());
+    addUnbounded(queries[i], objects[i]);
     searches += objects[i].size();
     if (objects[i].size() <= kMostSearches) continue;
     throw Error("record: query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
@@ -259,10 +263,13 @@ std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lis
   return answers;
 }
 
-Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity)
-    : impl_(std::make_unique<Impl>(device.impl(), scene, std::make_shared<GpuScene>(device.impl()), capacity)) {}
-Recorder::Recorder(SceneCopy& copy, const Capacity& capacity)
-    : impl_(std::make_unique<Impl>(copy.impl_->device, copy.impl_->scene, copy.impl_->copy, capacity)) {
+Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity) {
+  const FloatEnvironment floats;
+  impl_ = std::make_unique<Impl>(device.impl(), scene, std::make_shared<GpuScene>(device.impl()), capacity);
+}
+Recorder::Recorder(SceneCopy& copy, const Capacity& capacity) {
+  const FloatEnvironment floats;
+  impl_ = std::make_unique<Impl>(copy.impl_->device, copy.impl_->scene, copy.impl_->copy, capacity);
   impl_->isShared = true;
 }
 Recorder::~Recorder() = default;
@@ -289,6 +296,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
     stage("plan");
     hostQueries->record(commands, pass, *copy, scene.impl());
   }
+  if (!areWritten) geometry.recordReach(commands, pass);
   pass.record(commands, stage, capacity.rounds, true);
   if (!gathers.empty()) {
     stage("gather");
@@ -307,14 +315,17 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
   gpu::writtenToHost(commands);
   device.endLabel(commands);
   copy->confirm(scene.impl());
+  geometry.confirm();
   usedBuffers = copy->shareBuffers();
   farthest = copy->farthest();
 }
 
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
+  const FloatEnvironment floats;
   Impl& self = *impl_;
   self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
-  if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(geometry, self.scene, true); !wrong.empty())
+    throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.mostWritten = 0;
   self.geometry.stage(geometry, self.scene.impl());
@@ -332,6 +343,7 @@ void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, 
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
+  const FloatEnvironment floats;
   Impl& self = *impl_;
   self.validateHost(queries, geometry);
   self.recordedQueries.clear();
@@ -353,6 +365,7 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
 
 void Recorder::reset() {
   impl_->copy->forget();
+  impl_->geometry.forget();
 }
 
 VkBuffer Recorder::results() const {
@@ -382,6 +395,7 @@ std::span<const uint32_t> Recorder::hitOffsets() const {
 }
 
 std::vector<Result> Recorder::read(Lists* lists) {
+  const FloatEnvironment floats;
   Impl& self = *impl_;
   if (lists != nullptr) *lists = {};
   if (self.mostWritten != 0) return self.readHost();

@@ -267,6 +267,22 @@ double rootOf(double x) {
   return root;
 }
 
+/// x cross y, divided by the size of its largest component. Zero if it is zero.
+Vector exactCross(const Difference& x, const Difference& y) {
+  std::array<Dyadic, 3> c;
+  size_t most = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vector axis = unit(static_cast<int>(k));
+    c[k] = exactly({{kOrigin, axis}, x, y});
+    if (c[k].sign() != 0 && (c[most].sign() == 0 || std::abs(quotient(c[k], c[most])) > 1)) most = k;
+  }
+  Vector n{};
+  for (size_t k = 0; k < 3; ++k) {
+    if (c[k].sign() != 0) n[k] = c[most].sign() * quotient(c[k], c[most]);
+  }
+  return n;
+}
+
 }  // namespace
 
 Vector normal(const Event& e) {
@@ -282,10 +298,15 @@ Vector normal(const Event& e) {
     for (int k = 0; k < 3; ++k) v[k] = {scale(v[k].high), scale(v[k].low)};
   }
   Vector n;
+  bool isNoise = true;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    n[k] = (x[i] * y[j] - x[j] * y[i]).high;
+    const DoubleDouble p = x[i] * y[j], q = x[j] * y[i];
+    n[k] = (p - q).high;
+    isNoise = isNoise && std::abs(n[k]) <= 0x1p-100 * (std::abs(p.high) + std::abs(q.high));
   }
+  // Then devices leave the pair to the CPU: the sign of n . direction is less certain than n (fineEstimate).
+  if (isNoise) n = exactCross({e.x0, e.x1}, {e.y0, e.y1});
   const Scale scale(n);
   for (double& c : n) c = scale(c);
   const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);

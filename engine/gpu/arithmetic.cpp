@@ -10,6 +10,7 @@
 #include "gpu/barrier.h"
 #include "gpu/kernel.h"
 #include "gpu/submission.h"
+#include "math/float_environment.h"
 #include "spirv/arithmetic_doubles_comp.h"
 #include "spirv/arithmetic_floats_comp.h"
 
@@ -435,6 +436,7 @@ Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t f
 namespace radar {
 
 std::vector<ArithmeticCheck> checkArithmetic(const Device& device) {
+  const FloatEnvironment floats;
   device.impl().requireQueue("checkArithmetic()");
   return gpu::tryArithmetic(device.impl(), device.handles().doubles).checks;
 }

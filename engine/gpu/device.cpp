@@ -5,6 +5,7 @@
 #include "gpu/arithmetic.h"
 #include "gpu/check.h"
 #include "gpu/requirements.h"
+#include "math/float_environment.h"
 
 namespace radar {
 
@@ -94,6 +95,7 @@ std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks
 }  // namespace
 
 Device Device::adopt(const HostDevice& host) {
+  const FloatEnvironment floats;
   const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   auto impl = std::make_unique<Impl>(host);

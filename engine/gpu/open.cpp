@@ -5,6 +5,7 @@
 #include "gpu/check.h"
 #include "gpu/device.h"
 #include "gpu/requirements.h"
+#include "math/float_environment.h"
 #include "radar/radar.h"
 
 namespace radar {
@@ -165,7 +166,10 @@ VkPhysicalDevice choose(const gpu::Api& vk, const std::vector<VkPhysicalDevice>&
 
 }  // namespace
 
+// Threads that a driver starts have this one's environment.
+
 std::vector<DeviceReport> listDevices() {
+  const FloatEnvironment floats;
   const auto owned = openInstance(nullptr);
   std::vector<DeviceReport> reports;
   for (VkPhysicalDevice device : physicalDevices(owned->vk, owned->instance))
@@ -174,6 +178,7 @@ std::vector<DeviceReport> listDevices() {
 }
 
 Device Device::open(const DeviceOptions& options) {
+  const FloatEnvironment floats;
   auto owned = openInstance(options.onValidation);
   HostDevice host{.instance = owned->instance, .debugNames = options.onValidation != nullptr};
   host.physicalDevice = choose(owned->vk, physicalDevices(owned->vk, owned->instance), options.index);

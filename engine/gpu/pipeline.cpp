@@ -46,8 +46,9 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
   check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
                                          &pipeline),
         std::string("vkCreateComputePipelines ") + name);
+  Pipeline owned(device, pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
-  return {device, pipeline};
+  return owned;
 }
 
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRenderPass renderPass,
@@ -97,8 +98,9 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, VkRe
   check(device.vk.CreateGraphicsPipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
                                           &pipeline),
         std::string("vkCreateGraphicsPipelines ") + name);
+  Pipeline owned(device, pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
-  return {device, pipeline};
+  return owned;
 }
 
 }  // namespace radar::gpu

@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
+#include <thread>
 
 #include "gpu/barrier.h"
 #include "gpu/check.h"
 
 namespace radar::gpu {
+
+namespace {
+
+constexpr int kMostWaits = 100;  // five seconds in all
+
+}  // namespace
 
 Submission::Submission(const Device::Impl& device, bool timestamps)
     : device_(&device), timestamps_(timestamps && device.properties.limits.timestampComputeAndGraphics) {
@@ -92,8 +100,18 @@ void Submission::submit() {
 
 void Submission::wait() {
   const VkFence fence = fence_.get();
-  const VkResult waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
+  // A lack of memory says nothing about the device, which may still be at work.
+  VkResult waited = VK_SUCCESS;
+  for (int tries = 0; tries < kMostWaits; ++tries) {
+    waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
+    if (waited != VK_ERROR_OUT_OF_HOST_MEMORY && waited != VK_ERROR_OUT_OF_DEVICE_MEMORY) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(tries));
+  }
   pending_ = false;
+  if (waited == VK_ERROR_OUT_OF_HOST_MEMORY || waited == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
+    throw Error(std::string("vkWaitForFences: ") + resultName(waited) + ", again and again: expected the device to end",
+                VK_ERROR_DEVICE_LOST);
+  }
   check(waited, "vkWaitForFences");
 }
 

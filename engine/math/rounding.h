@@ -25,4 +25,13 @@ inline float roundDown(double x) {
   return -roundUp(-x);
 }
 
+/// Two floats whose sum is within 2^-48 of `x`, relative to it.
+struct TwoFloats {
+  float high, low;
+};
+inline TwoFloats twoFloats(double x) {
+  const volatile float high = static_cast<float>(x);  // GCC 12.2 vectorises x - static_cast<float>(x) to 0
+  return {high, static_cast<float>(x - high)};
+}
+
 }  // namespace radar

@@ -1,7 +1,9 @@
 #include "radar/pool.h"
 
 #include <algorithm>
+#include <system_error>
 
+#include "math/float_environment.h"
 #include "pool/worker.h"
 
 namespace radar {
@@ -37,10 +39,14 @@ struct Pool::Impl {
   Impl(std::span<const Device> devices, const Scene& ownScene, const SweeperOptions& options)
       : scene(ownScene), workQueue(reportsOf(devices)) {
     try {
+      workers.reserve(devices.size());  // a thread that has begun must not end before the queue is closed
       for (uint32_t i = 0; i < devices.size(); ++i) {
         if (!devices[i].supports(Mode::sampled)) withoutSampled = &devices[i].impl();
         workers.push_back(std::make_unique<Worker>(i, devices[i], scene, options, workQueue));
       }
+    } catch (const std::system_error& error) {
+      workQueue.close();
+      throw Error(std::string("Pool: expected to start a thread for each device, got: ") + error.what());
     } catch (...) {
       workQueue.close();
       throw;
@@ -81,6 +87,7 @@ Pool::Pool(std::span<const Device> devices, const Scene& scene, const SweeperOpt
 Pool::~Pool() = default;
 
 std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, std::stop_token stop) {
+  const FloatEnvironment floats;
   impl_->requireModes(queries);
   return impl_->workQueue.post(std::move(queries), std::move(stop), impl_->scene);
 }

@@ -1,7 +1,9 @@
 #include "pool/work_queue.h"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
+#include <utility>
 
 #include "gpu/submission.h"
 
@@ -68,14 +70,18 @@ std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, std::stop_t
   std::future<PoolAnswers> future = job->promise.get_future();
   lock.lock();
   --posting_;
-  open_.push_back(job);
-  if (job->queries.empty()) {
-    settle(*job, 0);
-    return future;
+  settled_.notify_all();
+  if (!job->queries.empty()) jobs_.push_back(job);
+  try {
+    open_.push_back(job);
+  } catch (...) {
+    std::erase(jobs_, job);
+    throw;
   }
-  jobs_.push_back(job);
-  if (share_.alive() == 0) {
-    answerUntaken({});
+  if (job->queries.empty()) {
+    settle(job, 0);
+  } else if (share_.alive() == 0) {
+    answerUntaken(nullptr);
   } else {
     work_.notify_all();
   }
@@ -151,7 +157,7 @@ std::optional<Chunk> WorkQueue::next(uint32_t worker, size_t inFlight) {
   while (!jobs_.empty() && jobs_.front()->stop.stop_requested()) {
     const std::shared_ptr<Job> job = std::move(jobs_.front());
     jobs_.pop_front();
-    fail(*job, job->taken, job->queries.size() - job->taken, "cancelled");
+    fail(job, job->taken, job->queries.size() - job->taken, "cancelled");
   }
   if (jobs_.empty()) return {};
   const std::shared_ptr<Job> job = jobs_.front();
@@ -185,61 +191,106 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
 
 void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs) {
   const Lock lock(mutex_);
-  Job& job = *chunk.job;
-  for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = batch.answers[i];
-  for (size_t i = 0; i < batch.lists.size(); ++i) job.lists[job.place[chunk.first + i]] = std::move(batch.lists[i]);
-  for (const auto& [i, reason] : batch.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
-  addStats(job.answers.stats, batch.stats);
   PoolDevice& device = devices_[trace.device];
   device.queries += chunk.count;
   ++device.chunks;
   share_.finished(trace.device, chunk.count, deviceMs);
-  job.answers.chunks.push_back(std::move(trace));
-  settle(job, chunk.count);
+  Job& job = *chunk.job;
+  orEnd(chunk.job, [&] {
+    for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = batch.answers[i];
+    for (size_t i = 0; i < batch.lists.size(); ++i) job.lists[job.place[chunk.first + i]] = std::move(batch.lists[i]);
+    for (const auto& [i, reason] : batch.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
+    addStats(job.answers.stats, batch.stats);
+    job.answers.chunks.push_back(std::move(trace));
+  });
+  settle(chunk.job, chunk.count);
   if (waiting() > 0) work_.notify_all();  // estimated speeds have changed, so a worker that deferred may be needed now
 }
 
 void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks) {
   {
     const Lock lock(mutex_);
-    devices_[worker].retired = reason;
     share_.retire(worker);
-    const std::string line = "device " + std::to_string(worker) + ", " + devices_[worker].name + ": " + reason;
-    for (const auto& job : open_) job->answers.retired.push_back(line);
-    for (Chunk& chunk : chunks) returned_.push_back(std::move(chunk));
-    if (share_.alive() == 0) answerUntaken({});
+    try {
+      devices_[worker].retired = reason;
+      const std::string line = "device " + std::to_string(worker) + ", " + devices_[worker].name + ": " + reason;
+      for (const auto& job : open_) job->answers.retired.push_back(line);
+      for (Chunk& chunk : chunks) returned_.push_back(std::move(chunk));
+    } catch (const std::bad_alloc&) {
+      while (!open_.empty()) end(std::shared_ptr<Job>(open_.front()), std::current_exception());
+    }
+    if (share_.alive() == 0) answerUntaken(nullptr);
     if (closed_) answerUntaken("the pool was closed");
   }
   work_.notify_all();  // workers that deferred to others may be needed now
 }
 
-// An empty reason stands for the list of retired devices.
-void WorkQueue::answerUntaken(const std::string& reason) {
-  std::string why = reason;
-  if (why.empty()) {
-    why = "no device is left";
-    for (size_t i = 0; i < devices_.size(); ++i) {
+void WorkQueue::abandon(const Chunk& chunk, const std::exception_ptr& exception) {
+  const Lock lock(mutex_);
+  end(chunk.job, exception);
+}
+
+// No reason stands for the list of retired devices.
+void WorkQueue::answerUntaken(const char* reason) {
+  while (!returned_.empty()) {
+    const Chunk chunk = std::move(returned_.front());
+    returned_.pop_front();
+    fail(chunk.job, chunk.first, chunk.count, reason);
+  }
+  while (!jobs_.empty()) {
+    const std::shared_ptr<Job> job = std::move(jobs_.front());
+    jobs_.pop_front();
+    fail(job, job->taken, job->queries.size() - job->taken, reason);
+  }
+}
+
+void WorkQueue::fail(const std::shared_ptr<Job>& job, size_t first, size_t count, const char* reason) {
+  orEnd(job, [&] {
+    std::string why = reason == nullptr ? "no device is left" : reason;
+    for (size_t i = 0; reason == nullptr && i < devices_.size(); ++i) {
       why += (i == 0 ? ": device " : "; device ") + std::to_string(i) + ", " + devices_[i].name + ": " +
              devices_[i].retired;
     }
-  }
-  for (const Chunk& chunk : std::exchange(returned_, {})) fail(*chunk.job, chunk.first, chunk.count, why);
-  for (const auto& job : std::exchange(jobs_, {})) fail(*job, job->taken, job->queries.size() - job->taken, why);
-}
-
-void WorkQueue::fail(Job& job, size_t first, size_t count, const std::string& reason) {
-  for (size_t i = first; i < first + count; ++i) job.answers.reasons[job.place[i]] = reason;
+    for (size_t i = first; i < first + count; ++i) job->answers.reasons[job->place[i]] = why;
+  });
   settle(job, count);
 }
 
 // Counts answered queries; the last one ends the job.
-void WorkQueue::settle(Job& job, size_t count) {
-  job.answered += count;
-  if (job.answered < job.queries.size()) return;
-  job.answers.answered = now();
-  job.answers.lists = joined(job.lists);
-  job.promise.set_value(std::move(job.answers));
-  std::erase_if(open_, [&](const auto& other) { return other.get() == &job; });
+void WorkQueue::settle(const std::shared_ptr<Job>& job, size_t count) {
+  job->answered += count;
+  if (job->answered < job->queries.size()) return;
+  orEnd(job, [&] {
+    job->answers.answered = now();
+    job->answers.lists = joined(job->lists);
+    end(job, nullptr);
+  });
+}
+
+// Does what allocates memory; ends a job for which there is none.
+template <class Work>
+void WorkQueue::orEnd(const std::shared_ptr<Job>& job, const Work& work) {
+  if (job->hasEnded) return;
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    end(job, std::current_exception());
+  }
+}
+
+// Gives the future the answers, or an exception. Workers may still have chunks of the job.
+void WorkQueue::end(const std::shared_ptr<Job>& job, const std::exception_ptr& exception) {
+  if (std::exchange(job->hasEnded, true)) return;
+  const std::shared_ptr<Job> kept = job;
+  const auto isIt = [&](const auto& other) { return other == kept; };
+  std::erase_if(jobs_, isIt);
+  std::erase_if(open_, isIt);
+  std::erase_if(returned_, [&](const Chunk& chunk) { return chunk.job == kept; });
+  if (exception) {
+    kept->promise.set_exception(exception);
+  } else {
+    kept->promise.set_value(std::move(kept->answers));
+  }
   settled_.notify_all();
 }
 

@@ -23,6 +23,7 @@ struct Job {
   PoolAnswers answers;
   std::vector<QueryLists> lists;  ///< as in QueryBatch, by original index
   size_t taken = 0, answered = 0;
+  bool hasEnded = false;           ///< the future has its answers, or an exception
   std::vector<bool> took, passed;  ///< by worker: has taken a chunk, has deferred to others
 };
 
@@ -51,10 +52,13 @@ class WorkQueue {
   /// The next chunk for a worker with `inFlight` queries in flight. If there is none: sleeps, unless the worker has
   /// queries in flight or is to end; then returns nothing.
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
-  /// Stores a chunk's answers. `deviceMs`: time on the device; 0 if it is no measure of the device's speed.
+  /// Stores a chunk's answers, unless its batch has ended. `deviceMs`: time on the device; 0 if it is no measure of the
+  /// device's speed.
   void deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs);
   /// Ends the worker; its chunks go to the others.
   void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
+  /// Ends the batch of a chunk: its future gets the exception.
+  void abandon(const Chunk& chunk, const std::exception_ptr& exception);
   /// Gives the worker no more chunks: it is about to retire. Returns false, and changes nothing, if it is the only one
   /// left; if the last two call at once, one stays.
   bool leave(uint32_t worker);
@@ -70,9 +74,12 @@ class WorkQueue {
 
   size_t waiting() const;
   std::optional<Chunk> next(uint32_t worker, size_t inFlight);
-  void answerUntaken(const std::string& reason);
-  void fail(Job& job, size_t first, size_t count, const std::string& reason);
-  void settle(Job& job, size_t count);
+  void answerUntaken(const char* reason);
+  void fail(const std::shared_ptr<Job>& job, size_t first, size_t count, const char* reason);
+  void settle(const std::shared_ptr<Job>& job, size_t count);
+  void end(const std::shared_ptr<Job>& job, const std::exception_ptr& exception);
+  template <class Work>
+  void orEnd(const std::shared_ptr<Job>& job, const Work& work);
 
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_;

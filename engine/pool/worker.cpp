@@ -5,8 +5,10 @@
 #endif
 
 #include <algorithm>
+#include <new>
 
 #include "gpu/check.h"
+#include "math/float_environment.h"
 
 namespace radar {
 
@@ -26,22 +28,47 @@ Worker::Worker(uint32_t number, const Device& device, const Scene& scene, const 
     : number_(number), device_(device), scene_(scene), options_(options), queue_(queue), thread_([this] { run(); }) {}
 
 void Worker::run() {
+  const FloatEnvironment floats;  // the host's thread that made the pool may have had another
   nameThread(number_);
-  try {
-    copy_ = std::make_shared<GpuScene>(device_.impl());
-    while (serve()) {
-    }
-  } catch (const std::exception& error) {
-    // The other lane's work on the device must end before its chunk goes to other workers.
-    std::vector<Chunk> chunks = chunksInFlight();
-    for (Lane& lane : lanes_) {
+  for (bool goesOn = true; goesOn;) {
+    try {
+      goesOn = serve();
+    } catch (const std::bad_alloc&) {
+      abandon(std::current_exception());
+    } catch (const std::exception& error) {
+      goesOn = false;
+      endLanes();
       try {
-        if (lane.sweep) lane.sweep->finish();
-      } catch (const std::exception&) {  // the first error is the one to report
+        queue_.retire(number_, error.what(), chunksInFlight());
+      } catch (const std::bad_alloc&) {
+        abandon(std::current_exception());
+        queue_.retire(number_, "out of memory", {});
       }
     }
-    queue_.retire(number_, error.what(), std::move(chunks));
   }
+}
+
+// Waits for the device. Before a lane's chunk goes to another worker, the work of the other lane must have ended, too.
+void Worker::endLanes() {
+  for (Lane& lane : lanes_) {
+    try {
+      if (lane.sweep) lane.sweep->finish();
+    } catch (const std::exception&) {  // the first error is the one to report
+    }
+  }
+}
+
+// Gives up the batches in hand, and whatever an exception may have left half done.
+void Worker::abandon(const std::exception_ptr& exception) {
+  endLanes();
+  for (Lane& lane : lanes_) {
+    if (lane.chunk.job) queue_.abandon(lane.chunk, exception);
+    lane = {};
+  }
+  copy_.reset();
+  oldest_ = inFlight_ = 0;
+  seenVersion_ = 0;
+  isSynced_ = true;
 }
 
 std::vector<Chunk> Worker::chunksInFlight() const {
@@ -70,7 +97,8 @@ void Worker::begin(Lane& lane, Chunk chunk) {
   ++inFlight_;
   lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
   lane.results.assign(lane.chunk.count, Result());
-  if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_, scene_, options_, copy_);
+  if (!copy_) copy_ = std::make_shared<GpuScene>(device_.impl());
+  if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
   // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
   if (const uint64_t version = scene_.version(); version != seenVersion_) {
     const std::optional<Error> error = lane.sweep->sync();

@@ -1,6 +1,7 @@
 // One thread per device: takes chunks from the queue of batches and keeps its device busy.
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <thread>
 
@@ -31,6 +32,8 @@ class Worker {
   bool serve();
   void begin(Lane& lane, Chunk chunk);
   void finish(Lane& lane);
+  void endLanes();
+  void abandon(const std::exception_ptr& exception);
   std::vector<Chunk> chunksInFlight() const;
 
   const uint32_t number_;
@@ -38,7 +41,7 @@ class Worker {
   const Scene& scene_;
   const SweeperOptions options_;
   WorkQueue& queue_;
-  std::shared_ptr<GpuScene> copy_;
+  std::shared_ptr<GpuScene> copy_;  // made on first use
   std::array<Lane, kLanes> lanes_;
   size_t oldest_ = 0, inFlight_ = 0;  // a ring: `inFlight_` lanes from `oldest_` on
   uint64_t seenVersion_ = 0;

@@ -169,6 +169,7 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
   readback_.reserve(listBytes + 2 * pictureBytes);
 
   const gpu::Commands commands = submission_.begin();
+  gpu::computeToOverwrite(commands);  // a recording that shares the scene's copy may still be searching it
   submission_.stage("upload");
   upload_.record(commands);
   pictures.range.recordFirstUse(commands);

@@ -12,8 +12,8 @@ class ChangedPages {
  public:
   /// The array has `count` elements; new ones have not changed.
   void resize(size_t count) {
-    count_ = count;
     pages_.resize((count + kPage - 1) / kPage);
+    count_ = count;
   }
   void mark(size_t element, uint64_t version) { pages_[element / kPage] = version; }
   void markAll(uint64_t version) { std::fill(pages_.begin(), pages_.end(), version); }

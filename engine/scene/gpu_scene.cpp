@@ -36,6 +36,8 @@ void copyPoint(const Vector& from, float (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
 }
 
+const GpuScene::Moved kNothingMoved;
+
 // Appends the elements of `all` that are not in `less`; both ascend.
 template <class Id>
 void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std::vector<Id>& out) {
@@ -76,7 +78,14 @@ GpuScene::GpuScene(const Device::Impl& device)
 void GpuScene::willOverwrite(Overwritten next) {
   next_ = std::move(next);
   std::sort(next_.meshes.begin(), next_.meshes.end());
-  std::sort(next_.objects.begin(), next_.objects.end());
+}
+
+const GpuScene::Moved& GpuScene::movedBefore() const {
+  return overwritten_.moved ? *overwritten_.moved : kNothingMoved;
+}
+
+const GpuScene::Moved& GpuScene::movedNext() const {
+  return next_.moved ? *next_.moved : kNothingMoved;
 }
 
 // Whether no buffer that searches use need grow.
@@ -95,17 +104,25 @@ void GpuScene::forget() {
   overwritten_ = {};
 }
 
-VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) {
+void GpuScene::clear() {
+  for (Arena* arena : {&vertices_, &triangles_, &nodes_}) arena->reset(0);
+  places_.clear();
+  forget();
+}
+
+VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) try {
   if (seenScene_ != scene.identity) forget();
   checkWriteLimits(scene);
   if (buffers_.use_count() > 1 && !fits(scene)) {
     buffers_ = std::make_shared<Buffers>(*device_);
-    for (Arena* arena : {&vertices_, &triangles_, &nodes_}) arena->reset(0);
-    places_.clear();
-    forget();
+    clear();
   }
   const VkDeviceSize meshes = prepareMeshes(scene);
   return meshes + prepareIndices(scene) + prepareObjects(scene) + prepareTree(scene.objectTree());
+} catch (...) {
+  // Some buffers may have grown, and lost their contents: everything is placed and staged again.
+  clear();
+  throw;
 }
 
 void GpuScene::removePlace(MeshId id) {
@@ -181,7 +198,10 @@ bool GpuScene::exceedsWriteLimits() const {
 
 // Buffers that shaders write are bound as storage buffers, so they are subject to maxStorageBufferRange.
 void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
-  if (!next_.objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
+  if (!movedNext().objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
+  if (!movedNext().nodes.empty()) {
+    checkLimit<gpu::ObjectNode>(*device_, "object nodes", scene.objectTree().nodes().size());
+  }
   if (next_.meshes.empty()) return;
   const Elements elements = elementsOf(scene);
   checkLimit<gpu::Vertex>(*device_, "vertices", elements.vertices);
@@ -253,7 +273,7 @@ VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
     }
   });
   std::vector<ObjectId> restored;
-  addDifference(overwritten_.objects, next_.objects, restored);
+  if (overwritten_.moved != next_.moved) addDifference(movedBefore().objects, movedNext().objects, restored);
   for (const ObjectId id : restored) {
     if (scene.objects[id].used && scene.changedAt[id] <= seenPoses_) changedObjects_.push_back(id);
   }
@@ -265,10 +285,21 @@ VkDeviceSize GpuScene::prepareTree(const ObjectTree& tree) {
   if (buffers_->objectNodes.reserve(tree.nodes().size())) seenTree_ = 0;
   changedNodes_.clear();
   VkDeviceSize bytes = 0;
-  tree.changedNodes().forEachSince(seenTree_, [&](size_t first, size_t last) {
+  const auto add = [&](size_t first, size_t last) {
     changedNodes_.push_back({first, last});
     bytes += Upload::aligned(sizeof(gpu::ObjectNode) * (last - first));
-  });
+  };
+  std::vector<uint32_t> restored;
+  if (overwritten_.moved != next_.moved) addDifference(movedBefore().nodes, movedNext().nodes, restored);
+  if (restored.empty()) {
+    tree.changedNodes().forEachSince(seenTree_, add);
+  } else {
+    ChangedPages both = tree.changedNodes();
+    for (const uint32_t node : restored) {
+      if (node < tree.nodes().size()) both.mark(node, seenTree_ + 1);
+    }
+    both.forEachSince(seenTree_, add);
+  }
   return bytes;
 }
 
@@ -352,6 +383,7 @@ void GpuScene::sync(const Scene::Impl& scene) {
   sync_->upload.begin(bytes);
   upload(scene, sync_->upload);
   const gpu::Commands commands = sync_->submission.begin();
+  gpu::computeToOverwrite(commands);
   sync_->submission.stage("upload");
   sync_->upload.record(commands);
   gpu::transferToComputeReadWrite(commands);
@@ -360,13 +392,13 @@ void GpuScene::sync(const Scene::Impl& scene) {
 }
 
 void GpuScene::confirm(const Scene::Impl& scene) {
+  overwritten_ = next_;  // first, as only this may throw
   seenScene_ = scene.identity;
   seenMeshes_ = scene.meshVersion;
   for (const MeshId id : changedMeshes_) places_[id].uploaded = scene.meshes[id].version;
   for (const MeshId id : changedIndices_) places_[id].uploadedIndices = scene.meshes[id].version;
   seenPoses_ = scene.poseVersion;
   seenTree_ = scene.objectTree().version();
-  overwritten_ = next_;
 }
 
 }  // namespace radar

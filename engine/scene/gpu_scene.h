@@ -31,12 +31,16 @@ class GpuScene {
   void needIndices() { hasIndices_ = true; }
   bool hasIndices() const { return hasIndices_; }
 
-  /// Declares the meshes and objects that commands after the next upload overwrite. Those overwritten after the last
-  /// upload, and not now, are staged again from the scene.
-  struct Overwritten {
-    std::vector<MeshId> meshes;
-    std::vector<ObjectId> objects;
+  struct Moved {
+    std::vector<ObjectId> objects;  ///< ascending
+    std::vector<uint32_t> nodes;    ///< of the tree over objects, ascending
   };
+  struct Overwritten {
+    std::vector<MeshId> meshes;          ///< in any order
+    std::shared_ptr<const Moved> moved;  ///< null: none; shared, since there may be millions
+  };
+  /// Declares what commands after the next upload overwrite. What was overwritten after the last upload, and is not
+  /// now, is staged again from the scene.
   void willOverwrite(Overwritten next);
 
   /// Finds the changes and makes room for them; returns the bytes that `upload` will stage. Throws if they do not fit a
@@ -66,12 +70,15 @@ class GpuScene {
     uint64_t vertices = 0, triangles = 0, nodes = 0;  ///< numbers of elements; none: no mesh
     uint64_t uploaded = 0, uploadedIndices = 0;       ///< Mesh::version of what is in the buffers; 0: nothing
   };
+  void clear();
   bool fits(const Scene::Impl& scene) const;
   void checkWriteLimits(const Scene::Impl& scene) const;
   VkDeviceSize prepareMeshes(const Scene::Impl& scene);
   VkDeviceSize prepareIndices(const Scene::Impl& scene);
   VkDeviceSize prepareObjects(const Scene::Impl& scene);
   VkDeviceSize prepareTree(const ObjectTree& tree);
+  const Moved& movedBefore() const;
+  const Moved& movedNext() const;
   void placeMeshes(const Scene::Impl& scene);
   bool placeMesh(MeshId id, const Mesh& mesh);
   void removePlace(MeshId id);
@@ -96,7 +103,7 @@ class GpuScene {
     size_t first, last;
   };
   std::vector<Range> changedNodes_;
-  Overwritten overwritten_, next_;  ///< ascending
+  Overwritten overwritten_, next_;  ///< meshes ascend
   struct Sync {
     gpu::Upload upload;
     gpu::Submission submission;

@@ -57,7 +57,7 @@ class Builder {
     return out;
   }
 
-  MeshTree refit(MeshTree tree) const {
+  void refit(MeshTree& tree) const {
     const std::vector<FloatBox> boxes = boxesOfTriangles();
     std::vector<BoxTree::Node> nodes(tree.nodes.size());
     for (size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
@@ -71,9 +71,11 @@ class Builder {
         for (uint32_t k = 1; k < node.count; ++k) node.box = around(node.box, boxes[tree.order[node.first + k]]);
       }
     }
-    if (!(cost(nodes) <= kRebuildAt * tree.builtCost)) return build();
-    fillAll(tree, nodes);
-    return tree;
+    if (cost(nodes) <= kRebuildAt * tree.builtCost) {
+      fillAll(tree, nodes);
+    } else {
+      tree = build();
+    }
   }
 
  private:
@@ -163,8 +165,8 @@ MeshTree buildMeshTree(const Mesh& mesh) {
   return Builder(mesh).build();
 }
 
-MeshTree refitMeshTree(const Mesh& mesh, MeshTree before) {
-  return Builder(mesh).refit(std::move(before));
+void refitMeshTree(const Mesh& mesh, MeshTree& tree) {
+  Builder(mesh).refit(tree);
 }
 
 }  // namespace radar

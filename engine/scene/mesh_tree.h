@@ -27,8 +27,8 @@ struct MeshTree {
 /// `mesh` must have its local vertices.
 MeshTree buildMeshTree(const Mesh& mesh);
 
-/// The same for a mesh whose vertices have moved. `before`: its tree until now, which is fitted to them; built anew if
-/// that has made it much worse.
-MeshTree refitMeshTree(const Mesh& mesh, MeshTree before);
+/// Fits the tree of a mesh whose vertices have moved; builds it anew if that has made it much worse. If it throws, the
+/// tree is as it was.
+void refitMeshTree(const Mesh& mesh, MeshTree& tree);
 
 }  // namespace radar

@@ -147,6 +147,7 @@ void ObjectTree::apply(const Scene::Impl& scene, ObjectId object) {
 
 void ObjectTree::insert(ObjectId object) {
   if (nodes_.empty()) return;  // all others were removed before: it is built anew
+  structure_ = next_;
   const FloatBox box = floatBox(boxes_[object], anchor_);
   const auto grown = [&](uint32_t node) {
     gpu::ObjectNode both{};
@@ -180,6 +181,7 @@ void ObjectTree::insert(ObjectId object) {
 void ObjectTree::remove(ObjectId object) {
   const uint32_t leaf = std::exchange(leaves_[object], kNone);
   const uint32_t parent = parents_[leaf];
+  structure_ = next_;
   if (parent == kNone) {
     nodes_.clear();
     return;
@@ -234,6 +236,7 @@ void ObjectTree::build(const Scene::Impl& scene) {
   for (uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].used) ids.push_back(i);
   }
+  structure_ = next_;
   nodes_.clear();
   leaves_.assign(scene.objects.size(), kNone);
   depth_ = 0;

@@ -38,12 +38,18 @@ class ObjectTree {
   const Box& worldBox() const { return world_; }
   /// An object's world box, its motion and its bounds from setBounds included.
   const Box& boxOf(ObjectId object) const { return boxes_[object]; }
+  /// The leaf of an object; kNone if floats cannot hold the tree.
+  uint32_t leafOf(ObjectId object) const { return leaves_[object]; }
+  /// kNone: the node is the root.
+  uint32_t parentOf(uint32_t node) const { return parents_[node]; }
   /// At least the number of nodes on the longest path from the root to a leaf.
   uint32_t depth() const { return depth_; }
   /// Whether floats can hold the tree (kMostCoordinate).
   bool inRange() const { return inRange_; }
   /// Increases with every change of the tree; unique over all trees.
   uint64_t version() const { return version_; }
+  /// The version() at which links, or the anchor, last changed.
+  uint64_t structure() const { return structure_; }
   /// The version() at which nodes last changed.
   const ChangedPages& changedNodes() const { return changed_; }
 
@@ -87,7 +93,7 @@ class ObjectTree {
   bool inRange_ = true;
   double builtCost_ = 0, cost_ = 0;
   size_t edits_ = 0;  // insertions and removals since the tree was built
-  uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0;
+  uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0, structure_ = 0;
   uint64_t next_ = 0;  // the version that an update makes
 };
 

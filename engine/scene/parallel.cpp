@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,8 +23,13 @@ void parallelFor(size_t count, size_t chunk, unsigned threads,
   };
   std::vector<std::future<void>> others;
   const size_t workers = std::min<size_t>(threadCount(threads), chunks);
-  for (unsigned worker = 1; worker < workers; ++worker) {
-    others.push_back(std::async(std::launch::async, run, worker));
+  try {
+    if (workers > 1) others.reserve(workers - 1);
+    for (unsigned worker = 1; worker < workers; ++worker) {
+      others.push_back(std::async(std::launch::async, run, worker));
+    }
+  } catch (const std::bad_alloc&) {  // those that run do all the work
+  } catch (const std::system_error&) {
   }
   if (chunks > 0) run(0);
   for (std::future<void>& other : others) other.get();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "math/float_environment.h"
 #include "scene/query_lists.h"
 #include "scene/scene.h"
 
@@ -12,28 +13,30 @@ namespace {
 
 // Sums and lengths of displacements up to this do not overflow.
 constexpr double kMostMotion = 0x1p1000;
+// Nor do vertices that poses up to this place, and differences of such vertices.
+constexpr double kMostPose = 0x1p800;
 
-}  // namespace
-
-namespace {
-
-// Whether a pose certainly is finite and passes the test of validate(): columns of length 1 make rows of at most
+// Whether a pose certainly passes the test of validate(): columns of length 1 make rows of at most
 // sqrt(3), so the scaled determinant loses at most a factor of 5.2.
 bool isSurelyInvertible(const Transform& pose) {
   double squares = 1;
   for (int k = 0; k < 3; ++k) {
     squares *= pose.m[k] * pose.m[k] + pose.m[4 + k] * pose.m[4 + k] + pose.m[8 + k] * pose.m[8 + k];
   }
-  const double volume = determinant(pose), position = pose.m[3] + pose.m[7] + pose.m[11];
-  return squares > 1e-250 && squares < 1e250 && volume * volume > 1e-20 * squares && std::isfinite(position);
+  const double volume = determinant(pose);
+  const double position = std::abs(pose.m[3]) + std::abs(pose.m[7]) + std::abs(pose.m[11]);
+  return squares > 1e-250 && squares < 1e250 && volume * volume > 1e-20 * squares && position <= kMostPose;
 }
 
 }  // namespace
 
 std::string validate(const Transform& pose) {
+  const FloatEnvironment floats;
   if (isSurelyInvertible(pose)) return {};
   for (double value : pose.m) {
-    if (!std::isfinite(value)) return "expected 12 finite numbers, got " + std::to_string(value);
+    if (!(std::abs(value) <= kMostPose)) {
+      return "expected 12 finite numbers of at most 2^800, got " + std::to_string(value);
+    }
   }
   // Columns, then rows are scaled to length 1, so that a scale of 1e-5 along one axis does not look singular.
   Transform scaled = pose;
@@ -90,6 +93,7 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
 }  // namespace
 
 std::string validate(const Query& query, const Scene& scene) {
+  const FloatEnvironment floats;
   if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
   if (std::string wrong = validateCourse(query, scene.impl()); !wrong.empty()) return wrong;

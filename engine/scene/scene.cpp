@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <new>
 
+#include "math/float_environment.h"
 #include "math/rounding.h"
+#include "scene/parallel.h"
 
 namespace radar {
 
@@ -23,6 +26,8 @@ constexpr size_t kMostVertices = size_t{1} << 30, kMostTriangles = size_t{1} << 
 
 // If more objects change than this and a sixteenth of all, looking at every object is cheaper than at each change.
 constexpr size_t kFewChanges = 16;
+// Transforms that a thread sets at a time.
+constexpr size_t kChunk = 8192;
 
 std::string idText(const char* kind, uint32_t id) {
   return std::string(kind) + " " + std::to_string(id);
@@ -97,17 +102,6 @@ void derive(Mesh& mesh, Box box) {
   mesh.meanEdge = sum / static_cast<double>(mesh.indices.size());
 }
 
-template <class Slots>
-uint32_t takeSlot(Slots& slots, FreeIds& free) {
-  if (free.empty()) {
-    slots.emplace_back();
-    return static_cast<uint32_t>(slots.size() - 1);
-  }
-  const uint32_t id = free.top();
-  free.pop();
-  return id;
-}
-
 void requireAtMost(const char* where, const char* what, size_t count, size_t most) {
   if (count <= most) return;
   throw Error(std::string(where) + ": expected at most " + std::to_string(most) + " " + what + ", got " +
@@ -120,97 +114,79 @@ void requireFinite(const std::string& where, std::span<const float> positions) {
   }
 }
 
+// The bounds within which a host may deform the mesh, and its rest pose.
+Box boundsOf(const Mesh& mesh) {
+  Box box = mesh.box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] += mesh.origin[k];
+    box.hi[k] += mesh.origin[k];
+  }
+  return box;
+}
+
+// Vertices that no triangle uses may be anywhere.
+void requireInside(const Mesh& mesh, std::span<const float> positions) {
+  const Box box = boundsOf(mesh);
+  for (const uint32_t vertex : mesh.indices) {
+    for (int k = 0; k < 3; ++k) {
+      const float x = positions[3 * size_t{vertex} + k];
+      if (x >= box.lo[k] && x <= box.hi[k]) continue;
+      throw Error("setPositions: vertex " + std::to_string(vertex) + " is outside the mesh's bounds");
+    }
+  }
+}
+
 size_t isMoving(const Object& object) {
   return object.motion == Vector{} ? 0 : 1;
 }
 
 }  // namespace
 
-Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
-  std::array<double, 12> parentFromLocal = m;
-  double magnitude = 0;
-  for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) {
-      parentFromLocal[4 * row + 3] += r[k] * mesh.origin[k];
-      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
-    }
-    magnitude = std::max(magnitude, sum);
-  }
-  Box box = boxOfLocal(mesh, parentFromLocal);
-  for (int row = 0; row < 3; ++row) {
-    box.lo[row] -= 0x1p-47 * magnitude;
-    box.hi[row] += 0x1p-47 * magnitude;
-  }
-  return box;
-}
-
-Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
-  Box box;
-  for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double middle = r[3], half = 0;
-    for (int k = 0; k < 3; ++k) {
-      middle += r[k] * mesh.box.middle(k);
-      half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
-    }
-    box.lo[row] = middle - half;
-    box.hi[row] = middle + half;
-  }
-  return box;
-}
-
-double determinant(const Transform& pose) {
-  const std::array<double, 12>& m = pose.m;
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-}
-
-Vector transformPoint(const Transform& pose, const float* p) {
-  const double x = p[0], y = p[1], z = p[2];
-  Vector out;
-  for (int k = 0; k < 3; ++k) {
-    const double* r = &pose.m[4 * k];
-    out[k] = ((r[0] * x + r[1] * y) + r[2] * z) + r[3];
-  }
-  return out;
-}
-
-std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle) {
-  std::array<Vector, 3> corners;
-  for (size_t i = 0; i < 3; ++i) {
-    const size_t vertex = mesh.indices[3 * size_t{triangle} + i];
-    corners[i] = transformPoint(worldFromMesh, &mesh.positions[3 * vertex]);
-  }
-  return corners;
-}
-
-double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh) {
-  double greatest = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double* row = &worldFromMesh.m[4 * i];
-    double sum = std::abs(row[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * farthest[k];
-    greatest = std::max(greatest, sum);
-  }
-  return std::min(greatest, std::numeric_limits<double>::max());
-}
-
 Scene::Impl::Impl() : identity(nextVersion()) {}
 
 const ObjectTree& Scene::Impl::objectTree() const {
   const std::scoped_lock lock(treeMutex_);
-  tree_.update(*this, treeChanges_);
+  try {
+    tree_.update(*this, treeChanges_);
+  } catch (...) {
+    tree_ = {};  // half of it may be up to date
+    throw;
+  }
   treeChanges_.objects.clear();
   treeChanges_.areMany = false;
   return tree_;
 }
 
-void Scene::Impl::change(ObjectId object) {
-  poseVersion = changedAt[object] = nextVersion();
-  changedObjects.mark(object, poseVersion);
-  treeChanges_.areMany = treeChanges_.areMany || treeChanges_.objects.size() > kFewChanges + objects.size() / 16;
-  if (!treeChanges_.areMany) treeChanges_.objects.push_back(object);
+void Scene::Impl::change(std::span<const ObjectId> changed) {
+  poseVersion = nextVersion();
+  for (const ObjectId object : changed) {
+    changedAt[object] = poseVersion;
+    changedObjects.mark(object, poseVersion);
+  }
+  treeChanges_.areMany =
+      treeChanges_.areMany || treeChanges_.objects.size() + changed.size() > kFewChanges + objects.size() / 16;
+  if (treeChanges_.areMany) return;
+  try {
+    treeChanges_.objects.insert(treeChanges_.objects.end(), changed.begin(), changed.end());
+  } catch (const std::bad_alloc&) {
+    treeChanges_.areMany = true;
+  }
+}
+
+void Scene::Impl::makeRoom() {
+  if (!freeObjects.empty()) return;
+  const auto free = static_cast<ObjectId>(objects.size());
+  objects.emplace_back();
+  try {
+    changedAt.resize(objects.size());
+    changedObjects.resize(objects.size());
+    freeObjects.push(free);
+  } catch (...) {
+    objects.pop_back();
+    changedAt.resize(objects.size());
+    changedObjects.resize(objects.size());
+    throw;
+  }
 }
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -220,6 +196,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                       const std::optional<Bounds>& bounds) {
+  const FloatEnvironment floats;
   if (positions.size() % 3 != 0)
     throw Error("addMesh: positions: expected 3 floats per vertex, got " + std::to_string(positions.size()));
   if (indices.size() % 3 != 0)
@@ -255,24 +232,39 @@ MeshId Scene::addMesh(std::span<const float> positions, std::span<const uint32_t
   }
   derive(mesh, box);
   mesh.tree = buildMeshTree(mesh);
-  const MeshId id = takeSlot(impl_->meshes, impl_->freeMeshes);
-  impl_->meshes[id] = std::move(mesh);
+  auto id = static_cast<MeshId>(impl_->meshes.size());
+  if (impl_->freeMeshes.empty()) {
+    impl_->meshes.push_back(std::move(mesh));
+  } else {
+    id = impl_->freeMeshes.top();
+    impl_->freeMeshes.pop();
+    impl_->meshes[id] = std::move(mesh);
+  }
   impl_->meshVersion = nextVersion();
   return id;
 }
 
 void Scene::setPositions(MeshId id, std::span<const float> positions) {
+  const FloatEnvironment floats;
   if (!hasMesh(id)) throw Error("setPositions: " + idText("mesh", id) + " does not exist");
   Mesh& mesh = impl_->meshes[id];
-  if (mesh.deforms) throw Error("setPositions: " + idText("mesh", id) + " has bounds: its host moves its vertices");
   if (positions.size() != mesh.positions.size()) {
     throw Error("setPositions: expected " + std::to_string(mesh.positions.size()) + " floats, 3 for each vertex, got " +
                 std::to_string(positions.size()));
   }
   requireFinite("setPositions", positions);
-  std::ranges::copy(positions, mesh.positions.begin());
-  derive(mesh, {});
-  mesh.tree = refitMeshTree(mesh, std::move(mesh.tree));
+  if (mesh.deforms) requireInside(mesh, positions);
+  const Box bounds = mesh.deforms ? boundsOf(mesh) : Box{};
+  std::vector<float> moved(positions.begin(), positions.end());
+  mesh.positions.swap(moved);
+  derive(mesh, bounds);
+  try {
+    refitMeshTree(mesh, mesh.tree);
+  } catch (...) {
+    mesh.positions.swap(moved);
+    derive(mesh, bounds);
+    throw;
+  }
   mesh.version = impl_->meshVersion = nextVersion();
   if (mesh.objects == 0) return;
   for (ObjectId i = 0; i < impl_->objects.size(); ++i) {
@@ -286,35 +278,67 @@ void Scene::removeMesh(MeshId mesh) {
     throw Error("removeMesh: " + idText("mesh", mesh) + " is used by " + std::to_string(impl_->meshes[mesh].objects) +
                 " objects");
   }
-  impl_->meshes[mesh] = Mesh{};
   impl_->freeMeshes.push(mesh);
+  impl_->meshes[mesh] = Mesh{};
   impl_->meshVersion = nextVersion();
 }
 
 ObjectId Scene::addObject(const Object& object) {
+  const FloatEnvironment floats;
   if (!hasMesh(object.mesh)) throw Error("addObject: " + idText("mesh", object.mesh) + " does not exist");
   if (std::string wrong = validate(object.worldFromMesh); !wrong.empty()) throw Error("addObject: pose: " + wrong);
   if (std::string wrong = validateMotion(object.motion); !wrong.empty()) throw Error("addObject: motion: " + wrong);
   if (impl_->freeObjects.empty()) requireAtMost("addObject", "objects", impl_->objects.size() + 1, kMostObjects);
-  const ObjectId id = takeSlot(impl_->objects, impl_->freeObjects);
+  impl_->makeRoom();
+  const ObjectId id = impl_->freeObjects.top();
+  impl_->freeObjects.pop();
   impl_->objects[id] = {object, true};
   ++impl_->meshes[object.mesh].objects;
   impl_->moving += isMoving(object);
-  impl_->changedAt.resize(impl_->objects.size());
-  impl_->changedObjects.resize(impl_->objects.size());
   impl_->change(id);
   impl_->structureVersion = impl_->poseVersion;
   return id;
 }
 
 void Scene::setTransform(ObjectId object, const Transform& worldFromMesh) {
+  const FloatEnvironment floats;
   if (!hasObject(object)) throw Error("setTransform: " + idText("object", object) + " does not exist");
   if (std::string wrong = validate(worldFromMesh); !wrong.empty()) throw Error("setTransform: " + wrong);
   impl_->objects[object].object.worldFromMesh = worldFromMesh;
   impl_->change(object);
 }
 
+void Scene::setTransforms(std::span<const ObjectId> objects, std::span<const Transform> worldFromMesh) {
+  const FloatEnvironment floats;
+  if (objects.size() != worldFromMesh.size()) {
+    throw Error("setTransforms: expected one transform per object, got " + std::to_string(worldFromMesh.size()) +
+                " for " + std::to_string(objects.size()) + " objects");
+  }
+  std::atomic<size_t> wrong{objects.size()};
+  parallelFor(objects.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      if (hasObject(objects[i]) && validate(worldFromMesh[i]).empty()) continue;
+      size_t least = wrong;
+      while (i < least && !wrong.compare_exchange_weak(least, i)) {
+      }
+      return;
+    }
+  });
+  if (wrong < objects.size()) {
+    const std::string object = "setTransforms: " + idText("object", objects[wrong]);
+    if (!hasObject(objects[wrong])) throw Error(object + " does not exist");
+    throw Error(object + ": " + validate(worldFromMesh[wrong]));
+  }
+  if (objects.empty()) return;
+  const bool mayRepeat = std::ranges::adjacent_find(objects, std::ranges::greater_equal()) != objects.end();
+  impl_->change(objects);  // now, in case what follows fails
+  parallelFor(objects.size(), kChunk, mayRepeat ? 1 : 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) impl_->objects[objects[i]].object.worldFromMesh = worldFromMesh[i];
+  });
+}
+
 void Scene::setMotion(ObjectId object, const std::array<double, 3>& motion) {
+  const FloatEnvironment floats;
   if (!hasObject(object)) throw Error("setMotion: " + idText("object", object) + " does not exist");
   if (std::string wrong = validateMotion(motion); !wrong.empty()) throw Error("setMotion: " + wrong);
   Object& moved = impl_->objects[object].object;
@@ -326,6 +350,7 @@ void Scene::setMotion(ObjectId object, const std::array<double, 3>& motion) {
 }
 
 void Scene::setBounds(ObjectId object, const Bounds& world) {
+  const FloatEnvironment floats;
   if (!hasObject(object)) throw Error("setBounds: " + idText("object", object) + " does not exist");
   Box box = boxOf("setBounds", world);
   double largest = 0;
@@ -336,15 +361,17 @@ void Scene::setBounds(ObjectId object, const Bounds& world) {
   }
   impl_->bounds[object] = box;
   impl_->change(object);
+  impl_->boundsVersion = impl_->poseVersion;
 }
 
 void Scene::removeObject(ObjectId object) {
+  const FloatEnvironment floats;
   if (!hasObject(object)) throw Error("removeObject: " + idText("object", object) + " does not exist");
+  impl_->freeObjects.push(object);
   impl_->bounds.erase(object);
   impl_->moving -= isMoving(impl_->objects[object].object);
   --impl_->meshes[impl_->objects[object].object.mesh].objects;
   impl_->objects[object] = {};
-  impl_->freeObjects.push(object);
   impl_->change(object);
   impl_->structureVersion = impl_->poseVersion;
 }

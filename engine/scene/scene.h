@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <queue>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,10 @@ struct Mesh {
   bool used = false;
   bool deforms = false;          ///< a host may move its vertices, within `reach` of the origin
   uint32_t objects = 0;          ///< number of objects that use it
-  uint32_t firstHostVertex = 0;  ///< of a mesh that a host deforms: the number in its buffer of vertex 0
-  uint64_t version = 0;          ///< unique over all meshes of all scenes; compared with a device copy's
+  uint32_t firstHostVertex = 0;  ///< the number of vertex 0 in a host's buffer
+  /// The numbers of all vertices there; empty if they are consecutive.
+  std::vector<uint32_t> hostVertices;
+  uint64_t version = 0;  ///< unique over all meshes of all scenes; compared with a device copy's
 
   /// Derived. A local vertex is position - origin, so that a part modelled far from its origin keeps its float
   /// precision. The origin's components are floats that make this difference exact: 0 on axes where the mesh spans or
@@ -65,11 +68,15 @@ struct Scene::Impl {
   uint64_t meshVersion = 0;
   uint64_t structureVersion = 0;  ///< objects added or removed
   uint64_t poseVersion = 0;       ///< any object changed
+  uint64_t boundsVersion = 0;     ///< any object's bounds changed, but not by its removal
   /// For each object, the poseVersion at which it last changed; and by pages of objects.
   std::vector<uint64_t> changedAt;
   ChangedPages changedObjects;
-  /// Records that an object was added, moved or removed.
-  void change(ObjectId object);
+  /// Records that objects were added, moved or removed.
+  void change(std::span<const ObjectId> changed);
+  void change(ObjectId object) { change({&object, 1}); }
+  /// Makes an id free if none is. If it throws, nothing has changed.
+  void makeRoom();
   size_t moving = 0;               ///< number of objects that move during a step
   std::map<ObjectId, Box> bounds;  ///< where a host may move objects, with a margin, world coordinates
 

@@ -5,13 +5,15 @@
 
 #include "gpu/check.h"
 #include "gpu/limit_error.h"
+#include "math/float_environment.h"
+#include "scene/scene_copy.h"
 
 namespace radar {
 
-Sweeper::Impl::Impl(const Device& openDevice, const Scene& ownScene, const SweeperOptions& given,
+Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const SweeperOptions& given,
                     std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room,
                     std::shared_ptr<const ContactKernels> kernels)
-    : device(openDevice.impl()),
+    : device(openDevice),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
@@ -49,6 +51,7 @@ void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
 }
 
 std::optional<Error> Sweeper::Impl::sync() {
+  copy->willOverwrite({});
   if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
     return {};
@@ -66,6 +69,7 @@ std::optional<Error> Sweeper::Impl::sync() {
 
 void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {
   assert(queries.size() == results.size());
+  copy->willOverwrite({});
   asked = queries;
   answers = results;
   lists = listsFor(queries);
@@ -94,18 +98,27 @@ void Sweeper::Impl::finish() {
 }
 
 Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options) {
+  const FloatEnvironment floats;
   device.impl().requireQueue("a Sweeper");
-  impl_ = std::make_unique<Impl>(device, scene, options, std::make_shared<GpuScene>(device.impl()));
+  impl_ = std::make_unique<Impl>(device.impl(), scene, options, std::make_shared<GpuScene>(device.impl()));
+}
+Sweeper::Sweeper(SceneCopy& copy, const SweeperOptions& options) {
+  const FloatEnvironment floats;
+  const SceneCopy::Impl& shared = *copy.impl_;
+  shared.device.requireQueue("a Sweeper");
+  impl_ = std::make_unique<Impl>(shared.device, shared.scene, options, shared.copy);
 }
 Sweeper::~Sweeper() = default;
 Sweeper::Sweeper(Sweeper&&) noexcept = default;
 Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;
 
 void Sweeper::sync() {
+  const FloatEnvironment floats;
   impl_->sync();
 }
 
 std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+  const FloatEnvironment floats;
   impl_->validateAll(queries);
   std::vector<Result> results(queries.size());
   impl_->begin(queries, results);
@@ -115,9 +128,11 @@ std::vector<Result> Sweeper::run(std::span<const Query> queries) {
 }
 
 Scopes Sweeper::scopes(const Query& query) {
+  const FloatEnvironment floats;
   impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
   impl_->stats = {};
+  impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
 }
 

@@ -9,7 +9,7 @@ namespace radar {
 struct Sweeper::Impl : QueryBatch {
   /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
   /// the scene, while nothing is running on the device. `kernels`: null: the device's.
-  Impl(const Device& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
+  Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchRoom& room = {}, std::shared_ptr<const ContactKernels> kernels = nullptr);
 
   /// Returns the error if memory does not suffice: then each batch tries again, and answers as run() says.

@@ -35,8 +35,9 @@ struct Moved {
   uint mask;
   uint firstByte;  // of its transform
   TransformLayout format;
+  uint leaf;         // of the tree over objects, to be fitted to the object; kNobody: it has bounds
   Point anchor;      // middle of its bounds, world
-  Point halfExtent;  // of its bounds about the anchor
+  Point halfExtent;  // of its bounds about the anchor; without bounds, the most of its coordinates
 };
 
 // A search past one object, one of several that answer a query together.
@@ -60,8 +61,17 @@ struct RefitPush {
   uint count;
   uint mesh;
 };
+struct FitPush {
+  uint first;  // in the list of nodes to fit
+  uint count;
+};
 struct MovePush {
-  uint count;  // objects
+  uint count;       // objects
+  Point anchor;     // of the tree over objects, which is the sum of this
+  Point anchorLow;  // and this
+};
+struct ReachPush {
+  uint count;  // sensors
 };
 struct PlanPush {
   uint queries;     // the most
@@ -72,8 +82,6 @@ struct PlanPush {
   uint inRange;     // floats can hold the tree over objects
   Point anchor;     // of that tree, which is the sum of this
   Point anchorLow;  // and this
-  Point lo;         // of the objects, about the anchor
-  Point hi;
 };
 struct InvalidatePush {
   uint count;  // results
@@ -98,6 +106,7 @@ INTEROP_SLOT(kSlotMoved, 6, Moved);
 INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
 INTEROP_SLOT(kSlotGathered, 9, Gathered);
+INTEROP_SLOT(kSlotFitNodes, 10, uint);  // inner nodes of the tree over objects, parents first
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

@@ -1,5 +1,5 @@
 // Moves objects to a host's transforms, one invocation per object: writes their poses, which are exact, and their
-// placements, which carry error bounds (docs/method.md, "A host's geometry").
+// placements, which carry error bounds; and fits the leaves of those without bounds (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -11,6 +11,7 @@ layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshReco
 layout(scalar, binding = kSlotObjects) writeonly restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kSlotPlacements) writeonly restrict buffer Placements { Placement placements[]; };
 layout(scalar, binding = kSlotMoved) readonly restrict buffer MovedObjects { Moved movedObjects[]; };
+layout(scalar, binding = kSlotObjectNodes) writeonly restrict buffer Nodes { ObjectNode nodes[]; };
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
 #include "shared/double_bits.glsl"
 #include "byte_load.glsl"
@@ -18,12 +19,21 @@ layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations 
 #include "placement.glsl"
 #include "shared/workgroup.glsl"
 
-layout(push_constant) uniform PushConstants { MovePush push; };
+layout(scalar, push_constant) uniform PushConstants { MovePush push; };
 
-// Whether the mesh's box may leave the object's bounds.
-bool leavesBounds(Transform t, Moved moved, MeshRecord mesh, Position position) {
-  const PlacedBox box = boxOf(t, mesh, position, moved.anchor, vec3(0.0));
-  return !box.isFinite || any(greaterThan(abs(box.centre) + box.halfExtent, moved.halfExtent));
+// The placed mesh's box about the middle of its bounds or, without bounds, the anchor of the tree over objects.
+PlacedBox boxOf(Transform t, Moved moved, MeshRecord mesh, Position position) {
+  const bool isBounded = moved.leaf == kNobody;
+  return boxOf(t, mesh, position, isBounded ? moved.anchor : push.anchor, isBounded ? vec3(0.0) : push.anchorLow);
+}
+
+// The leaf's box has room for the rounding of its ends, too, from which fit.comp computes those above.
+void fitLeaf(uint leaf, PlacedBox box, Transform t, Position position) {
+  vec3 halfExtent = box.halfExtent + 5.7e-14 * (abs(position.high) + abs(push.anchor));  // 2^-44
+  // Coordinates of the mesh that flush to 0.
+  for (int row = 0; row < 3; ++row) halfExtent[row] += dot(abs(uintBitsToFloat(t.bits[row].xyz)), vec3(2.4e-38));
+  nodes[leaf].centre = box.centre;
+  nodes[leaf].halfExtent = 1.000001 * halfExtent + 3e-7 * abs(box.centre) + 1e-37;
 }
 
 void main() {
@@ -34,8 +44,12 @@ void main() {
   const Transform t = transformAt(moved.firstByte, moved.format);
   const bool fits = fitsFloats(t, mesh);
   Position position;
-  if (fits) position = positionOf(t, mesh.origin);
-  if (!fits || leavesBounds(t, moved, mesh, position)) {
+  PlacedBox box;
+  if (fits) {
+    position = positionOf(t, mesh.origin);
+    box = boxOf(t, moved, mesh, position);
+  }
+  if (!fits || !box.isFinite || any(greaterThan(abs(box.centre) + box.halfExtent, moved.halfExtent))) {
     // The recording is invalid now, but the search must still terminate.
     atomicMin(violation.object, moved.object);
     placements[moved.object].perUnit = 0.0;
@@ -46,4 +60,5 @@ void main() {
   placement.mask = moved.mask;
   placement.mesh = moved.mesh;
   placements[moved.object] = placement;
+  if (moved.leaf != kNobody) fitLeaf(moved.leaf, box, t, position);
 }

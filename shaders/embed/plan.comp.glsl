@@ -2,6 +2,7 @@
 // does (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 #include "contact/interop.h"
 #include "interop.h"
@@ -21,6 +22,7 @@ layout(scalar, binding = kSlotExcluded) writeonly restrict buffer Excluded { uin
 #include "placement.glsl"
 #include "direction.glsl"
 #include "shared/workgroup.glsl"
+#include "world.glsl"
 
 layout(scalar, push_constant) uniform PushConstants { PlanPush push; };
 
@@ -125,7 +127,7 @@ uint plan(uint i, HostQuery q, out uint hi) {
   sensor.placement.mask = 0;
   sensor.placement.mesh = q.mesh;
   const PlacedBox box = boxOf(q.pose, mesh, position, push.anchor, push.anchorLow);
-  const float farthest = 1.00001 * sum3(max(abs(push.lo - box.centre), abs(push.hi - box.centre)));
+  const float farthest = push.start == kNobody ? 0.0 : farthestFrom(box.centre);
   const float size = max(sensor.placement.size, 3.64e-12 * farthest);  // 2^-38
   if (!(sensor.placement.perUnit > 0.0 && size >= 8.3e-25 && farthest <= 8.0 * kMostCoordinate)) return kSearchOutOfRange;
 

@@ -1,5 +1,6 @@
-# Compiles each public header alone, and the README's example, with the warnings that careful hosts treat as errors, by each
-# of the compilers: cmake "-DCOMPILERS=g++;clang++" -DSOURCE=... -DVULKAN=... -DFOLDER=... -P warnings.cmake.
+# Compiles each public header alone, and the examples of the README and of docs/embedding.md, with the warnings that careful
+# hosts treat as errors, by each of the compilers:
+#   cmake "-DCOMPILERS=g++;clang++" "-DEXAMPLES=a.cpp;b.cpp" -DSOURCE=... -DVULKAN=... -DFOLDER=... -P warnings.cmake
 cmake_minimum_required(VERSION 3.25)
 
 file(MAKE_DIRECTORY ${FOLDER})
@@ -7,7 +8,7 @@ file(GLOB headers RELATIVE ${SOURCE}/engine/include ${SOURCE}/engine/include/rad
 if(NOT headers)
   message(FATAL_ERROR "expected headers in ${SOURCE}/engine/include/radar")
 endif()
-set(sources ${SOURCE}/tests/consumer/readme.cpp)
+set(sources ${EXAMPLES})
 foreach(header ${headers})
   string(MAKE_C_IDENTIFIER ${header} name)
   file(WRITE ${FOLDER}/${name}.cpp "#include <${header}>\n")

@@ -118,7 +118,7 @@ TEST_CASE("recording frames in which objects move allocates nothing, and queries
   CHECK(test::counts().live == 0);
 }
 
-TEST_CASE("three recorders in flight share one copy of a scene that moves, deforms, grows and shrinks") {
+TEST_CASE("three recorders in flight and a sweeper share one copy of a scene that moves, deforms, grows and shrinks") {
   tools::Random random(3);
   Scene scene;
   std::vector<MeshId> meshes;
@@ -154,8 +154,9 @@ TEST_CASE("three recorders in flight share one copy of a scene that moves, defor
   std::vector<std::unique_ptr<Frame>> frames;
   frames.reserve(3);
   for (int i = 0; i < 3; ++i) frames.push_back(std::make_unique<Frame>(copy));
+  Sweeper beside(copy, {.cpuBatch = 0});
   CpuSweeper sweeper(scene);
-  size_t hits = 0;
+  size_t hits = 0, drawn = 0;
   for (uint32_t number = 0; number < 90; ++number) {
     Frame& frame = *frames[number % 3];
     if (number >= 3) {
@@ -179,13 +180,29 @@ TEST_CASE("three recorders in flight share one copy of a scene that moves, defor
     for (Result& result : frame.expected) result.tier = Tier::contact;
     frame.renderer.record(frame.recorder, queries);
     frame.renderer.submit();
+    if (random.oneIn(2)) edit(number);
+    if (random.oneIn(3)) continue;  // the next recording uploads the changes
+    const bool isSampled = random.oneIn(4);
+    for (Query& query : queries) {
+      query.mode = isSampled ? Mode::sampled : Mode::contact;
+      if (isSampled) query.ignoreLeaving = false;
+    }
+    const std::vector<Result> found = beside.run(queries),
+                              alone = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries);
+    for (size_t i = 0; i < found.size(); ++i) {
+      CAPTURE(number, i);
+      REQUIRE(sameBits(found[i], alone[i]));
+      drawn += isSampled && found[i].status == Status::hit;
+    }
   }
   for (const auto& frame : frames) frame->renderer.wait();
   CHECK(hits > 300);
+  CHECK(drawn > 50);
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("two recorders that share a copy may record into one command buffer, one of them with a host's geometry") {
+TEST_CASE(
+    "recorders and a sweeper share a copy that the geometry of one overwrites, all in one command buffer or later") {
   Row row(12);
   constexpr ObjectId kMoved = 4;
   row.scene.setBounds(kMoved, {{-50, -50, -50}, {50, 50, 50}});
@@ -195,19 +212,24 @@ TEST_CASE("two recorders that share a copy may record into one command buffer, o
   const test::OnDevice transforms(bytes);
   const MovedObjects moved{.transforms = transforms.get(), .objects = {&kMoved, 1}};
   SceneCopy copy(test::device(), row.scene);
-  Recorder first(copy), second(copy);
+  Recorder first(copy), second(copy), third(copy);
   gpu::Submission submission(test::device().impl(), false);
   const gpu::Commands commands = submission.begin();
   first.record(commands, row.queries, {.objects = {&moved, 1}});
   second.record(commands, row.queries);  // puts the object back
   submission.submitAndWait();
   const std::vector<Result> back = CpuSweeper(row.scene).run(row.queries), readBack = second.read();
+  gpu::Submission again(test::device().impl(), false);
+  third.record(again.begin(), row.queries, {.objects = {&moved, 1}});
+  again.submitAndWait();
+  const std::vector<Result> swept = Sweeper(copy, {.cpuBatch = 0}).run(row.queries);  // puts it back, too
   row.scene.setTransform(kMoved, elsewhere);
   const std::vector<Result> there = CpuSweeper(row.scene).run(row.queries), readThere = first.read();
   size_t differ = 0;
   for (size_t i = 0; i < row.queries.size(); ++i) {
     CAPTURE(i);
     CHECK((readBack[i].object == back[i].object && readBack[i].t == back[i].t));
+    CHECK((swept[i].object == back[i].object && swept[i].t == back[i].t));
     CHECK((readThere[i].object == there[i].object && readThere[i].t == there[i].t));
     differ += back[i].t != there[i].t;
   }

@@ -121,7 +121,7 @@ VKAPI_ATTR void* VKAPI_CALL reallocate(void* user, void* memory, size_t size, si
 
 }  // namespace
 
-Host::Host(Mode mode) {
+Host::Host(Mode mode, uint32_t index) {
   const VkDebugUtilsMessengerCreateInfoEXT messenger{
       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
       .messageSeverity =
@@ -139,8 +139,11 @@ Host::Host(Mode mode) {
   const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(handles.instance, "vkCreateDebugUtilsMessengerEXT"));
   require(create(handles.instance, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
-  uint32_t count = 1;
-  vkEnumeratePhysicalDevices(handles.instance, &count, &handles.physicalDevice);
+  uint32_t count = index + 1;
+  std::vector<VkPhysicalDevice> all(count);
+  vkEnumeratePhysicalDevices(handles.instance, &count, all.data());
+  if (count <= index) throw Error("the host finds " + std::to_string(count) + " devices");
+  handles.physicalDevice = all[index];
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = 0,

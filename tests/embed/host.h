@@ -10,8 +10,8 @@ namespace radar::test {
 
 class Host {
  public:
-  /// Enables what `mode` requires and nothing else.
-  explicit Host(Mode mode = Mode::sampled);
+  /// Enables what `mode` requires and nothing else, on physical device `index`.
+  explicit Host(Mode mode = Mode::sampled, uint32_t index = 0);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;

@@ -7,9 +7,12 @@
 int main() {
   // Stands for a renderer's own set-up: an instance, a device with the required features, and a queue.
   VkInstance instance;
-  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
-  const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                          .pApplicationInfo = &application};
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.apiVersion = VK_API_VERSION_1_3;
+  VkInstanceCreateInfo instanceInfo{};
+  instanceInfo.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  instanceInfo.pApplicationInfo = &application;
   if (vkCreateInstance(&instanceInfo, nullptr, &instance) != VK_SUCCESS) return 1;
   radar::HostDevice host{.instance = instance, .doubles = false, .getInstanceProcAddr = vkGetInstanceProcAddr};
   uint32_t count = 1;
@@ -19,14 +22,16 @@ int main() {
 
   radar::Requirements needed = radar::requirements(radar::Mode::contact, host.doubles);
   const float priority = 1;
-  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                      .queueFamilyIndex = host.queueFamily,
-                                      .queueCount = 1,
-                                      .pQueuePriorities = &priority};
-  const VkDeviceCreateInfo deviceInfo{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                      .pNext = needed.chain(),
-                                      .queueCreateInfoCount = 1,
-                                      .pQueueCreateInfos = &queue};
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = host.queueFamily;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkDeviceCreateInfo deviceInfo{};
+  deviceInfo.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  deviceInfo.pNext = needed.chain();
+  deviceInfo.queueCreateInfoCount = 1;
+  deviceInfo.pQueueCreateInfos = &queue;
   if (vkCreateDevice(host.physicalDevice, &deviceInfo, nullptr, &host.device) != VK_SUCCESS) return 1;
   vkGetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);
 

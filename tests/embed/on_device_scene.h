@@ -12,7 +12,7 @@ namespace radar::test {
 
 struct OnDeviceScene {
   OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : copy(test::device().impl()) {
-    CHECK(validate(geometry, scene).empty());
+    CHECK(validate(geometry, scene, true).empty());
     const Device::Impl& device = test::device().impl();
     HostGeometryPass pass(device, copy);
     gpu::Upload upload(device);

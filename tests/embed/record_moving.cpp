@@ -18,22 +18,22 @@ void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh
   restPose.bounds = radar::Bounds{{-1.5, -1.5, 0}, {1.5, 1.5, 2.5}};  // around its origin, in any pose
   moving.body = radar::addMesh(scene, device, restPose);
   scene.addObject({.mesh = moving.body});
-  for (int i = 0; i < 20; ++i) {
-    moving.crates.push_back(scene.addObject({.mesh = crate}));
-    scene.setBounds(moving.crates.back(), {{-20, -20, 0}, {20, 20, 4}});  // the hall
-  }
+  for (int i = 0; i < 20; ++i) moving.crates.push_back(scene.addObject({.mesh = crate}));
 }
 
 // Called once per frame, after the compute shaders have been recorded. The queries see what these shaders write.
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
                   const Moving& moving) {
-  const VkMemoryBarrier2 movedToCopy{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                     .srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                     .srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                                     .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                     .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT};
-  const VkDependencyInfo info{
-      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &movedToCopy};
+  VkMemoryBarrier2 movedToCopy{};
+  movedToCopy.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+  movedToCopy.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  movedToCopy.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  movedToCopy.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+  movedToCopy.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &movedToCopy;
   vkCmdPipelineBarrier2(commands, &info);
   const radar::DeformedMesh body{moving.body, {.buffer = moving.skinned, .stride = 32}};
   const radar::MovedObjects crates{.transforms = moving.transforms, .objects = moving.crates};

@@ -37,7 +37,7 @@ std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
 class DeviceSearch {
  public:
   explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
-      : sweeper_(test::device(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
+      : sweeper_(test::device().impl(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
                  kernelsOf(shape)) {}
 
   std::vector<Result> run(std::span<const Query> queries) {

@@ -239,12 +239,18 @@ TEST_CASE("data that a host has overwritten is staged again when the host stops 
     return bytes;
   };
   sync({});
-  CHECK(sync({.meshes = {1}, .objects = {7, 2}}) == 0);
-  CHECK(sync({.meshes = {1}, .objects = {2, 7}}) == 0);
+  const auto moved = [](std::vector<ObjectId> objects, std::vector<uint32_t> nodes) {
+    return std::make_shared<const GpuScene::Moved>(GpuScene::Moved{std::move(objects), std::move(nodes)});
+  };
+  CHECK(sync({.meshes = {1}, .moved = moved({2, 7}, {0, 3})}) == 0);
+  CHECK(sync({.meshes = {1}, .moved = moved({2, 7}, {0, 3})}) == 0);
   const VkDeviceSize objectBytes = sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement);
-  CHECK(sync({.meshes = {1}, .objects = {2}}) == objectBytes);
+  CHECK(sync({.meshes = {1}, .moved = moved({2}, {0, 3})}) == objectBytes);
+  const size_t nodes = filled.scene.impl().objectTree().nodes().size();
+  const VkDeviceSize nodeBytes = sizeof(gpu::ObjectNode) * std::min<size_t>(nodes, ChangedPages::kPage);
+  CHECK(sync({.meshes = {1}, .moved = moved({2}, {0})}) == nodeBytes);
   const Mesh& mesh = filled.scene.impl().meshes[1];
-  CHECK(sync({}) == objectBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
+  CHECK(sync({}) == objectBytes + nodeBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
                         mesh.triangleCount() * sizeof(gpu::Triangle) + mesh.tree.nodes.size() * sizeof(gpu::MeshNode));
   CHECK(sync({}) == 0);
 }

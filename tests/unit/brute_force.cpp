@@ -1,6 +1,7 @@
 #include "brute_force.h"
 
 #include "blocking_oracle.h"
+#include "exact/motion.h"
 
 namespace oracle {
 
@@ -11,8 +12,9 @@ using radar::Transform;
 /// The greatest sum of absolute values that a placed coordinate is summed from.
 double magnitude(const radar::MeshView& mesh, const Transform& pose) {
   std::array<double, 3> most{};
-  for (size_t i = 0; i < mesh.positions.size(); ++i) {
-    most[i % 3] = std::max(most[i % 3], std::abs(double{mesh.positions[i]}));
+  for (const uint32_t vertex : mesh.indices) {
+    for (size_t k = 0; k < 3; ++k)
+      most[k] = std::max(most[k], std::abs(double{mesh.positions[3 * size_t{vertex} + k]}));
   }
   double greatest = 0;
   for (size_t i = 0; i < 3; ++i) {
@@ -57,10 +59,19 @@ std::vector<Boxed> boxed(const std::vector<Corners>& triangles, bool isMirrored,
   return out;
 }
 
+bool isStep(const radar::Scene& scene, const radar::Query& query) {
+  if (query.motion) return true;
+  for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    if (scene.hasObject(id) && scene.object(id).motion != Corner{}) return true;
+  }
+  return false;
+}
+
 /// The sensor and one object on a common scale.
 class Meeting {
  public:
-  Meeting(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id) : query_(query), id_(id) {
+  Meeting(const radar::Scene& scene, const radar::Query& query, radar::ObjectId id, bool isStep)
+      : query_(query), id_(id), isStep_(isStep) {
     const radar::Object& object = scene.object(id);
     const radar::MeshView sensor = scene.mesh(query.mesh), mesh = scene.mesh(object.mesh);
     const double slack = query.slack.value_or(
@@ -73,9 +84,16 @@ class Meeting {
       }
     }
     scale_ = leastExponent(all.data(), all.size());
-    dirScale_ = leastExponent(query.direction.data(), 3);
     slack_ = scaled(slack, scale_);
-    direction_ = scaled(query.direction, dirScale_);
+    Corner direction = query.direction;
+    if (isStep) {
+      const Corner displacement = radar::displacementOf(query);
+      for (size_t k = 0; k < 3; ++k) direction[k] = displacement[k] - object.motion[k];
+    }
+    dirScale_ = leastExponent(direction.data(), 3);
+    direction_ = scaled(direction, dirScale_);
+    stands_ = isZero(direction_);
+    course_ = stands_ ? IntVec{1, 2, 3} : direction_;
     a_ = boxed(a, isMirrored(query.worldFromMesh), scale_);
     b_ = boxed(b, isMirrored(object.worldFromMesh), scale_);
   }
@@ -97,7 +115,7 @@ class Meeting {
       for (uint32_t triA = 0; triA < a_.size(); ++triA) {
         // The first of equals stays.
         if (best && best->s.sign() == 0) return best;
-        if (auto s = startOf(a_[triA], b_[triB], best ? &best->s : nullptr)) best = {*s, id_, triB, triA};
+        if (auto s = startOf(a_[triA], b_[triB], best ? &best->s : nullptr)) best = {*s, id_, triB, triA, isStep_};
       }
     }
     if (best) unscale(best->s, scale_, dirScale_);
@@ -109,7 +127,7 @@ class Meeting {
   std::optional<Fraction> startOf(const Boxed& a, const Boxed& b, const Fraction* limit) const {
     const auto isPressed = [&] { return query_.ignoreLeaving && arePressed(a.faced, b.faced, direction_, slack_); };
     if (!boxesMeet(a, b, limit) && !isPressed()) return std::nullopt;
-    const std::optional<Interval> interval = contact(a.faced.corners, b.faced.corners, direction_);
+    const std::optional<Interval> interval = contact(a.faced.corners, b.faced.corners, course_);
     if (!interval || interval->last.sign() < 0) {
       // Rounding may have let triangles pass each other that are pressed together.
       if (!isPressed()) return std::nullopt;
@@ -126,7 +144,7 @@ class Meeting {
   bool boxesMeet(const Boxed& a, const Boxed& b, const Fraction* limit) const {
     std::optional<Interval> interval;
     for (size_t k = 0; k < 3; ++k) {
-      if (!allow(interval, b.low[k] - a.high[k], b.high[k] - a.low[k], direction_[k])) return false;
+      if (!allow(interval, b.low[k] - a.high[k], b.high[k] - a.low[k], course_[k])) return false;
     }
     if (interval->last.sign() < 0) return false;
     if (limit != nullptr && compare(interval->first, *limit) >= 0) return false;
@@ -134,8 +152,9 @@ class Meeting {
   }
 
   bool isBeyondD(Fraction s) const {
+    if (stands_) return s.sign() > 0;
     unscale(s, scale_, dirScale_);
-    return compareToDistance(s, query_.direction, query_.distance) > 0;
+    return isStep_ ? compare(s, {1, 1}) > 0 : compareToDistance(s, query_.direction, query_.distance) > 0;
   }
 
   const radar::Query& query_;
@@ -143,6 +162,8 @@ class Meeting {
   int scale_ = 0, dirScale_ = 0;
   Integer slack_;
   IntVec direction_;
+  bool isStep_, stands_ = false;
+  IntVec course_;  ///< the direction, or any if the sensor stands
   std::vector<Boxed> a_, b_;
 };
 
@@ -157,10 +178,11 @@ std::string describe(const Contact* contact) {
 
 Truth truthOf(const radar::Scene& scene, const radar::Query& query) {
   Truth truth;
+  const bool step = isStep(scene, query);
   for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
     if (!scene.hasObject(id) || (scene.object(id).mask & query.mask) == 0) continue;
     if (std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end()) continue;
-    const Meeting meeting(scene, query, id);
+    const Meeting meeting(scene, query, id, step);
     if (query.skipOverlapping && meeting.surfacesCross()) {
       truth.overlapping.push_back(id);
     } else if (std::optional<Contact> first = meeting.first()) {
@@ -172,6 +194,14 @@ Truth truthOf(const radar::Scene& scene, const radar::Query& query) {
   return truth;
 }
 
+int compareToTime(const Contact& contact, const radar::Query& query, double limit) {
+  const Fraction& s = contact.s;
+  if (!contact.isOfStep) return compareToDistance(s, query.direction, limit);
+  const std::array<double, 2> both{query.motion ? 1 : query.distance, limit};
+  const int scale = leastExponent(both.data(), both.size());
+  return Integer(s.num * scaled(both[0], scale)).compare(Integer(s.den * scaled(both[1], scale)));
+}
+
 std::string faultOf(const Contact* contact, const radar::Query& query, const radar::Result& result) {
   using radar::Status;
   const auto but = [&](const char* what) { return std::string(what) + "; the truth is " + describe(contact); };
@@ -180,11 +210,11 @@ std::string faultOf(const Contact* contact, const radar::Query& query, const rad
   if (contact == nullptr) return "";
   if (result.object != contact->object) return but("wrong object");
   if (result.triB != contact->triB || result.triA != contact->triA) return but("wrong triangles");
-  if (!(result.lo <= result.t && result.t <= result.hi && result.hi <= query.distance))
+  if (!(result.lo <= result.t && result.t <= result.hi && result.hi <= (query.motion ? 1 : query.distance)))
     return but("bounds in disorder");
-  if (!(result.hi - result.lo <= 4e-15 * result.hi + 1e-300)) return but("wide bounds");
-  const bool isBetween = compareToDistance(contact->s, query.direction, result.lo) >= 0 &&
-                         compareToDistance(contact->s, query.direction, result.hi) <= 0;
+  if (!(result.hi - result.lo <= (contact->isOfStep ? 1e-14 : 5e-15) * result.hi + 1e-300)) return but("wide bounds");
+  const bool isBetween =
+      compareToTime(*contact, query, result.lo) >= 0 && compareToTime(*contact, query, result.hi) <= 0;
   return isBetween ? "" : but("t* is not within the bounds");
 }
 

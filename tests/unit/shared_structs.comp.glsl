@@ -49,6 +49,8 @@ layout(scalar, binding = 35) readonly buffer B35 { MovePush b35[]; };
 layout(scalar, binding = 36) readonly buffer B36 { InvalidatePush b36[]; };
 layout(scalar, binding = 39) readonly buffer B39 { Gathered b39[]; };
 layout(scalar, binding = 40) readonly buffer B40 { GatherPush b40[]; };
+layout(scalar, binding = 41) readonly buffer B41 { FitPush b41[]; };
+layout(scalar, binding = 42) readonly buffer B42 { ReachPush b42[]; };
 layout(scalar, binding = 37) readonly buffer B37 { TransformLayout b37[]; };
 layout(scalar, binding = 38) readonly buffer B38 { PlanPush b38[]; };
 

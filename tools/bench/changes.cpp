@@ -19,6 +19,10 @@ struct Town {
     tools::replaceBy(workload, 0, scene);
     house = addMesh();
     moved = add(0);
+    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+      objects.push_back(id);
+      transforms.push_back(scene.object(id).worldFromMesh);
+    }
   }
 
   MeshId addMesh() {
@@ -41,15 +45,13 @@ struct Town {
     another = addMesh();
   }
   /// To where they are: every pose counts as changed.
-  void moveAll() {
-    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-      if (scene.hasObject(id)) scene.setTransform(id, Transform(scene.object(id).worldFromMesh));
-    }
-  }
+  void moveAll() { scene.setTransforms(objects, transforms); }
 
   Scene scene;
   MeshId house = kNone, another = kNone;
   ObjectId moved = kNone, added = kNone;
+  std::vector<ObjectId> objects;  // all but `added`
+  std::vector<Transform> transforms;
   double place = 0;
 };
 

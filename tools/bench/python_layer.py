@@ -71,7 +71,8 @@ def main() -> None:
             subprocess.run([options.program, *map(str, command)], check=True, capture_output=True)
             of_program.append(json.loads(stats.read_text())["sweep_ms"] / 1e3)
         package, program = statistics.median(of_package), statistics.median(of_program)
-        print(f"{len(out.distance)} casts: package {package:.3f} s, C++ {program:.3f} s, ratio {package / program:.3f}")
+        ratio = statistics.median(a / b for a, b in zip(of_package, of_program))
+        print(f"{len(out.distance)} casts: package {package:.3f} s, C++ {program:.3f} s, of pairs {ratio:.3f}")
 
         tiles = -(-options.many // len(out.distance))
         many = {name: np.concatenate([array] * tiles)[: options.many] for name, array in arguments.items()}

@@ -1,7 +1,9 @@
 // What a frame costs whose searches are recorded into a host's command buffer: of a scene that stands, one whose
 // objects the host moves, one whose mesh it deforms, on its device; and of one whose mesh passes through the CPU. The
-// teapots of Figure 7 among their boxes.
+// teapots of Figure 7 among their boxes; and a large scene in which the host moves everything.
 #include <cstring>
+#include <memory>
+#include <numeric>
 
 #include "bench/benchmarks.h"
 #include "gpu/buffer.h"
@@ -9,6 +11,7 @@
 #include "radar/recorder.h"
 #include "scene/scene.h"
 #include "workloads/generate.h"
+#include "workloads/random.h"
 
 namespace radar::bench {
 
@@ -65,9 +68,65 @@ struct Flight {
   Scene standing, moving;
 };
 
-void run(int& status) {
-  const Device device = Device::open();
-  printHead({&device, 1});
+/// Moves all boxes of a scene, to where they are, so that the answers are the same. In the last row the scene has each
+/// in another's place: the worst tree.
+void runAllMoved(const Device& device, uint32_t boxes, int& status) {
+  tools::Workload workload =
+      tools::makeWorkload(tools::Scale{.boxes = boxes, .sensors = 64, .shape = tools::SensorShape::box});
+  std::vector<float> rows;
+  for (tools::Instance& instance : workload.scenes[0].instances) {
+    for (double& value : instance.worldFromMesh.m)
+      rows.push_back(static_cast<float>(value = static_cast<float>(value)));
+  }
+  const VkDeviceSize bytes = gpu::bytesOf(rows);
+  gpu::Buffer transforms(device.impl(), "transforms", gpu::BufferDomain::device,
+                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      copied(device.impl(), "copied transforms", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  gpu::Submission submission(device.impl(), false);
+  transforms.reserve(bytes);
+  copied.reserve(bytes);
+  {
+    gpu::Upload upload(device.impl());
+    upload.begin(bytes);
+    upload.add(rows.data(), bytes, transforms);
+    upload.record(submission.begin());
+    submission.submitAndWait();
+  }
+  Scene standing, moving, exchanged;
+  tools::replaceBy(workload, 0, standing);
+  tools::replaceBy(workload, 0, moving);
+  std::vector<tools::Instance>& instances = workload.scenes[0].instances;
+  tools::Random random(3);
+  for (size_t i = instances.size(); i-- > 1;) {
+    std::swap(instances[i].worldFromMesh, instances[random.below(static_cast<uint32_t>(i) + 1)].worldFromMesh);
+  }
+  tools::replaceBy(workload, 0, exchanged);
+  std::vector<ObjectId> objects(rows.size() / 12);
+  std::iota(objects.begin(), objects.end(), 0);
+  const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
+  Recorder still(device, standing, kCapacity), all(device, moving, kCapacity), far(device, exchanged, kCapacity);
+  const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
+  const auto method = [&](const char* name, Recorder& recorder, bool copies, HostGeometry geometry) {
+    return Method{name,
+                  [&](auto) {
+                    submission.submitAndWait();
+                    return recorder.read();
+                  },
+                  [&, geometry, copies](uint32_t) {
+                    const gpu::Commands commands = submission.begin();
+                    const VkBufferCopy region{0, 0, bytes};
+                    if (copies) commands->CmdCopyBuffer(commands, transforms.get(), copied.get(), 1, &region);
+                    recorder.record(commands, batches.front().queries, geometry);
+                  }};
+  };
+  const std::vector<Method> methods{
+      method("standing", still, false, {}), method("standing, all transforms copied", still, true, {}),
+      method("all moved", all, false, {.objects = {&moved, 1}}),
+      method("all moved, from each other's places", far, false, {.objects = {&moved, 1}})};
+  printRows("moved-" + std::to_string(boxes), methods, {&batches.front(), 1}, {.least = 9, .most = 9}, status);
+}
+
+void runFlight(const Device& device, int& status) {
   Flight flight;
   // What the host has on its device: the vertices and the transforms as they are, so that the answers are the same.
   std::vector<float> words = flight.mesh().positions;
@@ -105,9 +164,18 @@ void run(int& status) {
 }  // namespace
 
 void addRecorded(CLI::App& app, int& status) {
-  app.add_subcommand("recorded",
-                     "A frame of searches in a host's command buffer: prepare is recording, answer executing")
-      ->callback([&status] { run(status); });
+  auto sizes = std::make_shared<std::vector<uint32_t>>(std::vector<uint32_t>{10'000, 600'000});
+  CLI::App* command = app.add_subcommand(
+      "recorded", "A frame of searches in a host's command buffer: prepare is recording, answer executing");
+  command->add_option("--boxes", *sizes, "Objects in scenes in which all are moved")
+      ->check(CLI::Range(1u, 10'000'000u))
+      ->capture_default_str();
+  command->callback([sizes, &status] {
+    const Device device = Device::open();
+    printHead({&device, 1});
+    runFlight(device, status);
+    for (const uint32_t boxes : *sizes) runAllMoved(device, boxes, status);
+  });
 }
 
 }  // namespace radar::bench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cfenv>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,22 @@
 namespace radar::tools {
 
 namespace {
+
+/// Numbers are read as the nearest floats whatever the caller's floating-point environment, which is restored at the
+/// end.
+class DefaultFloats {
+ public:
+  DefaultFloats() {
+    std::fegetenv(&caller_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultFloats() { std::fesetenv(&caller_); }
+  DefaultFloats(const DefaultFloats&) = delete;
+  DefaultFloats& operator=(const DefaultFloats&) = delete;
+
+ private:
+  std::fenv_t caller_;
+};
 
 /// Own readers number vertices with 32 bits; none stores more than one in 2 bytes.
 constexpr uint64_t kMostBytes = uint64_t(1) << 33;
@@ -163,6 +180,7 @@ MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::strin
 }  // namespace
 
 Assembly readAssembly(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  const DefaultFloats floats;
   const std::string name = path.string();
   const MeshFile file = openFile(path);
   requireSize(name, file, true);
@@ -221,6 +239,7 @@ MeshName splitMeshName(const std::filesystem::path& name) {
 }
 
 MeshData readMesh(const std::filesystem::path& name, std::vector<std::string>& warnings) {
+  const DefaultFloats floats;
   const MeshName split = splitMeshName(name);
   if (!split.node) return readWholeFile(split.file, warnings);
   MeshData mesh = readAssembly(split.file, warnings).meshOf(split.file.string(), *split.node);

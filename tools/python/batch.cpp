@@ -13,8 +13,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Between two chunks a signal is seen and progress reported. The first is small, because a query may take anything from
-// a microsecond to a second; each is then as large as fits into the time. Answers do not depend on it.
-constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 16, kGrowth = 8;
+// a microsecond to a second; each is then as large as fits into the time, and into a cache. Answers do not depend on
+// it.
+constexpr size_t kFirstChunk = 64, kLargestChunk = 1 << 14, kGrowth = 8;
 constexpr double kChunkSeconds = 0.2;
 
 size_t nextChunk(size_t chunk, double seconds) {
@@ -49,7 +50,7 @@ class Reader {
     }
   }
 
-  /// Writes the next query over one that has the input's options.
+  /// Writes the next query over another of the batch, or over the input's options.
   void next(Query& query);
 
  private:
@@ -79,6 +80,7 @@ void Reader::next(Query& query) {
   if (input_.distances.data) {
     read(input_.distances, &query.distance, 1);
   } else {
+    query.motion.reset();
     query.distance = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
     if (query.distance == 0 && query.direction == std::array<double, 3>{}) {
       if (query.mode == Mode::sampled) {
@@ -90,6 +92,7 @@ void Reader::next(Query& query) {
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
+  query.exclude.clear();
   for (const int64_t object : excluded_) {
     if (object >= 0) query.exclude.push_back(static_cast<ObjectId>(object));
   }
@@ -216,7 +219,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
   for (size_t first = 0; first < count;) {
     const Clock::time_point start = Clock::now();
     const size_t end = std::min(first + chunk, count);
-    queries.assign(end - first, input.options);
+    queries.resize(end - first, input.options);
     inParts(end - first, [&](size_t from, size_t to) {
       Reader reader(input, first + from);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);

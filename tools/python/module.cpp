@@ -82,11 +82,9 @@ Array<int64_t> add(CastingScene& scene, const Array<uint32_t>& meshes, const Arr
 
 void setTransforms(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& transforms) {
   requireCount(transforms, "transforms", 16 * static_cast<size_t>(objects.size()));
-  scene.edit([&](Scene& to) {
-    for (py::ssize_t i = 0; i < objects.size(); ++i) {
-      to.setTransform(objects.data()[i], transformFrom(transforms.data() + 16 * i));
-    }
-  });
+  std::vector<Transform> given;
+  for (py::ssize_t i = 0; i < objects.size(); ++i) given.push_back(transformFrom(transforms.data() + 16 * i));
+  scene.edit([&](Scene& to) { to.setTransforms({objects.data(), given.size()}, given); });
 }
 
 void setMotions(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& motions) {

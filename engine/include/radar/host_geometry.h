@@ -47,10 +47,10 @@ struct DeformedMesh {
   HostPositions positions{};
 };
 
-/// New transforms of objects, one each, in this order. The box of the object's mesh, transformed in float arithmetic,
-/// lies within Scene::setBounds, or exceeds it by at most a millionth of the bounds' largest coordinate. Without
-/// Device::doubles(), a mesh whose transformed middle is farther from its own origin than the bounds' largest
-/// coordinate needs room within the bounds instead: two millionths of that distance.
+/// New transforms of objects, one each, in this order. Coordinates are at most 2^80; the device fits the tree over
+/// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds
+/// them by at most a millionth of their largest coordinate. Without Device::doubles(), a mesh whose transformed middle
+/// is farther from its own origin than that coordinate needs room inside instead: two millionths of the distance.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes
@@ -65,5 +65,12 @@ struct HostGeometry {
   std::span<const DeformedMesh> meshes{};
   std::span<const MovedObjects> objects{};
 };
+
+/// Reads the geometry from the host's buffers now and gives it to the scene, as Scene::setPositions and
+/// Scene::setTransforms do: for Sweepers, Pools and the CPU, which do not read these buffers. Nothing needs bounds.
+/// Writes to the buffers have been made available (waiting for a fence suffices). Submits to HostDevice::queue once and
+/// waits. Throws if there is no queue, `geometry` breaks its contract or a Vulkan call fails, and then leaves the scene
+/// as it was; or as those functions do, naming mesh or object, after which some of the geometry may be set.
+RADAR_API void applyGeometry(Scene& scene, const Device& device, const HostGeometry& geometry);
 
 }  // namespace radar

@@ -60,8 +60,8 @@ struct PoolDevice {
 class RADAR_API Pool {
  public:
   /// Starts a thread per device, which creates its pipelines; does not wait. `devices` and `scene` must outlive the
-  /// pool, and nothing else may use the devices' queues meanwhile. Throws if there is no device, one has no queue, or
-  /// two share one. `options` apply to each device and to each of its two chunks.
+  /// pool, and nothing else may use the devices' queues meanwhile. Throws if there is no device, one has no queue, two
+  /// share one, or a thread cannot be started. `options` apply to each device and to each of its two chunks.
   Pool(std::span<const Device> devices, const Scene& scene, const SweeperOptions& options = {});
   /// Answers queries not yet begun with Status::invalid ("the pool was closed"), finishes those with a device, and ends
   /// the threads. Every future gets its answers. No other function may be running.
@@ -69,10 +69,10 @@ class RADAR_API Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  /// Submits any number of queries; the future gets their answers and no exception. Throws, naming the query, if one
-  /// breaks its contract or has a mode that a device does not support. Once `stop` is requested, queries that no device
-  /// has taken become Status::invalid ("cancelled") when the batch's turn comes. Blocks only while the scene is being
-  /// edited.
+  /// Submits any number of queries; the future gets their answers, or std::bad_alloc if the host's memory does not
+  /// suffice: the pool keeps its devices, and later batches are answered. Throws, naming the query, if one breaks its
+  /// contract or has a mode that a device does not support. Once `stop` is requested, queries that no device has taken
+  /// become Status::invalid ("cancelled") when the batch's turn comes. Blocks only while the scene is being edited.
   std::future<PoolAnswers> submit(std::vector<Query> queries, std::stop_token stop = {});
 
   /// While the pool lives, the scene may change only in `change`. Waits until all earlier batches are answered, then

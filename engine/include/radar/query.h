@@ -1,10 +1,10 @@
 // Queries and their answers. R, M, L and d are those of the paper that radar.h names.
 //
-// Ranges: mode contact accepts all finite numbers. The CPU answers what floats cannot hold; a Recorder cannot fall back
-// on the CPU, so recorder.h lists these limits. Mode sampled answers Status::invalid, with a reason, if coordinates
-// exceed 2^80, the sensor's size is below 2^-80, an object in reach is more than 2^40 times as large as the sensor, the
-// components of a direction differ by a factor of more than about 2^1000, or one query's picture or list of objects in
-// reach exceeds the device's memory or limits.
+// Ranges: mode contact accepts all finite numbers, in poses up to 2^800. The CPU answers what floats cannot hold; a
+// Recorder cannot fall back on the CPU, so recorder.h lists these limits. Mode sampled answers Status::invalid, with a
+// reason, if coordinates exceed 2^80, the sensor's size is below 2^-80, an object in reach is more than 2^40 times as
+// large as the sensor, the components of a direction differ by a factor of more than about 2^1000, or one query's
+// picture or list of objects in reach exceeds the device's memory or limits.
 #pragma once
 
 #include <array>

@@ -25,6 +25,7 @@
 #include "radar/device.h"
 #include "radar/query.h"
 #include "radar/scene.h"
+#include "radar/scene_copy.h"
 
 namespace radar {
 
@@ -87,6 +88,8 @@ class RADAR_API Sweeper {
   /// Creates the pipelines of mode contact if the device answers it; those of mode sampled are created at first use.
   /// `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
+  /// With a copy of the scene that it shares with others.
+  explicit Sweeper(SceneCopy& copy, const SweeperOptions& options = {});
   ~Sweeper();
   Sweeper(Sweeper&&) noexcept;
   Sweeper& operator=(Sweeper&&) noexcept;

@@ -6,6 +6,7 @@
 
 #include "radar/host_geometry.h"
 #include "radar/host_queries.h"
+#include "radar/scene_copy.h"
 
 namespace radar {
 
@@ -25,27 +26,9 @@ struct Capacity {
   /// (6 MB), or 4 per query if that is more; eight times that without Device::doubles(). If a query's pairs do not fit,
   /// read() cannot decide them: kFlagUnresolved stays.
   uint32_t unresolvedPairs = 0;
-  /// Searches past one object each, which count as queries above: a query with Query::hits above 1, and where objects
-  /// move every query, takes one for each object in reach. record() throws if there are more.
+  /// Searches past one object each, which count as queries above; record() throws if there are more. A query with
+  /// Query::hits above 1, and any if objects have motions, takes one for each object in reach or moved without bounds.
   uint32_t searches = 0;
-};
-
-/// A scene's copy on a device that several Recorders share, so that each change is uploaded once. All their recordings
-/// are made by one thread at a time, and submitted to one queue in the order in which they were made; if one is not
-/// submitted, none made after it is: reset() their recorders. Its buffers live as long as its recorders need them.
-class RADAR_API SceneCopy {
- public:
-  /// `device` and `scene` outlive it and its recorders.
-  SceneCopy(const Device& device, const Scene& scene);
-  ~SceneCopy();
-  SceneCopy(SceneCopy&&) noexcept;
-  SceneCopy& operator=(SceneCopy&&) noexcept;
-
-  struct Impl;
-
- private:
-  friend class Recorder;
-  std::unique_ptr<Impl> impl_;
 };
 
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own lists. The first one
@@ -70,9 +53,9 @@ class RADAR_API Recorder {
   /// Queries with numbers that floats cannot hold become Status::invalid with kFlagRange:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
-  ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away;
-  /// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; there is no upper
-  ///   limit;
+  ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away, or,
+  ///   beside objects that a host moves without bounds, any object more than 10^11 sensor sizes away;
+  /// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; no upper limit;
   /// - a direction whose components differ by a factor of more than about 2^1000;
   /// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.
   ///
@@ -84,8 +67,8 @@ class RADAR_API Recorder {
   /// With a clearance, hits have kFlagUnresolved until read() decides them, except decisions (`anyHit`). If something
   /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal.
   ///
-  /// If anything in the host's buffers leaves its bounds or is not finite, every answer becomes Status::invalid with
-  /// kFlagBounds.
+  /// If anything in the host's buffers leaves its bounds, is not finite or too large for floats, every answer becomes
+  /// Status::invalid with kFlagBounds.
   ///
   /// - Before: the previous recording of this object has executed and been waited for. Writes to the buffers of
   ///   `geometry` are visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them

@@ -40,7 +40,8 @@ class RADAR_API Error : public std::runtime_error {
 class Device;
 struct HostMesh;
 
-/// A placement: world = M p + t, with row-major rows (m0 m1 m2 t). M is any invertible matrix, mirrors included.
+/// A placement: world = M p + t, with row-major rows (m0 m1 m2 t). M is any invertible matrix, mirrors included; no
+/// number is above 2^800, so that no placed vertex overflows.
 /// Vertices are placed as ((m0*x + m1*y) + m2*z) + t in double precision, without fused multiply-add; this result *is*
 /// the geometry.
 struct Transform {
@@ -98,20 +99,23 @@ class RADAR_API Scene {
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
   /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Its tree is fitted to them, and built anew
-  /// only if that would make it much worse. Throws if the mesh does not exist, was declared with `bounds`, has another
-  /// number of vertices, or a number is not finite.
+  /// only if that would make it much worse. Throws if the mesh does not exist or has another number of vertices, a
+  /// number is not finite, or a triangle's vertex is outside the mesh's `bounds`.
   void setPositions(MeshId mesh, std::span<const float> positions);
   /// Throws if an object uses the mesh.
   void removeMesh(MeshId mesh);
 
-  /// Throws if the mesh does not exist, the pose is singular or not finite, a component of the motion is above 2^1000,
-  /// or the scene has 2^29 objects.
+  /// Throws if the mesh does not exist, the pose is singular or has a number that is not finite or above 2^800, a
+  /// component of the motion is above 2^1000, or the scene has 2^29 objects.
   ObjectId addObject(const Object& object);
   void setTransform(ObjectId object, const Transform& worldFromMesh);
+  /// The same for many objects, one transform each, on all cores; the last one counts if an object is given twice.
+  /// Throws, naming the object, before anything is set.
+  void setTransforms(std::span<const ObjectId> objects, std::span<const Transform> worldFromMesh);
   /// Sets Object::motion. The pose stays that at the start of the step.
   void setMotion(ObjectId object, const std::array<double, 3>& motion);
-  /// Declares that the host will move the object on its device within `world` (radar/host_geometry.h). Larger bounds
-  /// cost more time. All other calls use the object's pose. Replaces earlier bounds; removing the object removes them.
+  /// Declares that a host that moves the object on its device keeps it within `world` (radar/host_geometry.h). Larger
+  /// bounds cost more time. All other calls use the object's pose. Replaces earlier bounds, which end with the object.
   /// Throws if the object does not exist, a lower bound exceeds its upper bound, or a bound exceeds 2^120.
   void setBounds(ObjectId object, const Bounds& world);
   void removeObject(ObjectId object);

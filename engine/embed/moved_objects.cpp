@@ -1,0 +1,211 @@
+#include "embed/moved_objects.h"
+
+#include <algorithm>
+
+#include "embed/host_transforms.h"
+#include "gpu/barrier.h"
+#include "math/rounding.h"
+#include "spirv/embed_fit_comp.h"
+#include "spirv/embed_move_comp.h"
+#include "spirv/embed_move_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/embed_reach_comp.h"
+
+namespace radar {
+
+using gpu::BufferDomain;
+
+namespace {
+
+// Created once per device.
+struct MovedObjectsKernels {
+  explicit MovedObjectsKernels(const Device::Impl& device)
+      : move(device, device.doubles ? std::span<const uint32_t>(k_embed_move_comp) : k_embed_move_comp_RADAR_NO_DOUBLES,
+             "move"),
+        fit(device, k_embed_fit_comp, "fit"),
+        reach(device, k_embed_reach_comp, "reach") {}
+  gpu::Kernel move, fit, reach;
+};
+
+std::string nameOf(ObjectId object) {
+  return "object " + std::to_string(object);
+}
+
+bool isSame(const gpu::TransformLayout& p, const gpu::TransformLayout& q) {
+  return p.parts == q.parts && std::ranges::equal(p.offsets, q.offsets);
+}
+
+gpu::Moved movedOf(ObjectId id, const Scene::Impl& scene, const ObjectTree& tree) {
+  gpu::Moved moved{.object = id, .mesh = scene.objects[id].object.mesh, .mask = scene.objects[id].object.mask};
+  const Box* box = scene.boundsOf(id);
+  moved.leaf = box == nullptr ? tree.leafOf(id) : gpu::kNobody;
+  for (int k = 0; k < 3; ++k) {
+    moved.anchor[k] = box == nullptr ? 0.0f : static_cast<float>(box->middle(k));
+    moved.halfExtent[k] = box == nullptr
+                              ? static_cast<float>(kMostCoordinate)
+                              : roundDown(std::min(box->hi[k] - moved.anchor[k], moved.anchor[k] - box->lo[k]));
+  }
+  return moved;
+}
+
+// The nodes whose boxes change with these leaves: marks of all nodes.
+std::vector<bool> markPaths(std::span<const gpu::Moved> moved, const ObjectTree& tree) {
+  std::vector<bool> marks(tree.nodes().size());
+  for (const gpu::Moved& object : moved) {
+    for (uint32_t n = object.leaf; n != kNone && !marks[n]; n = tree.parentOf(n)) marks[n] = true;
+  }
+  return marks;
+}
+
+// Appends the marked inner nodes by depth, and where each depth ends.
+void listByDepth(const std::vector<bool>& marks, const ObjectTree& tree, std::vector<uint32_t>& nodes,
+                 std::vector<uint32_t>& ends) {
+  const auto add = [&](uint32_t n) {
+    if (marks[n] && (tree.nodes()[n].link & gpu::kLinkLeaf) == 0) nodes.push_back(n);
+  };
+  if (!marks.empty()) add(0);
+  for (size_t i = 0; i < nodes.size();) {
+    const size_t end = nodes.size();
+    ends.push_back(static_cast<uint32_t>(end));
+    for (; i < end; ++i) {
+      const uint32_t left = tree.nodes()[nodes[i]].link;
+      add(left);
+      add(left + 1);
+    }
+  }
+}
+
+}  // namespace
+
+MovedObjectsPass::MovedObjectsPass(const Device::Impl& device, const GpuScene& resident)
+    : resident_(resident),
+      move_(device.shared<MovedObjectsKernels>().move),
+      fit_(device.shared<MovedObjectsKernels>().fit),
+      reach_(device.shared<MovedObjectsKernels>().reach),
+      upload_(device),
+      moved_(device, "moved objects", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      fitNodes_(device, "nodes to fit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
+                                const Scene::Impl& scene) const {
+  if (!list_ || list_->scene != scene.identity || list_->structure != scene.objectTree().structure() ||
+      list_->bounds != scene.boundsVersion || list_->groups.size() != groups.size()) {
+    return false;
+  }
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Group& listed = list_->groups[i];
+    if (listed.firstByte != firstBytes[i] || listed.stride != groups[i].stride ||
+        !isSame(listed.layout, encoded(groups[i].layout)) || !std::ranges::equal(listed.objects, groups[i].objects)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
+                             const Scene::Impl& scene) {
+  isActive_ = std::ranges::any_of(groups, [](const MovedObjects& group) { return !group.objects.empty(); });
+  if (!isActive_ || isListed(groups, firstBytes, scene)) return;
+  list_.reset();
+  isActive_ = isUploaded_ = false;
+  const ObjectTree& tree = scene.objectTree();
+  auto list = std::make_unique<List>();
+  list->scene = scene.identity;
+  list->structure = tree.structure();
+  list->bounds = scene.boundsVersion;
+  std::vector<bool> isNamed(scene.objects.size());
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const std::span<const ObjectId> objects = groups[i].objects;
+    list->groups.push_back(
+        {firstBytes[i], groups[i].stride, encoded(groups[i].layout), {objects.begin(), objects.end()}});
+    for (size_t k = 0; k < objects.size(); ++k) {
+      const ObjectId id = objects[k];
+      if (id >= scene.objects.size() || !scene.objects[id].used) {
+        throw Error("record: geometry: " + nameOf(id) + " does not exist");
+      }
+      if (isNamed[id]) throw Error("record: geometry: objects: expected each at most once");
+      isNamed[id] = true;
+      gpu::Moved moved = movedOf(id, scene, tree);
+      moved.firstByte = static_cast<uint32_t>(firstBytes[i] + k * groups[i].stride);
+      moved.format = list->groups.back().layout;
+      list->moved.push_back(moved);
+      if (scene.boundsOf(id) == nullptr) list->unbounded.push_back(id);
+    }
+  }
+  std::ranges::sort(list->unbounded);
+  const std::vector<bool> marks = markPaths(list->moved, tree);
+  listByDepth(marks, tree, list->nodes, list->ends);
+  list->overwritten = std::make_shared<GpuScene::Moved>();
+  for (ObjectId id = 0; id < isNamed.size(); ++id) {
+    if (isNamed[id]) list->overwritten->objects.push_back(id);
+  }
+  for (uint32_t n = 0; n < marks.size(); ++n) {
+    if (marks[n]) list->overwritten->nodes.push_back(n);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const TwoFloats anchor = twoFloats(tree.anchor()[k]);
+    push_.anchor[k] = anchor.high;
+    push_.anchorLow[k] = anchor.low;
+  }
+  push_.count = static_cast<uint32_t>(list->moved.size());
+  list_ = std::move(list);
+  stageUpload();
+  isActive_ = true;
+}
+
+void MovedObjectsPass::stageUpload() {
+  moved_.reserve(list_->moved.size());
+  fitNodes_.reserve(list_->nodes.size());
+  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(list_->moved)) + gpu::Upload::aligned(gpu::bytesOf(list_->nodes)));
+  upload_.add(list_->moved.data(), gpu::bytesOf(list_->moved), moved_);
+  upload_.add(list_->nodes.data(), gpu::bytesOf(list_->nodes), fitNodes_);
+}
+
+std::span<const ObjectId> MovedObjectsPass::unbounded() const {
+  return isActive_ ? std::span<const ObjectId>(list_->unbounded) : std::span<const ObjectId>();
+}
+
+void MovedObjectsPass::recordUpload(const gpu::Commands& commands) const {
+  if (isActive_ && !isUploaded_) upload_.record(commands);
+}
+
+void MovedObjectsPass::recordMove(const gpu::Commands& commands, const gpu::Array<uint32_t>& words,
+                                  const gpu::Array<gpu::BoundsViolation>& violation) {
+  if (!isActive_) return;
+  const GpuScene::Buffers& scene = resident_.buffers();
+  move_.set({{gpu::kSlotMeshes, scene.meshes},
+             {gpu::kSlotObjects, scene.objects},
+             {gpu::kSlotPlacements, scene.placements},
+             {gpu::kSlotObjectNodes, scene.objectNodes},
+             {gpu::kSlotMoved, moved_},
+             {gpu::kSlotBoundsViolation, violation},
+             {gpu::kSlotWords, words}});
+  move_.dispatch(commands, gpu::groupsFor(push_.count, gpu::kHostGroup), push_);
+}
+
+void MovedObjectsPass::recordFit(const gpu::Commands& commands) {
+  if (!isActive_) return;
+  fit_.set({{gpu::kSlotObjectNodes, resident_.buffers().objectNodes}, {gpu::kSlotFitNodes, fitNodes_}});
+  for (size_t depth = list_->ends.size(); depth-- > 0;) {
+    const uint32_t first = depth == 0 ? 0 : list_->ends[depth - 1], count = list_->ends[depth] - first;
+    fit_.dispatch(commands, gpu::groupsFor(count, gpu::kHostGroup), gpu::FitPush{first, count});
+    gpu::computeWriteToComputeReadWrite(commands);
+  }
+}
+
+void MovedObjectsPass::recordReach(const gpu::Commands& commands, const ContactPass& search) {
+  if (unbounded().empty() || search.sensorCount() == 0) return;
+  reach_.set({{gpu::kSlotSensors, search.encoded().sensors},
+              {gpu::kSlotStates, search.encoded().states},
+              {gpu::kSlotObjectNodes, resident_.buffers().objectNodes}});
+  reach_.dispatch(commands, gpu::groupsFor(search.sensorCount(), gpu::kHostGroup),
+                  gpu::ReachPush{search.sensorCount()});
+  gpu::computeWriteToComputeReadWrite(commands);
+}
+
+std::string MovedObjectsPass::describeViolation(ObjectId object) const {
+  const bool isUnbounded = std::ranges::binary_search(unbounded(), object);
+  return nameOf(object) + (isUnbounded ? ": its transform is not finite, or floats cannot hold its box"
+                                       : ": its mesh's box is outside its bounds, or its transform is not finite");
+}
+
+}  // namespace radar

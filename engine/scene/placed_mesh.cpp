@@ -1,0 +1,90 @@
+// Where a pose puts a mesh.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/float_environment.h"
+#include "scene/scene.h"
+
+namespace radar {
+
+namespace {
+
+Vector placed(const Transform& pose, const float* p) {
+  const double x = p[0], y = p[1], z = p[2];
+  Vector out;
+  for (int k = 0; k < 3; ++k) {
+    const double* r = &pose.m[4 * k];
+    out[k] = ((r[0] * x + r[1] * y) + r[2] * z) + r[3];
+  }
+  return out;
+}
+
+}  // namespace
+
+Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
+  std::array<double, 12> parentFromLocal = m;
+  double magnitude = 0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    double sum = std::abs(r[3]);
+    for (int k = 0; k < 3; ++k) {
+      parentFromLocal[4 * row + 3] += r[k] * mesh.origin[k];
+      sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
+    }
+    magnitude = std::max(magnitude, sum);
+  }
+  Box box = boxOfLocal(mesh, parentFromLocal);
+  for (int row = 0; row < 3; ++row) {
+    box.lo[row] -= 0x1p-47 * magnitude;
+    box.hi[row] += 0x1p-47 * magnitude;
+  }
+  return box;
+}
+
+Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    double middle = r[3], half = 0;
+    for (int k = 0; k < 3; ++k) {
+      middle += r[k] * mesh.box.middle(k);
+      half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
+    }
+    box.lo[row] = middle - half;
+    box.hi[row] = middle + half;
+  }
+  return box;
+}
+
+double determinant(const Transform& pose) {
+  const std::array<double, 12>& m = pose.m;
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+Vector transformPoint(const Transform& pose, const float* p) {
+  const FloatEnvironment floats;
+  return placed(pose, p);
+}
+
+std::array<Vector, 3> placedTriangle(const Mesh& mesh, const Transform& worldFromMesh, uint32_t triangle) {
+  std::array<Vector, 3> corners;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t vertex = mesh.indices[3 * size_t{triangle} + i];
+    corners[i] = placed(worldFromMesh, &mesh.positions[3 * vertex]);
+  }
+  return corners;
+}
+
+double placedMagnitude(const Vector& farthest, const Transform& worldFromMesh) {
+  double greatest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double* row = &worldFromMesh.m[4 * i];
+    double sum = std::abs(row[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(row[k]) * farthest[k];
+    greatest = std::max(greatest, sum);
+  }
+  return std::min(greatest, std::numeric_limits<double>::max());
+}
+
+}  // namespace radar

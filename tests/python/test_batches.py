@@ -1,0 +1,250 @@
+"""Batches as arrays: numpy writes the queries and reads the answers, without this project's code."""
+
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+from conftest import FACES, box, random_poses
+
+STATUS = ["hit", "clear", "overlap", "undecided", "invalid"]
+TIER = ["select", "sampled", "contact", "reference"]
+FEATURE = [None, "vertex", "edge", "face"]
+
+
+def run(folder, *arguments) -> subprocess.CompletedProcess:
+    return subprocess.run([os.environ["RADAR_PROGRAM"], *arguments], capture_output=True, text=True, cwd=folder)
+
+
+def answer(folder, *arguments) -> bytes:
+    done = run(folder, "query", "q.json", "--out", "out", *arguments)
+    assert done.returncode == 0, done.stderr
+    return (folder / "out").read_bytes()
+
+
+def refusal(folder, *arguments) -> str:
+    before = sorted(folder.iterdir())
+    done = run(folder, "query", "q.json", "--out", "out.npy", *arguments)
+    assert done.returncode == 2
+    assert sorted(folder.iterdir()) == before
+    return done.stderr
+
+
+def write_world(folder, **queries):
+    """Two scenes of boxes, of which the second has one more."""
+    lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
+    (folder / "box.obj").write_text("\n".join(lines))
+    poses = random_poses(np.random.default_rng(3), 30, 10)
+    instances = [[0, *pose[:3].ravel().tolist()] for pose in poses]
+    scenes = [{"id": "a", "instances": instances[1:]}, {"id": "b", "base": 0, "instances": instances[:1]}]
+    file = {"format": "cyber-radar-queries-1", "meshes": ["box.obj", "box.obj"], "scenes": scenes, **queries}
+    (folder / "q.json").write_text(json.dumps(file))
+
+
+def some_arrays(count: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(count)
+    return {
+        "mesh": rng.integers(0, 2, count),
+        "pose": random_poses(rng, count, 10)[:, :3, :].copy(),
+        "dir": rng.normal(size=(count, 3)),
+        "D": rng.uniform(0, 6, count),
+        "scene": rng.integers(0, 2, count, dtype=np.uint8),
+        "batch": rng.integers(0, 3, count, dtype=np.int16),
+        "mask": rng.integers(1, 2**32, count, dtype=np.uint32),
+        "decide": rng.integers(0, 4, count) == 0,
+        "speed": np.where(rng.integers(0, 2, count) == 0, np.nan, 2.5),
+        "ignore_leaving": rng.integers(0, 2, count) == 0,
+        "slack": np.where(rng.integers(0, 2, count) == 0, np.nan, 1e-12),
+        "tolerance": np.where(rng.integers(0, 2, count) == 0, np.nan, 1e-3),
+        "clearance": np.where(rng.integers(0, 3, count) == 0, 0.125, 0).astype(np.float32),
+        "exclude": rng.integers(-1, 29, (count, 2)),
+        "mode": rng.integers(1, 3, count, dtype=np.int8),
+    }
+
+
+def as_queries(arrays: dict[str, np.ndarray]) -> list[dict]:
+    """The same queries in JSON."""
+    queries = []
+    for i in range(len(arrays["mesh"])):
+        query = {"id": str(i), "scene": 0, "sensor": [int(arrays["mesh"][i]), *arrays["pose"][i].ravel().tolist()]}
+        for name, array in arrays.items():
+            value = array[i].tolist()
+            if name in ("mesh", "pose") or value != value:
+                continue
+            if name == "exclude":
+                value = [one for one in value if one >= 0]
+            if name == "mode":
+                value = ["sampled", "contact", "reference"][value]
+            if name == "hits" and value == 0:
+                value = "all"
+            query[name] = value
+        queries.append(query)
+    return queries
+
+
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_arrays_are_answered_as_the_same_queries_in_json(tmp_path, save):
+    arrays = some_arrays(500)
+    write_world(tmp_path, queries=as_queries(arrays))
+    expected = answer(tmp_path)
+    save(tmp_path / "q.npz", **arrays)
+    write_world(tmp_path, queries_file="q.npz")
+    assert answer(tmp_path) == expected
+    save(tmp_path / "q.npz", **{name: arrays[name] for name in ("mesh", "pose", "dir", "D")}, hits=np.arange(500) % 3)
+    listed = answer(tmp_path)
+    write_world(tmp_path, queries=as_queries({**dict(np.load(tmp_path / "q.npz"))}))
+    assert answer(tmp_path) == listed
+
+
+def test_steps_are_arrays_of_motions(tmp_path):
+    arrays = some_arrays(100)
+    motions = arrays["dir"].astype(np.float32)
+    steps = {"mesh": arrays["mesh"], "pose": arrays["pose"], "motion": motions, "speed": arrays["speed"]}
+    np.savez(tmp_path / "q.npz", **steps)
+    write_world(tmp_path, queries_file="q.npz")
+    found = answer(tmp_path)
+    write_world(tmp_path, queries=as_queries(steps))
+    assert answer(tmp_path) == found
+
+
+@pytest.mark.parametrize("mode", ["contact", "sampled"])
+def test_records_say_what_lines_say(tmp_path, mode):
+    arrays = some_arrays(300)
+    if mode == "sampled":
+        arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D", "speed", "decide")}
+    np.savez(tmp_path / "q.npz", **arrays)
+    write_world(tmp_path, queries_file="q.npz")
+    lines = [json.loads(line) for line in answer(tmp_path, "--mode", mode).splitlines()]
+    assert run(tmp_path, "query", "q.json", "--mode", mode, "--out", "a.npy").returncode == 0
+    records = np.load(tmp_path / "a.npy")
+    assert records.shape == (300,)
+    assert np.array_equal(records["query"], np.arange(300))
+    assert len(set(records["status"])) > 1
+
+    def same(value, expected) -> bool:
+        return np.array_equal(value, np.full(np.shape(value), np.nan) if expected is None else expected, equal_nan=True)
+
+    for record, line in zip(records, lines):
+        for key in ("t", "lo", "hi", "fraction", "point", "normal"):
+            assert same(record[key], line[key]), key
+        for key in ("time", "paper_min_l"):
+            assert same(record[key], line.get(key)), key
+        for key in ("object", "tri_a", "tri_b"):
+            assert record[key] == (-1 if line[key] is None else line[key])
+        assert STATUS[record["status"]] == line["status"]
+        assert TIER[record["tier"]] == line["tier"]
+        assert [FEATURE[record["feature_a"]], FEATURE[record["feature_b"]]] == [line["feature_a"], line["feature_b"]]
+        assert record["detected"] == {None: -1, False: 0, True: 1}[line["detected"]]
+
+
+def test_shards_and_resumed_runs_give_the_same_records(tmp_path):
+    np.savez(tmp_path / "q.npz", **some_arrays(1000))
+    write_world(tmp_path, queries_file="q.npz")
+    assert run(tmp_path, "query", "q.json", "--out", "whole.npy").returncode == 0
+    whole = (tmp_path / "whole.npy").read_bytes()
+    for i in range(3):
+        assert run(tmp_path, "query", "q.json", "--out", f"part-{i}.npy", "--shard", f"{i}/3").returncode == 0
+    part = (tmp_path / "part-1.npy").read_bytes()
+    assert run(tmp_path, "merge", "part-2.npy", "part-0.npy", "part-1.npy", "--out", "merged.npy").returncode == 0
+    assert (tmp_path / "merged.npy").read_bytes() == whole
+    # An interrupted shard: within a record.
+    (tmp_path / "part-1.npy.partial").write_bytes(part[: len(part) // 2 + 5])
+    assert run(tmp_path, "query", "q.json", "--out", "part-1.npy", "--shard", "1/3", "--resume").returncode == 0
+    assert (tmp_path / "part-1.npy").read_bytes() == part
+
+
+def test_numpy_reads_what_workload_writes(tmp_path):
+    for folder, binary in (("lines", []), ("arrays", ["--binary"])):
+        made = run(
+            tmp_path, "workload", "figure7", "--teapots", "3", "--boxes", "20", "--steps", "4", "--out", folder, *binary
+        )
+        assert made.returncode == 0, made.stderr
+    arrays = np.load(tmp_path / "arrays/queries.npz")
+    queries = json.loads((tmp_path / "lines/queries.json").read_text())["queries"]
+    assert arrays["dir"].tolist() == [query["dir"] for query in queries]
+    assert arrays["scene"].tolist() == [query["scene"] for query in queries]
+    found = []
+    for folder in ("lines", "arrays"):
+        done = run(tmp_path, "query", f"{folder}/queries.json")
+        assert done.returncode == 0, done.stderr
+        found.append([json.loads(line) for line in done.stdout.splitlines()])
+    assert [{**line, "id": ""} for line in found[0]] == [{**line, "id": ""} for line in found[1]]
+
+
+def change(name: str, value):
+    """Arrays with one of them replaced, or left out."""
+    arrays = {key: value for key, value in some_arrays(20).items() if key in ("mesh", "pose", "dir", "D")}
+    if value is None:
+        del arrays[name]
+    else:
+        arrays[name] = value
+    return arrays
+
+
+def with_value(name: str, index, value) -> np.ndarray:
+    array = some_arrays(20)[name].copy()
+    array[index] = value
+    return array
+
+
+@pytest.mark.parametrize(
+    "name, value, words",
+    [
+        ("mesh", None, "q.npz: mesh: expected this array, which is missing"),
+        ("D", None, "q.npz: D: expected this array, which is missing"),
+        ("d", np.zeros(20), "q.npz: d: expected one of the arrays mesh, pose, motion, dir, D"),
+        ("mesh", np.zeros(20), "q.npz: mesh: expected integers of shape (20,), got float64 of shape (20,)"),
+        ("pose", np.zeros((20, 4, 4)), "q.npz: pose: expected float32 or float64 of shape (20, 3, 4), got float64 of shape (20, 4, 4)"),
+        ("D", np.zeros(19), "q.npz: D: expected float32 or float64 of shape (20,), got float64 of shape (19,)"),
+        ("decide", np.zeros(20, np.uint8), "q.npz: decide: expected booleans of shape (20,), got uint8"),
+        ("D", np.zeros(20, ">f8"), "q.npz: D: expected little-endian numbers"),
+        ("D", np.zeros(20, np.float16), "q.npz: D: expected float32, float64, integers or booleans, got the type f2"),
+        ("D", np.zeros(20, "U3"), "q.npz: D: expected float32, float64, integers or booleans, got the type U3"),
+        ("dir", np.ones((20, 3), order="F"), "q.npz: dir: expected an array in C order"),
+        ("D", np.zeros(20, [("a", "f8")]), "q.npz: D: expected an array of plain numbers"),
+        ("D", with_value("D", 7, np.nan), "q.npz: D[7]: expected finite numbers, got nan"),
+        ("D", with_value("D", 7, -1), "q.npz: D[7]: expected a number of 0 or more, got -1"),
+        ("dir", with_value("dir", 3, 0), "q.npz: dir[3]: expected a vector that is not zero"),
+        ("dir", with_value("dir", (3, 1), np.inf), "q.npz: dir[3]: expected finite numbers, got inf"),
+        ("mesh", with_value("mesh", 5, 2), "q.npz: mesh[5]: expected a whole number that names one of the 2 meshes"),
+        ("mesh", with_value("mesh", 5, -1), "q.npz: mesh[5]: expected a whole number that names one of the 2 meshes"),
+        ("pose", with_value("pose", 9, 1), "q.npz: pose[9]: expected"),
+        ("scene", np.arange(20), "q.npz: scene[2]: expected a whole number that names one of the 2 scenes"),
+        ("exclude", np.full((20, 1), 29), "q.npz: exclude[0]: expected -1 or a whole number"),
+        ("mode", np.full(20, 3), "q.npz: mode[0]: expected 0 for sampled"),
+        ("speed", np.zeros(20), "q.npz: speed[0]: expected a number above 0"),
+        ("slack", np.full(20, -1.0), "q.npz: slack[0]: expected a finite number of 0 or more, or nan"),
+        ("motion", np.zeros((20, 3)), "q.npz: motion: expected either"),
+        ("hits", np.full(20, 2), "out.npy: expected another file than .npy"),
+    ],
+)  # fmt: skip
+def test_bad_arrays_are_refused_by_name_and_index(tmp_path, name, value, words):
+    np.savez(tmp_path / "q.npz", **change(name, value))
+    write_world(tmp_path, queries_file="q.npz")
+    assert words in refusal(tmp_path)
+
+
+def test_damaged_archives_are_refused(tmp_path):
+    write_world(tmp_path, queries_file="q.npz")
+    assert "q.npz: expected an .npz file, got no such file" in refusal(tmp_path)
+    for save in (np.savez, np.savez_compressed):
+        save(tmp_path / "q.npz", **change("D", np.arange(20.0)))
+        whole = (tmp_path / "q.npz").read_bytes()
+        for length in (0, 10, len(whole) // 2, len(whole) - 30):
+            (tmp_path / "q.npz").write_bytes(whole[:length])
+            assert "q.npz: expected" in refusal(tmp_path)
+        # One bit of each byte in turn: refused, or of no consequence, but never another answer.
+        (tmp_path / "q.npz").write_bytes(whole)
+        expected = answer(tmp_path)
+        for place in np.random.default_rng(1).integers(0, len(whole), 60).tolist():
+            (tmp_path / "q.npz").write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1 :])
+            done = run(tmp_path, "query", "q.json")
+            assert (done.returncode == 0 and done.stdout.encode() == expected) or (
+                done.returncode == 2 and "q.npz: " in done.stderr
+            ), (place, done.stderr)
+    (tmp_path / "q.npz").write_text("no archive")
+    assert "q.npz: expected an .npz file, which is a ZIP archive" in refusal(tmp_path)
+    write_world(tmp_path, queries_file="q.npz", queries=[])
+    assert "queries_file: expected either" in refusal(tmp_path)

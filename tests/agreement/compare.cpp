@@ -86,7 +86,7 @@ Compared compare(const tools::Workload& workload, const tools::Approach& asked) 
   Sweeper sweeper(device(), player.scene(), {.cpuBatch = 0});
   CpuSweeper cpu(player.scene());
   Compared compared;
-  for (const tools::Batch& batch : tools::batchesOf(workload)) {
+  for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
     player.show(batch.scene);
     std::vector<Query> queries;
     for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));

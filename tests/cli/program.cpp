@@ -6,13 +6,17 @@
 
 namespace radar::test {
 
-Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment) {
+Run runCommand(const ScratchFolder& folder, const std::string& command) {
   const ScratchFolder output;
   const std::string out = (output.path() / "out").string(), err = (output.path() / "err").string();
-  const std::string command = "cd '" + folder.path().string() + "' && " + environment +
-                              " </dev/null '" RADAR_PROGRAM "' " + arguments + " >'" + out + "' 2>'" + err + "'";
-  const int status = std::system(command.c_str());
+  const int status = std::system(
+      ("cd '" + folder.path().string() + "' && { " + command + "\n} </dev/null >'" + out + "' 2>'" + err + "'")
+          .c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output.read("out"), output.read("err")};
+}
+
+Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment) {
+  return runCommand(folder, environment + " '" RADAR_PROGRAM "' " + arguments);
 }
 
 }  // namespace radar::test

@@ -12,6 +12,9 @@ struct Run {
   std::string out, err;
 };
 
+/// Runs a command of the shell in `folder`.
+Run runCommand(const ScratchFolder& folder, const std::string& command);
+
 /// Runs `cyber-radar arguments` in `folder`. `environment` precedes the command: "NAME=value".
 Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment = "");
 

@@ -182,7 +182,7 @@ ComparedPixels checkWorkload(const tools::Workload& workload, uint32_t resolutio
   ComparedPixels count;
   tools::ScenePlayer player(workload);
   Sweeper sweeper(test::device(), player.scene());
-  for (const tools::Batch& batch : tools::batchesOf(workload)) {
+  for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
     player.show(batch.scene);
     for (uint32_t i : batch.queries) {
       INFO("query " << workload.queries[i].id << " at " << resolution);

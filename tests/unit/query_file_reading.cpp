@@ -359,3 +359,16 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   CHECK_THAT(refused("/queries/1/D", "1e305"), StartsWith("queries[1].D: "));
   CHECK_THAT(refused("/queries/1/mode", R"("sampled")"), Contains("motions need"));
 }
+
+TEST_CASE("scenes without an id are written without one and read again") {
+  // Each was written with the id "", which no two scenes may have.
+  Files files;
+  nlohmann::json file = goodFile();
+  for (nlohmann::json& scene : file["scenes"]) scene.erase("id");
+  const Workload workload = files.read(file.dump());
+  std::vector<std::string> warnings;
+  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  REQUIRE(again.scenes.size() == 2);
+  CHECK(again.scenes[1].id.empty());
+  CHECK(again.scenes[1].base == 0u);
+}

@@ -58,7 +58,7 @@ TEST_CASE("queries with the same scene and batch number form one batch, wherever
   workload.queries[3].scene = 1;
   workload.queries[3].batch = 7;
   workload.queries[4].batch = 0;
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = batchesOf(workload.queries);
   REQUIRE(batches.size() == 4);
   CHECK(batches[0].scene == 0);
   CHECK(batches[0].queries == std::vector<uint32_t>{0, 2});

@@ -1,6 +1,7 @@
 #include "batch/answer_file.h"
 
 #include <cmath>
+#include <limits>
 
 #include "batch/json_output.h"
 
@@ -30,21 +31,18 @@ void addObject(JsonObject& to, ObjectId object, std::span<const std::string> nam
   to.add("object_name", object == kNone || names[object].empty() ? "null" : quoted(names[object]));
 }
 
-// Adds t, lo and hi: distances of the sensor. With a motion, they are fractions in the result; `hasFraction`: those are
-// added, too.
+// Adds t, lo and hi; `hasFraction`: the fractions, too.
 void addTimes(JsonObject& object, const QuerySpec& query, const Result& result, bool hasFraction) {
-  constexpr double kRoom = 0x1p-50;
-  const double length = query.motion ? std::hypot((*query.motion)[0], (*query.motion)[1], (*query.motion)[2]) : 1,
-               room = query.motion ? kRoom : 0;
-  object.addNumber("t", length * result.t);
-  object.addNumber("lo", (1 - room) * length * result.lo);
-  object.addNumber("hi", (1 + room) * length * result.hi);
-  if (hasFraction) object.addNumber("fraction", result.fraction);
+  const AnswerTimes times = timesOf(query, result);
+  object.addNumber("t", times.t);
+  object.addNumber("lo", times.lo);
+  object.addNumber("hi", times.hi);
+  if (hasFraction) object.addNumber("fraction", times.fraction);
   if (query.motion) {
-    object.addNumber("fraction_lo", result.lo);
-    object.addNumber("fraction_hi", result.hi);
+    object.addNumber("fraction_lo", times.fractionLo);
+    object.addNumber("fraction_hi", times.fractionHi);
   }
-  if (hasFraction && query.speed) object.addNumber("time", length * result.t / *query.speed);
+  if (hasFraction && query.speed) object.addNumber("time", times.time);
 }
 
 std::string hitText(const QuerySpec& query, const Result& hit, std::span<const std::string> objectNames) {
@@ -75,6 +73,22 @@ const char* nameOf(Tier tier) {
 const char* nameOf(Feature feature) {
   constexpr std::array<const char*, 4> kNames{"none", "vertex", "edge", "face"};
   return kNames[static_cast<size_t>(feature)];
+}
+
+// With a motion, the times of a result are fractions.
+AnswerTimes timesOf(const QuerySpec& query, const Result& result) {
+  constexpr double kRoom = 0x1p-50, kNone = std::numeric_limits<double>::quiet_NaN();
+  const double length = query.motion ? std::hypot((*query.motion)[0], (*query.motion)[1], (*query.motion)[2]) : 1,
+               room = query.motion ? kRoom : 0;
+  AnswerTimes times;
+  times.t = length * result.t;
+  times.lo = (1 - room) * length * result.lo;
+  times.hi = (1 + room) * length * result.hi;
+  times.fraction = result.fraction;
+  times.fractionLo = query.motion ? result.lo : kNone;
+  times.fractionHi = query.motion ? result.hi : kNone;
+  times.time = query.speed ? length * result.t / *query.speed : kNone;
+  return times;
 }
 
 std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames) {

@@ -2,25 +2,39 @@
 
 #include <unistd.h>
 
-#include <fstream>
 #include <stdexcept>
 
 namespace radar::tools {
 
-void writeAtomically(const std::filesystem::path& file, std::string_view content) {
-  std::filesystem::path unfinished = file;
-  unfinished += ".unfinished-" + std::to_string(getpid());
+AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), unfinished_(file) {
+  unfinished_ += ".unfinished-" + std::to_string(getpid());
+  stream_.open(unfinished_, std::ios::binary | std::ios::trunc);
+}
+
+AtomicFile::~AtomicFile() {
+  std::error_code ignored;
+  if (!unfinished_.empty()) std::filesystem::remove(unfinished_, ignored);
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+void AtomicFile::finish() {
+  stream_.close();
   std::error_code error;
-  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (stream) std::filesystem::rename(unfinished, file, error);
-  if (!stream || error) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw std::runtime_error(file.string() + ": expected a place to write to, got " +
+  if (stream_) std::filesystem::rename(unfinished_, file_, error);
+  if (!stream_ || error) {
+    throw std::runtime_error(file_.string() + ": expected a place to write to, got " +
                              (error ? error.message() : "an error while writing"));
   }
+  unfinished_.clear();
+}
+
+void writeAtomically(const std::filesystem::path& file, std::string_view content) {
+  AtomicFile atomic(file);
+  atomic.write(content);
+  atomic.finish();
 }
 
 }  // namespace radar::tools

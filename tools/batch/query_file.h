@@ -1,7 +1,11 @@
 // Query files, format cyber-radar-queries-1.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,11 +20,53 @@ namespace radar::tools {
 /// file, the JSON path (or line) and what was expected. Appends the warnings about mesh files to `warnings`.
 Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
+class BinaryQueries;
+
+/// The modes that queries ask for.
+struct ModesAsked {
+  std::array<bool, 3> chosen{};          ///< by a query, indexed by AnswerMode
+  bool byCommand = false;                ///< a query leaves the choice to the command
+  std::optional<std::string> exactOnly;  ///< the id of one that does, and needsExactMode()
+  std::optional<std::string> listed;     ///< the id of one whose answer has lists: of hits, or of what overlaps
+  void add(const Workload& world, const QuerySpec& query);
+  /// Those of later queries.
+  void add(const ModesAsked& later);
+  /// Whether a query is answered in `mode` where the command chooses `command`.
+  bool asks(AnswerMode mode, AnswerMode command) const {
+    return chosen[static_cast<size_t>(mode)] || (byCommand && mode == command);
+  }
+};
+ModesAsked modesOf(const Workload& workload);
+
+/// A query file whose queries are read in ranges.
+class QueryFile {
+ public:
+  /// Reads and checks the whole file, as readQueryFile(). Queries in a queries file stay there.
+  QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+  ~QueryFile();
+
+  /// Its meshes and scenes.
+  const Workload& world() const { return world_; }
+  uint64_t count() const;
+  /// The queries from `first` on, `count` of them, which exist. Valid until `room`, which may hold them, changes.
+  std::span<const QuerySpec> read(uint64_t first, uint64_t count, std::vector<QuerySpec>& room) const;
+  const ModesAsked& modes() const { return modes_; }
+  /// A hash of all that the answers depend on.
+  const std::string& fingerprint() const { return fingerprint_; }
+
+ private:
+  Workload world_;
+  std::unique_ptr<BinaryQueries> binary_;  ///< none: the queries are in world_
+  ModesAsked modes_;
+  std::string fingerprint_;
+};
+
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
-/// instances as an instance file; makes the folder. Reading it gives the same workload to the bit (a mesh's name is its
-/// file's then, and names of objects are not kept). Returns the query file. Throws std::runtime_error if something
-/// cannot be written.
-std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder);
+/// instances as an instance file; makes the folder. `binary`: the queries as arrays in queries.npz. Reading it gives
+/// the same workload to the bit (a mesh's name is its file's then, and names of objects are not kept, nor, if binary,
+/// ids of queries). Returns the query file. Throws std::runtime_error if something cannot be written.
+std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder,
+                                     bool binary = false);
 
 /// Whether a query asks for what mode sampled does not offer; and what to use instead.
 bool needsExactMode(const Workload& workload, const QuerySpec& query);

@@ -12,6 +12,7 @@
 
 #include "batch/json_input.h"
 #include "batch/query_file.h"
+#include "batch/query_reader.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
 
@@ -70,7 +71,7 @@ class Reader {
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : file_(file), name_(file == "-" ? "standard input" : file.string()), warnings_(warnings) {}
 
-  Workload read();
+  JsonQueryFile read();
 
  private:
   std::string content() const;
@@ -101,17 +102,26 @@ std::string Reader::content() const {
   return readRegularFile(file_, "a query file, or - for standard input");
 }
 
-Workload Reader::read() {
+JsonQueryFile Reader::read() {
   const nlohmann::json document = parseJson(name_, content());
   const JsonValue root(name_, document);
-  requireKnownKeys(root, {"format", "meshes", "scenes", "queries"});
+  requireKnownKeys(root, {"format", "meshes", "scenes", "queries", "queries_file"});
   const JsonValue format = root.member("format");
   if (format.string() != "cyber-radar-queries-1") format.expected("\"cyber-radar-queries-1\"");
   root.member("meshes").forEach([&](const JsonValue& mesh) { readMesh(mesh); });
   listed_ = workload_.meshes.size();
   root.member("scenes").forEach([&](const JsonValue& scene) { readScene(scene); });
-  root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
-  return std::move(workload_);
+  JsonQueryFile result;
+  if (root.has("queries_file")) {
+    const JsonValue name = root.member("queries_file");
+    if (root.has("queries")) name.refuse("expected either \"queries\" or \"queries_file\", got both");
+    result.queriesFile = file_.parent_path() / name.string();
+  } else {
+    root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
+  }
+  result.workload = std::move(workload_);
+  result.listedMeshes = listed_;
+  return result;
 }
 
 void Reader::readMesh(const JsonValue& value) {
@@ -327,7 +337,7 @@ void Reader::readQuery(const JsonValue& query) {
 
 }  // namespace
 
-Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
   return Reader(file, warnings).read();
 }
 

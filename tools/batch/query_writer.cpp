@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
+#include "batch/binary_queries.h"
 #include "batch/json_output.h"
 #include "batch/query_file.h"
 
@@ -52,7 +53,7 @@ std::string positionsFile(size_t scene, uint32_t mesh) {
 
 std::string sceneText(const SceneSpec& scene, size_t number, const std::string& instanceFile) {
   JsonObject object;
-  object.addString("id", scene.id);
+  if (!scene.id.empty()) object.addString("id", scene.id);
   if (scene.base) object.add("base", std::to_string(*scene.base));
   if (!instanceFile.empty()) {
     object.addString("instances_file", instanceFile);
@@ -115,7 +116,7 @@ std::string queryText(const QuerySpec& query) {
 
 }  // namespace
 
-std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder) {
+std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder, bool binary) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw std::runtime_error(folder.string() + ": expected a folder, got " + error.message());
@@ -146,11 +147,16 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     }
     text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, i, instanceFile);
   }
-  text += "],\n \"queries\": [";
-  for (size_t i = 0; i < workload.queries.size(); ++i) {
-    text += (i > 0 ? ",\n  " : "\n  ") + queryText(workload.queries[i]);
+  if (binary) {
+    writeBinaryQueries(workload.queries, folder / "queries.npz");
+    text += "],\n \"queries_file\": \"queries.npz\"}\n";
+  } else {
+    text += "],\n \"queries\": [";
+    for (size_t i = 0; i < workload.queries.size(); ++i) {
+      text += (i > 0 ? ",\n  " : "\n  ") + queryText(workload.queries[i]);
+    }
+    text += "]}\n";
   }
-  text += "]}\n";
   std::filesystem::path file = folder / "queries.json";
   writeAtomically(file, text);
   return file;

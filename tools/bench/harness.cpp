@@ -9,7 +9,7 @@ namespace radar::bench {
 
 std::vector<Batch> batchesOf(const tools::Workload& workload, Mode mode, uint32_t resolution) {
   std::vector<Batch> batches;
-  for (const tools::Batch& one : tools::batchesOf(workload)) {
+  for (const tools::Batch& one : tools::batchesOf(workload.queries)) {
     Batch& batch = batches.emplace_back();
     batch.scene = one.scene;
     for (const uint32_t i : one.queries) {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "batch/query_file.h"
 #include "bench/clock.h"
-#include "cyber_radar/commands.h"
 
 namespace radar::tools {
 
@@ -21,28 +19,14 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
 
 }  // namespace
 
-Answering::Answering(const Workload& workload, const AnsweringOptions& options)
-    : workload_(workload), player_(workload) {
-  bool needsDevice = false, needsCpu = false;
-  for (const Batch& batch : batchesOf(workload)) {
-    Group& group = groups_.emplace_back();
-    group.scene = batch.scene;
-    for (uint32_t number : batch.queries) {
-      const QuerySpec& spec = workload.queries[number];
-      const AnswerMode mode = spec.mode.value_or(options.mode);
-      if (mode == AnswerMode::sampled && needsExactMode(workload, spec)) {
-        throw InputError("--mode", "",
-                         std::string("expected ") + kExactModes + " (query \"" + spec.id + "\"), got sampled");
-      }
-      const bool swept = mode != AnswerMode::reference;
-      (swept ? needsDevice : needsCpu) = true;
-      Part& part = swept ? group.swept : group.onCpu;
-      part.numbers.push_back(number);
-      part.modes.push_back(mode);
-      part.queries.push_back(
-          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options.resolution));
-    }
+Answering::Answering(const Workload& world, const ModesAsked& asked, const AnsweringOptions& options)
+    : options_(options), player_(world) {
+  if (options.mode == AnswerMode::sampled && asked.exactOnly) {
+    throw InputError("--mode", "",
+                     std::string("expected ") + kExactModes + " (query \"" + *asked.exactOnly + "\"), got sampled");
   }
+  const bool needsDevice =
+      asked.asks(AnswerMode::sampled, options.mode) || asked.asks(AnswerMode::contact, options.mode);
   const SweeperOptions sweeperOptions{
       .timestamps = options.timestamps, .cpuBatch = options.cpuBatch, .cpuThreads = options.threads};
   if (needsDevice && options.pool) {
@@ -52,7 +36,7 @@ Answering::Answering(const Workload& workload, const AnsweringOptions& options)
     devices_.push_back(Device::open({.index = options.device}));
     sweeper_.emplace(devices_[0], player_.scene(), sweeperOptions);
   }
-  if (needsCpu) cpu_.emplace(player_.scene(), options.threads);
+  if (asked.asks(AnswerMode::reference, options.mode)) cpu_.emplace(player_.scene(), options.threads);
 }
 
 void Answering::show(uint32_t scene) {
@@ -63,42 +47,65 @@ void Answering::show(uint32_t scene) {
   }
 }
 
-double Answering::setUp() {
+double Answering::setUp(uint32_t scene) {
   const double start = bench::now();
-  if (!groups_.empty()) show(groups_.front().scene);
+  show(scene);
   if (sweeper_) sweeper_->sync();
   if (cpu_) cpu_->sync();
   return 1e3 * (bench::now() - start);
 }
 
-Answering::Pass Answering::run(const std::string& label) {
-  Pass pass;
-  pass.answers.resize(workload_.queries.size());
-  Progress progress(label, workload_.queries.size());
+std::vector<Answering::Group> Answering::groupsOf(std::span<const QuerySpec> queries) const {
+  std::vector<Group> groups;
+  for (const Batch& batch : batchesOf(queries)) {
+    Group& group = groups.emplace_back();
+    group.scene = batch.scene;
+    for (const uint32_t number : batch.queries) {
+      const QuerySpec& spec = queries[number];
+      const AnswerMode mode = spec.mode.value_or(options_.mode);
+      Part& part = mode == AnswerMode::reference ? group.onCpu : group.swept;
+      part.numbers.push_back(number);
+      part.modes.push_back(mode);
+      part.queries.push_back(
+          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options_.resolution));
+    }
+  }
+  return groups;
+}
+
+std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress& progress) {
+  std::vector<Answer> answers(queries.size());
+  const std::vector<Group> groups = groupsOf(queries);
   const double start = bench::now();
   const auto keep = [&](const Part& part, const PoolAnswers& found) {
     for (size_t i = 0; i < found.results.size(); ++i) {
       const auto reason = found.reasons.find(i);
       const auto hits = found.lists.hitsOf(i);
       const auto overlapping = found.lists.overlappingOf(i);
-      pass.answers[part.numbers[i]] = {found.results[i],
-                                       part.modes[i],
-                                       reason == found.reasons.end() ? "" : reason->second,
-                                       {hits.begin(), hits.end()},
-                                       {overlapping.begin(), overlapping.end()}};
+      answers[part.numbers[i]] = {found.results[i],
+                                  part.modes[i],
+                                  reason == found.reasons.end() ? "" : reason->second,
+                                  {hits.begin(), hits.end()},
+                                  {overlapping.begin(), overlapping.end()}};
     }
-    pass.pairs += found.stats.pairs;
-    pass.cpuPairs += found.stats.cpuPairs;
-    for (const StageTime& stage : found.stats.stages) addStage(pass.stages, stage);
+    for (const Result& result : found.results) {
+      if (result.resolution == 0) continue;
+      stats_.leastResolution = std::min(stats_.leastResolution, result.resolution);
+      stats_.mostResolution = std::max(stats_.mostResolution, result.resolution);
+    }
+    stats_.pairs += found.stats.pairs;
+    stats_.cpuPairs += found.stats.cpuPairs;
+    for (const StageTime& stage : found.stats.stages) addStage(stats_.stages, stage);
     progress.add(found.results.size());
   };
-  for (const Group& group : groups_) {
+  for (const Group& group : groups) {
     show(group.scene);
     if (!group.swept.queries.empty()) keep(group.swept, sweep(group.swept.queries));
     if (!group.onCpu.queries.empty()) keep(group.onCpu, answerOnCpu(group.onCpu.queries));
   }
-  pass.ms = 1e3 * (bench::now() - start);
-  return pass;
+  stats_.batches += groups.size();
+  stats_.ms += 1e3 * (bench::now() - start);
+  return answers;
 }
 
 PoolAnswers Answering::sweep(const std::vector<Query>& queries) {
@@ -123,21 +130,14 @@ PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
   return found;
 }
 
-std::string answerLines(const Workload& workload, const std::vector<Answer>& answers) {
-  std::vector<std::vector<std::string>> names;
-  for (uint32_t scene = 0; scene < workload.scenes.size(); ++scene) names.push_back(workload.objectNames(scene));
-  std::string lines;
-  for (size_t i = 0; i < answers.size(); ++i) {
-    const QuerySpec& query = workload.queries[i];
-    lines += answerLine(query, answers[i], names[query.scene]) + "\n";
-  }
-  return lines;
+std::vector<Answer> answersTo(const Workload& workload, Answering& answering, const std::string& label) {
+  Progress progress(label, workload.queries.size());
+  if (!workload.queries.empty()) answering.setUp(workload.queries[0].scene);
+  return answering.run(workload.queries, progress);
 }
 
-int exitStatusOf(const std::vector<Answer>& answers) {
-  const bool someInvalid =
-      std::any_of(answers.begin(), answers.end(), [](const Answer& a) { return a.result.status == Status::invalid; });
-  return someInvalid ? kStatusSomeInvalid : 0;
+bool someInvalid(std::span<const Answer> answers) {
+  return std::ranges::any_of(answers, [](const Answer& a) { return a.result.status == Status::invalid; });
 }
 
 }  // namespace radar::tools

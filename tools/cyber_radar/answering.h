@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "batch/answer_file.h"
+#include "batch/query_file.h"
 #include "cyber_radar/progress.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
@@ -25,25 +26,32 @@ struct AnsweringOptions {
   uint32_t threads = 0;       ///< of the CPU's exact search; 0: one for each core
 };
 
+/// What answering took.
+struct AnsweringStats {
+  double ms = 0;          ///< from handing over the queries to having the answers, scene changes included
+  uint64_t batches = 0;   ///< calls of the engine's
+  uint64_t pairs = 0;     ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
+  uint64_t cpuPairs = 0;  ///< those of them decided on the CPU
+  uint32_t leastResolution = kNone, mostResolution = 0;  ///< of the pictures; 0 if none was drawn
+  std::vector<StageTime> stages;
+};
+
 class Answering {
  public:
-  /// Opens a device if a query needs one; throws radar::Error if none is usable. The workload must outlive this.
-  Answering(const Workload& workload, const AnsweringOptions& options);
+  /// Opens a device if one is needed; throws radar::Error if none is usable. `world` has the meshes and scenes; it
+  /// must outlive this.
+  /// Throws InputError if mode sampled is chosen for a query that asks for what it does not offer.
+  Answering(const Workload& world, const ModesAsked& asked, const AnsweringOptions& options);
 
-  /// Shows the scene of the first batch and brings it to where it is needed. Returns milliseconds.
-  double setUp();
+  /// Shows a scene and brings it to where it is needed. Returns milliseconds.
+  double setUp(uint32_t scene);
 
-  struct Pass {
-    std::vector<Answer> answers;  ///< in the workload's order
-    double ms = 0;                ///< from handing over the queries to having the answers, scene changes included
-    uint64_t pairs = 0;           ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
-    uint64_t cpuPairs = 0;        ///< those of them decided on the CPU
-    std::vector<StageTime> stages;
-  };
-  /// Answers everything, batch by batch. setUp() comes before each pass.
-  Pass run(const std::string& label);
+  /// Answers queries, batch by batch, and adds to stats().
+  std::vector<Answer> run(std::span<const QuerySpec> queries, Progress& progress);
+  /// Since the last reset.
+  const AnsweringStats& stats() const { return stats_; }
+  void resetStats() { stats_ = {}; }
 
-  size_t batchCount() const { return groups_.size(); }
   /// Those opened: none where the CPU answers everything.
   std::span<const Device> devices() const { return devices_; }
   /// Empty without a pool.
@@ -51,7 +59,7 @@ class Answering {
 
  private:
   struct Part {
-    std::vector<uint32_t> numbers;  ///< in the workload
+    std::vector<uint32_t> numbers;  ///< among those asked together
     std::vector<AnswerMode> modes;
     std::vector<Query> queries;
   };
@@ -63,8 +71,10 @@ class Answering {
   PoolAnswers sweep(const std::vector<Query>& queries);
   PoolAnswers answerOnCpu(const std::vector<Query>& queries);
 
-  const Workload& workload_;
-  std::vector<Group> groups_;
+  std::vector<Group> groupsOf(std::span<const QuerySpec> queries) const;
+
+  AnsweringOptions options_;
+  AnsweringStats stats_;
   ScenePlayer player_;
   std::vector<Device> devices_;
   std::optional<Sweeper> sweeper_;
@@ -72,9 +82,10 @@ class Answering {
   std::optional<CpuSweeper> cpu_;
 };
 
-/// The lines of an answer file.
-std::string answerLines(const Workload& workload, const std::vector<Answer>& answers);
-/// The exit status of a command that gives these answers.
-int exitStatusOf(const std::vector<Answer>& answers);
+/// Sets up and answers all queries of a workload.
+std::vector<Answer> answersTo(const Workload& workload, Answering& answering, const std::string& label);
+
+/// Whether some query was not answered.
+bool someInvalid(std::span<const Answer> answers);
 
 }  // namespace radar::tools

@@ -4,10 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
-namespace radar::tools {
+#include "cyber_radar/exit_status.h"
 
-constexpr int kStatusSomeInvalid = 1;
-constexpr int kStatusBadInput = 2;
+namespace radar::tools {
 
 void addSweepCommand(CLI::App& app, int& status);
 void addQueryCommand(CLI::App& app, int& status);
@@ -18,6 +17,7 @@ void addScaleCommand(CLI::App& app, int& status);
 void addSelftestCommand(CLI::App& app, int& status);
 void addStabilityCommand(CLI::App& app, int& status);
 void addChartCommand(CLI::App& app);
+void addMergeCommand(CLI::App& app, int& status);
 void addWorkloadCommand(CLI::App& app);
 
 }  // namespace radar::tools

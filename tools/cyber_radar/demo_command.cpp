@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "batch/answer_file.h"
+#include "batch/answer_rows.h"
 #include "batch/atomic_file.h"
 #include "batch/query_file.h"
 #include "cyber_radar/canvas.h"
@@ -56,9 +56,8 @@ std::string tableOf(const std::vector<Row>& rows) {
 
 std::vector<Answer> answersIn(const Workload& workload, AnswerMode mode, AnsweringOptions engine) {
   engine.mode = mode;
-  Answering answering(workload, engine);
-  answering.setUp();
-  return answering.run(nameOf(mode)).answers;
+  Answering answering(workload, modesOf(workload), engine);
+  return answersTo(workload, answering, nameOf(mode));
 }
 
 /// A line as long as a teapot can fly, with a dot where it touches something.
@@ -143,8 +142,9 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
   std::cout << table << "\nobjects below " << settings.boxes << " are boxes, the others teapots; sampled on "
             << device.name() << " (" << device.driver() << ")\n";
   writeAtomically(folder / "table.txt", table);
-  writeAtomically(folder / "answers-sampled.jsonl", answerLines(workload, sampled));
-  writeAtomically(folder / "answers-reference.jsonl", answerLines(workload, exact));
+  AnswerRows lines(workload, AnswerFormat::lines);
+  writeAtomically(folder / "answers-sampled.jsonl", lines.text(0, workload.queries, sampled));
+  writeAtomically(folder / "answers-reference.jsonl", lines.text(0, workload.queries, exact));
 
   drawScene(folder / "scene.png", workload, rows, device);
   const std::string pictures = "scene.png" + drawHits(folder, workload, rows, device);
@@ -160,7 +160,7 @@ int demonstrate(const std::string& out, const AnsweringOptions& engine) {
             << "\n  film       flight.png, which browsers play; its pictures are in flight\n  answers    table.txt, "
                "flight.txt, answers-sampled.jsonl, answers-reference.jsonl\n  questions  "
             << file.filename().string() << "; try: cyber-radar query " << file.string() << "\n";
-  return exitStatusOf(sampled);
+  return someInvalid(sampled) ? kStatusSomeInvalid : 0;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ constexpr const char* kExamples = R"(Try:
                                             one sweep, answered in words
   cyber-radar query batch.json --out answers.jsonl
                                             many sweeps from a file, one JSON line each
+  cyber-radar merge PART... --out answers.jsonl
+                                            joins the parts that query --shard answered
   cyber-radar workload table1 --out DIR     a batch to try that with
   cyber-radar scale --quick --out DIR       what several devices gain, and what limits them
   cyber-radar stability --out DIR           every tier against the exact answer, where methods fail
@@ -43,6 +45,7 @@ int main(int argc, char** argv) try {
   int status = 0;
   radar::tools::addSweepCommand(app, status);
   radar::tools::addQueryCommand(app, status);
+  radar::tools::addMergeCommand(app, status);
   radar::tools::addScopesCommand(app);
   radar::tools::addDevicesCommand(app, status);
   radar::tools::addDemoCommand(app, status);

@@ -12,6 +12,8 @@ namespace radar::tools {
 class Progress {
  public:
   Progress(std::string what, size_t total) : what_(std::move(what)), total_(total) {}
+  /// Never a bar.
+  Progress() : total_(0), wanted_(false) {}
   ~Progress() {
     if (drawn_) std::fputs("\r\033[K", stderr);
   }

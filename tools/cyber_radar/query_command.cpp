@@ -2,12 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/atomic_file.h"
-#include "batch/query_file.h"
 #include "bench/clock.h"
 #include "bench/statistics.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
-#include "cyber_radar/options.h"
+#include "cyber_radar/query_run.h"
 #include "cyber_radar/words.h"
 
 namespace radar::tools {
@@ -18,26 +17,32 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar query batch.json                       answers to standard output
   cyber-radar query batch.json --out answers.jsonl --mode sampled --resolution 256
   cyber-radar query batch.json --mode contact --device all
+  cyber-radar query batch.json --out answers.npy     records that numpy.load reads
+  cyber-radar query batch.json --out part-0 --shard 0/4 --resume
   cyber-radar query batch.json --repeat 9 --stats stats.json --out answers.jsonl
 
 A query file is one JSON object of meshes, scenes and queries (format cyber-radar-queries-1); the answers are JSON
 Lines, one per query, in the file's order. cyber-radar workload writes query files to try.)";
 
 struct Options {
-  EngineOptions engine;
-  std::string file, out, stats;
+  RunOptions run;
+  std::string stats;
   uint32_t repeat = 1;
   bool repeated = false;
 };
 
-std::string statsOf(const Workload& workload, const Answering& answering, const Answering::Pass& pass, double loadMs,
-                    double setupMs, double sweepMs) {
+struct Times {
+  double loadMs = 0, setupMs = 0, sweepMs = 0, writeMs = 0;
+};
+
+std::string textOf(uint64_t queries, const Answering& answering, const AnsweringStats& pass, const Times& times) {
   nlohmann::ordered_json stats;
-  stats["queries"] = workload.queries.size();
-  stats["batches"] = answering.batchCount();
-  stats["load_ms"] = loadMs;
-  stats["setup_ms"] = setupMs;
-  stats["sweep_ms"] = sweepMs;
+  stats["queries"] = queries;
+  stats["batches"] = pass.batches;
+  stats["load_ms"] = times.loadMs;
+  stats["setup_ms"] = times.setupMs;
+  stats["sweep_ms"] = times.sweepMs;
+  stats["write_ms"] = times.writeMs;
   stats["stages"] = nlohmann::ordered_json::object();
   for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
   stats["pairs"] = pass.pairs;
@@ -53,55 +58,122 @@ std::string statsOf(const Workload& workload, const Answering& answering, const 
   return stats.dump(2) + "\n";
 }
 
+/// One run over a query file, or a part of it.
+class Run {
+ public:
+  Run(const Options& options, const QueryFile& queries, const AnsweringOptions& engine)
+      : queries_(queries), answering_(queries.world(), queries.modes(), engine) {
+    const Part part = options.run.part(queries, answering_.devices());
+    first_ = part.first();
+    end_ = part.end();
+    if (!options.run.out.empty()) {
+      writer_.emplace(options.run.out, part, queries, options.run.resume);
+      first_ = writer_->next();
+      someInvalid_ = writer_->keptInvalid();
+    }
+  }
+
+  uint64_t count() const { return end_ - first_; }
+  const Answering& answering() const { return answering_; }
+  double setUp() { return setUp(answering_); }
+  /// Answers everything and drops the answers.
+  AnsweringStats rehearse(const std::string& label) {
+    return pass(answering_, label, [](auto...) {});
+  }
+  /// The same with an engine that measures the stages.
+  std::vector<StageTime> stages(AnsweringOptions engine) {
+    engine.timestamps = true;
+    Answering profile(queries_.world(), queries_.modes(), engine);
+    setUp(profile);
+    return pass(profile, "measuring stages", [](auto...) {}).stages;
+  }
+  /// Answers everything and writes the answers as they become complete.
+  AnsweringStats write() {
+    AnswerRows rows(queries_.world(), writer_ ? writer_->format() : AnswerFormat::lines);
+    return pass(answering_, "answering", [&](uint64_t first, auto queries, std::span<const Answer> answers) {
+      const double start = bench::now();
+      const std::string text = rows.text(first, queries, answers);
+      someInvalid_ = someInvalid_ || someInvalid(answers);
+      if (writer_) {
+        writer_->append(text, answers.size());
+      } else {
+        std::cout << text << std::flush;
+        if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
+      }
+      writeMs_ += 1e3 * (bench::now() - start);
+    });
+  }
+  void finish() {
+    const double start = bench::now();
+    if (writer_) writer_->finish();
+    writeMs_ += 1e3 * (bench::now() - start);
+  }
+  int status() const { return someInvalid_ ? kStatusSomeInvalid : 0; }
+  double readMs() const { return readMs_; }    ///< in the last pass
+  double writeMs() const { return writeMs_; }  ///< rows and file
+
+ private:
+  AnsweringStats pass(Answering& answering, const std::string& label, const AnswerSink& sink) {
+    answering.resetStats();
+    readMs_ = 1e3 * answerRange(queries_, first_, end_, answering, label, sink);
+    return answering.stats();
+  }
+  double setUp(Answering& answering) {
+    std::vector<QuerySpec> room;
+    return first_ < end_ ? answering.setUp(queries_.read(first_, 1, room)[0].scene) : 0;
+  }
+
+  const QueryFile& queries_;
+  Answering answering_;
+  std::optional<PartWriter> writer_;
+  uint64_t first_ = 0, end_ = 0;
+  double readMs_ = 0, writeMs_ = 0;
+  bool someInvalid_ = false;
+};
+
 int query(const Options& options) {
-  AnsweringOptions engine = options.engine.checked();
-  if (!options.out.empty()) requireFolderOf("--out", options.out);
+  AnsweringOptions engine = options.run.engine.checked();
+  options.run.check();
   if (!options.stats.empty()) requireFolderOf("--stats", options.stats);
 
   const double start = bench::now();
   std::vector<std::string> warnings;
-  const Workload workload = readQueryFile(options.file, warnings);
-  const double loadMs = 1e3 * (bench::now() - start);
+  const QueryFile queries(options.run.file, warnings);
+  Times times;
+  times.loadMs = 1e3 * (bench::now() - start);
   printWarnings(warnings);
 
   engine.timestamps = !options.stats.empty() && !options.repeated;
-  Answering answering(workload, engine);
-  const double setupMs = answering.setUp();
+  Run run(options, queries, engine);
+  times.setupMs = run.setUp();
   if (options.repeated) {
-    answering.run("warming up");
-    answering.setUp();
+    run.rehearse("warming up");
+    run.setUp();
   }
-  Answering::Pass pass = answering.run("answering");
-  std::vector<double> times{pass.ms};
+  std::vector<double> sweepTimes;
   for (uint32_t i = 1; i < options.repeat; ++i) {
-    answering.setUp();
-    times.push_back(answering.run("answering again").ms);
+    sweepTimes.push_back(run.rehearse("answering").ms);
+    run.setUp();
   }
+  AnsweringStats pass = run.write();
+  sweepTimes.push_back(pass.ms);
+  times.sweepMs = median(sweepTimes);
+  times.loadMs += run.readMs();
+  run.finish();
+  times.writeMs = run.writeMs();
   if (!options.stats.empty()) {
-    if (options.repeated) {
-      // A separate pass measures the stages, since timestamps slow the others.
-      engine.timestamps = true;
-      Answering profile(workload, engine);
-      profile.setUp();
-      pass.stages = profile.run("measuring stages").stages;
-    }
-    writeAtomically(options.stats, statsOf(workload, answering, pass, loadMs, setupMs, median(times)));
+    // A separate pass measures the stages, since timestamps slow the others.
+    if (options.repeated) pass.stages = run.stages(engine);
+    writeAtomically(options.stats, textOf(run.count(), run.answering(), pass, times));
   }
-  const std::string lines = answerLines(workload, pass.answers);
-  if (options.out.empty()) {
-    std::cout << lines << std::flush;
-    if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
-  } else {
-    writeAtomically(options.out, lines);
-  }
-  if (options.engine.resolution == "auto") {
-    const std::string chosen = resolutionsInWords(pass.answers);
+  if (options.run.engine.resolution == "auto") {
+    const std::string chosen = resolutionsInWords(pass);
     if (!chosen.empty()) std::cerr << "cyber-radar: " << chosen << " (chosen per sensor)\n";
   }
-  for (const PoolDevice& device : answering.poolDevices()) {
+  for (const PoolDevice& device : run.answering().poolDevices()) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
-  return exitStatusOf(pass.answers);
+  return run.status();
 }
 
 }  // namespace
@@ -110,10 +182,7 @@ void addQueryCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
-  command->add_option("FILE.json", options->file, "Query file; - for standard input")->required();
-  command->add_option("--out", options->out, "Where the answers go; else to standard output")->type_name("FILE.jsonl");
-  options->engine.severalDevices = true;
-  options->engine.addTo(*command);
+  options->run.addTo(*command);
   CLI::Option* repeat =
       command
           ->add_option("--repeat", options->repeat,

@@ -58,7 +58,7 @@ ScalePoint firstOf(const Workload& whole, uint32_t most) {
   ScalePoint point;
   point.workload = whole;
   point.workload.queries.clear();
-  const std::vector<Batch> batches = batchesOf(whole);
+  const std::vector<Batch> batches = batchesOf(whole.queries);
   for (const Batch& batch : batches) {
     const size_t count = most == 0 ? batch.queries.size() : std::min<size_t>(most, batch.queries.size());
     for (size_t i = 0; i < count; ++i) point.workload.queries.push_back(whole.queries[batch.queries[i]]);

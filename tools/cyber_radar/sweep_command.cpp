@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "batch/answer_rows.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
@@ -37,20 +38,19 @@ std::string introduction(const Workload& workload) {
 int sweep(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   const Workload workload = options.sweep.load();
-  Answering answering(workload, engine);
-  answering.setUp();
-  const Answer answer = answering.run("sweeping").answers.front();
+  Answering answering(workload, modesOf(workload), engine);
+  const Answer answer = answersTo(workload, answering, "sweeping").front();
   if (options.json) {
-    std::cout << answerLines(workload, {answer});
+    std::cout << AnswerRows(workload, AnswerFormat::lines).text(0, workload.queries, {&answer, 1});
   } else {
     std::cout << introduction(workload) << "\n" << inWords(workload, workload.queries.front(), answer);
-    const std::string resolution = resolutionsInWords({answer});
+    const std::string resolution = resolutionsInWords(answering.stats());
     if (!resolution.empty()) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "
                 << answering.devices()[0].name() << "\n";
     }
   }
-  return exitStatusOf({answer});
+  return someInvalid({&answer, 1}) ? kStatusSomeInvalid : 0;
 }
 
 }  // namespace

@@ -75,16 +75,10 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
   return "invalid: " + answer.reason + "\n";
 }
 
-std::string resolutionsInWords(const std::vector<Answer>& answers) {
-  uint32_t least = ~0u, most = 0;
-  for (const Answer& answer : answers) {
-    if (answer.result.resolution == 0) continue;
-    least = std::min(least, answer.result.resolution);
-    most = std::max(most, answer.result.resolution);
-  }
-  if (most == 0) return {};
-  std::string text = "resolution: " + std::to_string(least);
-  if (most != least) text += " to " + std::to_string(most);
+std::string resolutionsInWords(const AnsweringStats& stats) {
+  if (stats.mostResolution == 0) return {};
+  std::string text = "resolution: " + std::to_string(stats.leastResolution);
+  if (stats.mostResolution != stats.leastResolution) text += " to " + std::to_string(stats.mostResolution);
   return text;
 }
 

@@ -14,7 +14,7 @@ std::string inDigits(const std::array<double, 3>& vector);  ///< (x, y, z)
 /// What is hit, where and when, in a few lines; `workload` gives the names.
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer);
 
-/// What --resolution auto chose over the answers: "resolution: 64 to 256"; empty where no picture was drawn.
-std::string resolutionsInWords(const std::vector<Answer>& answers);
+/// What --resolution auto chose: "resolution: 64 to 256"; empty where no picture was drawn.
+std::string resolutionsInWords(const AnsweringStats& stats);
 
 }  // namespace radar::tools

@@ -6,6 +6,7 @@
 #include "cyber_radar/options.h"
 #include "import/mesh_import.h"
 #include "workloads/generate.h"
+#include "workloads/interlocking.h"
 
 namespace radar::tools {
 
@@ -48,10 +49,12 @@ void addWorkload(CLI::App& parent, const char* name, const char* about,
   command->add_option("--seed", settings->seed, "Equal seeds give equal workloads")
       ->type_name("N")
       ->capture_default_str();
+  auto binary = std::make_shared<bool>(false);
+  command->add_flag("--binary", *binary, "Writes the queries as arrays, in queries.npz, without their ids");
   addOptions(*command, *settings);
-  command->callback([settings, out] {
+  command->callback([settings, out, binary] {
     const Workload workload = makeWorkload(*settings);
-    const auto file = writeQueryFile(workload, *out);
+    const auto file = writeQueryFile(workload, *out, *binary);
     std::cout << file.string() << ": " << workload.queries.size() << " queries, " << workload.scenes.size()
               << " scenes, " << workload.meshes.size() << " meshes\n";
   });
@@ -98,6 +101,22 @@ void addWorkloadCommand(CLI::App& app) {
                        addObjectOptions(soup, settings);
                        addCount(soup, "--triangles", settings.triangles, "Triangles of each mesh");
                      });
+  addWorkload<InterlockingPairs>(*command, "interlocking",
+                                 "Pairs of shapes inside each other, far from other pairs: costly queries, one batch",
+                                 [](CLI::App& interlocking, InterlockingPairs& settings) {
+                                   addCount(interlocking, "--sensors", settings.sensors, "Pairs, each with a sensor");
+                                   interlocking
+                                       .add_option_function<std::string>(
+                                           "--shape",
+                                           [&settings](const std::string& shape) {
+                                             for (const Interlocking kind : kInterlocking) {
+                                               if (shape == nameOf(kind)) settings.kind = kind;
+                                             }
+                                           },
+                                           "Of the pairs")
+                                       ->check(CLI::IsMember({"ring on peg", "comb in comb", "crossing"}))
+                                       ->default_str(nameOf(Interlocking::ringOnPeg));
+                                 });
   addWorkload<MeshFiles>(*command, "meshes", "Given meshes in random poses", [](CLI::App& meshes, MeshFiles& settings) {
     addObjectOptions(meshes, settings);
     meshes.add_option("--mesh", settings.files, "Mesh files")->required()->type_name("FILE...");

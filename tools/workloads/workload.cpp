@@ -85,11 +85,11 @@ double sensorSize(const Scene& scene, const Query& query) {
   return boundsOf(scene.mesh(query.mesh), query.worldFromMesh).longest();
 }
 
-std::vector<Batch> batchesOf(const Workload& workload) {
+std::vector<Batch> batchesOf(std::span<const QuerySpec> queries) {
   std::vector<Batch> batches;
   std::map<std::pair<uint32_t, uint64_t>, size_t> places;
-  for (uint32_t i = 0; i < workload.queries.size(); ++i) {
-    const QuerySpec& query = workload.queries[i];
+  for (uint32_t i = 0; i < queries.size(); ++i) {
+    const QuerySpec& query = queries[i];
     const auto [place, isNew] = places.try_emplace({query.scene, query.batch}, batches.size());
     if (isNew) batches.push_back({query.scene, {}});
     batches[place->second].queries.push_back(i);

@@ -93,12 +93,12 @@ Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
 /// Greatest extent of the placed sensor's box.
 double sensorSize(const Scene& scene, const Query& query);
 
-/// The queries of one scene and one batch number, as positions in Workload::queries, in the order of first appearance.
+/// The queries of one scene and one batch number, as positions among the given ones, in the order of first appearance.
 struct Batch {
   uint32_t scene = 0;
   std::vector<uint32_t> queries;
 };
-std::vector<Batch> batchesOf(const Workload& workload);
+std::vector<Batch> batchesOf(std::span<const QuerySpec> queries);
 
 /// Makes `to` hold the workload's meshes and one of its scenes, under the workload's numbers, and nothing else.
 void replaceBy(const Workload& workload, uint32_t scene, Scene& to);

@@ -1,0 +1,168 @@
+// Runs in parts: shards, merge, and runs that were interrupted.
+#include <catch2/catch.hpp>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+// Steps of a flight, each a scene and a batch of 5 queries: 60 queries.
+const std::string kWorkload = "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w";
+
+std::string answersTo(const ScratchFolder& folder, const std::string& mode) {
+  const Run run = runProgram(folder, "query w/queries.json --out whole.jsonl --mode " + mode);
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  return folder.read("whole.jsonl");
+}
+
+// The first line, which says what the file is part of.
+std::string headOf(const std::string& part) {
+  return part.substr(0, part.find('\n') + 1);
+}
+
+void requireRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
+  CAPTURE(arguments);
+  const std::string before = folder.list();
+  const Run run = runProgram(folder, arguments);
+  CHECK(run.status == 2);
+  CHECK_THAT(run.err, Contains(words));
+  CHECK(folder.list() == before);
+}
+
+}  // namespace
+
+TEST_CASE("shards, merged, are the bytes of one run") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  const std::string mode = GENERATE("contact", "sampled", "reference");
+  const std::string whole = answersTo(folder, mode);
+  for (const int count : {1, 2, 4, 7, 100}) {
+    CAPTURE(mode, count);
+    std::string parts;
+    for (int i = count - 1; i >= 0; --i) {
+      // Most of a hundred shards have no query or one: a few runs show both.
+      const std::string name = "part-" + std::to_string(i);
+      if (count < 100 || i < 4) {
+        const std::string shard = std::to_string(i) + "/" + std::to_string(count);
+        const Run run =
+            runProgram(folder, "query w/queries.json --mode " + mode + " --shard " + shard + " --out " + name);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+      }
+      parts += " " + name;
+    }
+    if (count == 100) continue;
+    const Run merged = runProgram(folder, "merge" + parts + " --out merged.jsonl");
+    INFO(merged.err);
+    REQUIRE(merged.status == 0);
+    CHECK(folder.read("merged.jsonl") == whole);
+  }
+}
+
+TEST_CASE("merge names shards that are missing, doubled, cut off or of another run") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  const auto answer = [&](const std::string& shard, const std::string& out, const std::string& more = "") {
+    REQUIRE(runProgram(folder, "query w/queries.json --shard " + shard + " --out " + out + more).status == 0);
+  };
+  for (int i = 0; i < 4; ++i) answer(std::to_string(i) + "/4", "p" + std::to_string(i));
+  requireRefused(
+      folder, "merge p0 p2 --out all.jsonl",
+      "all.jsonl: expected all 4 shards, missing: shard 1/4 (queries 15 to 29), shard 3/4 (queries 45 to 59)");
+  requireRefused(folder, "merge p0 p1 p2 p3 p1 --out all.jsonl", "got shard 1/4 (queries 15 to 29) also in p1");
+  answer("0/3", "third");
+  requireRefused(folder, "merge p0 third --out all.jsonl",
+                 "third: shard: expected one of 4 shards, as in p0, got shard 0/3");
+  answer("1/4", "other-mode", " --mode reference");
+  requireRefused(folder, "merge p0 other-mode p2 p3 --out all.jsonl",
+                 "other-mode: mode: expected that of p0, \"contact\", got \"reference\"");
+  const std::string part = folder.read("p1");
+  folder.write("cut", part.substr(0, part.size() - 1));
+  requireRefused(folder, "merge p0 cut p2 p3 --out all.jsonl", "cut: expected 15 answers, got 14");
+  folder.write("long", part + "{}\n");
+  requireRefused(folder, "merge p0 long p2 p3 --out all.jsonl",
+                 "long: expected nothing after the last answer, got 3 bytes");
+  folder.write("odd", headOf(part) + "\n" + part.substr(headOf(part).size()));
+  requireRefused(folder, "merge p0 odd p2 p3 --out all.jsonl", "odd: answer 0: expected the answer to query 15, got");
+  folder.write("whole", folder.read("p1").substr(headOf(part).size()));
+  requireRefused(folder, "merge p0 whole p2 p3 --out all.jsonl",
+                 "whole: line 1: expected the first line of a part file");
+  requireRefused(folder, "merge p0 missing --out all.jsonl",
+                 "missing: expected a shard's answer file, got no such file");
+  requireRefused(folder, "merge p0 p1 p2 p3 --out none/all.jsonl", "--out");
+  // Another query file: one number differs.
+  std::string queries = folder.read("w/queries.json");
+  queries.replace(queries.rfind("\"D\": "), 5, "\"D\": 1");
+  folder.write("w/queries.json", queries);
+  answer("1/4", "other-file");
+  requireRefused(folder, "merge p0 other-file p2 p3 --out all.jsonl", "other-file: fingerprint of the query file");
+}
+
+TEST_CASE("a run that was killed while it wrote is finished by --resume with the bytes of one run") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload table1 --boxes 50 --sensors 40000 --shape box --out w").status == 0);
+  const std::string query = "query w/queries.json --mode reference ";
+  const std::string whole = runProgram(folder, query).out;
+  // The system ends the process when its file would grow beyond 4000 blocks, here within a line.
+  runProgram(folder, query + "--out a.jsonl", "ulimit -f 4000; ");
+  REQUIRE(folder.list() == "a.jsonl.partial w");
+  const std::string partial = folder.read("a.jsonl.partial");
+  CHECK_FALSE(partial.ends_with('\n'));
+  CHECK(partial.size() > 10 * headOf(partial).size());
+  CHECK(whole.starts_with(partial.substr(headOf(partial).size())));
+
+  requireRefused(folder, query + "--out a.jsonl", "a.jsonl.partial: expected no such file");
+  requireRefused(folder, "query w/queries.json --mode contact --out a.jsonl --resume",
+                 "a.jsonl.partial: mode: expected that of this run, \"contact\", got \"reference\"");
+  requireRefused(folder, query + "--shard 0/2 --out a.jsonl --resume",
+                 "a.jsonl.partial: shard: expected shard 0/2, got all");
+  CHECK(folder.read("a.jsonl.partial") == partial);
+
+  REQUIRE(runProgram(folder, query + "--out a.jsonl --resume").status == 0);
+  CHECK(folder.read("a.jsonl") == whole);
+  CHECK(folder.list() == "a.jsonl w");
+}
+
+TEST_CASE("a run with --resume keeps what is complete, wherever the file was cut") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  const std::string query = "query w/queries.json --shard 1/2 --out part --resume";
+  REQUIRE(runProgram(folder, query).status == 0);
+  const std::string part = folder.read("part");
+  const size_t head = headOf(part).size();
+  for (const size_t length : {size_t{0}, size_t{1}, head - 1, head, head + 1, part.find('\n', head) + 1,
+                              part.size() / 2, part.size() - 1, part.size()}) {
+    CAPTURE(length);
+    folder.write("part.partial", part.substr(0, length));
+    REQUIRE(runProgram(folder, query).status == 0);
+    CHECK(folder.read("part") == part);
+    CHECK(folder.list() == "part w");
+  }
+  // A shard that is complete is kept, so that all of an array of jobs may be submitted again.
+  REQUIRE(runProgram(folder, query).status == 0);
+  CHECK(folder.read("part") == part);
+  requireRefused(folder, query + " --mode reference", "part: mode: expected that of this run");
+  CHECK(folder.read("part") == part);
+
+  std::string wrong = part;
+  wrong.replace(wrong.find("teapot", head), 6, "kettle");
+  folder.write("part.partial", wrong);
+  requireRefused(folder, query, "part.partial: answer 0: expected the answer to query");
+  folder.write("part.partial", part + part.substr(head));
+  requireRefused(folder, query, "part.partial: expected nothing after the last answer");
+}
+
+TEST_CASE("bad shards and options without a file are refused by name") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  for (const char* shard : {"1", "2/2", "0/0", "-1/2", "1/2/3", "a/b", "0/99999999999"}) {
+    requireRefused(folder, std::string("query w/queries.json --out a --shard ") + shard, "--shard: expected I/N");
+  }
+  requireRefused(folder, "query w/queries.json --shard 0/2", "--shard: expected --out beside it");
+  requireRefused(folder, "query w/queries.json --resume", "--resume: expected --out beside it");
+}

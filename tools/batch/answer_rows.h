@@ -1,0 +1,49 @@
+// Answers as the rows of a file: lines of JSON, or records of one size.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "batch/answer_file.h"
+
+namespace radar::tools {
+
+enum class AnswerFormat {
+  lines,   ///< JSON Lines
+  records  ///< AnswerRecord, in an .npy file
+};
+const char* nameOf(AnswerFormat format);
+/// Throws std::invalid_argument that lists the names.
+AnswerFormat answerFormatFrom(std::string_view name);
+/// What an answer file with this name is written in.
+AnswerFormat answerFormatOf(const std::filesystem::path& file);
+
+/// Makes the rows of one workload's answers. A row depends on its query and its answer alone.
+class AnswerRows {
+ public:
+  /// `world` has the scenes, and outlives this.
+  AnswerRows(const Workload& world, AnswerFormat format) : world_(world), format_(format) {}
+  /// The rows of consecutive queries, each with its end; the first query has the index `first`.
+  std::string text(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers);
+
+ private:
+  const Workload& world_;
+  AnswerFormat format_;
+  std::map<uint32_t, std::vector<std::string>> names_;  ///< of the objects of the scenes met so far
+};
+
+/// What stands before the rows of all answers: nothing before lines, kRecordsStart bytes before records.
+inline constexpr size_t kRecordsStart = 2048;
+std::string startOf(AnswerFormat format, uint64_t queries);
+/// The length of the first row of `rows`, its end included; 0 if it is cut off.
+size_t rowLength(AnswerFormat format, std::string_view rows);
+/// Whether a row is that of the query with this index, as far as a row says; `query`: that query, if at hand.
+bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const QuerySpec* query);
+/// Whether a row says that its query was not answered.
+bool isInvalidRow(AnswerFormat format, std::string_view row);
+
+}  // namespace radar::tools

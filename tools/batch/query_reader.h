@@ -1,0 +1,22 @@
+// The JSON of query files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+struct JsonQueryFile {
+  Workload workload;        ///< without the queries of a queries file
+  size_t listedMeshes = 0;  ///< the meshes that sensors may be; those of assemblies follow
+  std::optional<std::filesystem::path> queriesFile;
+};
+
+/// As readQueryFile(), but for the content of a queries file.
+JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+
+}  // namespace radar::tools

@@ -1,0 +1,31 @@
+#include "batch/merge.h"
+#include "cyber_radar/commands.h"
+#include "cyber_radar/options.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  for i in 0 1 2 3; do cyber-radar query batch.json --shard $i/4 --out part-$i --resume; done
+  cyber-radar merge part-0 part-1 part-2 part-3 --out answers.jsonl)";
+
+}  // namespace
+
+void addMergeCommand(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("merge", "Joins the answers of cyber-radar query --shard to one answer file");
+  command->footer(kExamples);
+  struct Options {
+    std::vector<std::string> files;
+    std::string out;
+  };
+  auto options = std::make_shared<Options>();
+  command->add_option("PART", options->files, "The answer files of all shards, in any order")->required();
+  command->add_option("--out", options->out, "Where the answers go")->required()->type_name("FILE");
+  command->callback([options, &status] {
+    requireFolderOf("--out", options->out);
+    status = mergeShards(options->files, options->out) ? 0 : kStatusSomeInvalid;
+  });
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,37 @@
+// A run over a query file: what it is of, and its chunks.
+#pragma once
+
+#include <functional>
+
+#include "batch/part_file.h"
+#include "cyber_radar/answering.h"
+#include "cyber_radar/options.h"
+
+namespace radar::tools {
+
+/// --out, --shard and --resume, beside the options of the engine.
+struct RunOptions {
+  EngineOptions engine;
+  std::string file, out, shard;
+  bool resume = false;
+
+  void addTo(CLI::App& command);
+  /// Throws InputError that names the option.
+  void check() const;
+  /// What the answers of this run are part of. `devices`: those that answer.
+  Part part(const QueryFile& queries, std::span<const Device> devices) const;
+};
+
+/// The names of devices and drivers, for messages and for runs in mode sampled.
+std::string namesOf(std::span<const Device> devices);
+
+/// Receives the answers to consecutive queries, the first of which has the index `first`.
+using AnswerSink =
+    std::function<void(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers)>;
+
+/// Answers the queries from `first` to before `end` in chunks of about two seconds, in order. Returns the seconds that
+/// reading the queries took.
+double answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
+                   const std::string& label, const AnswerSink& sink);
+
+}  // namespace radar::tools

@@ -1,0 +1,268 @@
+// cyber-radar-mpi: answers a query file on many machines.
+#include <unistd.h>
+
+#include <csignal>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "batch/atomic_file.h"
+#include "bench/clock.h"
+#include "commit/commit.h"
+#include "cyber_radar/exit_status.h"
+#include "cyber_radar/query_run.h"
+#include "mpi/coordinator.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  mpirun -np 4 --map-by ppr:1:node --bind-to none cyber-radar-mpi query batch.json --out answers.jsonl
+  srun --ntasks-per-node=1 cyber-radar-mpi query batch.json --out answers.npy --resume
+
+One rank a node answers on the node's devices; ranks that share a node share its devices and cores. Rank 0 reads the
+file and writes the answers, with the bytes that cyber-radar query writes.)";
+
+struct Options {
+  RunOptions run;
+  std::string stats;
+};
+
+// What a signal's handler prints.
+std::string farewell;
+
+void sayFarewell(int signal) {
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, farewell.data(), farewell.size());
+  _exit(128 + signal);
+}
+
+std::string resumeHint(const std::string& out) {
+  return "cyber-radar-mpi: the run ended early; " + out + ".partial has the answers so far, and --resume finishes it\n";
+}
+
+// Ranks of one machine share its devices, and its cores if the number of threads is not chosen.
+void takeShare(AnsweringOptions& options, const EngineOptions& given, const MpiSession& session, bool needsDevice) {
+  const auto local = static_cast<size_t>(session.localRank()), count = static_cast<size_t>(session.localCount());
+  if (options.threads == 0) {
+    options.threads = std::max(1u, std::thread::hardware_concurrency() / static_cast<uint32_t>(count));
+  }
+  if (!needsDevice) return;
+  std::vector<uint32_t> all = given.device.empty() ? std::vector<uint32_t>() : devicesFrom(given.device);
+  if (all.empty()) {
+    const std::vector<DeviceReport> reports = listDevices();
+    for (uint32_t i = 0; i < reports.size(); ++i) {
+      if (reports[i].usable()) all.push_back(i);
+    }
+  }
+  std::vector<uint32_t> own;
+  for (size_t i = local; i < all.size(); i += count) own.push_back(all[i]);
+  if (own.empty() && !all.empty()) own.push_back(all[local % all.size()]);
+  options.pool.reset();
+  options.device = own.size() == 1 ? own[0] : kNone;
+  if (own.size() > 1) options.pool = own;
+}
+
+// Says why ranks cannot answer. Returns whether all can.
+bool allCanAnswer(const std::vector<std::string>& packedReports, std::vector<RankReport>& reports, bool sampled) {
+  bool all = true;
+  for (const std::string& bytes : packedReports) reports.push_back(unpacked<RankReport>(bytes));
+  for (size_t rank = 0; rank < reports.size(); ++rank) {
+    const RankReport& report = reports[rank];
+    std::string problem = report.failure;
+    if (problem.empty() && sampled && report.devices != reports[0].devices) {
+      problem = "in mode sampled, expected the device of rank 0, \"" + reports[0].devices + "\", got \"" +
+                report.devices + "\"";
+    }
+    if (problem.empty()) continue;
+    std::cerr << "cyber-radar-mpi: rank " << rank << " on " << report.host << ": " << problem << "\n";
+    all = false;
+  }
+  return all;
+}
+
+std::string statsOf(const std::vector<RankReport>& reports, const Coordinator& coordinator, double loadMs,
+                    double setupMs, double sweepMs) {
+  nlohmann::ordered_json stats;
+  uint64_t queries = 0;
+  for (const Coordinator::Work& work : coordinator.work()) queries += work.queries;
+  stats["queries"] = queries;
+  stats["load_ms"] = loadMs;
+  stats["setup_ms"] = setupMs;
+  stats["sweep_ms"] = sweepMs;
+  for (size_t rank = 0; rank < reports.size(); ++rank) {
+    const Coordinator::Work& work = coordinator.work()[rank];
+    stats["ranks"].push_back({{"host", reports[rank].host},
+                              {"devices", reports[rank].devices},
+                              {"queries", work.queries},
+                              {"chunks", work.chunks},
+                              {"busy_ms", 1e3 * work.seconds}});
+  }
+  stats["commit"] = commit();
+  return stats.dump(2) + "\n";
+}
+
+/// One rank's part in a run.
+class Rank {
+ public:
+  Rank(const Options& options, const MpiSession& session) : options_(options), session_(session) {}
+
+  int run() {
+    if (!broadcast(isFirst() ? reads() : false)) return kStatusBadInput;
+    std::string start;
+    if (isFirst()) {
+      const Workload& world = queries_->world();
+      start = packed(Start{world.meshes, world.scenes, queries_->modes()});
+    }
+    broadcast(start);
+    if (!isFirst()) {
+      Start received = unpacked<Start>(std::move(start));
+      world_.meshes = std::move(received.meshes);
+      world_.scenes = std::move(received.scenes);
+      modes_ = received.modes;
+    }
+    const std::vector<std::string> reports = gather(packed(prepare()));
+    if (!broadcast(isFirst() ? opens(reports) : false)) return kStatusBadInput;
+    ChunkAnswers answers(world(), *answering_, answerFormatOf(options_.run.out));
+    if (!isFirst()) {
+      answers.serve();
+      return 0;
+    }
+    return coordinate(answers);
+  }
+
+ private:
+  bool isFirst() const { return session_.rank() == 0; }
+  const Workload& world() const { return isFirst() ? queries_->world() : world_; }
+
+  // Rank 0: the options and the query file are good.
+  bool reads() {
+    try {
+      if (!options_.stats.empty()) requireFolderOf("--stats", options_.stats);
+      const double start = bench::now();
+      std::vector<std::string> warnings;
+      queries_.emplace(options_.run.file, warnings);
+      loadMs_ = 1e3 * (bench::now() - start);
+      printWarnings(warnings);
+      modes_ = queries_->modes();
+      return true;
+    } catch (const std::exception& error) {
+      std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
+      return false;
+    }
+  }
+
+  RankReport prepare() {
+    RankReport report{hostName(), "", ""};
+    try {
+      const double start = bench::now();
+      AnsweringOptions engine = options_.run.engine.checked();
+      const bool needsDevice =
+          modes_.asks(AnswerMode::sampled, engine.mode) || modes_.asks(AnswerMode::contact, engine.mode);
+      takeShare(engine, options_.run.engine, session_, needsDevice);
+      answering_.emplace(world(), modes_, engine);
+      if (!world().scenes.empty()) answering_->setUp(0);
+      report.devices = namesOf(answering_->devices());
+      setupMs_ = 1e3 * (bench::now() - start);
+    } catch (const Error& error) {
+      report.failure = error.what();
+      for (const std::string& reason : error.reasons) report.failure += "\n  " + reason;
+    } catch (const std::exception& error) {
+      report.failure = error.what();
+    }
+    return report;
+  }
+
+  // Rank 0: all ranks can answer, and the answers have a place.
+  bool opens(const std::vector<std::string>& packedReports) {
+    try {
+      const AnsweringOptions engine = options_.run.engine.checked();
+      if (!allCanAnswer(packedReports, reports_, modes_.asks(AnswerMode::sampled, engine.mode))) return false;
+      const Part part = options_.run.part(*queries_, answering_->devices());
+      end_ = part.end();
+      writer_.emplace(options_.run.out, part, *queries_, options_.run.resume);
+      return true;
+    } catch (const std::exception& error) {
+      std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
+      return false;
+    }
+  }
+
+  int coordinate(ChunkAnswers& answers) {
+    // mpirun ends all ranks with this signal when one was killed.
+    farewell = resumeHint(options_.run.out);
+    std::signal(SIGTERM, sayFarewell);
+    try {
+      const double start = bench::now();
+      Coordinator coordinator(*queries_, *writer_, end_, static_cast<size_t>(session_.count()));
+      coordinator.run(answers);
+      const double sweepMs = 1e3 * (bench::now() - start);
+      writer_->finish();
+      if (!options_.stats.empty()) {
+        writeAtomically(options_.stats, statsOf(reports_, coordinator, loadMs_, setupMs_, sweepMs));
+      }
+      return coordinator.someInvalid() ? kStatusSomeInvalid : 0;
+    } catch (const RankFailure& failure) {
+      std::cerr << "cyber-radar-mpi: rank " << failure.rank() << " on " << reports_[failure.rank()].host << ": "
+                << failure.what() << "\n";
+    } catch (const std::exception& error) {
+      std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
+    }
+    writer_.reset();
+    if (std::filesystem::exists(options_.run.out + ".partial")) std::cerr << farewell << std::flush;
+    MPI_Abort(MPI_COMM_WORLD, kStatusBadInput);
+    return kStatusBadInput;
+  }
+
+  const Options& options_;
+  const MpiSession& session_;
+  std::optional<QueryFile> queries_;  ///< rank 0
+  Workload world_;                    ///< of the other ranks
+  ModesAsked modes_;
+  std::optional<Answering> answering_;
+  std::vector<RankReport> reports_;
+  std::optional<PartWriter> writer_;
+  uint64_t end_ = 0;
+  double loadMs_ = 0, setupMs_ = 0;
+};
+
+int run(int argc, char** argv, const MpiSession& session) {
+  CLI::App app{"Cyber Radar on many machines: answers a query file with the ranks of an MPI run", "cyber-radar-mpi"};
+  app.require_subcommand(1);
+  CLI::App* command = app.add_subcommand("query", "Answers a query file");
+  command->footer(kExamples);
+  Options options;
+  options.run.addTo(*command);
+  command->get_option("--out")->required();
+  command->add_option("--stats", options.stats, "Writes times, and what each rank did, here, as one JSON object")
+      ->type_name("FILE.json");
+  // All ranks read the same options, and one speaks.
+  try {
+    app.parse(argc, argv);
+    options.run.engine.checked();
+    options.run.check();
+  } catch (const CLI::ParseError& error) {
+    if (session.rank() > 0) return error.get_exit_code() == 0 ? 0 : kStatusBadInput;
+    return app.exit(error) == 0 ? 0 : kStatusBadInput;
+  } catch (const std::exception& error) {
+    if (session.rank() == 0) std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
+    return kStatusBadInput;
+  }
+  return Rank(options, session).run();
+}
+
+}  // namespace
+
+}  // namespace radar::tools
+
+int main(int argc, char** argv) {
+  const radar::tools::MpiSession session(argc, argv);
+  try {
+    return radar::tools::run(argc, argv, session);
+  } catch (const std::exception& error) {
+    // The other ranks wait for this one: they are ended, too.
+    std::cerr << "cyber-radar-mpi: rank " << session.rank() << " on " << radar::tools::hostName() << ": "
+              << error.what() << "\n";
+    MPI_Abort(MPI_COMM_WORLD, radar::tools::kStatusBadInput);
+  }
+}

@@ -1,0 +1,215 @@
+// Every call of the device that may fail does so in turn, for lack of memory, and every submission because the device
+// is lost. Answers are right, or invalid with the reason; afterwards the same objects answer with the same bits.
+#include <catch2/catch.hpp>
+
+#include "faults/adopted.h"
+#include "faults/scenario.h"
+#include "gpu/check.h"
+#include "gpu/submission.h"
+#include "support/same_bits.h"
+#include "support/test_device.h"
+#include "sweep/sweeper.h"
+#include "workloads/shapes.h"
+
+namespace {
+
+using namespace radar;
+using Catch::Contains;
+using test::Answers;
+using test::ask;
+using test::sameBits;
+using test::VulkanFault;
+
+VkResult shortage(int64_t n) {
+  return n % 2 == 0 ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+// Calls tryAt(0), tryAt(1), ..., which returns whether a call has failed, until none has; returns how many have.
+template <class TryAt>
+int64_t failEach(const TryAt& tryAt) {
+  int64_t n = 0;
+  for (bool failed = true; failed; ++n) {
+    CAPTURE(n);
+    failed = tryAt(n);
+  }
+  return n - 1;
+}
+
+std::vector<Query> queriesOfBothModes() {
+  std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
+  queries.insert(queries.end(), drawn.begin(), drawn.end());
+  return queries;
+}
+
+// Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
+size_t checkAnswers(const Sweeper& sweeper, const std::vector<Result>& found, const std::vector<Result>& expected,
+                    VkResult result) {
+  REQUIRE(found.size() == expected.size());
+  size_t invalid = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    CAPTURE(i);
+    if (found[i].status == Status::invalid) {
+      ++invalid;
+      CHECK_THAT(sweeper.reason(i), Contains(gpu::resultName(result)));
+    } else {
+      CHECK(sameBits(found[i], expected[i]));
+    }
+  }
+  return invalid;
+}
+
+// A scene that grows beyond its buffers on the device.
+class Growing {
+ public:
+  Growing() { test::SceneEdits().make(scene); }
+  /// Adds objects, half of them of a new mesh if wanted.
+  void grow(bool hasNewMesh) {
+    MeshId added = 0;
+    if (hasNewMesh) {
+      const tools::MeshData box = tools::makeBox({1, 1, 1});
+      std::vector<uint32_t> indices;
+      for (int i = 0; i < 100; ++i) indices.insert(indices.end(), box.indices.begin(), box.indices.end());
+      added = scene.addMesh(box.positions, indices);
+    }
+    for (int i = 0; i < 200; ++i) {
+      scene.addObject({i % 2 == 0 ? added : 0, {{0.1, 0, 0, 0.05 * i, 0, 0.1, 0, 0.3, 0, 0, 0.1, 1}}});
+    }
+  }
+  Scene scene;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "whichever call of the device fails while a scene grows, answers are right or invalid, and later ones right") {
+  const Device& device = test::adopted().device;
+  const std::vector<Query> queries = queriesOfBothModes();
+  for (const bool hasNewMesh : {false, true}) {
+    Growing grown;
+    grown.grow(hasNewMesh);
+    Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
+    const Answers expected = ask(sweeper, queries);
+    const int64_t failed = failEach([&](int64_t n) {
+      Growing growing;
+      Sweeper other(device, growing.scene, {.timestamps = true, .cpuBatch = 0});
+      other.run(queries);
+      growing.grow(hasNewMesh);
+      bool happened = false;
+      {
+        const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
+        const std::vector<Result> found = other.run(queries);
+        happened = fault.happened();
+        CAPTURE(hasNewMesh, fault.failed());
+        checkAnswers(other, found, expected.results, shortage(n));
+      }
+      CHECK(sameBits(ask(other, queries), expected));
+      return happened;
+    });
+    CHECK(failed > 30);
+  }
+}
+
+TEST_CASE(
+    "whichever call of the device fails while a recorder records, it is named, and the same recorder then records "
+    "right answers") {
+  const Device& device = test::adopted().device;
+  const std::vector<Query> queries = test::contactQueries();
+  Growing grown;
+  grown.grow(false);
+  Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
+  const Answers expected = ask(sweeper, queries);
+  gpu::Submission submission(device.impl(), false);
+  const int64_t failed = failEach([&](int64_t n) {
+    Growing growing;
+    Recorder recorder(device, growing.scene, test::kScenarioRoom);
+    recorder.record(submission.begin(), queries);
+    submission.submitAndWait();
+    growing.grow(false);
+    const gpu::Commands commands = submission.begin();
+    bool happened = false;
+    {
+      const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
+      try {
+        recorder.record(commands, queries);
+      } catch (const Error& error) {
+        CHECK(error.result == shortage(n));
+        CHECK_THAT(error.what(), Contains(fault.failed()));
+        happened = true;
+      }
+      CHECK(fault.happened() == happened);
+    }
+    if (happened) {
+      recorder.reset();
+      recorder.record(submission.begin(), queries);
+    }
+    submission.submitAndWait();
+    Answers found;
+    found.results = recorder.read(&found.lists);
+    CHECK(sameContacts(found, expected));
+    return happened;
+  });
+  CHECK(failed > 10);
+}
+
+TEST_CASE("whichever call of the device fails while setting up, it is named, and nothing is left") {
+  test::FaultyHost host;
+  const VkQueue queue = host.handles.queue;
+  Scene scene;
+  test::SceneEdits().make(scene);
+  const auto failures = [&](const auto& setUp) {
+    setUp();
+    const int64_t objects = test::liveVulkanObjects();
+    return failEach([&](int64_t n) {
+      const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
+      try {
+        setUp();
+        if (fault.happened()) CHECK(fault.failed() == "vkWaitForFences");  // it waits again
+      } catch (const Error& error) {
+        CHECK(error.result == shortage(n));
+        CHECK_THAT(error.what(), Contains(fault.failed()));
+      }
+      CHECK(test::liveVulkanObjects() == objects);
+      return fault.happened();
+    });
+  };
+  CHECK(failures([&] { Device::adopt(host.handles); }) > 30);
+  const test::HollowPipelines hollow;
+  host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines
+  CHECK(failures([&] {
+          const Device device = Device::adopt(host.handles);
+          const Recorder recorder(device, scene, test::kScenarioRoom);
+          device.impl().host.queue = queue;
+          Sweeper::Impl sweeper(device.impl(), scene, {.timestamps = true}, std::make_shared<GpuScene>(device.impl()));
+          sweeper.sampled();
+        }) > 300);
+}
+
+TEST_CASE("if the device is lost at any submission, each answer is right or says so, and a new sweeper answers") {
+  const Device& device = test::adopted().device;
+  Scene scene;
+  test::SceneEdits().make(scene);
+  for (const bool drawn : {false, true}) {
+    const std::vector<Query> queries = drawn ? test::sampledQueries() : test::contactQueries();
+    Sweeper sweeper(device, scene, {.cpuBatch = 0});
+    const std::vector<Result> expected = sweeper.run(queries);
+    size_t invalid = 0;
+    const int64_t failed = failEach([&](int64_t n) {
+      Sweeper other(device, scene, {.timestamps = true, .cpuBatch = 0});
+      bool happened = false;
+      {
+        const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost);
+        for (int round = 0; round < 2; ++round) {
+          CAPTURE(drawn, round, fault.failed());
+          invalid += checkAnswers(other, other.run(queries), expected, VK_ERROR_DEVICE_LOST);
+        }
+        happened = fault.happened();
+        if (happened) CHECK_THROWS_WITH(Device::adopt(device.handles()), Contains("VK_ERROR_DEVICE_LOST"));
+      }
+      Sweeper later(device, scene, {.cpuBatch = 0});
+      CHECK(sameBits(Answers{later.run(queries), {}}, Answers{expected, {}}));
+      return happened;
+    });
+    CHECK(failed > 2);
+    CHECK(invalid > 0);
+  }
+}

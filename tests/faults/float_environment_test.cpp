@@ -1,0 +1,189 @@
+// A host may round in any direction, flush subnormal numbers to zero, or trap on exceptions: answers keep their bits,
+// and the host its environment.
+#include <catch2/catch.hpp>
+#include <cfenv>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+#include "faults/scenario.h"
+#include "gpu/submission.h"
+#include "import/mesh_import.h"
+#include "radar/arithmetic.h"
+#include "radar/cpu_sweeper.h"
+#include "radar/host_geometry.h"
+#include "radar/pool.h"
+#include "support/scratch_folder.h"
+#include "support/test_device.h"
+
+namespace {
+
+using namespace radar;
+using test::Answers;
+using test::sameBits;
+
+struct Environment {
+  const char* name;
+  std::function<void()> set;
+};
+
+std::vector<Environment> environments() {
+  std::vector<Environment> all{{"upwards", [] { std::fesetround(FE_UPWARD); }},
+                               {"downwards", [] { std::fesetround(FE_DOWNWARD); }},
+                               {"towards zero", [] { std::fesetround(FE_TOWARDZERO); }}};
+#if defined(__SSE2__)
+  all.push_back({"flushing to zero", [] { _mm_setcsr(_mm_getcsr() | 0x8040); }});  // FTZ and DAZ
+#endif
+#if defined(__GLIBC__)
+  all.push_back({"trapping", [] {
+                   std::feclearexcept(FE_ALL_EXCEPT);
+                   feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW | FE_UNDERFLOW | FE_INEXACT);
+                 }});
+#endif
+  return all;
+}
+
+// What this thread's environment is, by what it does.
+std::string described() {
+  std::string text = std::to_string(std::fegetround());
+#if defined(__SSE2__)
+  text += " " + std::to_string(_mm_getcsr() & ~0x3fu);
+#endif
+  return text;
+}
+
+/// Runs functions of the engine in an environment, and everything else in the default one.
+class InEnvironment {
+ public:
+  explicit InEnvironment(const Environment& environment) : environment_(environment) {}
+  template <class Work>
+  auto operator()(const Work& work) const {
+    std::fenv_t before;
+    std::fegetenv(&before);
+    environment_.set();
+    struct Restore {
+      const std::fenv_t& before;
+      ~Restore() { std::fesetenv(&before); }
+    };
+    if constexpr (std::is_void_v<decltype(work())>) {
+      std::string set, left;
+      {
+        const Restore restore{before};
+        set = described();
+        work();
+        left = described();
+      }
+      CHECK(set == left);
+    } else {
+      std::string set, left;
+      auto result = [&] {
+        const Restore restore{before};
+        set = described();
+        auto done = work();
+        left = described();
+        return done;
+      }();
+      CHECK(set == left);
+      return result;
+    }
+  }
+
+ private:
+  const Environment& environment_;
+};
+
+// A mesh whose coordinates are subnormal floats, and one that is far from its origin.
+void addOddMeshes(Scene& scene) {
+  constexpr float kTiny = 0x1p-140f;
+  constexpr float small[] = {0, 0, 0, kTiny, 0, 0, 0, kTiny, 3 * kTiny};
+  constexpr float far[] = {1e6f, 1e6f, 0, 1e6f + 1, 1e6f, 0, 1e6f, 1e6f + 1, 0.1f};
+  const uint32_t triangle[] = {0, 1, 2};
+  scene.addObject({.mesh = scene.addMesh(small, triangle), .worldFromMesh = {{1, 0, 0, 0.3, 0, 1, 0, 0, 0, 0, 1, 2}}});
+  scene.addObject(
+      {.mesh = scene.addMesh(far, triangle), .worldFromMesh = {{1, 0, 0, -1e6, 0, 1, 0, -1e6, 0, 0, 1, 5}}});
+}
+
+struct AllAnswers {
+  Answers cpu, contact, recorded, pool;
+  std::vector<Result> sampled;
+  Transform read;
+  std::array<double, 3> point;
+  std::string wrong;
+};
+
+// The answers of everything, all of it made in the environment.
+AllAnswers answersIn(const InEnvironment& in) {
+  const test::SceneEdits edits;
+  Scene scene;
+  in([&] { edits.make(scene); });
+  in([&] { addOddMeshes(scene); });
+  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
+  AllAnswers answers;
+  CpuSweeper cpu(scene);
+  answers.cpu = in([&] { return test::ask(cpu, queries); });
+  const Device device = in([] { return Device::open({.onValidation = test::onValidation}); });
+  CHECK(device.doubles() == test::device().doubles());
+  for (const ArithmeticCheck& check : in([&] { return checkArithmetic(device); })) CHECK(check.passed());
+  Sweeper sweeper = in([&] { return Sweeper(device, scene, {.cpuBatch = 0}); });
+  answers.contact = in([&] { return test::ask(sweeper, queries); });
+  CHECK(sweeper.stats().submissions > 0);
+  answers.sampled = in([&] { return sweeper.run(drawn); });
+  Recorder recorder = in([&] { return Recorder(device, scene, test::kScenarioRoom); });
+  gpu::Submission submission(device.impl(), false);
+  const gpu::Commands commands = submission.begin();
+  in([&] { recorder.record(commands, queries); });
+  submission.submitAndWait();
+  answers.recorded.results = in([&] { return recorder.read(&answers.recorded.lists); });
+  std::vector<Device> devices;
+  devices.push_back(in([&] { return Device::open({.onValidation = test::onValidation}); }));
+  Scene posed;  // a pool reads no other than its own
+  in([&] { edits.make(posed); });
+  in([&] { addOddMeshes(posed); });
+  const auto pool = in([&] { return std::make_unique<Pool>(devices, posed, SweeperOptions{.cpuBatch = 0}); });
+  PoolAnswers pooled = in([&] { return pool->submit(queries).get(); });
+  answers.pool = {std::move(pooled.results), std::move(pooled.lists)};
+  const float bytes[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 1.1f, 1.2f, 1.3f};
+  answers.read = in([&] { return readTransform(reinterpret_cast<const std::byte*>(bytes), QuaternionLayout{}); });
+  answers.point = in([&] { return transformPoint(answers.read, bytes); });
+  answers.wrong = in([&] { return validate(Transform{{1e-160, 0, 0, 0, 0, 1e-160, 0, 0, 0, 0, 1e-160, 0}}); });
+  return answers;
+}
+
+}  // namespace
+
+TEST_CASE("answers have the same bits whatever the floating-point environment of the calling thread, which keeps it") {
+  const Environment usual{"the default", [] {}};
+  const AllAnswers expected = answersIn(InEnvironment(usual));
+  CHECK(expected.wrong.empty());
+  for (const Environment& environment : environments()) {
+    CAPTURE(environment.name);
+    const AllAnswers found = answersIn(InEnvironment(environment));
+    CHECK(sameBits(found.cpu, expected.cpu));
+    CHECK(sameBits(found.contact, expected.contact));
+    CHECK(sameBits(found.recorded, expected.recorded));
+    CHECK(sameBits(found.pool, expected.pool));
+    CHECK(sameBits({found.sampled, {}}, {expected.sampled, {}}));
+    CHECK(found.read == expected.read);
+    CHECK(found.point == expected.point);
+    CHECK(found.wrong == expected.wrong);
+  }
+}
+
+TEST_CASE(
+    "numbers of mesh files are the nearest floats whatever the floating-point environment of the calling thread") {
+  const test::ScratchFolder folder;
+  const std::string file = folder.write("numbers.obj",
+                                        "v 0.1 1.1754942e-38 8e-46\nv 16777217 0.3333333333333333333333 1e-40\n"
+                                        "v 8388608.5 -0.7 123456789\nf 1 2 3\n");
+  std::vector<std::string> warnings;
+  const tools::MeshData expected = tools::readMesh(file, warnings);
+  CHECK(expected.positions[2] == 0x1p-149f);
+  for (const Environment& environment : environments()) {
+    CAPTURE(environment.name);
+    CHECK(InEnvironment(environment)([&] { return tools::readMesh(file, warnings).positions; }) == expected.positions);
+  }
+}

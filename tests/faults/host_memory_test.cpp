@@ -1,0 +1,257 @@
+// Every allocation of host memory, and every start of a thread, fails in turn. The call that made it throws
+// std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing has leaked.
+#include <array>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <new>
+
+#include "faults/adopted.h"
+#include "faults/scenario.h"
+#include "gpu/submission.h"
+#include "radar/cpu_sweeper.h"
+#include "scene/parallel.h"
+#include "sweep/sweeper.h"
+
+namespace {
+
+using namespace radar;
+using test::Answers;
+using test::ask;
+using test::sameBits;
+
+// One request fails.
+struct Attempt {
+  bool threw = false;   // std::bad_alloc, and nothing else
+  bool failed = false;  // there were enough requests for one to fail
+};
+template <class Part>
+Attempt attempt(int64_t n, const Part& part) {
+  Attempt made;
+  {
+    const test::EngineWork counting;
+    test::host_memory::failAt(n);
+    try {
+      part();
+    } catch (const std::bad_alloc&) {
+      made.threw = true;
+    }
+  }
+  made.failed = test::host_memory::requests() > n;
+  test::host_memory::failAt(-1);
+  return made;
+}
+
+// Calls attemptAt(0), attemptAt(step), ... until no request was left to fail; returns how many failed.
+template <class AttemptAt>
+int64_t failEach(const AttemptAt& attemptAt, int64_t step = 1) {
+  for (int64_t n = 0, failed = 0;; n += step, ++failed) {
+    CAPTURE(n);
+    const Attempt made = attemptAt(n);
+    if (!made.failed) {
+      CHECK_FALSE(made.threw);
+      return failed;
+    }
+  }
+}
+
+// What a scene holds, for comparison.
+Answers answersOf(const Scene& scene) {
+  CpuSweeper sweeper(scene, 1);
+  return ask(sweeper, test::contactQueries());
+}
+
+// Changes a scene to and fro, in all that a copy of it follows.
+struct Changing {
+  Changing() { test::SceneEdits().make(scene); }
+  void change() {
+    Transform pose = scene.object(4).worldFromMesh;
+    pose.m[3] += isChanged ? -0.25 : 0.25;
+    std::vector<float> moved(scene.mesh(2).positions.begin(), scene.mesh(2).positions.end());
+    for (float& coordinate : moved) coordinate *= isChanged ? 2.0f : 0.5f;
+    if (isChanged) {
+      scene.removeObject(added);
+      scene.removeMesh(more);
+    } else {
+      more = scene.addMesh(moved, scene.mesh(2).indices);
+      added = scene.addObject({more, pose});
+    }
+    scene.setTransform(4, pose);
+    scene.setPositions(2, moved);
+    isChanged = !isChanged;
+  }
+  Scene scene;
+  MeshId more = kNone;
+  ObjectId added = kNone;
+  bool isChanged = false;
+};
+
+}  // namespace
+
+TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and the edit can be made again") {
+  using Edit = std::function<void(Scene&)>;
+  const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0.5f};
+  const uint32_t corners[] = {0, 1, 2};
+  std::vector<float> positions;
+  const std::vector<std::pair<const char*, Edit>> edits{
+      {"addMesh", [&](Scene& scene) { scene.addMesh(triangle, corners); }},
+      {"addMesh again",
+       [&](Scene& scene) {
+         scene.addMesh(triangle, corners, Bounds{{-1, -1, -1}, {2, 2, 2}});
+       }},
+      {"addObject",
+       [](Scene& scene) {
+         scene.addObject({scene.meshLimit() - 1, {}});
+       }},
+      {"addObject again",
+       [](Scene& scene) {
+         scene.addObject({0, {}});
+       }},
+      {"setPositions", [&](Scene& scene) { scene.setPositions(1, positions); }},
+      {"setTransform",
+       [](Scene& scene) {
+         scene.setTransform(0, {{1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0}});
+       }},
+      {"setMotion",
+       [](Scene& scene) {
+         scene.setMotion(1, {1, 2, 3});
+       }},
+      {"setBounds",
+       [](Scene& scene) {
+         scene.setBounds(1, {{-9, -9, -9}, {9, 9, 9}});
+       }},
+      {"removeObject", [](Scene& scene) { scene.removeObject(scene.objectLimit() - 2); }},
+      {"removeObject again", [](Scene& scene) { scene.removeObject(2); }},
+      {"removeMesh", [](Scene& scene) { scene.removeMesh(scene.meshLimit() - 1); }}};
+  Scene scene, reference;
+  for (Scene* each : {&scene, &reference}) test::SceneEdits().make(*each);
+  positions.assign(scene.mesh(1).positions.begin(), scene.mesh(1).positions.end());
+  for (size_t i = 0; i < positions.size(); i += 2) positions[i] *= 3;
+  CpuSweeper following(scene, 1);
+  Sweeper onDevice(test::adopted().device, scene, {.cpuBatch = 0});
+  int64_t failed = 0;
+  for (const auto& [name, change] : edits) {
+    CAPTURE(name);
+    const auto checkSame = [&] {
+      const std::vector<Query> queries = test::contactQueries();
+      const Answers expected = answersOf(reference);
+      CHECK(sameBits(ask(following, queries), expected));
+      CHECK(sameContacts(ask(onDevice, queries), expected));
+    };
+    failed += failEach([&](int64_t n) {
+      const Attempt made = attempt(n, [&] { change(scene); });
+      if (made.threw) {
+        CHECK(scene.meshLimit() <= reference.meshLimit() + 1);
+        checkSame();
+      } else if (made.failed) {
+        change(reference);  // both may be changed several times
+        checkSame();
+      }
+      return made;
+    });
+    change(reference);
+    checkSame();
+  }
+  CHECK(failed > 30);
+}
+
+TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper then answers it with the same bits") {
+  Changing changing;
+  CpuSweeper sweeper(changing.scene, 2);
+  const std::vector<Query> queries = test::contactQueries();
+  const int64_t failed = failEach([&](int64_t n) {
+    changing.change();
+    Answers found;
+    const Attempt made = attempt(n, [&] { found = ask(sweeper, queries); });
+    if (made.threw) found = ask(sweeper, queries);
+    CHECK(sameBits(found, answersOf(changing.scene)));
+    return made;
+  });
+  CHECK(failed > 20);
+}
+
+TEST_CASE("if threads cannot be started, a parallel loop does its work on those that run") {
+  for (int64_t n = 0; n < 12; ++n) {
+    std::atomic<size_t> done = 0;
+    const Attempt made = attempt(
+        n, [&] { parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; }); });
+    CAPTURE(n);
+    if (!made.threw) CHECK(done == 1000);
+  }
+}
+
+TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper then answers it with the same bits") {
+  Changing changing;
+  const Device& device = test::adopted().device;
+  Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
+  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
+  std::vector<Query> mixed = queries;
+  mixed.insert(mixed.end(), drawn.begin(), drawn.end());
+  std::array<Answers, 2> expected;
+  for (int i = 0; i < 2; ++i) {
+    changing.change();
+    Sweeper fresh(device, changing.scene, {.cpuBatch = 0});
+    expected.at(changing.isChanged) = ask(fresh, mixed);
+  }
+  ask(sweeper, mixed);
+  const int64_t failed = failEach([&](int64_t n) {
+    changing.change();
+    Answers found;
+    const Attempt made = attempt(n, [&] { found = ask(sweeper, mixed); });
+    if (made.threw) found = ask(sweeper, mixed);
+    CHECK(sameBits(found, expected.at(changing.isChanged)));
+    return made;
+  });
+  CHECK(failed > 100);
+}
+
+TEST_CASE("whichever allocation of a recording fails, the same recorder then records and reads the same answers") {
+  Changing changing;
+  const Device& device = test::adopted().device;
+  Recorder recorder(device, changing.scene, test::kScenarioRoom);
+  gpu::Submission submission(device.impl(), false);
+  const std::vector<Query> queries = test::contactQueries();
+  const int64_t failed = failEach([&](int64_t n) {
+    changing.change();
+    Answers found;
+    gpu::Commands commands = submission.begin();
+    const Attempt recorded = attempt(n, [&] { recorder.record(commands, queries); });
+    if (recorded.threw) {
+      CHECK(recorder.read().empty());
+      recorder.reset();
+      commands = submission.begin();
+      recorder.record(commands, queries);
+    }
+    submission.submitAndWait();
+    const Attempt read = attempt(n, [&] { found.results = recorder.read(&found.lists); });
+    if (read.threw) found.results = recorder.read(&found.lists);
+    CHECK(sameContacts(found, answersOf(changing.scene)));
+    return Attempt{recorded.threw || read.threw, recorded.failed || read.failed};
+  });
+  CHECK(failed > 30);
+}
+
+TEST_CASE("whichever allocation of setting up fails, what was made before is given back") {
+  test::FaultyHost host;
+  Changing changing;
+  const VkQueue queue = host.handles.queue;
+  host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines
+  const test::HollowPipelines hollow;
+  const auto setUp = [&] {
+    const Device device = Device::adopt(host.handles);
+    const Recorder recorder(device, changing.scene, test::kScenarioRoom);
+    device.impl().host.queue = queue;
+    Sweeper::Impl sweeper(device.impl(), changing.scene, {.timestamps = true},
+                          std::make_shared<GpuScene>(device.impl()));
+    sweeper.sampled();
+  };
+  setUp();
+  const int64_t live = test::host_memory::live(), objects = test::liveVulkanObjects();
+  const int64_t failed = failEach([&](int64_t n) {
+    const Attempt made = attempt(n, setUp);
+    CHECK(test::host_memory::live() == live);
+    CHECK(test::liveVulkanObjects() == objects);
+    return made;
+  });
+  CHECK(failed > 1000);
+}

@@ -1,0 +1,48 @@
+// A small scene with everything in it, and queries of every kind: what the fault tests ask again and again.
+#pragma once
+
+#include <vector>
+
+#include "radar/recorder.h"
+#include "workloads/workload.h"
+
+namespace radar::test {
+
+/// All kinds of edits, which make a scene of an empty one.
+class SceneEdits {
+ public:
+  SceneEdits();
+  /// Computes nothing itself.
+  void make(Scene& scene) const;
+
+ private:
+  tools::Workload workload_;
+  std::vector<float> moved_;
+  Transform pose_;
+};
+/// Queries of mode contact: steps, lists, clearances, decisions, what leaves or overlaps, exclusions and masks.
+std::vector<Query> contactQueries(uint32_t count = 24);
+/// Queries of mode sampled, which need a scene at rest.
+std::vector<Query> sampledQueries(uint32_t count = 4);
+
+/// The answers to a batch.
+struct Answers {
+  std::vector<Result> results;
+  Lists lists;
+};
+/// Whether all bits are equal.
+bool sameBits(const Answers& p, const Answers& q);
+/// Whether all bits but the tier, and whether something was detected, are equal: what the CPU alone does not tell.
+bool sameContacts(const Answers& p, const Answers& q);
+
+template <class Sweeper>
+Answers ask(Sweeper& sweeper, std::span<const Query> queries) {
+  std::vector<Result> results = sweeper.run(queries);
+  return {std::move(results), sweeper.lists()};
+}
+
+/// Room for contactQueries().
+inline constexpr Capacity kScenarioRoom{
+    .queries = 48, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 12, .searches = 1u << 10};
+
+}  // namespace radar::test

@@ -1,0 +1,109 @@
+#include "fuzz/check_answers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "fuzz/target.h"
+#include "support/same_bits.h"
+#include "unit/brute_force.h"
+
+namespace radar::fuzz {
+
+namespace {
+
+constexpr size_t kMostPairs = 600;  // of triangles, for brute force
+
+bool isFiniteAt(const MeshView& mesh, const Transform& pose) {
+  for (const uint32_t vertex : mesh.indices) {
+    for (const double x : transformPoint(pose, &mesh.positions[3 * size_t{vertex}])) {
+      if (!std::isfinite(x)) return false;
+    }
+  }
+  return true;
+}
+
+bool isForBruteForce(const Scene& scene, const Query& query) {
+  const MeshView sensor = scene.mesh(query.mesh);
+  if (!isFiniteAt(sensor, query.worldFromMesh)) return false;
+  size_t pairs = 0;
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    if (!scene.hasObject(id)) continue;
+    const MeshView mesh = scene.mesh(scene.object(id).mesh);
+    if (!isFiniteAt(mesh, scene.object(id).worldFromMesh)) return false;
+    pairs += size_t{sensor.triangleCount()} * mesh.triangleCount();
+  }
+  return pairs <= kMostPairs;
+}
+
+/// For the message of a failure.
+std::string inWords(const Query& query, const Result& result) {
+  std::ostringstream words;
+  words << std::hexfloat;
+  for (const double x : query.motion ? *query.motion : query.direction) words << " " << x;
+  words << (query.motion ? " motion" : " direction") << ", distance " << query.distance << ", clearance "
+        << query.clearance << ", anyHit " << query.anyHit << ", ignoreLeaving " << query.ignoreLeaving << "; status "
+        << static_cast<uint32_t>(result.status) << ", t " << result.t << ", lo " << result.lo << ", hi " << result.hi
+        << ", fraction " << result.fraction;
+  return words.str();
+}
+
+/// Checks what holds for every exact answer.
+void checkContract(const Query& query, const Result& result) {
+  const bool met = result.status == Status::hit || result.status == Status::overlap;
+  require(result.status != Status::invalid && result.flags == 0, "an answer that is invalid");
+  require(result.status != Status::undecided || query.clearance > 0, "an answer that is undecided");
+  if (result.status == Status::clear) {
+    require(result.lo == INFINITY && result.hi == INFINITY && result.t == INFINITY, "clear, but with times");
+  }
+  if (!met) return require(result.hi == INFINITY && result.object == kNone, "no contact, but with its object");
+  const double end = query.motion ? 1 : query.distance;
+  require(0 <= result.lo && result.lo <= result.hi && result.hi <= end, "bounds in disorder");
+  if (query.anyHit) return require(result.object == kNone && result.lo == 0 && result.hi == end, "a decision");
+  require(result.lo <= result.t && result.t <= result.hi, "t is not within the bounds");
+  require(result.fraction >= 0 && result.fraction <= 1, "the fraction is not from 0 to 1");
+  require(result.status != Status::overlap || result.t == 0, "an overlap after the start");
+}
+
+/// What is wrong with an answer to a query with a clearance: that contact would come later than the surfaces'.
+std::string faultOfClearance(const oracle::Truth& truth, const Query& query, const Result& result) {
+  if (truth.contacts.empty()) return "";
+  if (result.status == Status::clear) return "clear, but the surfaces meet";
+  if (query.anyHit) return "";
+  return oracle::compareToTime(truth.contacts[0], query, result.lo) < 0 ? "the surfaces meet before lo" : "";
+}
+
+std::string faultOf(const Scene& scene, const Query& query, const Result& result, std::span<const Result> hits,
+                    std::span<const ObjectId> overlapping) {
+  const oracle::Truth truth = oracle::truthOf(scene, query);
+  if (query.clearance > 0) return faultOfClearance(truth, query, result);
+  if (!query.anyHit) return oracle::faultOf(truth, query, result, hits, overlapping);
+  return (result.status == Status::hit) == truth.contacts.empty() ? "a wrong decision" : "";
+}
+
+}  // namespace
+
+void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<const Result> results,
+                  const Lists& lists) {
+  require(results.size() == queries.size(), "another number of answers");
+  for (size_t i = 0; i < queries.size(); ++i) {
+    checkContract(queries[i], results[i]);
+    if (!isForBruteForce(scene, queries[i])) continue;
+    const std::string fault = faultOf(scene, queries[i], results[i], lists.hitsOf(i), lists.overlappingOf(i));
+    require(fault.empty(), "query " + std::to_string(i) + ": " + fault + ":" + inWords(queries[i], results[i]));
+  }
+}
+
+void requireSame(std::span<const Result> found, const Lists& foundLists, std::span<const Result> expected,
+                 const Lists& expectedLists) {
+  const auto isSame = [](Result a, const Result& b) {
+    a.tier = b.tier;
+    return test::sameBits(a, b);
+  };
+  require(std::ranges::equal(found, expected, isSame), "answers differ");
+  require(std::ranges::equal(foundLists.hits, expectedLists.hits, isSame), "lists of hits differ");
+  require(foundLists.hitOffsets == expectedLists.hitOffsets, "lengths of lists differ");
+  require(foundLists.overlapping == expectedLists.overlapping, "lists of overlapping objects differ");
+}
+
+}  // namespace radar::fuzz

@@ -1,0 +1,18 @@
+// What answers must be, whatever is asked.
+#pragma once
+
+#include "radar/query.h"
+
+namespace radar::fuzz {
+
+/// Throws std::logic_error if exact answers to valid queries, or their lists, break their contract or differ from brute
+/// force in exact integers. Queries too costly for brute force, or whose placed coordinates are not finite, are held
+/// only to their contract.
+void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<const Result> results,
+                  const Lists& lists);
+
+/// Throws std::logic_error unless two batches of answers and their lists have the same bits, but for the tier.
+void requireSame(std::span<const Result> found, const Lists& foundLists, std::span<const Result> expected,
+                 const Lists& expectedLists);
+
+}  // namespace radar::fuzz

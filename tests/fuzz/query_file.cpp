@@ -1,0 +1,228 @@
+// Fuzzes query files: an input is the JSON text. What is read keeps the contracts of the scene and its queries, is
+// written and read again unchanged, and is answered.
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "batch/answer_file.h"
+#include "batch/query_file.h"
+#include "fuzz/check_answers.h"
+#include "fuzz/target.h"
+#include "radar/cpu_sweeper.h"
+#include "support/scratch_folder.h"
+
+namespace radar::fuzz {
+
+namespace {
+
+using namespace tools;
+
+/// The folder with the files that query files name, which is the current one.
+struct Files {
+  Files() {
+    // Each has a name with which it is read here, not by assimp in a child process, if it is named as a mesh.
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("b.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+    folder.write("parts.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\no x\nf 1 2 3\no y\nf 1 3 4\no x z\nl 1 2\n");
+    folder.write("instances.stl", "0\n1 1 0 0 3 0 1 0 0 0 0 1 0\n0 2 0 0 0 0 2 0 0 0 0 2 -3.5e0\n");
+    folder.write("broken.stl", "0 1\n");
+    std::string floats(9 * sizeof(float), '\0');
+    floats[15] = '\x40';
+    folder.write("positions.ply", floats);
+    std::filesystem::current_path(folder.path());
+  }
+  test::ScratchFolder folder;
+};
+
+/// Reads it as standard input.
+Workload readText(const std::string& text) {
+  std::istringstream stream(text);
+  std::streambuf* const before = std::cin.rdbuf(stream.rdbuf());
+  std::vector<std::string> warnings;
+  try {
+    Workload workload = readQueryFile("-", warnings);
+    std::cin.rdbuf(before);
+    return workload;
+  } catch (...) {
+    std::cin.rdbuf(before);
+    throw;
+  }
+}
+
+void checkMessage(const std::string& words) {
+  const auto isControl = [](char c) { return (c >= 0 && c < 32) || c == 127; };
+  require(words.starts_with("standard input: "), "a message that does not name the file: " + words);
+  require(words.size() < 4000 && std::ranges::none_of(words, isControl), "a message that cannot be printed");
+}
+
+void answer(const Workload& workload) {
+  ScenePlayer player(workload);
+  CpuSweeper sweeper(player.scene(), 1);
+  for (const Batch& batch : batchesOf(workload.queries)) {
+    player.show(batch.scene);
+    std::vector<Query> queries;
+    for (const uint32_t number : batch.queries) {
+      const QuerySpec& spec = workload.queries[number];
+      const bool isSampled = spec.mode == AnswerMode::sampled;
+      queries.push_back(toQuery(spec, isSampled ? Mode::sampled : Mode::contact));
+      const std::string wrong = validate(queries.back(), player.scene());
+      require(wrong.empty(), "a query that breaks its contract: " + wrong);
+    }
+    const std::vector<Result> results = sweeper.run(queries);
+    checkAnswers(player.scene(), queries, results, sweeper.lists());
+    const std::vector<std::string> names = workload.objectNames(batch.scene);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      const QuerySpec& spec = workload.queries[batch.queries[i]];
+      const auto hits = sweeper.lists().hitsOf(i);
+      const auto overlapping = sweeper.lists().overlappingOf(i);
+      const Answer answer{
+          results[i], AnswerMode::reference, "", {hits.begin(), hits.end()}, {overlapping.begin(), overlapping.end()}};
+      const std::string line = answerLine(spec, answer, names);
+      const nlohmann::json read = nlohmann::json::parse(line);
+      require(line.find('\n') == line.npos && read["status"] == nameOf(results[i].status), "a broken line: " + line);
+      const bool hasTime = read["t"].is_number();
+      require(!hasTime || (read["lo"] <= read["t"] && read["t"] <= read["hi"]), "bounds in disorder: " + line);
+    }
+  }
+}
+
+bool areSame(const QuerySpec& a, const QuerySpec& b) {
+  return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor && a.exclude == b.exclude &&
+         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion && a.mask == b.mask &&
+         a.anyHit == b.anyHit && a.ignoreLeaving == b.ignoreLeaving && a.skipOverlapping == b.skipOverlapping &&
+         a.slack == b.slack && a.hits == b.hits && a.clearance == b.clearance && a.mode == b.mode &&
+         a.speed == b.speed && a.tolerance == b.tolerance;
+}
+
+/// Written and read again, a workload is the same.
+void checkRoundTrip(const Workload& workload, const std::filesystem::path& folder) {
+  std::vector<std::string> warnings;
+  const Workload again = readQueryFile(writeQueryFile(workload, folder), warnings);
+  const auto sameMesh = [](const MeshData& a, const MeshData& b) {
+    return a.positions == b.positions && a.indices == b.indices;
+  };
+  const auto sameDeformation = [](const Deformation& a, const Deformation& b) {
+    return a.mesh == b.mesh && a.positions == b.positions;
+  };
+  const auto sameScene = [&](const SceneSpec& a, const SceneSpec& b) {
+    return a.id == b.id && a.base == b.base && a.instances == b.instances && a.masks == b.masks &&
+           a.motions == b.motions && std::ranges::equal(a.deforms, b.deforms, sameDeformation);
+  };
+  require(std::ranges::equal(workload.meshes, again.meshes, sameMesh), "other meshes when read again");
+  require(std::ranges::equal(workload.scenes, again.scenes, sameScene), "other scenes when read again");
+  require(std::ranges::equal(workload.queries, again.queries, areSame), "other queries when read again");
+}
+
+void run(std::string_view input) {
+  static const Files files;
+  Workload workload;
+  try {
+    workload = readText(std::string(input));
+  } catch (const InputError& error) {
+    return checkMessage(error.what());
+  }
+  answer(workload);
+  // Which writes files, and so takes long.
+  if (std::hash<std::string_view>()(input) % 32 == 0) checkRoundTrip(workload, files.folder.path() / "again");
+}
+
+std::vector<std::string> seeds() {
+  const std::string head = R"({"format": "cyber-radar-queries-1", "meshes": )";
+  return {
+      head + R"(["a.obj"], "scenes": [{"id": "a", "instances": [[0], [0, 1,0,0,5, 0,1,0,0, 0,0,1,0]]},
+ {"id": "b", "base": 0, "instances": [[0, 2,0,0,0, 0,-2,0,0, 0,0,2,1e-3]], "masks": [[1, 6]]}],
+ "queries": [{"id": "p", "scene": 0, "sensor": [0], "dir": [0, 0, 1], "D": 8},
+ {"id": "q", "scene": 1, "batch": 3, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "exclude": [2], "dir": [0, -0.5, 1],
+  "D": 0, "mask": 5, "decide": true, "mode": "sampled", "speed": 2.5, "tolerance": 0.25}]})",
+      head + R"(["a.obj", "b.off", "parts.obj#1", "parts.obj#x z"], "scenes": [], "queries": []})",
+      head +
+          R"(["a.obj", "b.off", "parts.obj#1"], "scenes": [{"instances_file": "instances.stl", "motions": [[1, 0, 0, -3]]}],
+ "queries": [{"id": "p", "scene": 0, "sensor": [1, 1,0,0,0, 0,1,0,0, 0,0,1,-2], "motion": [0, 0.5, 4], "hits": "all"},
+ {"id": "q", "scene": 0, "sensor": [2], "motion": [0, 0, 0], "skip_overlapping": true, "slack": 1e-9}]})",
+      head + R"(["b.off"], "scenes": [{"assembly": "parts.obj", "deforms": []}, {"base": 0, "instances": [[0]]}],
+ "queries": [{"id": "p", "scene": 1, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "clearance": 0.25},
+ {"id": "q", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 3, "ignore_leaving": true, "hits": 2, "mode": "contact"}]})",
+      head + R"(["a.obj"], "scenes": [{"instances": [[0]], "deforms": [[0, "positions.ply"]]}, {"instances": []}],
+ "queries": [{"id": "p", "scene": 0, "sensor": [0, 1,0,0,0, 0,1,0,0, 0,0,1,-5], "dir": [0, 0, 1], "D": 9, "mode": "reference"},
+ {"id": "q", "scene": 0, "batch": 18446744073709551615, "sensor": [0], "dir": [1, 0, 0], "D": 0},
+ {"id": "r", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 1e308}]})"};
+}
+
+}  // namespace
+
+const Target& target() {
+  static const Target kTarget{run,
+                              seeds,
+                              {"\"format\"",
+                               "\"meshes\"",
+                               "\"scenes\"",
+                               "\"queries\"",
+                               "\"id\"",
+                               "\"base\"",
+                               "\"instances\"",
+                               "\"instances_file\"",
+                               "\"assembly\"",
+                               "\"masks\"",
+                               "\"motions\"",
+                               "\"deforms\"",
+                               "\"scene\"",
+                               "\"batch\"",
+                               "\"sensor\"",
+                               "\"exclude\"",
+                               "\"dir\"",
+                               "\"D\"",
+                               "\"motion\"",
+                               "\"mask\"",
+                               "\"decide\"",
+                               "\"mode\"",
+                               "\"speed\"",
+                               "\"tolerance\"",
+                               "\"ignore_leaving\"",
+                               "\"slack\"",
+                               "\"skip_overlapping\"",
+                               "\"hits\"",
+                               "\"clearance\"",
+                               "\"rotation\"",
+                               "\"all\"",
+                               "\"sampled\"",
+                               "\"contact\"",
+                               "\"reference\"",
+                               "\"a.obj\"",
+                               "\"b.off\"",
+                               "\"parts.obj\"",
+                               "\"parts.obj#0\"",
+                               "\"parts.obj#x\"",
+                               "\"instances.stl\"",
+                               "\"broken.stl\"",
+                               "\"positions.ply\"",
+                               "null",
+                               "true",
+                               "false",
+                               "[",
+                               "]",
+                               "{",
+                               "}",
+                               ", ",
+                               ": ",
+                               "0",
+                               "-1",
+                               "1",
+                               "2",
+                               "0.5",
+                               "1e999",
+                               "1e308",
+                               "-1e-320",
+                               "4294967295",
+                               "4294967296",
+                               "18446744073709551615",
+                               "18446744073709551616",
+                               "\\u0000",
+                               "\\ud800",
+                               "\xff",
+                               "[0], ",
+                               "[0, 1,0,0,0, 0,1,0,0, 0,0,1,0], "}};
+  return kTarget;
+}
+
+}  // namespace radar::fuzz

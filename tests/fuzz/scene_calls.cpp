@@ -1,0 +1,294 @@
+#include "fuzz/scene_calls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fuzz/target.h"
+
+namespace radar::fuzz {
+
+namespace {
+
+constexpr double kMostBound = 0x1p120, kMostMotion = 0x1p1000;
+
+bool areFinite(const auto& numbers) {
+  return std::ranges::all_of(numbers, [](auto x) { return std::isfinite(x); });
+}
+
+bool areAtMost(const auto& numbers, double most) {
+  return std::ranges::all_of(numbers, [&](auto x) { return std::abs(x) <= most; });
+}
+
+bool isValid(const Bounds& bounds) {
+  for (size_t k = 0; k < 3; ++k) {
+    if (!(bounds.lo[k] <= bounds.hi[k])) return false;
+  }
+  return areAtMost(bounds.lo, kMostBound) && areAtMost(bounds.hi, kMostBound);
+}
+
+/// The bounds, made to hold the vertices of triangles.
+Bounds around(Bounds bounds, const std::vector<float>& positions, const std::vector<uint32_t>& indices) {
+  for (const uint32_t vertex : indices) {
+    for (size_t k = 0; k < 3; ++k) {
+      bounds.lo[k] = std::min(bounds.lo[k], double{positions[3 * size_t{vertex} + k]});
+      bounds.hi[k] = std::max(bounds.hi[k], double{positions[3 * size_t{vertex} + k]});
+    }
+  }
+  return bounds;
+}
+
+bool areInside(const Bounds& bounds, const std::vector<float>& positions, const std::vector<uint32_t>& indices) {
+  const Bounds grown = around(bounds, positions, indices);
+  return grown.lo == bounds.lo && grown.hi == bounds.hi;
+}
+
+/// The least number that is no key.
+uint32_t leastFree(const auto& items) {
+  uint32_t id = 0;
+  for (const auto& [used, item] : items) id += used == id;
+  return id;
+}
+
+constexpr std::array<float, 24> kBox{-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
+                                     -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
+constexpr std::array<uint32_t, 36> kBoxFaces{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+
+}  // namespace
+
+bool SceneCalls::call(const char* name, bool valid, const std::function<void()>& edit) const {
+  bool thrown = false;
+  const uint64_t version = scene_.version();
+  try {
+    edit();
+  } catch (const Error& error) {
+    thrown = true;
+    require(std::string_view(error.what()).starts_with(name), std::string("not named after the call: ") + error.what());
+    require(scene_.version() == version, "a refused edit that changed the scene");
+  }
+  require(thrown != valid, std::string(name) + (valid ? ": refused" : ": accepted"));
+  return valid;
+}
+
+template <class Items>
+uint32_t SceneCalls::idOf(const Items& items) {
+  if (items.empty() || choices_.oneIn(32)) return choices_.oneIn(2) ? choices_.raw<uint32_t>() : choices_.below(8);
+  return std::next(items.begin(), choices_.below(static_cast<uint32_t>(items.size())))->first;
+}
+
+SceneCalls::Mesh SceneCalls::mesh() {
+  Mesh mesh;
+  if (choices_.oneIn(3)) {
+    mesh.positions.assign(kBox.begin(), kBox.end());
+    mesh.indices.assign(kBoxFaces.begin(), kBoxFaces.end());
+    return mesh;
+  }
+  const uint32_t vertices = 1 + choices_.below(9), triangles = choices_.oneIn(32) ? 0 : 1 + choices_.below(6);
+  for (uint32_t i = 0; i < 3 * vertices; ++i) mesh.positions.push_back(choices_.number<float>(wild_));
+  for (uint32_t i = 0; i < 3 * triangles; ++i) mesh.indices.push_back(choices_.below(vertices));
+  if (choices_.oneIn(32)) mesh.positions.pop_back();
+  if (choices_.oneIn(32)) mesh.indices.push_back(choices_.raw<uint32_t>());
+  if (choices_.oneIn(32)) mesh.indices.assign(3, vertices);
+  return mesh;
+}
+
+Bounds SceneCalls::bounds() {
+  if (choices_.oneIn(2)) return {{-8, -8, -8}, {8, 8, 8}};
+  return {vector(), vector()};
+}
+
+Transform SceneCalls::pose() {
+  Transform pose;
+  const uint32_t kind = choices_.below(4);
+  if (kind == 3) {
+    for (double& entry : pose.m) entry = number();
+    return pose;
+  }
+  if (kind > 0) {
+    // A permutation of the axes, scaled and mirrored.
+    const uint32_t first = choices_.below(3), swapped = choices_.below(2);
+    for (uint32_t row = 0; row < 3; ++row) {
+      const uint32_t column = (first + (swapped == 0 ? row : 3 - row)) % 3;
+      for (uint32_t k = 0; k < 3; ++k) pose.m[4 * row + k] = k == column ? (kind == 1 ? 1 : number()) : 0;
+    }
+  }
+  const std::array<double, 3> at = vector();
+  for (size_t k = 0; k < 3; ++k) pose.m[4 * k + 3] = at[k];
+  return pose;
+}
+
+std::array<double, 3> SceneCalls::motion() {
+  return moving_ && choices_.oneIn(2) ? vector() : std::array<double, 3>{};
+}
+
+void SceneCalls::addMesh() {
+  Mesh mesh = this->mesh();
+  std::optional<Bounds> declared;
+  if (choices_.oneIn(8)) declared = bounds();
+  const size_t vertices = mesh.positions.size() / 3;
+  const bool valid = mesh.positions.size() % 3 == 0 && mesh.indices.size() % 3 == 0 && !mesh.indices.empty() &&
+                     areFinite(mesh.positions) &&
+                     std::ranges::all_of(mesh.indices, [&](uint32_t i) { return i < vertices; }) &&
+                     (!declared || (isValid(*declared) && areAtMost(mesh.positions, kMostBound)));
+  const MeshId expected = leastFree(meshes_);
+  MeshId id = kNone;
+  if (!call("addMesh", valid, [&] { id = scene_.addMesh(mesh.positions, mesh.indices, declared); })) return;
+  require(id == expected, "not the least free number of a mesh");
+  if (declared) mesh.within = around(*declared, mesh.positions, mesh.indices);
+  meshes_[id] = std::move(mesh);
+}
+
+void SceneCalls::setPositions() {
+  const MeshId id = idOf(meshes_);
+  const auto found = meshes_.find(id);
+  std::vector<float> positions(found == meshes_.end() ? 9 : found->second.positions.size() + 3 * choices_.oneIn(16));
+  for (float& x : positions) x = choices_.number<float>(wild_);
+  const bool valid = found != meshes_.end() && areFinite(positions) &&
+                     positions.size() == found->second.positions.size() &&
+                     (!found->second.within || areInside(*found->second.within, positions, found->second.indices));
+  if (call("setPositions", valid, [&] { scene_.setPositions(id, positions); })) found->second.positions = positions;
+}
+
+void SceneCalls::removeMesh() {
+  const MeshId id = idOf(meshes_);
+  const bool valid =
+      meshes_.contains(id) && std::ranges::none_of(objects_, [&](const auto& item) { return item.second.mesh == id; });
+  if (call("removeMesh", valid, [&] { scene_.removeMesh(id); })) meshes_.erase(id);
+}
+
+void SceneCalls::addObject() {
+  const Object object{idOf(meshes_), pose(), choices_.oneIn(4) ? choices_.below(4) : ~0u, motion()};
+  const bool valid =
+      meshes_.contains(object.mesh) && validate(object.worldFromMesh).empty() && areAtMost(object.motion, kMostMotion);
+  require(areFinite(object.worldFromMesh.m) || !validate(object.worldFromMesh).empty(), "a pose that is not finite");
+  const ObjectId expected = leastFree(objects_);
+  ObjectId id = kNone;
+  if (!call("addObject", valid, [&] { id = scene_.addObject(object); })) return;
+  require(id == expected, "not the least free number of an object");
+  objects_[id] = object;
+}
+
+void SceneCalls::editObject() {
+  const ObjectId id = idOf(objects_);
+  const auto found = objects_.find(id);
+  const bool exists = found != objects_.end();
+  switch (choices_.below(4)) {
+    case 0: {
+      const Transform moved = pose();
+      const bool valid = exists && validate(moved).empty();
+      if (call("setTransform", valid, [&] { scene_.setTransform(id, moved); })) found->second.worldFromMesh = moved;
+      break;
+    }
+    case 1: {
+      const std::array<double, 3> step = motion();
+      const bool valid = exists && areAtMost(step, kMostMotion);
+      if (call("setMotion", valid, [&] { scene_.setMotion(id, step); })) found->second.motion = step;
+      break;
+    }
+    case 2: {
+      const Bounds within = bounds();
+      call("setBounds", exists && isValid(within), [&] { scene_.setBounds(id, within); });
+      break;
+    }
+    default:
+      if (call("removeObject", exists, [&] { scene_.removeObject(id); })) objects_.erase(id);
+  }
+}
+
+void SceneCalls::edit() {
+  const uint32_t kind = meshes_.empty() ? 0 : choices_.below(8);
+  if (kind == 0) {
+    addMesh();
+  } else if (kind == 1) {
+    setPositions();
+  } else if (kind == 2) {
+    removeMesh();
+  } else if (kind < 6) {
+    addObject();
+  } else {
+    editObject();
+  }
+  checkModel();
+}
+
+void SceneCalls::checkModel() const {
+  require(meshes_.empty() || scene_.meshLimit() > meshes_.rbegin()->first, "a mesh beyond the limit");
+  require(objects_.empty() || scene_.objectLimit() > objects_.rbegin()->first, "an object beyond the limit");
+  for (MeshId id = 0; id <= scene_.meshLimit(); ++id) {
+    const auto expected = meshes_.find(id);
+    require(scene_.hasMesh(id) == (expected != meshes_.end()), "hasMesh");
+    if (expected == meshes_.end()) continue;
+    const MeshView mesh = scene_.mesh(id);
+    require(std::ranges::equal(mesh.positions, expected->second.positions), "other positions");
+    require(std::ranges::equal(mesh.indices, expected->second.indices), "other indices");
+  }
+  for (ObjectId id = 0; id <= scene_.objectLimit(); ++id) {
+    const auto expected = objects_.find(id);
+    require(scene_.hasObject(id) == (expected != objects_.end()), "hasObject");
+    if (expected == objects_.end()) continue;
+    const Object& object = scene_.object(id);
+    require(object.mesh == expected->second.mesh && object.worldFromMesh == expected->second.worldFromMesh &&
+                object.mask == expected->second.mask && object.motion == expected->second.motion,
+            "another object");
+  }
+}
+
+/// At the origin of an object, or beside it.
+void SceneCalls::aim(Query& query, ObjectId object) {
+  if (!objects_.contains(object)) return;
+  const std::array<double, 3> beside = query.direction;
+  for (size_t k = 0; k < 3; ++k) {
+    query.direction[k] = objects_.at(object).worldFromMesh.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
+    if (choices_.oneIn(4)) query.direction[k] += beside[k];
+  }
+  query.distance =
+      choices_.of(std::array{0.5, 1.0, 4.0}) * std::hypot(query.direction[0], query.direction[1], query.direction[2]);
+}
+
+Query SceneCalls::query() {
+  Query query{.mesh = idOf(meshes_), .worldFromMesh = pose()};
+  query.direction = vector();
+  query.distance = std::abs(number());
+  if (!objects_.empty() && !choices_.oneIn(4)) aim(query, idOf(objects_));
+  if (moving_ && choices_.oneIn(2)) {
+    query.motion = query.direction;
+    query.direction = {};
+    query.distance = 0;
+  }
+  if (choices_.oneIn(8)) query.mask = choices_.below(4);
+  for (uint32_t count = choices_.oneIn(8) ? choices_.below(200) : 0; count > 0; --count) {
+    query.exclude.push_back(idOf(objects_));
+  }
+  switch (choices_.below(8)) {
+    case 7:
+      query.anyHit = true;
+      break;
+    case 6:
+      query.hits = choices_.of(std::array{0u, 1u, 2u, 3u, 1u << 31, kAllHits});
+      break;
+    case 5:
+      query.clearance = number();
+      if (choices_.oneIn(2)) query.tolerance = number();
+      break;
+    default:
+      break;
+  }
+  query.ignoreLeaving = choices_.oneIn(4);
+  query.skipOverlapping = choices_.oneIn(6);
+  if ((query.ignoreLeaving || query.skipOverlapping) && choices_.oneIn(2)) query.slack = number();
+  if (choices_.oneIn(64)) query.anyHit = !query.anyHit;
+  if (choices_.oneIn(16)) query.resolution = choices_.below(4096);
+  if (choices_.oneIn(64)) query.distance = number();
+  return query;
+}
+
+std::vector<Query> SceneCalls::queries(uint32_t most, bool sampledToo) {
+  std::vector<Query> queries(choices_.below(most + 1));
+  for (Query& query : queries) {
+    query = this->query();
+    if (sampledToo && choices_.oneIn(3)) query.mode = Mode::sampled;
+  }
+  return queries;
+}
+
+}  // namespace radar::fuzz

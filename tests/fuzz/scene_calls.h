@@ -1,0 +1,58 @@
+// Random calls of the public interface: edits of a scene, each compared with a model of it, and queries.
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "fuzz/choices.h"
+#include "radar/query.h"
+
+namespace radar::fuzz {
+
+class SceneCalls {
+ public:
+  explicit SceneCalls(Choices& choices) : choices_(choices), wild_(choices.oneIn(3)), moving_(choices.oneIn(4)) {}
+
+  /// Makes a random edit. Throws std::logic_error if a valid one is refused, an invalid one is accepted, or the scene
+  /// is not what it must be then.
+  void edit();
+  /// Some queries, valid or not, of mode contact or of any.
+  std::vector<Query> queries(uint32_t most, bool sampledToo = false);
+  const Scene& scene() const { return scene_; }
+
+ private:
+  struct Mesh {
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+    std::optional<Bounds> within{};  ///< what was declared, and the first positions
+  };
+
+  void addMesh();
+  void setPositions();
+  void removeMesh();
+  void addObject();
+  void editObject();
+  void checkModel() const;
+  /// Makes the call, which must throw an Error exactly if it is not `valid`. Returns `valid`.
+  bool call(const char* name, bool valid, const std::function<void()>& edit) const;
+
+  double number() { return choices_.number<double>(wild_); }
+  std::array<double, 3> vector() { return {number(), number(), number()}; }
+  Mesh mesh();
+  Bounds bounds();
+  Transform pose();
+  std::array<double, 3> motion();
+  /// Mostly an id in use.
+  template <class Items>
+  uint32_t idOf(const Items& items);
+  void aim(Query& query, ObjectId object);
+  Query query();
+
+  Choices& choices_;
+  bool wild_, moving_;
+  Scene scene_;
+  std::map<MeshId, Mesh> meshes_;
+  std::map<ObjectId, Object> objects_;
+};
+
+}  // namespace radar::fuzz

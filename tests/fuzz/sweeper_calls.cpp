@@ -1,0 +1,77 @@
+// Fuzzes a Sweeper: an input is a sequence of edits of a scene and of batches of queries, which the device answers as
+// the CPU does.
+#include "fuzz/check_answers.h"
+#include "fuzz/scene_calls.h"
+#include "fuzz/target.h"
+#include "radar/cpu_sweeper.h"
+#include "radar/radar.h"
+#include "support/test_device.h"
+
+namespace radar::fuzz {
+
+namespace {
+
+/// An answer of mode sampled may be late or open, but nothing that it says may be wrong.
+void checkSampled(const Result& sampled, const Result& exact, const std::string& reason) {
+  const bool met = exact.status == Status::hit || exact.status == Status::overlap;
+  switch (sampled.status) {
+    case Status::hit:
+    case Status::overlap:
+      return require(met && exact.lo <= sampled.hi, "a contact before the first one");
+    case Status::clear:
+      return require(!met, "clear, but there is contact");
+    case Status::undecided:
+      return require(!met || sampled.lo <= exact.hi, "contact before lo");
+    case Status::invalid:
+      return require(!reason.empty(), "invalid without a reason");
+  }
+}
+
+void ask(SceneCalls& calls, Sweeper& sweeper) {
+  std::vector<Query> queries = calls.queries(4, true);
+  const auto isInvalid = [&](const Query& query) { return !validate(query, calls.scene()).empty(); };
+  if (std::ranges::any_of(queries, isInvalid)) {
+    try {
+      sweeper.run(queries);
+      require(false, "an invalid query is answered");
+    } catch (const Error&) {
+      std::erase_if(queries, isInvalid);
+    }
+  }
+  const std::vector<Result> found = sweeper.run(queries);
+  CpuSweeper cpu(calls.scene(), 1);
+  std::vector<Result> expected = cpu.run(queries);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    if (queries[i].mode != Mode::sampled) continue;
+    checkSampled(found[i], expected[i], sweeper.reason(i));
+    expected[i] = found[i];
+  }
+  requireSame(found, sweeper.lists(), expected, cpu.lists());
+}
+
+void run(std::string_view input) {
+  Choices choices(input);
+  SceneCalls calls(choices);
+  Sweeper sweeper(test::device(), calls.scene(), {.cpuBatch = choices.below(3)});
+  for (int i = 0; i < 40 && !choices.areOver(); ++i) {
+    if (choices.oneIn(4)) {
+      ask(calls, sweeper);
+    } else {
+      calls.edit();
+    }
+  }
+  for (const std::string& message : test::takeValidationMessages()) require(false, "validation: " + message);
+}
+
+std::vector<std::string> seeds() {
+  return randomSeeds(32, 400);
+}
+
+}  // namespace
+
+const Target& target() {
+  static const Target kTarget{run, seeds, {}};
+  return kTarget;
+}
+
+}  // namespace radar::fuzz

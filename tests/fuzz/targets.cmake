@@ -1,0 +1,43 @@
+# Fuzz targets. Here they run their seeds and a fixed number of mutations. With RADAR_FUZZ (preset fuzz) they are programs
+# of libFuzzer, of which the tests are short runs; tests/fuzz/run makes long ones.
+option(RADAR_FUZZ "Build the fuzz targets with libFuzzer (needs clang)" OFF)
+add_custom_target(fuzz_targets)
+if(RADAR_FUZZ)
+  # It is no part of what is tested, and slow under sanitizers.
+  target_compile_options(radar_oracle PRIVATE -fno-sanitize=all)
+endif()
+
+# MUTATIONS: how many a test runs.
+function(radar_fuzz name sentence)
+  cmake_parse_arguments(arg "" "MUTATIONS" "SOURCES;LINK" ${ARGN})
+  set(program fuzz_${name})
+  add_executable(${program} fuzz/${name}.cpp fuzz/random_seeds.cpp ${arg_SOURCES})
+  target_include_directories(${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
+  target_link_libraries(${program} PRIVATE CyberRadar::radar radar_workloads radar_warnings ${arg_LINK})
+  target_compile_definitions(${program} PRIVATE RADAR_ASSIMP_MODELS="${assimp_models}")
+  add_dependencies(fuzz_targets ${program})
+  if(RADAR_FUZZ)
+    target_sources(${program} PRIVATE fuzz/libfuzzer_main.cpp)
+    target_link_options(${program} PRIVATE -fsanitize=fuzzer)
+    set(command ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/run $<TARGET_FILE:${program}> ${CMAKE_CURRENT_BINARY_DIR}/fuzz/${name}
+        -runs=${arg_MUTATIONS} -seed=1)
+  else()
+    target_sources(${program} PRIVATE fuzz/seeded_main.cpp)
+    target_link_libraries(${program} PRIVATE CLI11::CLI11)
+    set(command ${program} --runs ${arg_MUTATIONS})
+  endif()
+  add_test(NAME "fuzz: ${sentence}" COMMAND ${command})
+  set_tests_properties("fuzz: ${sentence}" PROPERTIES ENVIRONMENT "${validation}")
+endfunction()
+
+set(fuzzed_scene fuzz/check_answers.cpp fuzz/scene_calls.cpp)
+radar_fuzz(mesh_file "any bytes are read or refused as OBJ, STL, PLY and OFF files" MUTATIONS 5000 LINK radar_import)
+radar_fuzz(cpu_calls "any calls of the interface keep its contracts, and the CPU's answers are exact" MUTATIONS 3000
+  SOURCES ${fuzzed_scene} LINK radar_oracle)
+radar_fuzz(query_file "any bytes are read or refused as a query file, and what is read is answered" MUTATIONS 5000
+  SOURCES ${fuzzed_scene} LINK radar_batch radar_oracle)
+set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)
+radar_fuzz(sweeper_calls "any calls of the interface get the CPU's answers from the device" MUTATIONS 30
+  SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})
+radar_fuzz(recorder_calls "a recording of any capacity has the CPU's answers or says which limit was too small" MUTATIONS 30
+  SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})

@@ -2,14 +2,11 @@
 // written and read again unchanged, and is answered.
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "batch/answer_file.h"
 #include "batch/query_file.h"
-#include "fuzz/check_answers.h"
+#include "fuzz/check_batch.h"
 #include "fuzz/target.h"
-#include "radar/cpu_sweeper.h"
 #include "support/scratch_folder.h"
 
 namespace radar::fuzz {
@@ -50,43 +47,6 @@ Workload readText(const std::string& text) {
   }
 }
 
-void checkMessage(const std::string& words) {
-  const auto isControl = [](char c) { return (c >= 0 && c < 32) || c == 127; };
-  require(words.starts_with("standard input: "), "a message that does not name the file: " + words);
-  require(words.size() < 4000 && std::ranges::none_of(words, isControl), "a message that cannot be printed");
-}
-
-void answer(const Workload& workload) {
-  ScenePlayer player(workload);
-  CpuSweeper sweeper(player.scene(), 1);
-  for (const Batch& batch : batchesOf(workload.queries)) {
-    player.show(batch.scene);
-    std::vector<Query> queries;
-    for (const uint32_t number : batch.queries) {
-      const QuerySpec& spec = workload.queries[number];
-      const bool isSampled = spec.mode == AnswerMode::sampled;
-      queries.push_back(toQuery(spec, isSampled ? Mode::sampled : Mode::contact));
-      const std::string wrong = validate(queries.back(), player.scene());
-      require(wrong.empty(), "a query that breaks its contract: " + wrong);
-    }
-    const std::vector<Result> results = sweeper.run(queries);
-    checkAnswers(player.scene(), queries, results, sweeper.lists());
-    const std::vector<std::string> names = workload.objectNames(batch.scene);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      const QuerySpec& spec = workload.queries[batch.queries[i]];
-      const auto hits = sweeper.lists().hitsOf(i);
-      const auto overlapping = sweeper.lists().overlappingOf(i);
-      const Answer answer{
-          results[i], AnswerMode::reference, "", {hits.begin(), hits.end()}, {overlapping.begin(), overlapping.end()}};
-      const std::string line = answerLine(spec, answer, names);
-      const nlohmann::json read = nlohmann::json::parse(line);
-      require(line.find('\n') == line.npos && read["status"] == nameOf(results[i].status), "a broken line: " + line);
-      const bool hasTime = read["t"].is_number();
-      require(!hasTime || (read["lo"] <= read["t"] && read["t"] <= read["hi"]), "bounds in disorder: " + line);
-    }
-  }
-}
-
 bool areSame(const QuerySpec& a, const QuerySpec& b) {
   return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor && a.exclude == b.exclude &&
          a.direction == b.direction && a.distance == b.distance && a.motion == b.motion && a.mask == b.mask &&
@@ -120,9 +80,9 @@ void run(std::string_view input) {
   try {
     workload = readText(std::string(input));
   } catch (const InputError& error) {
-    return checkMessage(error.what());
+    return checkMessage("standard input", error.what());
   }
-  answer(workload);
+  checkBatch(workload);
   // Which writes files, and so takes long.
   if (std::hash<std::string_view>()(input) % 32 == 0) checkRoundTrip(workload, files.folder.path() / "again");
 }

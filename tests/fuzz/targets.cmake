@@ -35,7 +35,11 @@ radar_fuzz(mesh_file "any bytes are read or refused as OBJ, STL, PLY and OFF fil
 radar_fuzz(cpu_calls "any calls of the interface keep its contracts, and the CPU's answers are exact" MUTATIONS 3000
   SOURCES ${fuzzed_scene} LINK radar_oracle)
 radar_fuzz(query_file "any bytes are read or refused as a query file, and what is read is answered" MUTATIONS 5000
-  SOURCES ${fuzzed_scene} LINK radar_batch radar_oracle)
+  SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
+radar_fuzz(query_arrays "any arrays are read or refused as queries, and what is read is answered" MUTATIONS 5000
+  SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle ${MINIZIP_LIBRARY})
+radar_fuzz(part_file "any bytes are merged, resumed or refused as a shard's answers" MUTATIONS 5000
+  SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)
 radar_fuzz(sweeper_calls "any calls of the interface get the CPU's answers from the device" MUTATIONS 30
   SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})

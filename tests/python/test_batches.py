@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import zipfile
 
 import numpy as np
 import pytest
@@ -224,6 +225,19 @@ def test_bad_arrays_are_refused_by_name_and_index(tmp_path, name, value, words):
     np.savez(tmp_path / "q.npz", **change(name, value))
     write_world(tmp_path, queries_file="q.npz")
     assert words in refusal(tmp_path)
+
+
+@pytest.mark.parametrize("size", [0, 3, 5, 6, 7])
+def test_numbers_of_odd_sizes_are_refused(tmp_path, size):
+    """They were read as numbers of eight bytes, beyond the array."""
+    write_world(tmp_path, queries_file="q.npz")
+    header = f"{{'descr': '<u{size}', 'fortran_order': False, 'shape': (20,), }}".ljust(117) + "\n"
+    odd = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode() + bytes(20 * size)
+    np.savez(tmp_path / "whole.npz", **some_arrays(20))
+    with zipfile.ZipFile(tmp_path / "whole.npz") as whole, zipfile.ZipFile(tmp_path / "q.npz", "w") as archive:
+        for name in whole.namelist():
+            archive.writestr(name, odd if name == "mesh.npy" else whole.read(name))
+    assert f"q.npz: mesh: expected float32, float64, integers or booleans, got the type u{size}" in refusal(tmp_path)
 
 
 def test_damaged_archives_are_refused(tmp_path):

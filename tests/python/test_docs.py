@@ -23,13 +23,29 @@ PACKAGE = pathlib.Path(cyber_radar.__file__).parent
 @pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
 def test_the_examples_of_a_page_print_what_it_says(page, tmp_path):
     """The examples of a page follow on from each other, as one script."""
+    prints_what_it_says("\n".join(examples(page)), tmp_path, [sys.executable, "-W", "error"])
+
+
+def test_the_examples_with_many_processes_print_what_they_say(tmp_path):
+    pytest.importorskip("mpi4py")
+    pytest.importorskip("distributed")
+    of_mpi, of_dask = examples("docs/many-machines.md")
+    prints_what_it_says(of_mpi, tmp_path, ["mpirun", "-n", "2", sys.executable])
+    prints_what_it_says(of_dask, tmp_path, [sys.executable])
+
+
+def examples(page: str) -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.M | re.S)
+
+
+def prints_what_it_says(script: str, folder: pathlib.Path, command: list[str]) -> None:
     lines = [f"v {x} {y} {z}" for x, y, z in box(1, 1, 1).tolist()] + [f"f {a} {b} {c}" for a, b, c in FACES + 1]
-    (tmp_path / "part.obj").write_text("\n".join(lines))
-    script = "\n".join(re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.M | re.S))
-    (tmp_path / "page.py").write_text(script)
-    run = subprocess.run(
-        [sys.executable, "-W", "error", "page.py"], cwd=tmp_path, capture_output=True, text=True
-    )  # fmt: skip
+    (folder / "part.obj").write_text("\n".join(lines))
+    (folder / "page.py").write_text(script)
+    # Open MPI wants to be told that root runs it.
+    environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    environment |= {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+    run = subprocess.run([*command, "page.py"], cwd=folder, capture_output=True, text=True, env=environment)
     expected = re.findall(r"print\(.*?  # (.*)$", script, re.M)
     assert (run.stdout.splitlines(), run.stderr) == (expected, "")
     assert expected

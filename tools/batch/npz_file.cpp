@@ -39,6 +39,17 @@ bool multiply(uint64_t& product, uint64_t factor) {
   return !__builtin_mul_overflow(product, factor, &product);
 }
 
+bool isPlain(char kind, size_t size) {
+  switch (kind) {
+    case 'f':
+      return size == 4 || size == 8;
+    case 'b':
+      return size == 1;
+    default:
+      return (kind == 'i' || kind == 'u') && (size == 1 || size == 2 || size == 4 || size == 8);
+  }
+}
+
 }  // namespace
 
 std::string npyHeader(const std::string& descr, std::span<const uint64_t> shape, size_t least) {
@@ -139,8 +150,7 @@ NpyArray NpzFile::arrayFrom(const std::string& name, std::string_view member) co
   NpyArray array;
   array.kind = *parts[2].first;
   array.size = static_cast<size_t>(std::stoul(parts[3]));
-  if (std::string_view("fiub").find(array.kind) == std::string_view::npos || array.size > 8 ||
-      (array.kind == 'f' && array.size < 4)) {
+  if (!isPlain(array.kind, array.size)) {
     refuse("expected float32, float64, integers or booleans, got the type " + parts[2].str() + parts[3].str());
   }
   if (parts[1] == ">") refuse("expected little-endian numbers, got big-endian ones");

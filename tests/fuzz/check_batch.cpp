@@ -1,0 +1,52 @@
+#include "fuzz/check_batch.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "batch/answer_file.h"
+#include "fuzz/check_answers.h"
+#include "fuzz/target.h"
+#include "radar/cpu_sweeper.h"
+
+namespace radar::fuzz {
+
+using namespace tools;
+
+void checkMessage(const std::string& file, const std::string& words) {
+  const auto isControl = [](char c) { return (c >= 0 && c < 32) || c == 127; };
+  require(words.starts_with(file + ": "), "a message that does not name the file: " + words);
+  require(words.size() < 4000 && std::ranges::none_of(words, isControl), "a message that cannot be printed");
+}
+
+void checkBatch(const tools::Workload& workload) {
+  ScenePlayer player(workload);
+  CpuSweeper sweeper(player.scene(), 1);
+  for (const Batch& batch : batchesOf(workload.queries)) {
+    player.show(batch.scene);
+    std::vector<Query> queries;
+    for (const uint32_t number : batch.queries) {
+      const QuerySpec& spec = workload.queries[number];
+      const bool isSampled = spec.mode == AnswerMode::sampled;
+      queries.push_back(toQuery(spec, isSampled ? Mode::sampled : Mode::contact));
+      const std::string wrong = validate(queries.back(), player.scene());
+      require(wrong.empty(), "a query that breaks its contract: " + wrong);
+    }
+    const std::vector<Result> results = sweeper.run(queries);
+    checkAnswers(player.scene(), queries, results, sweeper.lists());
+    const std::vector<std::string> names = workload.objectNames(batch.scene);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      const QuerySpec& spec = workload.queries[batch.queries[i]];
+      const auto hits = sweeper.lists().hitsOf(i);
+      const auto overlapping = sweeper.lists().overlappingOf(i);
+      const Answer answer{
+          results[i], AnswerMode::reference, "", {hits.begin(), hits.end()}, {overlapping.begin(), overlapping.end()}};
+      const std::string line = answerLine(spec, answer, names);
+      const nlohmann::json read = nlohmann::json::parse(line);
+      require(line.find('\n') == line.npos && read["status"] == nameOf(results[i].status), "a broken line: " + line);
+      const bool hasTime = read["t"].is_number();
+      require(!hasTime || (read["lo"] <= read["t"] && read["t"] <= read["hi"]), "bounds in disorder: " + line);
+    }
+  }
+}
+
+}  // namespace radar::fuzz

@@ -103,7 +103,8 @@ void WorkQueue::edit(const std::function<void()>& change) {
     Lock lock(mutex_);
     edited_.wait(lock, [&] { return !editing_; });
     editing_ = true;
-    settled_.wait(lock, [&] { return open_.empty() && posting_ == 0; });
+    // A batch that has ended early may still have chunks with workers.
+    settled_.wait(lock, [&] { return open_.empty() && posting_ == 0 && taken_ == 0; });
   }
   const Editing editing{*this};
   change();
@@ -184,6 +185,7 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
   Lock lock(mutex_);
   for (;;) {
     std::optional<Chunk> chunk = next(worker, inFlight);
+    if (chunk) ++taken_;
     if (chunk || inFlight > 0 || closed_) return chunk;
     work_.wait(lock);
   }
@@ -191,6 +193,7 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
 
 void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs) {
   const Lock lock(mutex_);
+  giveBack(1);
   PoolDevice& device = devices_[trace.device];
   device.queries += chunk.count;
   ++device.chunks;
@@ -210,6 +213,7 @@ void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace,
 void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks) {
   {
     const Lock lock(mutex_);
+    giveBack(chunks.size());
     share_.retire(worker);
     try {
       devices_[worker].retired = reason;
@@ -227,7 +231,13 @@ void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<C
 
 void WorkQueue::abandon(const Chunk& chunk, const std::exception_ptr& exception) {
   const Lock lock(mutex_);
+  giveBack(1);
   end(chunk.job, exception);
+}
+
+void WorkQueue::giveBack(size_t chunks) {
+  taken_ -= chunks;
+  if (taken_ == 0) settled_.notify_all();
 }
 
 // No reason stands for the list of retired devices.

@@ -77,6 +77,7 @@ class WorkQueue {
   void answerUntaken(const char* reason);
   void fail(const std::shared_ptr<Job>& job, size_t first, size_t count, const char* reason);
   void settle(const std::shared_ptr<Job>& job, size_t count);
+  void giveBack(size_t chunks);
   void end(const std::shared_ptr<Job>& job, const std::exception_ptr& exception);
   template <class Work>
   void orEnd(const std::shared_ptr<Job>& job, const Work& work);
@@ -90,6 +91,7 @@ class WorkQueue {
   std::deque<Chunk> returned_;              // from retired workers
   std::vector<std::shared_ptr<Job>> open_;  // not yet answered, in the order of submission
   size_t posting_ = 0;                      // batches that are being checked
+  size_t taken_ = 0;                        // chunks with workers
   bool editing_ = false, closed_ = false;
 };
 

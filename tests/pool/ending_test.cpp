@@ -5,9 +5,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <new>
 #include <thread>
 
 #include "pool/fixture.h"
+#include "pool/work_queue.h"
 
 using namespace radar;
 using test::Boxes;
@@ -136,4 +138,22 @@ TEST_CASE("creating, using and destroying a thousand pools leaks no thread and n
   CHECK(threadCount() == threads);
   // 2 kB per pool; a single leaked buffer with its memory is larger.
   CHECK(allocatedBytes() < before + 2'000'000);
+}
+
+TEST_CASE("an edit waits for the chunks of a batch that ended for lack of memory") {
+  // The batch was no longer open, so the scene changed while another device's worker was searching it.
+  Scene scene;
+  const MeshId mesh = scene.addMesh(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector<uint32_t>{0, 1, 2});
+  WorkQueue queue(std::vector<PoolDevice>(2));
+  std::future<PoolAnswers> answers =
+      queue.post(std::vector<Query>(64, {.mesh = mesh, .direction = {0, 0, 1}, .distance = 1}), {}, scene);
+  const std::optional<Chunk> first = queue.take(0, 0), second = queue.take(1, 0);
+  REQUIRE((first && second));
+  const std::exception_ptr shortage = std::make_exception_ptr(std::bad_alloc());
+  queue.abandon(*first, shortage);
+  CHECK_THROWS_AS(answers.get(), std::bad_alloc);
+  std::future<void> edit = std::async(std::launch::async, [&] { queue.edit([] {}); });
+  CHECK(edit.wait_for(std::chrono::milliseconds(50)) == std::future_status::timeout);
+  queue.abandon(*second, shortage);
+  edit.get();
 }

@@ -112,6 +112,7 @@ TEST_CASE("a sensor too small for a scene that a host has spread gets kFlagRange
                        .distance = 20});
   }
   std::vector<HostQuery> written;
+  written.reserve(queries.size());
   for (const Query& query : queries) written.push_back(test::hostQueryOf(query));
   queries.push_back(queries[1]);
   queries[2].clearance = 0x1p-8;

@@ -13,11 +13,9 @@
 namespace {
 
 using namespace radar;
-using test::append;
 using test::execute;
 using test::kRoom;
 using test::MovedWorld;
-using test::OnDevice;
 using test::sameBits;
 using test::Scales;
 

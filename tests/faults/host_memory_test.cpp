@@ -130,8 +130,9 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
   CpuSweeper following(scene, 1);
   Sweeper onDevice(test::adopted().device, scene, {.cpuBatch = 0});
   int64_t failed = 0;
-  for (const auto& [name, change] : edits) {
-    CAPTURE(name);
+  for (const auto& edit : edits) {
+    CAPTURE(edit.first);
+    const auto& change = edit.second;
     const auto checkSame = [&] {
       const std::vector<Query> queries = test::contactQueries();
       const Answers expected = answersOf(reference);

@@ -46,17 +46,17 @@ bool fails(const char* name, const void* handle) {
   return true;
 }
 
-// Handles of objects that are not made; no driver gives these.
-constexpr uintptr_t kHollow = 0xf00d;
+// Its address is the handle of all objects that are not made.
+char hollowObject;
 
 template <class Handle>
 bool isHollow(Handle handle) {
-  return reinterpret_cast<uintptr_t>(handle) == kHollow;
+  return reinterpret_cast<const char*>(handle) == &hollowObject;
 }
 
 template <class Handle>
 VkResult makeHollow(Handle* handle) {
-  *handle = reinterpret_cast<Handle>(kHollow);
+  *handle = reinterpret_cast<Handle>(&hollowObject);
   return VK_SUCCESS;
 }
 

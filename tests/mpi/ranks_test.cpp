@@ -135,7 +135,7 @@ TEST_CASE("when a rank is killed, the run ends, its file is resumed, and the byt
   CHECK(folder.list() == "a.jsonl.partial w whole.jsonl");
   if (!killsFirst) CHECK_THAT(run.err, Contains("a.jsonl.partial has the answers so far, and --resume finishes it"));
   const std::string partial = withoutHead(folder.read("a.jsonl.partial"));
-  CHECK((partial.size() > 0 && partial.size() < whole.size()));
+  CHECK((!partial.empty() && partial.size() < whole.size()));
   CHECK(whole.starts_with(partial));
 
   const std::string before = folder.read("a.jsonl.partial");

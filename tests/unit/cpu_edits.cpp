@@ -33,8 +33,8 @@ MeshId addSoup(Random& random, Scene& scene) {
 TEST_CASE("the CPU's answers follow objects that are moved, added and removed, and meshes that are replaced") {
   Random random(11);
   Scene scene;
-  std::vector<MeshId> meshes;
-  for (int i = 0; i < 4; ++i) meshes.push_back(addSoup(random, scene));
+  std::vector<MeshId> meshes(4);
+  for (MeshId& mesh : meshes) mesh = addSoup(random, scene);
   agreement::ThreadedSweepers sides(scene);
   for (int round = 0; round < 120; ++round) {
     INFO("round " << round);

@@ -245,8 +245,8 @@ TEST_CASE("the tree is out of range while floats cannot represent an object or i
 
 TEST_CASE("single edits of a large scene keep its tree valid and no worse than twice a new one") {
   Boxes boxes(11);
-  std::vector<ObjectId> objects;
-  for (int i = 0; i < 600; ++i) objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(40)}));
+  std::vector<ObjectId> objects(600);
+  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(40)});
   for (int round = 0; round < 150; ++round) {
     CAPTURE(round);
     checkTree(boxes.scene);
@@ -281,8 +281,8 @@ TEST_CASE("single edits of a large scene keep its tree valid and no worse than t
 
 TEST_CASE("the pages of changed nodes have every node that an edit changes, and few others") {
   Boxes boxes(12);
-  std::vector<ObjectId> objects;
-  for (int i = 0; i < 10'000; ++i) objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)}));
+  std::vector<ObjectId> objects(10'000);
+  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)});
   const ObjectTree& tree = boxes.scene.impl().objectTree();
   std::vector<gpu::ObjectNode> before = tree.nodes();
   size_t changed = 0, missed = 0, named = 0, edits = 0;

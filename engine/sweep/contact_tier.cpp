@@ -93,12 +93,16 @@ bool ContactTier::isOnCpu() const {
   return cpuBatchOf(options_, device_) == kNone;
 }
 
+void ContactTier::begin() {
+  planned_.clear();
+  sensors_.clear();
+  lists_ = {};
+  cramped_.clear();
+}
+
 void ContactTier::run(std::span<const size_t> which) {
   if (which.empty()) return;
   if (which.size() < cpuBatchOf(options_, device_)) return answerOnCpu(which);
-  // An exception may have left some of the last batch.
-  planned_.clear();
-  sensors_.clear();
   const Clock::time_point begun = Clock::now();
   const ObjectTree& tree = scene_.impl().objectTree();
   batch_.addCpuTime("select", msSince(begun));
@@ -163,11 +167,17 @@ void ContactTier::submit() {
 }
 
 void ContactTier::finish() {
-  collect();
-  while (!cramped_.empty()) {
-    const std::vector<size_t> again = std::exchange(cramped_, {});
-    run(again);
+  try {
     collect();
+    while (!cramped_.empty()) {
+      const std::vector<size_t> again = std::exchange(cramped_, {});
+      run(again);
+      collect();
+    }
+  } catch (...) {
+    // Nothing stays with the device behind an exception.
+    pending_.collect([&](auto) { submitter_->collect(scene_.impl(), batch_.stats.stages); });
+    throw;
   }
   finishLists();
 }

@@ -17,6 +17,8 @@ class ContactTier {
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
+  /// Begins a batch. Forgets what an exception may have left of the last one.
+  void begin();
   /// Plans and submits these queries; on return the last submission may still be running.
   void run(std::span<const size_t> which);
   /// Waits, and answers the queries that the device had no room or range for.

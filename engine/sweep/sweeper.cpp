@@ -76,6 +76,7 @@ void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> resu
   stats = {};
   reasons.clear();
   failure.reset();
+  contactTier.begin();
   std::vector<size_t> ofSampled, ofContact;
   for (size_t i = 0; i < queries.size(); ++i) {
     answers[i] = Result();

@@ -206,6 +206,27 @@ TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper
   CHECK(failed > 100);
 }
 
+TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter batch lists its own contacts only") {
+  Scene scene;
+  test::SceneEdits().make(scene);
+  // Each begins where an object is: contacts at the start leave no order open, so the device alone lists them.
+  std::vector<Query> queries = test::contactQueries(16);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    const Object& object = scene.object(static_cast<ObjectId>(i % 8));
+    queries[i] = {.mesh = object.mesh, .worldFromMesh = object.worldFromMesh, .direction = {0, 0, 1}, .distance = 1};
+    queries[i].hits = kAllHits;
+  }
+  const std::vector<Query> later(queries.rbegin(), queries.rbegin() + 5);
+  Sweeper sweeper(test::adopted().device, scene, {.cpuBatch = 0});
+  const Answers expected = ask(sweeper, later);
+  const int64_t failed = failEach([&](int64_t n) {
+    const Attempt made = attempt(n, [&] { sweeper.run(queries); });
+    CHECK(sameBits(ask(sweeper, later), expected));
+    return made;
+  });
+  CHECK(failed > 30);
+}
+
 TEST_CASE("whichever allocation of a recording fails, the same recorder then records and reads the same answers") {
   Changing changing;
   const Device& device = test::adopted().device;

@@ -52,8 +52,9 @@ class MovedWorld {
  public:
   /// `movedOf`: whether a host moves an object; of those, `boundedOf` says which have bounds.
   template <class IsMoved, class IsBounded>
-  MovedWorld(uint32_t objects, uint64_t seed, const Scales& given, const IsMoved& isMoved, const IsBounded& isBounded)
-      : scales(given), random(seed) {
+  MovedWorld(uint32_t objects, uint64_t seed, const Scales& given, const IsMoved& isMoved, const IsBounded& isBounded,
+             const Device& on = test::device())
+      : scales(given), random(seed), device_(&on) {
     meshes = addSmallMeshes(scene, seed);
     addSmallMeshes(truth, seed);
     const tools::Vec3 centre = random.inCube(scales.away), rest = random.inCube(scales.anchor);
@@ -84,7 +85,7 @@ class MovedWorld {
     for (const ObjectId id : moved) {
       for (const double entry : truth.object(id).worldFromMesh.m) append<float>(bytes, {static_cast<float>(entry)});
     }
-    buffers_.emplace_back(bytes);
+    buffers_.emplace_back(bytes, *device_);
     group_ = {.transforms = buffers_.back().get(), .first = 8, .objects = moved};
   }
   HostGeometry geometry() const { return {.objects = {&group_, 1}}; }
@@ -146,6 +147,7 @@ class MovedWorld {
     scene.setBounds(id, {{-reach, -reach, -reach}, {reach, reach, reach}});
   }
 
+  const Device* device_;
   std::deque<OnDevice> buffers_;
   MovedObjects group_;
 };

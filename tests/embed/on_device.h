@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "embed/execute.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
@@ -16,10 +17,10 @@ namespace radar::test {
 /// A buffer on the device with the given bytes.
 class OnDevice {
  public:
-  explicit OnDevice(const std::vector<std::byte>& bytes)
-      : buffer_(test::device().impl(), "host's", gpu::BufferDomain::device,
+  explicit OnDevice(const std::vector<std::byte>& bytes, const Device& on = test::device())
+      : buffer_(on.impl(), "host's", gpu::BufferDomain::device,
                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {
-    const Device::Impl& device = test::device().impl();
+    const Device::Impl& device = on.impl();
     gpu::Upload upload(device);
     buffer_.reserve(bytes.size());
     upload.begin(bytes.size());
@@ -47,10 +48,7 @@ inline constexpr Capacity kRoom{.queries = 48, .candidates = 1u << 17, .rounds =
 
 inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> queries,
                                    const HostGeometry& geometry = {}) {
-  gpu::Submission submission(test::device().impl(), false);
-  recorder.record(submission.begin(), queries, geometry);
-  submission.submitAndWait();
-  return recorder.read();
+  return execute(test::device(), recorder, queries, geometry).results;
 }
 
 }  // namespace radar::test

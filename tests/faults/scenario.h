@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "radar/recorder.h"
+#include "support/answer.h"
 #include "workloads/workload.h"
 
 namespace radar::test {
@@ -25,21 +26,10 @@ std::vector<Query> contactQueries(uint32_t count = 24);
 /// Queries of mode sampled, which need a scene at rest.
 std::vector<Query> sampledQueries(uint32_t count = 4);
 
-/// The answers to a batch.
-struct Answers {
-  std::vector<Result> results;
-  Lists lists;
-};
 /// Whether all bits are equal.
 bool sameBits(const Answers& p, const Answers& q);
 /// Whether all bits but the tier, and whether something was detected, are equal: what the CPU alone does not tell.
 bool sameContacts(const Answers& p, const Answers& q);
-
-template <class Sweeper>
-Answers ask(Sweeper& sweeper, std::span<const Query> queries) {
-  std::vector<Result> results = sweeper.run(queries);
-  return {std::move(results), sweeper.lists()};
-}
 
 /// Room for contactQueries().
 inline constexpr Capacity kScenarioRoom{

@@ -36,18 +36,6 @@ bool isForBruteForce(const Scene& scene, const Query& query) {
   return pairs <= kMostPairs;
 }
 
-/// For the message of a failure.
-std::string inWords(const Query& query, const Result& result) {
-  std::ostringstream words;
-  words << std::hexfloat;
-  for (const double x : query.motion ? *query.motion : query.direction) words << " " << x;
-  words << (query.motion ? " motion" : " direction") << ", distance " << query.distance << ", clearance "
-        << query.clearance << ", anyHit " << query.anyHit << ", ignoreLeaving " << query.ignoreLeaving << "; status "
-        << static_cast<uint32_t>(result.status) << ", t " << result.t << ", lo " << result.lo << ", hi " << result.hi
-        << ", fraction " << result.fraction;
-  return words.str();
-}
-
 /// Checks what holds for every exact answer.
 void checkContract(const Query& query, const Result& result) {
   const bool met = result.status == Status::hit || result.status == Status::overlap;
@@ -83,6 +71,17 @@ std::string faultOf(const Scene& scene, const Query& query, const Result& result
 
 }  // namespace
 
+std::string inWords(const Query& query, const Result& result) {
+  std::ostringstream words;
+  words << std::hexfloat;
+  for (const double x : query.motion ? *query.motion : query.direction) words << " " << x;
+  words << (query.motion ? " motion" : " direction") << ", distance " << query.distance << ", clearance "
+        << query.clearance << ", anyHit " << query.anyHit << ", ignoreLeaving " << query.ignoreLeaving << "; status "
+        << static_cast<uint32_t>(result.status) << ", t " << result.t << ", lo " << result.lo << ", hi " << result.hi
+        << ", fraction " << result.fraction << ", object " << result.object << ", flags " << result.flags;
+  return words.str();
+}
+
 void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<const Result> results,
                   const Lists& lists) {
   require(results.size() == queries.size(), "another number of answers");
@@ -91,6 +90,21 @@ void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<
     if (!isForBruteForce(scene, queries[i])) continue;
     const std::string fault = faultOf(scene, queries[i], results[i], lists.hitsOf(i), lists.overlappingOf(i));
     require(fault.empty(), "query " + std::to_string(i) + ": " + fault + ":" + inWords(queries[i], results[i]));
+  }
+}
+
+void checkSampled(const Result& sampled, const Result& exact, const std::string& reason) {
+  const bool met = exact.status == Status::hit || exact.status == Status::overlap;
+  switch (sampled.status) {
+    case Status::hit:
+    case Status::overlap:
+      return require(met && exact.lo <= sampled.hi, "a contact before the first one");
+    case Status::clear:
+      return require(!met, "clear, but there is contact");
+    case Status::undecided:
+      return require(!met || sampled.lo <= exact.hi, "contact before lo");
+    case Status::invalid:
+      return require(!reason.empty(), "invalid without a reason");
   }
 }
 

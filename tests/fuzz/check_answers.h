@@ -11,6 +11,12 @@ namespace radar::fuzz {
 void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<const Result> results,
                   const Lists& lists);
 
+/// Throws std::logic_error if an answer of mode sampled says anything wrong; it may be late or open.
+void checkSampled(const Result& sampled, const Result& exact, const std::string& reason);
+
+/// A query and its answer, for the message of a failure.
+std::string inWords(const Query& query, const Result& result);
+
 /// Throws std::logic_error unless two batches of answers and their lists have the same bits, but for the tier.
 void requireSame(std::span<const Result> found, const Lists& foundLists, std::span<const Result> expected,
                  const Lists& expectedLists);

@@ -11,22 +11,6 @@ namespace radar::fuzz {
 
 namespace {
 
-/// An answer of mode sampled may be late or open, but nothing that it says may be wrong.
-void checkSampled(const Result& sampled, const Result& exact, const std::string& reason) {
-  const bool met = exact.status == Status::hit || exact.status == Status::overlap;
-  switch (sampled.status) {
-    case Status::hit:
-    case Status::overlap:
-      return require(met && exact.lo <= sampled.hi, "a contact before the first one");
-    case Status::clear:
-      return require(!met, "clear, but there is contact");
-    case Status::undecided:
-      return require(!met || sampled.lo <= exact.hi, "contact before lo");
-    case Status::invalid:
-      return require(!reason.empty(), "invalid without a reason");
-  }
-}
-
 void ask(SceneCalls& calls, Sweeper& sweeper) {
   std::vector<Query> queries = calls.queries(4, true);
   const auto isInvalid = [&](const Query& query) { return !validate(query, calls.scene()).empty(); };

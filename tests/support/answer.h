@@ -1,9 +1,23 @@
-// Answers for tests: of the CPU to a single query, and made-up ones.
+// Answers for tests: to a batch, of the CPU to a single query, and made-up ones.
 #pragma once
+
+#include <utility>
 
 #include "radar/cpu_sweeper.h"
 
 namespace radar::test {
+
+/// The answers to a batch.
+struct Answers {
+  std::vector<Result> results;
+  Lists lists;
+};
+
+template <class Sweeper>
+Answers ask(Sweeper& sweeper, std::span<const Query> queries) {
+  std::vector<Result> results = sweeper.run(queries);
+  return {std::move(results), sweeper.lists()};
+}
 
 inline Result answer(CpuSweeper& sweeper, const Query& query) {
   return sweeper.run({&query, 1})[0];

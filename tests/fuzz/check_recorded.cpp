@@ -1,0 +1,67 @@
+#include "fuzz/check_recorded.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fuzz/check_answers.h"
+#include "fuzz/target.h"
+#include "support/same_bits.h"
+
+namespace radar::fuzz {
+
+namespace {
+
+constexpr uint32_t kTooSmall = kFlagCandidates | kFlagRounds | kFlagUnresolved;
+
+/// But for the tier, and the order of contacts that are less than a rounding apart.
+void requireAgreement(const Query& query, Result found, const Result& expected) {
+  found.tier = expected.tier;
+  if (found.object == expected.object || std::isnan(expected.t)) {
+    return require(test::sameBits(found, expected), "another answer: " + inWords(query, found));
+  }
+  require(found.status == expected.status && found.lo <= expected.hi && expected.lo <= found.hi,
+          "another contact: " + inWords(query, found));
+}
+
+void checkAnswer(const Query& query, const Result& found, const Result& exact) {
+  if (found.flags == 0 && query.clearance > 0 && exact.status == Status::overlap) {
+    return require(found.status == Status::overlap && found.t == 0, "no overlap");
+  }
+  if (found.flags == 0) return requireAgreement(query, found, exact);
+  require((found.flags & ~(kTooSmall | kFlagRange)) == 0, "another flag: " + inWords(query, found));
+  require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
+  if (found.flags != kFlagUnresolved) return require(found.status == Status::invalid, "a flag, but not invalid");
+  const double end = query.motion ? 1 : query.distance;
+  require(found.status == Status::undecided, "open, but not undecided");
+  require(found.lo <= (exact.status == Status::clear || query.anyHit ? end : exact.hi), "contact before lo");
+}
+
+}  // namespace
+
+void checkRecorded(std::span<const Query> queries, const test::Answers& recorded, const test::Answers& expected) {
+  require(recorded.results.size() == queries.size(), "another number of answers");
+  for (size_t i = 0; i < queries.size(); ++i) {
+    checkAnswer(queries[i], recorded.results[i], expected.results[i]);
+    const auto found = recorded.lists.hitsOf(i), listed = expected.lists.hitsOf(i);
+    const auto isOpen = [](const Result& result) { return result.flags != 0; };
+    if (isOpen(recorded.results[i]) || std::ranges::any_of(found, isOpen)) continue;
+    require(found.size() == listed.size(), "a list of another length");
+    for (size_t k = 0; k < found.size() && queries[i].clearance == 0; ++k) {
+      requireAgreement(queries[i], found[k], listed[k]);
+    }
+    require(std::ranges::equal(recorded.lists.overlappingOf(i), expected.lists.overlappingOf(i)), "another overlap");
+  }
+}
+
+bool isTooSmall(const test::Answers& recorded) {
+  return std::ranges::any_of(recorded.results, [](const Result& result) { return (result.flags & kTooSmall) != 0; });
+}
+
+Capacity enoughFor(const Recorder& recorder) {
+  Capacity enough = recorder.needed();
+  enough.candidates += enough.candidates / 4;
+  enough.unresolvedPairs += enough.unresolvedPairs / 4;
+  return enough;
+}
+
+}  // namespace radar::fuzz

@@ -1,0 +1,220 @@
+#include "soak/answerers.h"
+
+#include <algorithm>
+
+#include "embed/execute.h"
+#include "fuzz/check_answers.h"
+#include "fuzz/check_recorded.h"
+#include "fuzz/target.h"
+
+namespace radar::soak {
+
+namespace {
+
+using fuzz::require;
+
+constexpr uint32_t kMostQueries = 64, kMostSampled = 12, kFewQueries = 3;
+constexpr uint32_t kMostSearches = 1u << 15;
+
+std::string none(size_t) {
+  return "";
+}
+
+Capacity anyCapacity(tools::Random& random) {
+  return {.queries = random.oneIn(4) ? 1 + random.below(kMostQueries) : kMostQueries,
+          .candidates = random.oneIn(4) ? 1 + random.below(2000) : 1u << 15,
+          .rounds = random.oneIn(4) ? 2 + 2 * random.below(8) : 32,
+          .unresolvedPairs = random.oneIn(4) ? 1 + random.below(200) : 1u << 12,
+          .searches = random.oneIn(4) ? random.below(64) : 1u << 11};
+}
+
+}  // namespace
+
+Answerers::Answerers(const Device& device, std::span<const Device> pooled, World& world, tools::Random& random,
+                     Tally& tally)
+    : device_(&device),
+      pooled_(pooled),
+      world_(&world),
+      random_(&random),
+      tally_(&tally),
+      options_{.select = !random.oneIn(4), .timestamps = random.oneIn(2), .cpuBatch = 0},
+      cpu_(world.scene(), 1 + random.below(2)),
+      ownRoom_(anyCapacity(random)),
+      sharedRoom_(anyCapacity(random)) {
+  sweeper_.emplace(device, world.scene(), options_);
+  recorder_.emplace(device, world.scene(), ownRoom_);
+  share();
+  pool_.emplace(pooled, world.scene(), options_);
+}
+
+void Answerers::share() {
+  sharedRecorder_.reset();
+  sharing_.reset();
+  copy_.emplace(*device_, world_->scene());
+  sharing_.emplace(*copy_, options_);
+  sharedRecorder_.emplace(*copy_, sharedRoom_);
+}
+
+Batch Answerers::batchOf(std::vector<Query> queries) {
+  Batch batch{std::move(queries), {}};
+  batch.exact = test::ask(cpu_, batch.queries);
+  return batch;
+}
+
+std::vector<Query> Answerers::choose() {
+  std::vector<Query> queries = world_->queries(kMostQueries);
+  if (!random_->oneIn(4) || !device_->supports(Mode::sampled)) return queries;
+  uint32_t drawn = 0;
+  for (Query query : queries) {
+    query.mode = Mode::sampled;
+    query.resolution = 8u << random_->below(4);
+    query.clearance = 0;
+    query.hits = 1;
+    query.ignoreLeaving = query.skipOverlapping = false;
+    if (validate(query, world_->scene()).empty() && drawn < kMostSampled) queries[drawn++] = query;
+  }
+  return queries;
+}
+
+void Answerers::checkExact(const Batch& batch) {
+  const auto few = static_cast<ptrdiff_t>(std::min<size_t>(kFewQueries, batch.queries.size()));
+  const Batch first = batchOf({batch.queries.begin(), batch.queries.begin() + few});
+  measured(Who::bruteForce, *tally_, [&] {
+    fuzz::checkAnswers(world_->scene(), first.queries, first.exact.results, first.exact.lists);
+    tally_->add(Who::bruteForce, first.queries.size());
+  });
+  if (!random_->oneIn(4)) return;
+  measured(Who::cpu, *tally_, [&] {
+    const Scene anew = world_->anew();
+    CpuSweeper fresh(anew, 1);
+    std::vector<Query> exact, close;
+    for (const Query& query : batch.queries) (query.clearance > 0 ? close : exact).push_back(query);
+    checkBatch(batchOf(exact), test::ask(fresh, exact), none, "", Who::cpu, *tally_);
+    // Their brackets depend on the trees over meshes, which are fitted to changes, or built anew.
+    checkBrackets(batchOf(close), fresh.run(close), *tally_);
+  });
+}
+
+template <class Remake>
+void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
+  const FaultPlan plan = chooseFault(*random_, true);
+  const auto reasonOf = [&](size_t i) { return sweeper->reason(i); };
+  test::Answers found;
+  const FaultOutcome outcome = under(plan, *tally_, [&] { found = test::ask(*sweeper, batch.queries); });
+  if (!outcome.threw) checkBatch(batch, found, reasonOf, outcome.happened ? outcome.reason : "", who, *tally_);
+  if (!outcome.happened) return;
+  if (*plan.fault == Fault::lost) remake();
+  checkBatch(batch, test::ask(*sweeper, batch.queries), reasonOf, "", who, *tally_);
+}
+
+/// The fault is in the engine's calls; the submission is the host's.
+test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
+  const FaultPlan plan = chooseFault(*random_, false);
+  gpu::Submission submission(device_->impl(), false);
+  gpu::Commands commands = submission.begin();
+  bool refused = false;
+  const FaultOutcome outcome = under(plan, *tally_, [&] {
+    try {
+      recorder.record(commands, queries);
+    } catch (const Error& error) {
+      if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
+      refused = true;
+    }
+  });
+  require(refused <= outcome.happened, "a failure that was not made");
+  const bool isLeft = !outcome.happened && random_->oneIn(12);
+  if (isLeft) tally_->add(Fault::notSubmitted);
+  if (refused || outcome.threw || isLeft) {
+    recorder.reset();
+    commands = submission.begin();
+    recorder.record(commands, queries);
+  }
+  submission.submitAndWait();
+  test::Answers found;
+  found.results = recorder.read(&found.lists);
+  return found;
+}
+
+template <class Make>
+void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity& capacity, const Batch& all,
+                            const Make& make) {
+  const Batch& batch =
+      all.queries.size() <= capacity.queries
+          ? all
+          : batchOf({all.queries.begin(), all.queries.begin() + static_cast<ptrdiff_t>(capacity.queries)});
+  for (int i = 0; i < 12; ++i) {
+    try {
+      const test::Answers found = record(*recorder, batch.queries);
+      fuzz::checkRecorded(batch.queries, found, batch.exact);
+      tally_->add(who, batch.queries.size());
+      if (!fuzz::isTooSmall(found)) return;
+      ++tally_->limited;
+      capacity = fuzz::enoughFor(*recorder);
+      capacity.queries = kMostQueries;
+    } catch (const Error& error) {
+      require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
+      recorder->reset();
+      if (capacity.searches >= kMostSearches) return;
+      capacity.searches = std::max(64u, 4 * capacity.searches);
+    }
+    make();
+  }
+  require(false, "what needed() gives is not enough");
+}
+
+void Answerers::askPool(const Batch& batch) {
+  const FaultPlan plan = chooseFault(*random_, true);
+  const Device& failing = pooled_[random_->below(static_cast<uint32_t>(pooled_.size()))];
+  const HostDevice device = random_->oneIn(2) ? failing.handles() : HostDevice{};
+  if (random_->oneIn(8)) cancel(batch);
+  PoolAnswers answers;
+  const auto ask = [&] { answers = pool_->submit(batch.queries).get(); };
+  const auto check = [&](const std::string& allowed) {
+    const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
+    checkBatch(batch, {answers.results, answers.lists}, reasonOf, allowed, Who::pool, *tally_);
+  };
+  const FaultOutcome outcome = under(plan, *tally_, ask, device);
+  if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
+  if (!outcome.happened) return;
+  const std::vector<PoolDevice> devices = pool_->devices();
+  const auto isRetired = [](const PoolDevice& one) { return !one.retired.empty(); };
+  if (std::ranges::any_of(devices, isRetired)) {
+    pool_.reset();
+    pool_.emplace(pooled_, world_->scene(), options_);
+  }
+  ask();
+  check("");
+}
+
+void Answerers::cancel(const Batch& batch) {
+  std::stop_source stop;
+  std::future<PoolAnswers> future = pool_->submit(batch.queries, stop.get_token());
+  stop.request_stop();
+  const PoolAnswers answers = future.get();
+  tally_->add(Fault::cancelled);
+  const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
+  checkBatch(batch, {answers.results, answers.lists}, reasonOf, "cancelled", Who::pool, *tally_);
+}
+
+void Answerers::round() {
+  pool_->edit([&] { world_->edit(); });
+  const Batch batch = batchOf(choose());
+  checkExact(batch);
+  measured(Who::sweeper, *tally_, [&] {
+    askSweeper(Who::sweeper, sweeper_, batch, [&] { sweeper_.emplace(*device_, world_->scene(), options_); });
+  });
+  measured(Who::sharing, *tally_, [&] { askSweeper(Who::sharing, sharing_, batch, [&] { share(); }); });
+  measured(Who::pool, *tally_, [&] { askPool(batch); });
+  const auto isSampled = [](const Query& query) { return query.mode == Mode::sampled; };
+  if (std::ranges::any_of(batch.queries, isSampled)) return;
+  measured(Who::recorder, *tally_, [&] {
+    askRecorder(Who::recorder, recorder_, ownRoom_, batch,
+                [&] { recorder_.emplace(*device_, world_->scene(), ownRoom_); });
+  });
+  measured(Who::sharedRecorder, *tally_, [&] {
+    askRecorder(Who::sharedRecorder, sharedRecorder_, sharedRoom_, batch,
+                [&] { sharedRecorder_.emplace(*copy_, sharedRoom_); });
+  });
+}
+
+}  // namespace radar::soak

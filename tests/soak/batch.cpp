@@ -1,0 +1,89 @@
+#include "soak/batch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "fuzz/check_answers.h"
+#include "fuzz/target.h"
+#include "support/same_bits.h"
+
+namespace radar::soak {
+
+namespace {
+
+using fuzz::require;
+
+/// But for the tier.
+bool isSame(Result a, const Result& b) {
+  a.tier = b.tier;
+  return test::sameBits(a, b);
+}
+
+std::string inWords(std::span<const Result> list) {
+  std::string words = " (";
+  for (const Result& entry : list) {
+    words += std::to_string(static_cast<uint32_t>(entry.status)) + " object " + std::to_string(entry.object) + " at " +
+             std::to_string(entry.t) + ", ";
+  }
+  return words + ")";
+}
+
+}  // namespace
+
+void measured(Who who, Tally& tally, const std::function<void()>& part) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  try {
+    part();
+  } catch (const std::exception& error) {
+    throw std::logic_error(std::string(kWho[static_cast<size_t>(who)]) + ": " + error.what());
+  }
+  tally.addSeconds(who, std::chrono::duration<double>(Clock::now() - start).count());
+}
+
+void checkBatch(const Batch& batch, const test::Answers& found, const ReasonOf& reasonOf, const std::string& allowed,
+                Who who, Tally& tally) {
+  require(found.results.size() == batch.queries.size(), "another number of answers");
+  for (size_t i = 0; i < batch.queries.size(); ++i) {
+    const Query& query = batch.queries[i];
+    const Result &result = found.results[i], &exact = batch.exact.results[i];
+    const auto fail = [&](const std::string& what) {
+      if (!allowed.empty()) std::printf("after %s\n", allowed.c_str());
+      require(false, "query " + std::to_string(i) + ": " + what + ": found" + fuzz::inWords(query, result) +
+                         "; expected" + fuzz::inWords(query, exact));
+    };
+    if (query.mode == Mode::sampled) {
+      fuzz::checkSampled(result, exact, reasonOf(i));
+      tally.add(Who::sampled, 1);
+      continue;
+    }
+    tally.add(who, 1);
+    if (result.status == Status::invalid && !allowed.empty()) {
+      if (reasonOf(i).find(allowed) == std::string::npos) fail("invalid for another reason: " + reasonOf(i));
+      ++tally.invalid;
+      continue;
+    }
+    if (!isSame(result, exact)) fail("another answer");
+    if (!std::ranges::equal(found.lists.hitsOf(i), batch.exact.lists.hitsOf(i), isSame))
+      fail("another list of hits" + inWords(found.lists.hitsOf(i)) + " instead of" +
+           inWords(batch.exact.lists.hitsOf(i)));
+    if (!std::ranges::equal(found.lists.overlappingOf(i), batch.exact.lists.overlappingOf(i))) fail("another overlap");
+  }
+}
+
+void checkBrackets(const Batch& batch, std::span<const Result> found, Tally& tally) {
+  const auto meets = [](const Result& result) {
+    return result.status == Status::hit || result.status == Status::overlap;
+  };
+  for (size_t i = 0; i < batch.queries.size(); ++i) {
+    const Result &p = found[i], &q = batch.exact.results[i];
+    const bool isOpen = p.status == Status::undecided || q.status == Status::undecided;
+    require((isOpen || meets(p) == meets(q)) && p.lo <= q.hi && q.lo <= p.hi,
+            "two answers that exclude each other:" + fuzz::inWords(batch.queries[i], p) + " and" +
+                fuzz::inWords(batch.queries[i], q));
+    tally.add(Who::cpu, 1);
+  }
+}
+
+}  // namespace radar::soak

@@ -1,0 +1,74 @@
+// A fault in something that answers.
+#pragma once
+
+#include <new>
+#include <optional>
+#include <string>
+
+#include "faults/host_memory.h"
+#include "faults/vulkan_calls.h"
+#include "gpu/check.h"
+#include "soak/tally.h"
+#include "workloads/random.h"
+
+namespace radar::soak {
+
+/// Which call, or request for host memory, is to fail.
+struct FaultPlan {
+  std::optional<Fault> fault{};  ///< none: nothing
+  int64_t number = 0;
+  VkResult result = VK_SUCCESS;
+};
+
+/// Mostly none. `mayLose`: the device may be lost.
+inline FaultPlan chooseFault(tools::Random& random, bool mayLose) {
+  if (!random.oneIn(6)) return {};
+  const int64_t number = random.below(1u << random.below(7));
+  const VkResult shortage = random.oneIn(2) ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_OUT_OF_HOST_MEMORY;
+  switch (random.below(mayLose ? 3 : 2)) {
+    case 0:
+      return {Fault::shortage, number, shortage};
+    case 1:
+      return {Fault::memory, 8 * number, VK_SUCCESS};
+    default:
+      return {Fault::lost, number % 4, VK_ERROR_DEVICE_LOST};
+  }
+}
+
+struct FaultOutcome {
+  bool happened = false;
+  bool threw = false;    ///< std::bad_alloc, because of the fault
+  std::string reason{};  ///< what an answer that is invalid must name
+};
+
+/// Makes a call under a fault. `device`: only its Vulkan calls fail.
+template <class Call>
+FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const HostDevice& device = {}) {
+  FaultOutcome outcome;
+  if (!plan.fault) {
+    call();
+  } else if (*plan.fault == Fault::memory) {
+    struct Failing {
+      explicit Failing(int64_t n) { test::host_memory::failAt(n); }
+      ~Failing() { test::host_memory::failAt(-1); }
+    };
+    const Failing failing(plan.number);
+    try {
+      call();
+    } catch (const std::bad_alloc&) {
+      if (test::host_memory::requests() <= plan.number) throw;
+      outcome.threw = true;
+    }
+    outcome.happened = test::host_memory::requests() > plan.number;
+  } else {
+    const auto when = *plan.fault == Fault::lost ? test::VulkanFault::When::lost : test::VulkanFault::When::once;
+    const test::VulkanFault fault(plan.number, plan.result, when, device.device, device.queue);
+    call();
+    outcome.happened = fault.happened();
+    outcome.reason = gpu::resultName(plan.result);
+  }
+  if (outcome.happened) tally.add(*plan.fault);
+  return outcome;
+}
+
+}  // namespace radar::soak

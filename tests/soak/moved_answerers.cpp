@@ -1,0 +1,138 @@
+#include "soak/moved_answerers.h"
+
+#include <algorithm>
+
+#include "embed/execute.h"
+#include "embed/written_queries.h"
+#include "fuzz/check_recorded.h"
+#include "fuzz/target.h"
+#include "radar/cpu_sweeper.h"
+
+namespace radar::soak {
+
+namespace {
+
+constexpr uint32_t kQueries = 48;
+constexpr Capacity kRoom{
+    .queries = kQueries, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 13, .searches = 1u << 12};
+
+test::Scales anyScales(tools::Random& random) {
+  const std::array<test::Scales, 6> all{{{1, 8, 0},
+                                         {1, 12, 300},
+                                         {1, 60, 0x1p16},
+                                         {1, 20, 0x1p20, 0x1p20},
+                                         {0x1p-20, 0x1p-16, 0x1p-10},
+                                         {0x1p30, 0x1p34, 0x1p40}}};
+  return all[random.below(static_cast<uint32_t>(all.size()))];
+}
+
+test::MovedWorld anyWorld(const Device& device, tools::Random& random) {
+  const uint32_t moving = 1 + random.below(4), bounded = random.below(3);
+  const uint64_t seed = random.below(1u << 30);
+  return {1 + random.below(60),
+          seed,
+          anyScales(random),
+          [=](ObjectId id) { return id % 4 < moving; },
+          [=](ObjectId id) { return id % 7 < bounded; },
+          device};
+}
+
+}  // namespace
+
+MovedAnswerers::MovedAnswerers(const Device& device, tools::Random& random, Tally& tally)
+    : device_(&device),
+      random_(&random),
+      tally_(&tally),
+      world_(anyWorld(device, random)),
+      copy_(device, world_.scene),
+      recorder_(device, world_.scene, kRoom),
+      sharing_(copy_, kRoom),
+      sweeper_(copy_, {.cpuBatch = 0}) {}
+
+std::vector<Query> MovedAnswerers::choose() {
+  std::vector<Query> queries = world_.queries(kQueries);
+  std::erase_if(queries, [&](const Query& query) { return !validate(query, world_.truth).empty(); });
+  for (Query& query : queries) {
+    if (query.exclude.size() > 1) query.exclude.erase(query.exclude.begin() + 1, query.exclude.end());
+    if (query.anyHit) continue;
+    query.ignoreLeaving = random_->oneIn(6);
+    if (random_->oneIn(6)) query.hits = 2 + random_->below(4);
+    if (query.ignoreLeaving || query.hits > 1) continue;
+    if (random_->oneIn(8)) query.clearance = random_->magnitude(-6, 0) * world_.scales.size;
+  }
+  return queries;
+}
+
+/// Adds an object, or removes one.
+void MovedAnswerers::change() {
+  if (world_.moved.size() > 40 || (world_.moved.size() > 1 && random_->oneIn(2))) {
+    const ObjectId gone = world_.moved[random_->below(static_cast<uint32_t>(world_.moved.size()))];
+    world_.scene.removeObject(gone);
+    world_.truth.removeObject(gone);
+    std::erase(world_.moved, gone);
+  }
+  Object object{world_.meshes[random_->below(9)], test::floatPose(*random_, world_.scales.size, {}), 3};
+  const ObjectId added = world_.scene.addObject(object);
+  fuzz::require(world_.truth.addObject(object) == added, "another number of an object");
+  world_.moved.push_back(added);
+}
+
+template <class Queries>
+void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query> queries) {
+  CpuSweeper cpu(world_.truth, 1);
+  const test::Answers exact = test::ask(cpu, queries);
+  for (Recorder* recorder : {&recorder_, &sharing_}) {
+    const FaultPlan plan = chooseFault(*random_, false);
+    gpu::Submission submission(device_->impl(), false);
+    gpu::Commands commands = submission.begin();
+    bool refused = false;
+    const FaultOutcome outcome = under(plan, *tally_, [&] {
+      try {
+        recorder->record(commands, recorded, world_.geometry());
+      } catch (const Error& error) {
+        if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
+        refused = true;
+      }
+    });
+    if (refused || outcome.threw) {
+      recorder->reset();
+      commands = submission.begin();
+      recorder->record(commands, recorded, world_.geometry());
+    }
+    submission.submitAndWait();
+    test::Answers found;
+    found.results = recorder->read(&found.lists);
+    fuzz::require(recorder->boundsViolation().empty(), recorder->boundsViolation());
+    fuzz::checkRecorded(queries, found, exact);
+    tally_->limited += fuzz::isTooSmall(found);
+    tally_->add(who, queries.size());
+  }
+}
+
+/// The scene learns where the objects are.
+void MovedAnswerers::applyAndAsk(const std::vector<Query>& queries) {
+  applyGeometry(world_.scene, *device_, world_.geometry());
+  CpuSweeper cpu(world_.truth, 1);
+  const Batch batch{queries, test::ask(cpu, queries)};
+  checkBatch(
+      batch, test::ask(sweeper_, queries), [](size_t) { return ""; }, "", Who::sweeper, *tally_);
+}
+
+void MovedAnswerers::round() {
+  if (random_->oneIn(4)) change();
+  world_.moveAgain();
+  const std::vector<Query> queries = choose();
+  measured(Who::moved, *tally_, [&] { ask(Who::moved, queries, queries); });
+  std::vector<HostQuery> written;
+  std::vector<Query> same;
+  for (const Query& query : queries) {
+    written.push_back(test::hostQueryOf(query));
+    same.push_back(test::queryOf(written.back()));
+  }
+  const test::OnDevice buffer(test::bytesOf(written), *device_);
+  const HostQueries there{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())};
+  measured(Who::written, *tally_, [&] { ask(Who::written, there, same); });
+  if (random_->oneIn(8)) measured(Who::sweeper, *tally_, [&] { applyAndAsk(queries); });
+}
+
+}  // namespace radar::soak

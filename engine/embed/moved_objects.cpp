@@ -87,8 +87,10 @@ MovedObjectsPass::MovedObjectsPass(const Device::Impl& device, const GpuScene& r
 
 bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
                                 const Scene::Impl& scene) const {
-  if (!list_ || list_->scene != scene.identity || list_->structure != scene.objectTree().structure() ||
-      list_->bounds != scene.boundsVersion || list_->groups.size() != groups.size()) {
+  // An object may have taken another's number, and its leaf.
+  if (!list_ || list_->scene != scene.identity || list_->objects != scene.structureVersion ||
+      list_->structure != scene.objectTree().structure() || list_->bounds != scene.boundsVersion ||
+      list_->groups.size() != groups.size()) {
     return false;
   }
   for (size_t i = 0; i < groups.size(); ++i) {
@@ -110,6 +112,7 @@ void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<con
   const ObjectTree& tree = scene.objectTree();
   auto list = std::make_unique<List>();
   list->scene = scene.identity;
+  list->objects = scene.structureVersion;
   list->structure = tree.structure();
   list->bounds = scene.boundsVersion;
   std::vector<bool> isNamed(scene.objects.size());

@@ -51,10 +51,10 @@ class MovedObjectsPass {
     gpu::TransformLayout layout{};
     std::vector<ObjectId> objects{};
   };
-  /// What depends on the groups, the tree's links and the bounds alone.
+  /// What depends on the groups, which objects there are, the tree's links and the bounds alone.
   struct List {
     std::vector<Group> groups;
-    uint64_t scene, structure, bounds;  ///< versions
+    uint64_t scene, objects, structure, bounds;  ///< versions
     std::vector<gpu::Moved> moved;
     std::vector<ObjectId> unbounded;  ///< ascending
     std::shared_ptr<GpuScene::Moved> overwritten;

@@ -119,6 +119,29 @@ TEST_CASE(
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("an object that takes another's number between two recordings is moved with its own mesh and mask") {
+  MovedWorld world(24, 31, {1, 8, 0}, always, never);
+  Recorder recorder(test::device(), world.scene, kRoom);
+  Found found;
+  for (int frame = 0; frame < 6; ++frame) {
+    CAPTURE(frame);
+    for (const ObjectId id : {ObjectId{3}, ObjectId{17}, ObjectId{23}}) {
+      Object other = world.scene.object(id);
+      other.mesh = world.meshes[(other.mesh + 4) % 9];
+      other.mask ^= 1;
+      for (Scene* scene : {&world.scene, &world.truth}) {
+        scene->removeObject(id);
+        REQUIRE(scene->addObject(other) == id);
+      }
+    }
+    world.moveAgain();
+    compareBoth(recorder, world, found);
+  }
+  CHECK(found.outOfRange == 0);
+  CHECK(found.hits > found.answers / 10);
+  CHECK(test::takeValidationMessages().empty());
+}
+
 TEST_CASE("the device's tree over objects contains every object where the host puts it, at any scale and place") {
   const Scales scales = GENERATE(values<Scales>({{1, 8, 0},
                                                  {1, 8, 0x1p20},

@@ -17,10 +17,11 @@ constexpr uint32_t kTooSmall = kFlagCandidates | kFlagRounds | kFlagUnresolved;
 void requireAgreement(const Query& query, Result found, const Result& expected) {
   found.tier = expected.tier;
   if (found.object == expected.object || std::isnan(expected.t)) {
-    return require(test::sameBits(found, expected), "another answer: " + inWords(query, found));
+    return require(test::sameBits(found, expected),
+                   "another answer:" + inWords(query, found) + "; expected" + inWords(query, expected));
   }
   require(found.status == expected.status && found.lo <= expected.hi && expected.lo <= found.hi,
-          "another contact: " + inWords(query, found));
+          "another contact:" + inWords(query, found) + "; expected" + inWords(query, expected));
 }
 
 void checkAnswer(const Query& query, const Result& found, const Result& exact) {

@@ -21,7 +21,7 @@ void aimAt(Query& query, const Transform& target) {
 }
 
 /// What is asked about the contact.
-void setQuestion(Query& query, double size, Random& random) {
+void setQuestion(Query& query, double size, bool isLarge, Random& random) {
   switch (random.below(8)) {
     case 0:
       query.anyHit = true;
@@ -33,7 +33,8 @@ void setQuestion(Query& query, double size, Random& random) {
       query.hits = kAllHits;
       break;
     case 3:
-      query.clearance = random.magnitude(-8, 1) * size;
+      // Of large meshes a wide one would concern millions of pairs.
+      query.clearance = random.magnitude(-8, isLarge ? -3 : 1) * size;
       if (random.oneIn(3)) query.tolerance = random.magnitude(-12, 0) * query.clearance;
       break;
     default:
@@ -56,7 +57,7 @@ Query varied(Query query, const Scene& scene, Random& random) {
   if (random.oneIn(4) && scene.hasObject(any)) aimAt(query, scene.object(any).worldFromMesh);
   if (random.oneIn(8)) query.distance *= random.oneIn(2) ? 0 : random.magnitude(-3, 3);
   if (random.oneIn(6) && query.distance > 0) tools::takeStep(query);
-  setQuestion(query, size, random);
+  setQuestion(query, size, scene.mesh(query.mesh).triangleCount() > 200, random);
   if (random.oneIn(5)) query.ignoreLeaving = !query.ignoreLeaving;
   if (random.oneIn(6)) query.skipOverlapping = !query.skipOverlapping;
   if ((query.ignoreLeaving || query.skipOverlapping) && random.oneIn(4)) query.slack = random.magnitude(-14, -3) * size;

@@ -1,33 +1,46 @@
 #include "batch/atomic_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace radar::tools {
 
 AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), unfinished_(file) {
   unfinished_ += ".unfinished-" + std::to_string(getpid());
-  stream_.open(unfinished_, std::ios::binary | std::ios::trunc);
+  descriptor_ = open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(std::strerror(errno));
 }
 
 AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) close(descriptor_);
   std::error_code ignored;
   if (!unfinished_.empty()) std::filesystem::remove(unfinished_, ignored);
 }
 
+void AtomicFile::fail(const std::string& problem) const {
+  throw std::runtime_error(file_.string() + ": expected a place to write to, got " + problem);
+}
+
 void AtomicFile::write(std::string_view bytes) {
-  stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(std::strerror(errno));
+    bytes.remove_prefix(static_cast<size_t>(written));
+  }
 }
 
 void AtomicFile::finish() {
-  stream_.close();
+  // Some file systems report only now that there was no room.
+  if (close(std::exchange(descriptor_, -1)) != 0) fail(std::strerror(errno));
   std::error_code error;
-  if (stream_) std::filesystem::rename(unfinished_, file_, error);
-  if (!stream_ || error) {
-    throw std::runtime_error(file_.string() + ": expected a place to write to, got " +
-                             (error ? error.message() : "an error while writing"));
-  }
+  std::filesystem::rename(unfinished_, file_, error);
+  if (error) fail(error.message());
   unfinished_.clear();
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -22,8 +21,10 @@ class AtomicFile {
   void finish();
 
  private:
+  [[noreturn]] void fail(const std::string& problem) const;
+
   std::filesystem::path file_, unfinished_;
-  std::ofstream stream_;
+  int descriptor_ = -1;
 };
 
 /// The same, for content that is at hand.

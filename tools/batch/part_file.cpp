@@ -150,7 +150,14 @@ void PartWriter::keep(const QueryFile& queries, const std::filesystem::path& fil
   }
   if (ftruncate(descriptor_, static_cast<off_t>(kept)) != 0) fail(std::strerror(errno));
   if (lseek(descriptor_, 0, SEEK_END) < 0) fail(std::strerror(errno));
-  if (kept == 0) write(headerOf(part_));
+  if (kept > 0) return;
+  try {
+    write(headerOf(part_));
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(partial_, ignored);  // it has nothing to resume
+    throw;
+  }
 }
 
 // The length of the first line and the complete rows, which are checked and counted.

@@ -1,4 +1,5 @@
 #include <iostream>
+#include <stdexcept>
 
 #include "cyber_radar/commands.h"
 #include "radar/radar.h"
@@ -30,6 +31,11 @@ constexpr const char* kNoDeviceHint =
     "To compute without a GPU, install Mesa's software device: apt install mesa-vulkan-drivers\n"
     "--mode reference needs no Vulkan device at all.";
 
+/// A full disk shows only now: what was printed stayed in memory.
+void finishOutput() {
+  if (!std::cout.flush()) throw std::runtime_error("standard output: expected a place to write to, got an error");
+}
+
 int fail(const std::string& message) {
   std::cout.flush();
   std::cerr << "cyber-radar: " << message << "\n";
@@ -57,8 +63,9 @@ int main(int argc, char** argv) try {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : radar::tools::kStatusBadInput;
+    status = app.exit(error) == 0 ? 0 : radar::tools::kStatusBadInput;
   }
+  finishOutput();
   return status;
 } catch (const radar::Error& error) {
   std::string message = error.what();

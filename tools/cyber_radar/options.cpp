@@ -186,6 +186,10 @@ void requireFolderOf(const char* option, const std::string& file) {
     throw InputError(option, file, "expected a file in a folder that exists, got no folder " + folder.string());
   }
   if (std::filesystem::is_directory(path, error)) throw InputError(option, file, "expected a file, got a folder");
+  // It would be replaced by a file, as the system's /dev/null.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw InputError(option, file, "expected a regular file, or none yet, got a device or a pipe");
+  }
 }
 
 }  // namespace radar::tools

@@ -10,6 +10,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
+#include "report/tables.h"
 
 namespace radar::tools {
 
@@ -100,7 +101,7 @@ void drawScopes(Options& options) {
   if (scopes.result.status == Status::invalid) {
     throw std::runtime_error("query " + query.id + ": expected an answer, the device gave none");
   }
-  std::filesystem::create_directories(options.out);
+  makeFolder("--out", options.out);
   const std::filesystem::path folder = options.out;
   const std::string title = query.id + ":  d = " + inDigits(scopes.d) + ",  D = " + inDigits(query.distance) +
                             ",  min(L) = " + leastFreeDistance(scopes) + ",  " + std::to_string(scopes.width) + " x " +

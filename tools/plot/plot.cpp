@@ -65,7 +65,12 @@ std::string plot(const char* script, const std::filesystem::path& csv, const std
   // gnuplot runs a file name that begins with < as a command: an absolute path does not.
   std::vector<std::string> arguments{std::filesystem::absolute(csv).string()};
   arguments.insert(arguments.end(), texts.begin(), texts.end());
-  return gnuplot(std::string(kStyleScript) + script, arguments);
+  std::string picture = gnuplot(std::string(kStyleScript) + script, arguments);
+  // It does not report that there was no room for what it wrote.
+  if (picture.find("</svg>") == std::string::npos) {
+    fail("left a picture unfinished: is there room for temporary files?");
+  }
+  return picture;
 }
 
 void requireGnuplot() {

@@ -1,0 +1,195 @@
+// Output that cannot be written: a full disk, a folder that takes no files, a kill. The program says so with status 2
+// and the file's name, and leaves nothing half-written.
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "cli/program.h"
+
+using Catch::Matchers::Contains;
+using radar::test::Run;
+using radar::test::runCommand;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+const std::string kQuery = "query w/queries.json --mode reference ";
+const std::string kScopes = "scopes w/mesh-0.ply w/mesh-1.ply --direction 1 0 0 --distance 5 --resolution 64 ";
+
+void makeQueries(const ScratchFolder& folder) {
+  REQUIRE(runProgram(folder, "workload figure7 --teapots 5 --boxes 60 --steps 12 --out w").status == 0);
+}
+
+/// Runs the program where no file grows beyond `blocks` of 512 bytes, as on a full disk; `out` has all that it prints.
+Run runOnFullDisk(const ScratchFolder& folder, const std::string& arguments, int blocks) {
+  Run run = runCommand(folder, "( trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; '" RADAR_PROGRAM "' " +
+                                   arguments + "; echo \"status $?\" ) 2>&1 | cat");
+  const size_t status = run.out.rfind("status ");
+  REQUIRE(status != std::string::npos);
+  run.status = std::stoi(run.out.substr(status + 7));
+  return run;
+}
+
+/// The files below the folder that are not whole. `whole`: a folder where the same command succeeded.
+std::string halfWritten(const ScratchFolder& folder, const ScratchFolder& whole) {
+  std::string names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = std::filesystem::relative(entry.path(), folder.path());
+    if (folder.read(name) != whole.read(name)) names += name + " ";
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("on a full disk a command names the file, and nothing is left half-written") {
+  struct Case {
+    std::string arguments, named;
+  };
+  const auto& [arguments, named] = GENERATE(values<Case>({
+      {kQuery + "--out a.jsonl", "a.jsonl"},
+      {kQuery + "--out a.npy", "a.npy"},
+      {kQuery + "--stats s.json", "s.json"},
+      {"merge p0 p1 --out a.jsonl", "a.jsonl"},
+      {"workload table1 --boxes 500 --out d", "d/mesh-"},
+      {"workload table1 --boxes 500 --binary --out d", "d/"},
+      {kScopes + "--raw --out d", "d/"},
+  }));
+  const ScratchFolder whole, folder;
+  for (const ScratchFolder* each : {&whole, &folder}) {
+    makeQueries(*each);
+    for (const std::string shard : {"0", "1"}) {
+      REQUIRE(runProgram(*each, kQuery + "--shard " + shard + "/2 --out p" + shard).status == 0);
+    }
+  }
+  REQUIRE(runProgram(whole, arguments).status == 0);
+  for (const int blocks : {0, 1}) {
+    if (blocks == 1 && named == "s.json") continue;  // it has room
+    CAPTURE(arguments, blocks);
+    const Run run = runOnFullDisk(folder, arguments, blocks);
+    CAPTURE(run.out);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.out, Contains(named) && Contains("expected a"));
+    CHECK_THAT(run.out, Contains("File too large"));
+    CHECK(halfWritten(folder, whole) == "");
+  }
+}
+
+TEST_CASE("on a full disk commands that draw or measure leave no unfinished file") {
+  const ScratchFolder folder;
+  for (const std::string& arguments : std::vector<std::string>{
+           "demo --out d", "selftest --minutes 0.1 --out d", "stability --cases 24 --resolution 16 --out d",
+           "scale --sensors 2 --boxes 50 --steps 1 --repeat 1 --resolution 16 --out d",
+           "chart --extent least --out d"}) {
+    const Run run = runOnFullDisk(folder, arguments, 0);
+    CAPTURE(arguments, run.out);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.out, Contains("File too large"));
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+      CAPTURE(entry.path());
+      if (!entry.is_regular_file()) continue;
+      CHECK(entry.file_size() == 0);  // a table without rows is whole
+      CHECK(entry.path().string().find(".unfinished-") == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a chart that gnuplot could not finish for lack of room is not taken for a whole one") {
+  const ScratchFolder folder;
+  // Room for all but the picture.
+  const Run run =
+      runOnFullDisk(folder, "scale --sensors 2 --boxes 50 --steps 1 --repeat 1 --resolution 16 --out d", 16);
+  CAPTURE(run.out);
+  CHECK(run.status == 2);
+  CHECK_THAT(run.out, Contains("gnuplot, which draws the charts, left a picture unfinished"));
+  CHECK(std::filesystem::exists(folder.path() / "d/scale.csv"));
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "d/scale.svg"));
+}
+
+TEST_CASE("a command whose standard output is full says so") {
+  const ScratchFolder folder;
+  makeQueries(folder);
+  for (const std::string& arguments :
+       std::vector<std::string>{std::string("devices"), std::string("--help"), std::string("query --help"), kQuery,
+                                std::string("workload soup --objects 3 --sensors 2 --out v"),
+                                std::string("sweep w/mesh-0.ply w/mesh-1.ply --direction 1 0 0 --distance 5 "
+                                            "--mode reference")}) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, arguments + " >/dev/full");
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains("standard output: expected a place to write to"));
+  }
+}
+
+TEST_CASE("a folder that takes no files is refused by name, whoever asks") {
+  const ScratchFolder folder;
+  makeQueries(folder);
+  // Below a file, and where not even root creates anything.
+  for (const std::string out : {"w/queries.json/d", "/proc/d"}) {
+    for (const std::string& arguments : std::vector<std::string>{
+             kQuery + "--out " + out, kQuery + "--out " + out + ".npy", kQuery + "--stats " + out,
+             "workload table1 --boxes 5 --out " + out, "workload table1 --boxes 5 --binary --out " + out,
+             kScopes + "--out " + out, "stability --cases 24 --out " + out, "scale --boxes 20 --out " + out,
+             "demo --out " + out, "selftest --out " + out, "chart --extent least --out " + out}) {
+      CAPTURE(arguments);
+      const Run run = runProgram(folder, arguments);
+      CHECK(run.status == 2);
+      CHECK_THAT(run.err, Contains(out) && Contains("expected a"));
+      CHECK(folder.list() == "w");
+    }
+  }
+}
+
+TEST_CASE("a merge into a folder that takes no files is refused by name") {
+  const ScratchFolder folder;
+  makeQueries(folder);
+  REQUIRE(runProgram(folder, kQuery + "--shard 0/1 --out p").status == 0);
+  for (const std::string out : {"p/d", "/proc/d"}) {
+    const Run run = runProgram(folder, "merge p --out " + out);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains(out) && Contains("expected a"));
+  }
+}
+
+TEST_CASE("an output that is a device or a pipe is refused, not replaced by a file") {
+  const ScratchFolder folder;
+  makeQueries(folder);
+  REQUIRE(mkfifo((folder.path() / "pipe").c_str(), 0600) == 0);
+  for (const std::string& arguments :
+       std::vector<std::string>{kQuery + "--out pipe", kQuery + "--stats pipe", std::string("merge p --out pipe")}) {
+    CAPTURE(arguments);
+    const Run run = runProgram(folder, arguments);
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains("pipe: expected a regular file, or none yet, got a device or a pipe"));
+    CHECK(std::filesystem::is_fifo(folder.path() / "pipe"));
+  }
+}
+
+TEST_CASE("a run that could not even write its first line leaves nothing that hinders the next") {
+  const ScratchFolder folder;
+  makeQueries(folder);
+  REQUIRE(runOnFullDisk(folder, kQuery + "--out a.jsonl", 0).status == 2);
+  CHECK(folder.list() == "w");
+  CHECK(runProgram(folder, kQuery + "--out a.jsonl").status == 0);
+}
+
+TEST_CASE("a command that is killed while it writes leaves no half of a file under its name") {
+  const std::string arguments =
+      GENERATE(as<std::string>(), kQuery + "--out a.jsonl", "workload table1 --boxes 500 --out d",
+               "workload table1 --boxes 500 --binary --out d", kScopes + "--raw --out d");
+  const ScratchFolder whole, folder;
+  for (const ScratchFolder* each : {&whole, &folder}) makeQueries(*each);
+  REQUIRE(runProgram(whole, arguments).status == 0);
+  // The system ends the process when a file would grow beyond 4 blocks.
+  CHECK(runProgram(folder, arguments, "ulimit -f 4; ").status != 0);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+    const std::string name = std::filesystem::relative(entry.path(), folder.path());
+    if (!entry.is_regular_file() || name.find(".unfinished-") != std::string::npos || name.ends_with(".partial"))
+      continue;
+    CAPTURE(name);
+    CHECK(folder.read(name) == whole.read(name));
+  }
+}

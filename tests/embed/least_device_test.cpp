@@ -5,7 +5,11 @@
 #include <vulkan/vulkan.h>
 #include <catch2/catch.hpp>
 
+#include "embed/execute.h"
 #include "embed/host.h"
+#include "embed/moved_world.h"
+#include "embed/written_queries.h"
+#include "fuzz/check_recorded.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
@@ -104,6 +108,73 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
     onDevice += sweeper.stats().submissions > 0;
   }
   CHECK(onDevice >= 20);
+}
+
+TEST_CASE(
+    "on a device with the least limits a host's moved objects and written queries, lists, clearances and steps get the "
+    "CPU's answers, as do those after applyGeometry") {
+  LeastDevice least;
+  const Device device = Device::adopt(least.host.handles);
+  const auto isMoved = [](ObjectId id) { return id % 4 != 0; };
+  const auto isBounded = [](ObjectId id) { return id % 8 == 1; };
+  test::MovedWorld world(40, 27, {1, 10, 50}, isMoved, isBounded, device);
+  constexpr Capacity kRoom{
+      .queries = 48, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 14, .searches = 2000};
+  Recorder recorder(device, world.scene, kRoom);
+  Sweeper sweeper(device, world.scene, {.cpuBatch = 0});
+  size_t answered = 0, hits = 0;
+  const auto compare = [&](const std::vector<Query>& queries, const test::Answers& found) {
+    CpuSweeper cpu(world.truth);
+    const test::Answers exact = test::ask(cpu, queries);
+    fuzz::checkRecorded(queries, found, exact);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      answered += found.results[i].flags == 0;
+      hits += exact.results[i].status == Status::hit;
+    }
+  };
+  size_t asked = 0;
+  for (int frame = 0; frame < 4; ++frame) {
+    std::vector<Query> queries = world.queries(kRoom.queries);
+    for (Query& query : queries) {
+      if (query.exclude.size() > 1) query.exclude.erase(query.exclude.begin() + 1, query.exclude.end());
+    }
+    std::vector<HostQuery> written;
+    std::vector<Query> same;
+    for (const Query& query : queries) {
+      written.push_back(test::hostQueryOf(query));
+      same.push_back(test::queryOf(written.back()));
+    }
+    const test::OnDevice buffer(test::bytesOf(written), device);
+    const HostQueries there{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())};
+    compare(same, test::execute(device, recorder, there, world.geometry()));
+    for (size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].anyHit) continue;
+      if (i % 4 == 0) queries[i].hits = i % 8 == 0 ? 3 : kAllHits;
+      if (i % 4 == 1) queries[i].clearance = 0.25;
+      if (i % 4 == 2) queries[i].ignoreLeaving = true;
+      if (i % 4 == 3 && queries[i].distance < 1e20) tools::takeStep(queries[i]);
+    }
+    compare(queries, test::execute(device, recorder, queries, world.geometry()));
+    applyGeometry(world.scene, device, world.geometry());
+    compare(queries, test::ask(sweeper, queries));
+    compare(queries, test::execute(device, recorder, queries));
+    asked += 4 * queries.size();
+    world.moveAgain();
+  }
+  CHECK(answered > asked * 9 / 10);
+  CHECK(hits > asked / 8);
+  // Objects move during the step, too.
+  for (ObjectId id = 0; id < 40; id += 3) {
+    for (Scene* scene : {&world.scene, &world.truth}) scene->setMotion(id, {0.5, -1, 0.25});
+  }
+  applyGeometry(world.scene, device, world.geometry());
+  std::vector<Query> steps = world.queries(24);
+  for (Query& query : steps) {
+    if (query.distance < 1e20) tools::takeStep(query);
+  }
+  compare(steps, test::ask(sweeper, steps));
+  compare(steps, test::execute(device, recorder, steps));
+  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("too many sensors for one submission are split, and a scene beyond the device's limits is left to the CPU") {

@@ -106,6 +106,7 @@ struct Recorder::Impl {
   };
   std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
+  size_t searches = 0;                  ///< past one object each, and hits that the CPU listed instead
   std::vector<uint32_t> hitOffsets;
   std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
@@ -164,7 +165,7 @@ void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& obj
 std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
   std::vector<std::vector<ObjectId>> objects(queries.size());
-  size_t searches = 0;
+  searches = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
     if (isForCpu(queries[i], scene.impl())) {
       searches += answerOnCpu(queries[i], static_cast<uint32_t>(i));
@@ -351,6 +352,7 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.geometry.stage(geometry, self.scene.impl());
   self.gathers.clear();
   self.gathered.clear();
+  self.searches = 0;
   self.onCpu.clear();
   self.hitOffsets.assign(queries.count + 1, queries.count);
   self.copy->willOverwrite(self.geometry.overwritten());
@@ -416,7 +418,7 @@ Capacity Recorder::needed() const {
   };
   needed.candidates = of(counts.candidates, needed.candidates);
   needed.unresolvedPairs = std::max(counts.unresolved, 1u);
-  needed.searches = self.gathers.searchCount();
+  needed.searches = static_cast<uint32_t>(self.searches);
   uint32_t rounds = 0;
   while (rounds <= self.capacity.rounds && counts.rounds[rounds].tasks != 0) ++rounds;
   const bool isUnfinished = rounds > self.capacity.rounds;

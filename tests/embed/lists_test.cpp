@@ -209,6 +209,28 @@ TEST_CASE("what the device's search does not offer is answered by the CPU while 
   CHECK(test::takeValidationMessages().empty());
 }
 
+TEST_CASE("needed() has room for the hits that the CPU lists while it records") {
+  // It counted only the searches on the device, and the same queries were then refused.
+  const tools::Workload workload =
+      tools::hardScene(tools::hardFamily("convex"), 13, 0, kRoom.queries, tools::Company::mixed);
+  Scene scene;
+  tools::replaceBy(workload, 0, scene);
+  std::vector<Query> queries = queriesOf(workload);
+  for (size_t i = 0; i < queries.size(); ++i) {
+    queries[i].skipOverlapping = i % 2 == 0;
+    queries[i].hits = kAllHits;
+  }
+  Recorder recorder(test::device(), scene, kRoom);
+  const Recorded recorded = execute(recorder, queries);
+  Capacity capacity = kRoom;
+  capacity.searches = recorder.needed().searches;
+  Recorder exact(test::device(), scene, capacity);
+  CHECK(execute(exact, queries).lists.hits.size() == recorded.lists.hits.size());
+  --capacity.searches;
+  Recorder less(test::device(), scene, capacity);
+  CHECK_THROWS_WITH(execute(less, queries), Catch::Contains("Capacity::searches"));
+}
+
 TEST_CASE("queries for the CPU are refused beside a host's geometry") {
   test::Row row(2);
   row.scene.setBounds(3, {{-9, -9, -9}, {9, 9, 9}});

@@ -103,7 +103,7 @@ void HostGeometryPass::listNodes(const Scene::Impl& scene) {
   std::vector<uint64_t> versions;
   for (const Deformed& deformed : meshes_) versions.push_back(scene.meshes[deformed.mesh].version);
   if (versions == listed_) return;
-  listed_ = std::move(versions);
+  listed_.clear();
   nodeList_.clear();
   levels_.clear();
   for (const Deformed& deformed : meshes_) {
@@ -122,6 +122,7 @@ void HostGeometryPass::listNodes(const Scene::Impl& scene) {
       nodeList_.insert(nodeList_.end(), byDepth[depth].begin(), byDepth[depth].end());
     }
   }
+  listed_ = std::move(versions);  // now that all are listed
 }
 
 void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& scene) {

@@ -150,17 +150,17 @@ void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<con
     push_.anchorLow[k] = anchor.low;
   }
   push_.count = static_cast<uint32_t>(list->moved.size());
-  list_ = std::move(list);
-  stageUpload();
+  stageUpload(*list);
+  list_ = std::move(list);  // now that all of it is staged
   isActive_ = true;
 }
 
-void MovedObjectsPass::stageUpload() {
-  moved_.reserve(list_->moved.size());
-  fitNodes_.reserve(list_->nodes.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(list_->moved)) + gpu::Upload::aligned(gpu::bytesOf(list_->nodes)));
-  upload_.add(list_->moved.data(), gpu::bytesOf(list_->moved), moved_);
-  upload_.add(list_->nodes.data(), gpu::bytesOf(list_->nodes), fitNodes_);
+void MovedObjectsPass::stageUpload(const List& list) {
+  moved_.reserve(list.moved.size());
+  fitNodes_.reserve(list.nodes.size());
+  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(list.moved)) + gpu::Upload::aligned(gpu::bytesOf(list.nodes)));
+  upload_.add(list.moved.data(), gpu::bytesOf(list.moved), moved_);
+  upload_.add(list.nodes.data(), gpu::bytesOf(list.nodes), fitNodes_);
 }
 
 std::span<const ObjectId> MovedObjectsPass::unbounded() const {

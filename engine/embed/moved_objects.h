@@ -62,7 +62,7 @@ class MovedObjectsPass {
   };
   bool isListed(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
                 const Scene::Impl& scene) const;
-  void stageUpload();
+  void stageUpload(const List& list);
 
   const GpuScene& resident_;
   gpu::KernelArguments move_, fit_, reach_;

@@ -2,10 +2,13 @@
 // is lost. Answers are right, or invalid with the reason; afterwards the same objects answer with the same bits.
 #include <catch2/catch.hpp>
 
+#include "embed/moved_world.h"
 #include "faults/adopted.h"
 #include "faults/scenario.h"
+#include "fuzz/check_recorded.h"
 #include "gpu/check.h"
 #include "gpu/submission.h"
+#include "radar/cpu_sweeper.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
@@ -149,6 +152,82 @@ TEST_CASE(
     return happened;
   });
   CHECK(failed > 10);
+}
+
+TEST_CASE(
+    "whichever call of the device, or allocation, fails while a recorder lists what a host moves and deforms, the same "
+    "recorder then records right answers") {
+  const Device& device = test::adopted().device;
+  const auto always = [](ObjectId) { return true; };
+  const auto never = [](ObjectId) { return false; };
+  constexpr Capacity kRoom{.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10};
+  gpu::Submission submission(device.impl(), false);
+  const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0.5f};
+  const uint32_t corners[] = {0, 1, 2};
+  std::vector<std::byte> bytes;
+  test::append<float>(bytes, {0, 0, 0, 2, 0, 0, 0, 2, 1});
+  const test::OnDevice positions(bytes, device);
+  const auto failing = [&](int64_t n, const auto& failAt) {
+    test::MovedWorld world(3, 5, {1, 4, 0}, always, never, device);
+    Recorder recorder(device, world.scene, kRoom);
+    recorder.record(submission.begin(), world.queries(16), world.geometry());
+    submission.submitAndWait();
+    recorder.read();
+    // Others are moved, and more than there was room for, and a mesh is deformed.
+    const MeshId mesh = world.scene.addMesh(triangle, corners, Bounds{{-3, -3, -3}, {3, 3, 3}});
+    const float deformed[] = {0, 0, 0, 2, 0, 0, 0, 2, 1};
+    REQUIRE(world.truth.addMesh(deformed, corners) == mesh);
+    world.meshes.back() = mesh;
+    for (uint32_t i = 0; i < 300; ++i) {
+      const Object object{world.meshes[8 - i % 9], {}, 3};
+      world.moved.push_back(world.scene.addObject(object));
+      world.truth.addObject(object);
+    }
+    world.moveAgain();
+    const DeformedMesh deforming{mesh, {.buffer = positions.get()}};
+    HostGeometry geometry = world.geometry();
+    geometry.meshes = {&deforming, 1};
+    std::vector<Query> queries = world.queries(16);
+    for (Query& query : queries) query.mesh = 0;
+    const gpu::Commands commands = submission.begin();
+    const bool failed = failAt(n, [&] { recorder.record(commands, queries, geometry); });
+    if (failed) {
+      recorder.reset();
+      recorder.record(submission.begin(), queries, geometry);
+    }
+    submission.submitAndWait();
+    Answers found;
+    found.results = recorder.read(&found.lists);
+    CHECK(recorder.boundsViolation().empty());
+    CpuSweeper cpu(world.truth, 1);
+    fuzz::checkRecorded(queries, found, ask(cpu, queries));
+    return failed;
+  };
+  CHECK(failEach([&](int64_t n) {
+          return failing(n, [](int64_t number, const auto& call) {
+            const VulkanFault fault(number, shortage(number), VulkanFault::When::once);
+            try {
+              call();
+            } catch (const Error& error) {
+              CHECK(error.result == shortage(number));
+            }
+            return fault.happened();
+          });
+        }) > 10);
+  CHECK(failEach([&](int64_t n) {
+          return failing(n, [](int64_t number, const auto& call) {
+            const test::EngineWork counting;
+            test::host_memory::failAt(number);
+            try {
+              call();
+            } catch (const std::bad_alloc&) {
+              CHECK(test::host_memory::requests() > number);
+            }
+            const bool failed = test::host_memory::requests() > number;
+            test::host_memory::failAt(-1);
+            return failed;
+          });
+        }) > 10);
 }
 
 TEST_CASE("whichever call of the device fails while setting up, it is named, and nothing is left") {

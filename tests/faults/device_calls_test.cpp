@@ -162,10 +162,9 @@ TEST_CASE(
   const auto never = [](ObjectId) { return false; };
   constexpr Capacity kRoom{.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10};
   gpu::Submission submission(device.impl(), false);
-  const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0.5f};
-  const uint32_t corners[] = {0, 1, 2};
+  tools::MeshData box = tools::makeBox({1, 1, 1}), deformed = box;
   std::vector<std::byte> bytes;
-  test::append<float>(bytes, {0, 0, 0, 2, 0, 0, 0, 2, 1});
+  for (float& x : deformed.positions) test::append<float>(bytes, {x *= 4});
   const test::OnDevice positions(bytes, device);
   const auto failing = [&](int64_t n, const auto& failAt) {
     test::MovedWorld world(3, 5, {1, 4, 0}, always, never, device);
@@ -174,12 +173,10 @@ TEST_CASE(
     submission.submitAndWait();
     recorder.read();
     // Others are moved, and more than there was room for, and a mesh is deformed.
-    const MeshId mesh = world.scene.addMesh(triangle, corners, Bounds{{-3, -3, -3}, {3, 3, 3}});
-    const float deformed[] = {0, 0, 0, 2, 0, 0, 0, 2, 1};
-    REQUIRE(world.truth.addMesh(deformed, corners) == mesh);
-    world.meshes.back() = mesh;
+    const MeshId mesh = world.scene.addMesh(box.positions, box.indices, Bounds{{-4, -4, -4}, {4, 4, 4}});
+    REQUIRE(world.truth.addMesh(deformed.positions, deformed.indices) == mesh);
     for (uint32_t i = 0; i < 300; ++i) {
-      const Object object{world.meshes[8 - i % 9], {}, 3};
+      const Object object{mesh, {}, 3};
       world.moved.push_back(world.scene.addObject(object));
       world.truth.addObject(object);
     }
@@ -188,7 +185,6 @@ TEST_CASE(
     HostGeometry geometry = world.geometry();
     geometry.meshes = {&deforming, 1};
     std::vector<Query> queries = world.queries(16);
-    for (Query& query : queries) query.mesh = 0;
     const gpu::Commands commands = submission.begin();
     const bool failed = failAt(n, [&] { recorder.record(commands, queries, geometry); });
     if (failed) {

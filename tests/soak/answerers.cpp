@@ -149,6 +149,12 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
       tally_->add(who, batch.queries.size());
       if (!fuzz::isTooSmall(found)) return;
       ++tally_->limited;
+      const Capacity needed = recorder->needed();
+      // Then only a Sweeper answers it (radar/recorder.h).
+      if (needed.candidates <= capacity.candidates && needed.rounds <= capacity.rounds &&
+          needed.unresolvedPairs <= capacity.unresolvedPairs) {
+        return;
+      }
       capacity = fuzz::enoughFor(*recorder);
       capacity.queries = kMostQueries;
     } catch (const Error& error) {

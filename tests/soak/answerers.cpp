@@ -14,7 +14,7 @@ namespace {
 using fuzz::require;
 
 constexpr uint32_t kMostQueries = 64, kMostSampled = 12, kFewQueries = 3;
-constexpr uint32_t kMostSearches = 1u << 15;
+constexpr uint32_t kMostSearches = 1u << 15, kMostCandidates = 1u << 20;
 
 std::string none(size_t) {
   return "";
@@ -142,7 +142,7 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
       all.queries.size() <= capacity.queries
           ? all
           : batchOf({all.queries.begin(), all.queries.begin() + static_cast<ptrdiff_t>(capacity.queries)});
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 40; ++i) {
     try {
       const test::Answers found = record(*recorder, batch.queries);
       fuzz::checkRecorded(batch.queries, found, batch.exact);
@@ -155,6 +155,7 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
           needed.unresolvedPairs <= capacity.unresolvedPairs) {
         return;
       }
+      if (needed.candidates > kMostCandidates) return;
       capacity = fuzz::enoughFor(*recorder);
       capacity.queries = kMostQueries;
     } catch (const Error& error) {

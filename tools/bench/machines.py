@@ -117,7 +117,7 @@ def main():
             programs, "a tenth combs in combs; then teapots", mix(folder / "first", [hard, easy]), options.repeats
         )
         if options.large > 0:
-            print("answers,queries,seconds,reading seconds,writing seconds,share of both")
+            print("answers,queries,seconds,waiting for the reader,for the writer,share of both")
             measure_files(programs, folder / "large", options.large)
 
 

@@ -91,7 +91,6 @@ class Run {
   AnsweringStats write() {
     AnswerRows rows(queries_.world(), writer_ ? writer_->format() : AnswerFormat::lines);
     return pass(answering_, "answering", [&](uint64_t first, auto queries, std::span<const Answer> answers) {
-      const double start = bench::now();
       const std::string text = rows.text(first, queries, answers);
       someInvalid_ = someInvalid_ || someInvalid(answers);
       if (writer_) {
@@ -100,7 +99,6 @@ class Run {
         std::cout << text << std::flush;
         if (!std::cout) throw std::runtime_error("standard output: expected a place to write to, got an error");
       }
-      writeMs_ += 1e3 * (bench::now() - start);
     });
   }
   void finish() {
@@ -109,13 +107,15 @@ class Run {
     writeMs_ += 1e3 * (bench::now() - start);
   }
   int status() const { return someInvalid_ ? kStatusSomeInvalid : 0; }
-  double readMs() const { return readMs_; }    ///< in the last pass
-  double writeMs() const { return writeMs_; }  ///< rows and file
+  double readMs() const { return readMs_; }    ///< waited for in the last pass
+  double writeMs() const { return writeMs_; }  ///< likewise, and for the end of the file
 
  private:
   AnsweringStats pass(Answering& answering, const std::string& label, const AnswerSink& sink) {
     answering.resetStats();
-    readMs_ = 1e3 * answerRange(queries_, first_, end_, answering, label, sink);
+    const Waited waited = answerRange(queries_, first_, end_, answering, label, sink);
+    readMs_ = 1e3 * waited.reading;
+    writeMs_ = 1e3 * waited.writing;
     return answering.stats();
   }
   double setUp(Answering& answering) {

@@ -1,6 +1,7 @@
 #include "cyber_radar/query_run.h"
 
 #include <algorithm>
+#include <future>
 
 #include "bench/clock.h"
 #include "commit/commit.h"
@@ -57,26 +58,56 @@ std::string namesOf(std::span<const Device> devices) {
   return names;
 }
 
-double answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
+namespace {
+
+/// Consecutive queries, and their answers once there are any.
+struct Chunk {
+  uint64_t first = 0;
+  std::vector<QuerySpec> room{};
+  std::span<const QuerySpec> queries{};
+  std::vector<Answer> answers{};
+};
+
+}  // namespace
+
+Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
                    const std::string& label, const AnswerSink& sink) {
-  // At first as many as the engine submits at once. What a chunk holds is lost if the run is killed.
+  // At first as many as the engine submits at once. What two chunks hold is lost if the run is killed.
   constexpr double kSeconds = 2;
-  uint64_t chunk = 16'384;
+  uint64_t count = 16'384;
   Progress progress(label, end - first);
-  std::vector<QuerySpec> room;
-  double reading = 0;
-  while (first < end) {
-    const double beforeReading = bench::now();
-    const std::span<const QuerySpec> asked = queries.read(first, std::min(chunk, end - first), room);
+  const auto read = [&](Chunk& chunk) {
+    chunk.first = first;
+    chunk.queries = queries.read(first, std::min(count, end - first), chunk.room);
+    first += chunk.queries.size();
+  };
+  const auto write = [&](const Chunk& chunk) {
+    if (!chunk.answers.empty()) sink(chunk.first, chunk.queries, chunk.answers);
+  };
+  Waited waited;
+  const double begun = bench::now();
+  Chunk answered, current, next;
+  read(current);
+  waited.reading = bench::now() - begun;
+  while (!current.queries.empty()) {
+    std::future<void> beside = std::async(std::launch::async, [&] {
+      write(answered);
+      read(next);
+    });
     const double start = bench::now();
-    reading += start - beforeReading;
-    const std::vector<Answer> answers = answering.run(asked, progress);
-    const double rate = static_cast<double>(asked.size()) / std::max(bench::now() - start, 1e-6);
-    sink(first, asked, answers);
-    first += asked.size();
-    chunk = static_cast<uint64_t>(std::clamp(kSeconds * rate, 256.0, 262'144.0));
+    current.answers = answering.run(current.queries, progress);
+    const double done = bench::now();
+    beside.get();
+    waited.writing += bench::now() - done;
+    const double rate = static_cast<double>(current.queries.size()) / std::max(done - start, 1e-6);
+    count = static_cast<uint64_t>(std::clamp(kSeconds * rate, 256.0, 262'144.0));
+    std::swap(answered, current);
+    std::swap(current, next);
   }
-  return reading;
+  const double last = bench::now();
+  write(answered);
+  waited.writing += bench::now() - last;
+  return waited;
 }
 
 }  // namespace radar::tools

@@ -29,9 +29,15 @@ std::string namesOf(std::span<const Device> devices);
 using AnswerSink =
     std::function<void(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers)>;
 
-/// Answers the queries from `first` to before `end` in chunks of about two seconds, in order. Returns the seconds that
-/// reading the queries took.
-double answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
+/// Seconds in which nothing was answered.
+struct Waited {
+  double reading = 0;  ///< for the first queries
+  double writing = 0;  ///< for the sink, and for reading further queries
+};
+
+/// Answers the queries from `first` to before `end` in chunks of about two seconds, in order. While a chunk is
+/// answered, another thread gives the sink the last one and reads the next. Rethrows what the sink throws.
+Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answering& answering,
                    const std::string& label, const AnswerSink& sink);
 
 }  // namespace radar::tools

@@ -177,6 +177,9 @@ TEST_CASE("bad input ends all ranks with one message and status 2, and leaves no
   refused("w/queries.json --out none/a", "--out: none/a: expected a file in a folder that exists");
   refused("w/queries.json --out a --mode exact", "--mode: expected mode");
   refused("w/queries.json --out a --device 7,8", "rank 0 on ");
+  const Run full = runCommand(folder, "'" RADAR_MPI_PROGRAM "' --help >/dev/full");
+  CHECK(full.status == 2);
+  CHECK_THAT(full.err, Contains("standard output: expected a place to write to"));
   const Run noOut = runRanks(folder, 2, "w/queries.json");
   CHECK(noOut.status == 2);
   CHECK_THAT(noOut.err, Contains("--out is required"));

@@ -243,7 +243,9 @@ int run(int argc, char** argv, const MpiSession& session) {
     options.run.check();
   } catch (const CLI::ParseError& error) {
     if (session.rank() > 0) return error.get_exit_code() == 0 ? 0 : kStatusBadInput;
-    return app.exit(error) == 0 ? 0 : kStatusBadInput;
+    if (app.exit(error) != 0) return kStatusBadInput;
+    if (!std::cout.flush()) throw std::runtime_error("standard output: expected a place to write to, got an error");
+    return 0;
   } catch (const std::exception& error) {
     if (session.rank() == 0) std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
     return kStatusBadInput;

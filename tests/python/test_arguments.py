@@ -47,7 +47,10 @@ def test_messages_name_the_argument_and_the_shape(boxes):
         (lambda: cast(mesh, None, DOWN, resolution=2049), "resolution: expected whole numbers from 0 to 2048"),
         (lambda: cast(mesh, None, DOWN, distances=[[1, 2], [3]]), "distances: expected numbers of shape (...)"),
         (lambda: scene.add(mesh, np.zeros((2, 4, 4)) + np.diag([0, 1, 1, 1])), "transforms[0]: expected an invertible"),
-        (lambda: scene.add(mesh, np.full((4, 4), np.nan)), "transforms: expected 12 finite numbers of at most 2^800, got nan"),
+        (
+            lambda: scene.add(mesh, np.full((4, 4), np.nan)),
+            "transforms: expected 12 finite numbers of at most 2^800, got nan",
+        ),
         (lambda: scene.set_transforms([0, 200], np.eye(4)), "objects: expected ids of objects of the scene, got 200"),
         (lambda: scene.remove([-1]), "objects: expected whole numbers from 0"),
         (lambda: scene.add_mesh(box(1, 1, 1)[:, :2], FACES), "vertices: expected numbers of shape (..., 3)"),

@@ -172,7 +172,7 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Approach found{0, kInfinity, {kNan, kNan, kNan}, {kNan, kNan, kNan}, {}};
   // The distance is convex in t. So contact fills one interval, which lies between found.lo and `end`.
-  double t = 0, end = kInfinity, step = 0;
+  double t = 0, end = kInfinity, step = 0, approaching = 0, receding = kInfinity;
   for (int i = 0; i < kMostSteps; ++i) {
     const Moment m = momentAt(edges, gaps, unit, t);
     const double least = std::max(0.5 * tolerance, 4 * m.error);
@@ -201,10 +201,15 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
       if (next == t) return inWorld(found, a[0], unit, unscale);
       t = next;
     } else {
-      // Rounding leaves open whether the triangles are within the clearance now.
+      // Rounding leaves open whether the triangles are within the clearance now. They are nearest to each other between
+      // where they still approach and where they move apart.
+      const bool isApproaching = m.rate + kRateError > 0;
+      if (isApproaching) approaching = std::max(approaching, t);
+      if (!isApproaching) receding = std::min(receding, t);
+      const double from = std::max(found.lo, approaching), to = std::min(end, receding);
       step = std::max(2 * step, least);
-      const double next = std::min({t + step, 0.5 * t + 0.5 * end, distance});
-      if (m.rate + kRateError <= 0 || next <= t) return inWorld(found, a[0], unit, unscale);
+      const double next = isApproaching ? std::min({t + step, 0.5 * t + 0.5 * to, distance}) : 0.5 * from + 0.5 * t;
+      if (next == t || !(to - from > m.error)) return inWorld(found, a[0], unit, unscale);
       t = next;
     }
   }

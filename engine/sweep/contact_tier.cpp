@@ -205,6 +205,8 @@ bool ContactTier::keep(size_t query, const Result& found) {
   const Query& asked = batch_.asked[query];
   // The CPU finds the least pair of triangles that are that near at the start.
   if (asked.clearance > 0 && found.status == Status::overlap && found.object == kNone) return false;
+  // What is certain on the device may have kept the search from other pairs.
+  if (asked.clearance > 0 && found.status == Status::undecided) return false;
   // What meets at the start may cross, and then takes no part.
   const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
   if (asked.skipOverlapping && mayCross) return false;

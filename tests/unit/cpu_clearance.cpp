@@ -274,6 +274,21 @@ TEST_CASE("needles that pass by a hair are not certified as within a smaller cle
   }
 }
 
+TEST_CASE("a point that passes through a triangle a billion times the clearance is certainly within it") {
+  // Rounding leaves open where it is; the step that was tried led past the triangle, and there the search gave up.
+  const Vector point{-0x1.cda55a2a86fe9p+2, -0x1.210771dd39ee7p+1, 0x1.10ebc01723f03p+3};
+  const exact::Triangle face{{{-0x1.130785bcaddp+2, -0x1.fa3a13ef82f8p+4, 0x1.085f40842f5p+5},
+                              {0x1.1c2d3e736c3ap+8, 0x1.2530135cfd32p+7, 0x1.ea43ec5adfcep+6},
+                              {-0x1.301fbc76cda74p+7, -0x1.32f9bb3d7ec4p+6, -0x1.f495f2b0b3acp+5}}};
+  const Vector unit{0x1.5cd94169c7b7bp-1, 0x1.bc15da9e3993dp-6, -0x1.7681f9714dbb4p-1};
+  const auto found =
+      cpu::approach({point, point, point}, face, unit, 0x1.57c6b1946ff6ep-22, 11.4, 0x1.018c861aa4df8p-18);
+  REQUIRE(found);
+  // By exact arithmetic, it is that near from 7.30117290387 to 7.3011735...
+  CHECK((7.301172 < found->lo && found->lo < 7.30117290388));
+  CHECK((7.30117290387 < found->hi && found->hi < 7.3011738));
+}
+
 TEST_CASE("a clearance works at every scale") {
   for (const double scale : {1e-160, 1e-30, 1e30, 1e150}) {
     const exact::Triangle a{{{0, 0, 0}, {0, scale, 0}, {0, 0, scale}}};

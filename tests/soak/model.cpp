@@ -1,5 +1,7 @@
 #include "soak/model.h"
 
+#include "scene/scene.h"
+
 namespace radar::soak {
 
 namespace {
@@ -19,6 +21,15 @@ void addAll(const Items& all, const Add& add, const Fill& fill, const Remove& re
   for (const uint32_t id : gone) remove(id);
 }
 
+Bounds boundsOf(const radar::Mesh& mesh) {
+  Bounds bounds;
+  for (size_t k = 0; k < 3; ++k) {
+    bounds.lo[k] = mesh.box.lo[k] + mesh.origin[k];
+    bounds.hi[k] = mesh.box.hi[k] + mesh.origin[k];
+  }
+  return bounds;
+}
+
 }  // namespace
 
 Scene Model::build() const {
@@ -26,7 +37,7 @@ Scene Model::build() const {
   const float point[] = {0, 0, 0};
   const uint32_t corners[] = {0, 0, 0};
   addAll(
-      meshes, [&](const Mesh& mesh) { scene.addMesh(mesh.positions, mesh.indices); },
+      meshes, [&](const Mesh& mesh) { scene.addMesh(mesh.positions, mesh.indices, mesh.bounds); },
       [&] { scene.addMesh(point, corners); }, [&](MeshId id) { scene.removeMesh(id); });
   addAll(
       objects, [&](const Object& object) { scene.addObject(object); },
@@ -39,7 +50,10 @@ Model Model::of(const Scene& scene) {
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
     if (!scene.hasMesh(id)) continue;
     const MeshView mesh = scene.mesh(id);
-    model.meshes[id] = {{mesh.positions.begin(), mesh.positions.end()}, {mesh.indices.begin(), mesh.indices.end()}};
+    Model::Mesh& copy = model.meshes[id];
+    copy.positions.assign(mesh.positions.begin(), mesh.positions.end());
+    copy.indices.assign(mesh.indices.begin(), mesh.indices.end());
+    if (const radar::Mesh& derived = scene.impl().meshes[id]; derived.deforms) copy.bounds = boundsOf(derived);
   }
   for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
     if (scene.hasObject(id)) model.objects[id] = scene.object(id);

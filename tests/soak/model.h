@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "radar/scene.h"
 
@@ -11,6 +12,7 @@ struct Model {
   struct Mesh {
     std::vector<float> positions;
     std::vector<uint32_t> indices;
+    std::optional<Bounds> bounds{};  ///< the default slack of queries depends on them
   };
   std::map<MeshId, Mesh> meshes;
   std::map<ObjectId, Object> objects;

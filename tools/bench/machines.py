@@ -104,18 +104,14 @@ def main():
     programs = options.programs.resolve()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        costly = options.queries // 10
+        costly = options.queries // 2
         equal = make(programs, folder / "equal", "interlocking", "--sensors", options.queries)
         easy = make(programs, folder / "easy", "table1", "--sensors", options.queries - costly)
-        hard = make(programs, folder / "hard", "interlocking", "--shape", "comb in comb", "--sensors", costly)
+        hard = make(programs, folder / "hard", "interlocking", "--sensors", costly)
         print("workload,ranks,seconds,times one rank,answering seconds,times one rank")
         measure_ranks(programs, "rings on pegs", equal, options.repeats)
-        measure_ranks(
-            programs, "teapots; then a tenth combs in combs", mix(folder / "last", [easy, hard]), options.repeats
-        )
-        measure_ranks(
-            programs, "a tenth combs in combs; then teapots", mix(folder / "first", [hard, easy]), options.repeats
-        )
+        measure_ranks(programs, "half teapots; then rings", mix(folder / "last", [easy, hard]), options.repeats)
+        measure_ranks(programs, "half rings; then teapots", mix(folder / "first", [hard, easy]), options.repeats)
         if options.large > 0:
             print("answers,queries,seconds,waiting for the reader,for the writer,share of both")
             measure_files(programs, folder / "large", options.large)

@@ -16,9 +16,12 @@ struct Box {
       hi[k] = std::max(hi[k], p[k]);
     }
   }
+  /// An empty box changes nothing.
   void merge(const Box& b) {
-    add(b.lo);
-    add(b.hi);
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], b.lo[k]);
+      hi[k] = std::max(hi[k], b.hi[k]);
+    }
   }
   double middle(int axis) const { return 0.5 * lo[axis] + 0.5 * hi[axis]; }
 };

@@ -320,3 +320,21 @@ TEST_CASE("an object that floats cannot represent gives kFlagRange only to the q
   }
   CHECK(checkAnswers(queries, read, truth, kFlagRange).answered == 1);
 }
+
+TEST_CASE("a scene that has become small is searched, however many objects it has had") {
+  Scene scene;
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
+  const MeshId cube = scene.addMesh(box.positions, box.indices);
+  std::vector<ObjectId> objects;
+  for (int i = 0; i < 20'000; ++i)
+    objects.push_back(scene.addObject({cube, {{1, 0, 0, 3.0 * i, 0, 1, 0, 0, 0, 0, 1, 0}}}));
+  const std::vector<Query> queries{{.mesh = cube,
+                                    .worldFromMesh = {{1, 0, 0, 0.25, 0, 1, 0, 0.5, 0, 0, 1, -5}},
+                                    .direction = {0, 0, 1},
+                                    .distance = 20}};
+  Recorder recorder(test::device(), scene);
+  execute(recorder, queries);
+  for (size_t i = 1; i < objects.size(); ++i) scene.removeObject(objects[i]);
+  const std::vector<Result> read = execute(recorder, queries);
+  CHECK(checkAnswers(queries, read, truthOf(scene, queries), 0).answered == 1);
+}

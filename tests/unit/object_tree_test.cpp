@@ -279,6 +279,22 @@ TEST_CASE("single edits of a large scene keep its tree valid and no worse than t
   checkTree(boxes.scene);
 }
 
+TEST_CASE("numbers of objects that are free, however many in a row, do not widen the scene's box") {
+  // A whole chunk of them made it endless: searches culled little, and devices found every sensor out of range.
+  Boxes boxes(13);
+  std::vector<ObjectId> objects(20'000);
+  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)});
+  boxes.scene.impl().objectTree();
+  for (size_t i = 100; i < objects.size() - 1; ++i) boxes.scene.removeObject(objects[i]);
+  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  Box around;
+  for (ObjectId id = 0; id < boxes.scene.objectLimit(); ++id) {
+    if (boxes.scene.hasObject(id)) around.merge(tree.boxOf(id));
+  }
+  CHECK(tree.worldBox().lo == around.lo);
+  CHECK(tree.worldBox().hi == around.hi);
+}
+
 TEST_CASE("the pages of changed nodes have every node that an edit changes, and few others") {
   Boxes boxes(12);
   std::vector<ObjectId> objects(10'000);

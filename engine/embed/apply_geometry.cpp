@@ -7,23 +7,15 @@
 
 namespace radar {
 
-namespace {
-
-uint32_t hostVertexOf(const Mesh& mesh, uint32_t vertex) {
-  return mesh.hostVertices.empty() ? mesh.firstHostVertex + vertex : mesh.hostVertices[vertex];
-}
-
-}  // namespace
-
 void applyGeometry(Scene& scene, const Device& device, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   device.impl().requireQueue("applyGeometry");
-  if (std::string wrong = validate(geometry, scene, false); !wrong.empty()) throw Error("applyGeometry: " + wrong);
+  if (std::string wrong = validate(geometry, scene); !wrong.empty()) throw Error("applyGeometry: " + wrong);
   Download download(device.impl());
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.impl().meshes[deformed.mesh];
     const HostPositions& from = deformed.positions;
-    const uint32_t vertices = hostVertexOf(mesh, mesh.vertexCount() - 1) - mesh.firstHostVertex + 1;
+    const uint32_t vertices = mesh.hostVertex(mesh.vertexCount() - 1) - mesh.firstHostVertex + 1;
     download.add(from.buffer, from.first + from.stride * mesh.firstHostVertex, spanOf(from, vertices));
   }
   for (const MovedObjects& moved : geometry.objects) {
@@ -51,7 +43,7 @@ void applyGeometry(Scene& scene, const Device& device, const HostGeometry& geome
     const std::byte* bytes = download.bytes(range++);
     positions.clear();
     for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
-      const std::byte* at = bytes + deformed.positions.stride * (hostVertexOf(mesh, v) - mesh.firstHostVertex);
+      const std::byte* at = bytes + deformed.positions.stride * (mesh.hostVertex(v) - mesh.firstHostVertex);
       for (int k = 0; k < 3; ++k) positions.push_back(format.load(at, k));
     }
     try {

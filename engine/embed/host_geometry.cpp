@@ -13,14 +13,20 @@
 // pass        reads                         writes                         barrier after it
 // ----------- ----------------------------- ------------------------------ -------------------------------
 // copy        staging, the host's buffers   moved, words, refit nodes,     transferToComputeReadWrite
-//                                           violation
-// deform      words, meshes                 vertices, violation            (none)
-// move        words, moved, meshes          placements, objects, object    computeWriteToComputeReadWrite
-//                                             nodes, violation
+//                                             numbers, unbounded, extents,
+//                                             deformed sensors, violation
+// deform      words, numbers, meshes        vertices, violation            (none)
+// Without declared bounds, after a computeWriteToComputeReadWrite:
+//   bound     vertices, triangles           extents                        computeWriteToComputeReadWrite
+//   normalise extents, unbounded            meshes                         computeWriteToComputeReadWrite
+// move        words, moved, meshes,         placements, objects, object    computeWriteToComputeReadWrite
+//               objects                       nodes, violation
 // refit       vertices, triangles, meshes,  mesh nodes                     computeWriteToComputeReadWrite
 //   per depth   refit nodes, mesh nodes
 // fit         fit nodes, object nodes       object nodes                   computeWriteToComputeReadWrite
 //   per depth
+// place       meshes, deformed sensors,     sensors, sweeps, states        computeWriteToComputeReadWrite
+//               object nodes
 // reach       object nodes                  sensors, states                computeWriteToComputeReadWrite
 //
 // After the answers and a computeWriteToComputeReadWrite:
@@ -49,12 +55,11 @@ bool repeats(std::vector<uint32_t> ids) {
 
 }  // namespace
 
-std::string validate(const HostGeometry& geometry, const Scene& scene, bool needsBounds) {
+std::string validate(const HostGeometry& geometry, const Scene& scene) {
   std::vector<MeshId> meshes;
   for (const DeformedMesh& deformed : geometry.meshes) {
     std::string name = "mesh " + std::to_string(deformed.mesh);
     if (!scene.hasMesh(deformed.mesh)) return name + " does not exist";
-    if (needsBounds && !scene.impl().meshes[deformed.mesh].deforms) return name + " was added without bounds";
     if (deformed.positions.buffer == VK_NULL_HANDLE) return name + ": expected a buffer of positions";
     if (std::string wrong = validate(deformed.positions); !wrong.empty()) return name.append(": ").append(wrong);
     meshes.push_back(deformed.mesh);
@@ -80,7 +85,9 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
       upload_(device),
       words_(device, "host words", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       refitNodes_(device, "nodes to refit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      numbers_(device, "host vertex numbers", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      unboundedMeshes_(device, resident),
       moved_(device, resident) {
   violation_.reserve(1);
 }
@@ -129,26 +136,40 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   sources_.clear();
   copied_ = 0;
   meshes_.clear();
+  vertexNumbers_.clear();
+  std::vector<MeshId> unbounded;
   for (const DeformedMesh& deformed : geometry.meshes) {
     const Mesh& mesh = scene.meshes[deformed.mesh];
     const HostPositions& positions = deformed.positions;
-    const VkDeviceSize first = positions.first + positions.stride * mesh.firstHostVertex;
-    meshes_.push_back({deformed.mesh, mesh.vertexCount(), mesh.firstHostVertex,
-                       copyFrom(positions.buffer, first, spanOf(positions, mesh.vertexCount())),
-                       static_cast<uint32_t>(positions.stride), HostFormat(positions.format).component()});
+    const uint32_t least = mesh.firstHostVertex, span = mesh.hostVertex(mesh.vertexCount() - 1) - least + 1;
+    const bool areListed = !mesh.hostVertices.empty();
+    meshes_.push_back(
+        {.mesh = deformed.mesh,
+         .vertices = mesh.vertexCount(),
+         .firstHostVertex = least,
+         .firstByte = copyFrom(positions.buffer, positions.first + positions.stride * least, spanOf(positions, span)),
+         .stride = static_cast<uint32_t>(positions.stride),
+         .component = HostFormat(positions.format).component(),
+         .numbers = areListed ? static_cast<uint32_t>(vertexNumbers_.size()) : kNone,
+         .isBounded = mesh.deforms});
+    for (const uint32_t vertex : mesh.hostVertices) vertexNumbers_.push_back(vertex - least);
+    if (!mesh.deforms) unbounded.push_back(deformed.mesh);
   }
+  unboundedMeshes_.stage(std::move(unbounded));
   std::vector<uint32_t> firstBytes;
   for (const MovedObjects& moved : geometry.objects) {
     const VkDeviceSize bytes = spanOf(moved.stride, moved.objects.size(), extentOf(moved.layout));
     firstBytes.push_back(moved.objects.empty() ? 0 : copyFrom(moved.transforms, moved.first, bytes));
   }
-  moved_.stage(geometry.objects, firstBytes, scene);
+  moved_.stage(geometry.objects, firstBytes, unboundedMeshes_.meshes(), scene);
   if (empty()) return;
   listNodes(scene);
   words_.reserve(copied_ / sizeof(uint32_t) + 1);
   refitNodes_.reserve(nodeList_.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(nodeList_)));
+  numbers_.reserve(vertexNumbers_.size());
+  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(nodeList_)) + gpu::Upload::aligned(gpu::bytesOf(vertexNumbers_)));
   upload_.add(nodeList_.data(), gpu::bytesOf(nodeList_), refitNodes_);
+  upload_.add(vertexNumbers_.data(), gpu::bytesOf(vertexNumbers_), numbers_);
 }
 
 GpuScene::Overwritten HostGeometryPass::overwritten() const {
@@ -164,6 +185,7 @@ void HostGeometryPass::setArguments() {
   deform_.set({{kSlotVertices, scene.vertices},
                {kSlotMeshes, scene.meshes},
                {kSlotBoundsViolation, violation_},
+               {kSlotVertexNumbers, numbers_},
                {kSlotWords, words_}});
   refit_.set({{kSlotVertices, scene.vertices},
               {kSlotTriangles, scene.triangles},
@@ -172,8 +194,9 @@ void HostGeometryPass::setArguments() {
               {kSlotRefitNodes, refitNodes_}});
 }
 
-void HostGeometryPass::record(const gpu::Commands& commands) {
+void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& scene) {
   upload_.record(commands);
+  unboundedMeshes_.recordUpload(commands);
   moved_.recordUpload(commands);
   for (const Source& source : sources_) {
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
@@ -183,7 +206,17 @@ void HostGeometryPass::record(const gpu::Commands& commands) {
   setArguments();
   for (const Deformed& d : meshes_) {
     deform_.dispatch(commands, gpu::groupsFor(d.vertices, gpu::kHostGroup),
-                     gpu::DeformPush{d.vertices, d.mesh, d.firstByte, d.stride, d.component});
+                     gpu::DeformPush{.count = d.vertices,
+                                     .mesh = d.mesh,
+                                     .firstByte = d.firstByte,
+                                     .stride = d.stride,
+                                     .format = d.component,
+                                     .numbers = d.numbers,
+                                     .isBounded = d.isBounded ? 1u : 0u});
+  }
+  if (!unboundedMeshes_.empty()) {
+    gpu::computeWriteToComputeReadWrite(commands);
+    unboundedMeshes_.recordBound(commands, scene);
   }
   moved_.recordMove(commands, words_, violation_);
   gpu::computeWriteToComputeReadWrite(commands);
@@ -209,8 +242,10 @@ std::string HostGeometryPass::boundsViolation() const {
   const gpu::BoundsViolation& violation = *violation_.mapped();
   for (const Deformed& deformed : meshes_) {
     if (violation.mesh != deformed.mesh) continue;
-    return "mesh " + std::to_string(violation.mesh) + ": vertex " +
-           std::to_string(deformed.firstHostVertex + violation.vertex) + " is outside its bounds or not finite";
+    const uint32_t number =
+        deformed.numbers == kNone ? violation.vertex : vertexNumbers_[deformed.numbers + violation.vertex];
+    return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(deformed.firstHostVertex + number) +
+           (deformed.isBounded ? " is outside its bounds or not finite" : " is not finite, or exceeds 2^120");
   }
   return violation.object == kNone ? std::string() : moved_.describeViolation(violation.object);
 }

@@ -86,11 +86,11 @@ MovedObjectsPass::MovedObjectsPass(const Device::Impl& device, const GpuScene& r
       fitNodes_(device, "nodes to fit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
-                                const Scene::Impl& scene) const {
+                                std::span<const MeshId> meshes, const Scene::Impl& scene) const {
   // An object may have taken another's number, and its leaf.
   if (!list_ || list_->scene != scene.identity || list_->objects != scene.structureVersion ||
       list_->structure != scene.objectTree().structure() || list_->bounds != scene.boundsVersion ||
-      list_->groups.size() != groups.size()) {
+      list_->groups.size() != groups.size() || !std::ranges::equal(list_->meshes, meshes)) {
     return false;
   }
   for (size_t i = 0; i < groups.size(); ++i) {
@@ -103,41 +103,65 @@ bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<
   return true;
 }
 
+void MovedObjectsPass::addGroup(List& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
+                                const Scene::Impl& scene) const {
+  list.groups.push_back({firstByte, group.stride, encoded(group.layout), {group.objects.begin(), group.objects.end()}});
+  for (size_t k = 0; k < group.objects.size(); ++k) {
+    const ObjectId id = group.objects[k];
+    if (id >= scene.objects.size() || !scene.objects[id].used) {
+      throw Error("record: geometry: " + nameOf(id) + " does not exist");
+    }
+    if (isNamed[id]) throw Error("record: geometry: objects: expected each at most once");
+    isNamed[id] = true;
+    gpu::Moved moved = movedOf(id, scene, scene.objectTree());
+    moved.firstByte = static_cast<uint32_t>(firstByte + k * group.stride);
+    moved.format = list.groups.back().layout;
+    list.moved.push_back(moved);
+  }
+}
+
+// Adds the objects that stand, but whose meshes are deformed without bounds.
+void MovedObjectsPass::addStanding(List& list, const std::vector<bool>& isNamed, const Scene::Impl& scene) const {
+  if (list.meshes.empty()) return;
+  std::vector<bool> isDeformed(scene.meshes.size());
+  for (const MeshId mesh : list.meshes) isDeformed[mesh] = true;
+  for (ObjectId id = 0; id < scene.objects.size(); ++id) {
+    if (isNamed[id] || !scene.objects[id].used || !isDeformed[scene.objects[id].object.mesh]) continue;
+    gpu::Moved moved = movedOf(id, scene, scene.objectTree());
+    moved.firstByte = gpu::kNobody;
+    list.moved.push_back(moved);
+    list.overwritten->standing.push_back(id);
+  }
+}
+
 void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
-                             const Scene::Impl& scene) {
-  isActive_ = std::ranges::any_of(groups, [](const MovedObjects& group) { return !group.objects.empty(); });
-  if (!isActive_ || isListed(groups, firstBytes, scene)) return;
+                             std::span<const MeshId> meshes, const Scene::Impl& scene) {
+  isActive_ =
+      !meshes.empty() || std::ranges::any_of(groups, [](const MovedObjects& group) { return !group.objects.empty(); });
+  if (!isActive_) return;
+  if (isListed(groups, firstBytes, meshes, scene)) {
+    isActive_ = !list_->moved.empty();
+    return;
+  }
   list_.reset();
   isActive_ = isUploaded_ = false;
   const ObjectTree& tree = scene.objectTree();
   auto list = std::make_unique<List>();
+  list->meshes.assign(meshes.begin(), meshes.end());
   list->scene = scene.identity;
   list->objects = scene.structureVersion;
   list->structure = tree.structure();
   list->bounds = scene.boundsVersion;
+  list->overwritten = std::make_shared<GpuScene::Moved>();
   std::vector<bool> isNamed(scene.objects.size());
-  for (size_t i = 0; i < groups.size(); ++i) {
-    const std::span<const ObjectId> objects = groups[i].objects;
-    list->groups.push_back(
-        {firstBytes[i], groups[i].stride, encoded(groups[i].layout), {objects.begin(), objects.end()}});
-    for (size_t k = 0; k < objects.size(); ++k) {
-      const ObjectId id = objects[k];
-      if (id >= scene.objects.size() || !scene.objects[id].used) {
-        throw Error("record: geometry: " + nameOf(id) + " does not exist");
-      }
-      if (isNamed[id]) throw Error("record: geometry: objects: expected each at most once");
-      isNamed[id] = true;
-      gpu::Moved moved = movedOf(id, scene, tree);
-      moved.firstByte = static_cast<uint32_t>(firstBytes[i] + k * groups[i].stride);
-      moved.format = list->groups.back().layout;
-      list->moved.push_back(moved);
-      if (scene.boundsOf(id) == nullptr) list->unbounded.push_back(id);
-    }
+  for (size_t i = 0; i < groups.size(); ++i) addGroup(*list, groups[i], firstBytes[i], isNamed, scene);
+  addStanding(*list, isNamed, scene);
+  for (const gpu::Moved& moved : list->moved) {
+    if (moved.leaf != gpu::kNobody) list->unbounded.push_back(moved.object);
   }
   std::ranges::sort(list->unbounded);
   const std::vector<bool> marks = markPaths(list->moved, tree);
   listByDepth(marks, tree, list->nodes, list->ends);
-  list->overwritten = std::make_shared<GpuScene::Moved>();
   for (ObjectId id = 0; id < isNamed.size(); ++id) {
     if (isNamed[id]) list->overwritten->objects.push_back(id);
   }
@@ -151,8 +175,8 @@ void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<con
   }
   push_.count = static_cast<uint32_t>(list->moved.size());
   stageUpload(*list);
+  isActive_ = !list->moved.empty();
   list_ = std::move(list);  // now that all of it is staged
-  isActive_ = true;
 }
 
 void MovedObjectsPass::stageUpload(const List& list) {

@@ -1,5 +1,6 @@
-// Objects that a host moves: their placements and, unless they have bounds, the tree over objects, computed on the
-// device in the host's command buffer. What is listed for this on the CPU is kept while the same objects move.
+// Objects that a host moves, or whose meshes it deforms without bounds: their placements and, unless they have bounds,
+// the tree over objects, computed on the device in the host's command buffer. What is listed for this on the CPU is
+// kept while these objects and meshes stay the same.
 #pragma once
 
 #include <memory>
@@ -19,9 +20,10 @@ class MovedObjectsPass {
  public:
   MovedObjectsPass(const Device::Impl& device, const GpuScene& resident);
 
-  /// Lists the objects of `groups`, while the device is idle. `firstBytes`: of each group's transforms, in the copied
-  /// words. Throws if an object does not exist or is named twice.
-  void stage(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes, const Scene::Impl& scene);
+  /// Lists the objects of `groups`, and others that use one of `meshes`, while the device is idle. `firstBytes`: of
+  /// each group's transforms, in the copied words. Throws if an object does not exist or is named twice.
+  void stage(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes, std::span<const MeshId> meshes,
+             const Scene::Impl& scene);
   bool empty() const { return !isActive_; }
   /// Objects without bounds: only the device knows where they are. Ascending.
   std::span<const ObjectId> unbounded() const;
@@ -51,9 +53,10 @@ class MovedObjectsPass {
     gpu::TransformLayout layout{};
     std::vector<ObjectId> objects{};
   };
-  /// What depends on the groups, which objects there are, the tree's links and the bounds alone.
+  /// What depends on the groups and meshes, which objects there are, the tree's links and the bounds alone.
   struct List {
     std::vector<Group> groups;
+    std::vector<MeshId> meshes;
     uint64_t scene, objects, structure, bounds;  ///< versions
     std::vector<gpu::Moved> moved;
     std::vector<ObjectId> unbounded;  ///< ascending
@@ -61,7 +64,10 @@ class MovedObjectsPass {
     std::vector<uint32_t> nodes, ends;  ///< inner nodes to fit, the root first, and where each depth of them ends
   };
   bool isListed(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
+                std::span<const MeshId> meshes, const Scene::Impl& scene) const;
+  void addGroup(List& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
                 const Scene::Impl& scene) const;
+  void addStanding(List& list, const std::vector<bool>& isNamed, const Scene::Impl& scene) const;
   void stageUpload(const List& list);
 
   const GpuScene& resident_;

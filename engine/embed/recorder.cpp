@@ -25,7 +25,8 @@
 //   search
 // gather.cpp, host_geometry.cpp: invalidate                                computeWriteToCopy
 // readback                                        counts,         readback writtenToHost
-//                                                 results, sweeps
+//                                                 results, sweeps,
+//                                                 extents
 
 namespace radar {
 
@@ -78,8 +79,10 @@ struct Recorder::Impl {
   void addUnbounded(const Query& query, std::vector<ObjectId>& objects) const;
   size_t answerOnCpu(const Query& query, uint32_t number);
   void plan(std::span<const Query> queries);
+  Planned plan(const Query& query, uint32_t result, ObjectId object);
   void planSearches(const Query& query, std::span<const ObjectId> objects);
   void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
+  void learnBoxes();
   void decide(std::span<Result> results) const;
   std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
   std::vector<Result> readHost() const;
@@ -110,6 +113,7 @@ struct Recorder::Impl {
   std::vector<uint32_t> hitOffsets;
   std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
+  std::vector<gpu::DeformedSensor> deformedSensors;
   std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
   cpu::QuerySearch reach;     ///< what is in reach, and answers
 };
@@ -134,8 +138,7 @@ void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeom
 void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {
   if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
   if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
-  if (std::string wrong = validate(hostGeometry, scene, true); !wrong.empty())
-    throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
 }
 
 // Returns the number of hits.
@@ -149,13 +152,20 @@ size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
   return answered.lists.hits.size();
 }
 
-// Adds the objects that may be in reach, wherever the host moves them, and sorts all.
+// Adds the objects that may be in reach, wherever the host moves them, and sorts all: every object if only the device
+// knows how large the sensor is.
 void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& objects) const {
   std::vector<ObjectId> exclude = query.exclude;
   std::sort(exclude.begin(), exclude.end());
-  for (const ObjectId object : geometry.unbounded()) {
-    const bool isMasked = (scene.impl().objects[object].object.mask & query.mask) == 0;
-    if (!isMasked && !std::binary_search(exclude.begin(), exclude.end(), object)) objects.push_back(object);
+  const auto add = [&](ObjectId id) {
+    const Scene::Impl::ObjectSlot& slot = scene.impl().objects[id];
+    const bool takesPart = slot.used && (slot.object.mask & query.mask) != 0;
+    if (takesPart && !std::binary_search(exclude.begin(), exclude.end(), id)) objects.push_back(id);
+  };
+  if (geometry.isUnbounded(query.mesh)) {
+    for (ObjectId id = 0; id < scene.impl().objects.size(); ++id) add(id);
+  } else {
+    for (const ObjectId id : geometry.unbounded()) add(id);
   }
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
@@ -186,11 +196,21 @@ std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<cons
   return objects;
 }
 
+// As addSensor().
+Planned Recorder::Impl::plan(const Query& query, uint32_t result, ObjectId object) {
+  const Planned planned = addSensor(sensors, query, result, scene.impl(), scene.impl().objectTree(), object);
+  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) {
+    deformedSensors.push_back(deformedSensor(sensors.count() - 1, query, motionPast(query, scene.impl(), object)));
+  }
+  return planned;
+}
+
 void Recorder::Impl::plan(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
   onCpu.clear();
   const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
   sensors.clear();
+  deformedSensors.clear();
   gathered.clear();
   gathers.clear();
   hitOffsets.clear();
@@ -215,8 +235,7 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
     if (onCpu.contains(i)) continue;
     if (objects[i].empty()) {
       if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
-      const Planned planned = addSensor(sensors, queries[i], i, scene.impl(), tree);
-      if (planned == Planned::outOfRange) known[i] = outOfRange();
+      if (plan(queries[i], i, kNone) == Planned::outOfRange) known[i] = outOfRange();
       continue;
     }
     next->first = static_cast<uint32_t>(known.size());
@@ -227,10 +246,25 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
 
 void Recorder::Impl::planSearches(const Query& query, std::span<const ObjectId> objects) {
   for (const ObjectId object : objects) {
-    const auto result = static_cast<uint32_t>(known.size());
-    const Planned planned = addSensor(sensors, query, result, scene.impl(), scene.impl().objectTree(), object);
+    const Planned planned = plan(query, static_cast<uint32_t>(known.size()), object);
     known.push_back(planned == Planned::outOfRange ? outOfRange() : clearAnswer());
   }
+}
+
+// Of the meshes whose vertices only the device knew: what decide() needs.
+void Recorder::Impl::learnBoxes() {
+  const std::map<MeshId, Box> boxes = geometry.unboundedBoxes();
+  if (boxes.empty()) return;
+  std::vector<Vector> all = *farthest;
+  for (const auto& [mesh, box] : boxes) {
+    Mesh shape;
+    setBox(shape, box);
+    all[mesh] = shape.farthest;
+    for (size_t i = 0; i < tolerances.size(); ++i) {
+      if (recordedQueries[i].mesh == mesh) tolerances[i] = cpu::toleranceOf(recordedQueries[i], shape);
+    }
+  }
+  farthest = std::make_shared<const std::vector<Vector>>(std::move(all));
 }
 
 // Decides the answers of searches that are open.
@@ -291,7 +325,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
   pass.recordUpload(commands, stage);
   if (!geometry.empty()) {
     stage("geometry");
-    geometry.record(commands);
+    geometry.record(commands, scene.impl());
   }
   if (areWritten && results != 0) {
     stage("plan");
@@ -310,6 +344,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
     const VkBufferCopy region{0, to, bytes};
     if (bytes != 0) commands->CmdCopyBuffer(commands, from.get(), readback.get(), 1, &region);
   };
+  geometry.recordReadback(commands);
   readBack(pass.counts(), 0, sizeof(gpu::SearchCounts));
   readBack(pass.results(), kFirstResult, results * sizeof(Result));
   if (areWritten) readBack(pass.encoded().sweeps, firstSweep(), results * sizeof(gpu::Sweep));
@@ -325,12 +360,12 @@ void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, 
   const FloatEnvironment floats;
   Impl& self = *impl_;
   self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
-  if (std::string wrong = validate(geometry, self.scene, true); !wrong.empty())
-    throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.mostWritten = 0;
   self.geometry.stage(geometry, self.scene.impl());
   self.plan(queries);
+  self.geometry.stageSensors(self.deformedSensors, self.scene.impl());
   self.copy->willOverwrite(self.geometry.overwritten());
   self.usedBuffers.reset();
   self.pass.stage(self.sensors, self.known, self.scene.impl());
@@ -350,6 +385,8 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.recordedQueries.clear();
   self.mostWritten = 0;
   self.geometry.stage(geometry, self.scene.impl());
+  self.geometry.stageSensors({}, self.scene.impl());
+  self.tolerances.clear();
   self.gathers.clear();
   self.gathered.clear();
   self.searches = 0;
@@ -400,8 +437,9 @@ std::vector<Result> Recorder::read(Lists* lists) {
   const FloatEnvironment floats;
   Impl& self = *impl_;
   if (lists != nullptr) *lists = {};
+  if (self.mostWritten == 0 && self.recordedQueries.empty()) return {};
+  self.learnBoxes();
   if (self.mostWritten != 0) return self.readHost();
-  if (self.recordedQueries.empty()) return {};
   std::vector<Result> results = self.copyResults(self.known.size());
   self.decide(results);
   return self.putTogether(results, lists);

@@ -198,7 +198,8 @@ bool GpuScene::exceedsWriteLimits() const {
 
 // Buffers that shaders write are bound as storage buffers, so they are subject to maxStorageBufferRange.
 void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
-  if (!movedNext().objects.empty()) checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
+  if (!movedNext().objects.empty() || !movedNext().standing.empty())
+    checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
   if (!movedNext().nodes.empty()) {
     checkLimit<gpu::ObjectNode>(*device_, "object nodes", scene.objectTree().nodes().size());
   }
@@ -219,7 +220,9 @@ void GpuScene::describe(MeshId id, const Mesh& mesh) {
 
 VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
   changedMeshes_.clear();
-  recordsChanged_ = seenMeshes_ != scene.meshVersion || exceedsWriteLimits();
+  std::vector<MeshId> restored;
+  addDifference(overwritten_.meshes, next_.meshes, restored);
+  recordsChanged_ = seenMeshes_ != scene.meshVersion || !restored.empty() || exceedsWriteLimits();
   VkDeviceSize bytes = 0;
   if (recordsChanged_) {
     checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
@@ -234,8 +237,6 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
     }
     bytes += Upload::aligned(sizeof(gpu::MeshRecord) * records_.size());
   }
-  std::vector<MeshId> restored;
-  addDifference(overwritten_.meshes, next_.meshes, restored);
   for (const MeshId id : restored) {
     if (places_[id].uploaded == scene.meshes[id].version) changedMeshes_.push_back(id);
   }
@@ -273,7 +274,10 @@ VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
     }
   });
   std::vector<ObjectId> restored;
-  if (overwritten_.moved != next_.moved) addDifference(movedBefore().objects, movedNext().objects, restored);
+  if (overwritten_.moved != next_.moved) {
+    addDifference(movedBefore().objects, movedNext().objects, restored);
+    addDifference(movedBefore().standing, movedNext().standing, restored);
+  }
   for (const ObjectId id : restored) {
     if (scene.objects[id].used && scene.changedAt[id] <= seenPoses_) changedObjects_.push_back(id);
   }

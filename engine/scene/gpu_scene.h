@@ -32,8 +32,9 @@ class GpuScene {
   bool hasIndices() const { return hasIndices_; }
 
   struct Moved {
-    std::vector<ObjectId> objects;  ///< ascending
-    std::vector<uint32_t> nodes;    ///< of the tree over objects, ascending
+    std::vector<ObjectId> objects;   ///< with their placements; ascending
+    std::vector<ObjectId> standing;  ///< of which only the placements are overwritten; ascending
+    std::vector<uint32_t> nodes;     ///< of the tree over objects, ascending
   };
   struct Overwritten {
     std::vector<MeshId> meshes;          ///< in any order

@@ -76,19 +76,11 @@ void derive(Mesh& mesh, Box box) {
     const float* p = &mesh.positions[3 * size_t{vertex}];
     box.add({p[0], p[1], p[2]});
   }
-  float largest = 0;
+  setBox(mesh, box);
   for (int k = 0; k < 3; ++k) {
-    mesh.farthest[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
-    mesh.origin[k] = originOf(box.lo[k], box.hi[k]);
-    mesh.box.lo[k] = box.lo[k] - mesh.origin[k];
-    mesh.box.hi[k] = box.hi[k] - mesh.origin[k];
-    const double reach = std::max(std::abs(mesh.box.lo[k]), std::abs(mesh.box.hi[k]));
-    mesh.reach[k] = roundUp(reach);
-    largest = std::max(largest, mesh.reach[k]);
     const double used = mesh.positions[3 * size_t{mesh.indices[0]} + k];
     mesh.local[k].assign(mesh.vertexCount(), static_cast<float>(used - mesh.origin[k]));
   }
-  mesh.unit = largest > 0 ? std::ldexp(1.0, std::max(std::ilogb(largest), kLeastUnit)) : 1;
   for (uint32_t vertex : mesh.indices) {
     for (int k = 0; k < 3; ++k) {
       mesh.local[k][vertex] = static_cast<float>(mesh.positions[3 * size_t{vertex} + k] - mesh.origin[k]);
@@ -141,6 +133,19 @@ size_t isMoving(const Object& object) {
 }
 
 }  // namespace
+
+void setBox(Mesh& mesh, const Box& box) {
+  float largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    mesh.farthest[k] = std::max(std::abs(box.lo[k]), std::abs(box.hi[k]));
+    mesh.origin[k] = originOf(box.lo[k], box.hi[k]);
+    mesh.box.lo[k] = box.lo[k] - mesh.origin[k];
+    mesh.box.hi[k] = box.hi[k] - mesh.origin[k];
+    mesh.reach[k] = roundUp(std::max(std::abs(mesh.box.lo[k]), std::abs(mesh.box.hi[k])));
+    largest = std::max(largest, mesh.reach[k]);
+  }
+  mesh.unit = largest > 0 ? std::ldexp(1.0, std::max(std::ilogb(largest), kLeastUnit)) : 1;
+}
 
 Scene::Impl::Impl() : identity(nextVersion()) {}
 

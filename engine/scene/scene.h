@@ -44,12 +44,20 @@ struct Mesh {
   double unit = 1;
   MeshTree tree;
 
+  /// The number of a vertex in a host's buffer.
+  uint32_t hostVertex(uint32_t vertex) const {
+    return hostVertices.empty() ? firstHostVertex + vertex : hostVertices[vertex];
+  }
   uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size() / 3); }
   uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
   float normalised(uint32_t vertex, int axis) const {
     return static_cast<float>(local[axis][vertex] * (1 / unit));  // in doubles: 1 / 2^-149 is no float
   }
 };
+
+/// Sets what a mesh derives from a box around the vertices that its triangles use: `origin`, `farthest`, `box`, `reach`
+/// and `unit`.
+void setBox(Mesh& mesh, const Box& box);
 
 using FreeIds = std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>>;
 

@@ -1,13 +1,5 @@
 // How far surfaces at rest may sink into each other by rounding. Included after a struct Bounded{value, error} of doubles.
-
-// radar::placedMagnitude.
-double magnitudeOf(PreciseRows pose, MeshRecord mesh) {
-  const dvec3 origin = dvec3(mesh.origin);
-  const dvec3 most = max(abs(origin + dvec3(mesh.lo)), abs(origin + dvec3(mesh.hi)));
-  double greatest = 0.0LF;
-  for (int row = 0; row < 3; ++row) greatest = max(greatest, dot(abs(pose[row].xyz), most) + abs(pose[row].w));
-  return greatest;
-}
+#include "magnitude.glsl"
 
 Bounded slackOf(Sweep sweep, RefinedPair c) {
   if (sweep.slack >= 0.0LF) return Bounded(sweep.slack, 0.0LF);

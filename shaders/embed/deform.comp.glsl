@@ -15,6 +15,7 @@ struct VertexBits {
 layout(scalar, binding = kSlotVertices) writeonly restrict buffer Vertices { VertexBits vertices[]; };
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
+layout(scalar, binding = kSlotVertexNumbers) readonly restrict buffer VertexNumbers { uint vertexNumbers[]; };
 #include "byte_load.glsl"
 #include "shared/workgroup.glsl"
 
@@ -53,14 +54,15 @@ uint component(uint at, uint k) {
 void main() {
   const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;
   if (i >= push.count) return;
-  const uint at = push.firstByte + i * push.stride;
+  const uint number = push.numbers == kNobody ? i : vertexNumbers[push.numbers + i];
+  const uint at = push.firstByte + number * push.stride;
   const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
   const MeshRecord mesh = meshes[push.mesh];
   const vec3 local = uintBitsToFloat(bits) - mesh.origin;
   // Bounds are at most 2^120; differences of coordinates from 2^121 on might overflow.
-  const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) || any(greaterThan(local, mesh.hi)) ||
-                      any(greaterThan(mesh.lo, local));
+  const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) ||
+                      push.isBounded != 0 && (any(greaterThan(local, mesh.hi)) || any(greaterThan(mesh.lo, local)));
   if (outside && atomicCompSwap(violation.mesh, kNobody, push.mesh) == kNobody) atomicExchange(violation.vertex, i);
-  // The recording is invalid now, but the search must still terminate, so any position inside the bounds is written.
+  // The recording is invalid now, but the search must still terminate, so any position that is in range is written.
   vertices[mesh.firstVertex + i].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
 }

@@ -28,16 +28,38 @@ struct TransformLayout {
 };
 INTEROP_CONST kMatrix = 4;
 
-// An object that a host moves.
+// The bounds of a mesh that a host deforms without having declared any: numbers in the order of the floats that are their
+// least and greatest coordinates, the latter's negated. kNobody: none yet.
+struct Extent {
+  uint lo[3];
+  uint hi[3];
+};
+
+// An object that a host moves, or one that stands while the host deforms its mesh without bounds.
 struct Moved {
   uint object;
   uint mesh;
   uint mask;
-  uint firstByte;  // of its transform
+  uint firstByte;  // of its transform; kNobody: it stands where the scene has it
   TransformLayout format;
   uint leaf;         // of the tree over objects, to be fitted to the object; kNobody: it has bounds
   Point anchor;      // middle of its bounds, world
   Point halfExtent;  // of its bounds about the anchor; without bounds, the most of its coordinates
+};
+
+// A sensor whose mesh a host deforms without bounds: what its encoding by the CPU does not tell. Lengths are the world's;
+// those with an exponent are the mantissas of lengths.
+struct DeformedSensor {
+  uint sensor;
+  uint mesh;
+  float slack;      // by which its vertices may be moved, rounded up
+  float clearance;  // rounded up
+  float tolerance;  // of the clearance, as asked, rounded up
+  int exponent;     // of `way`, `certain`, `stopBefore`
+  float way;        // to the end, rounded up
+  float certain;    // as way, and of a step rounded down
+  float stopBefore; // see Sensor
+  float perWay;     // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
 };
 
 // A search past one object, one of several that answer a query together.
@@ -55,6 +77,21 @@ struct DeformPush {
   uint firstByte;  // of the first position, in the copied words
   uint stride;     // bytes from one position to the next
   uint format;     // kFloat32 ...
+  uint numbers;    // where the list of positions' numbers has the first vertex's; kNobody: they are consecutive
+  uint isBounded;  // the mesh has declared bounds
+};
+struct BoundPush {
+  uint firstTriangle;
+  uint count;   // triangles
+  uint extent;  // index of the mesh's
+};
+struct NormalisePush {
+  uint count;  // meshes
+};
+struct PlacePush {
+  uint count;       // sensors
+  Point anchor;     // of the tree over objects, which is the sum of this
+  Point anchorLow;  // and this
 };
 struct RefitPush {
   uint first;  // in the list of nodes to refit
@@ -100,6 +137,8 @@ INTEROP_CONST kQueryFlags = 76;
 INTEROP_CONST kQueryAnyHit = 1;
 // Invocations in a workgroup of the passes.
 INTEROP_CONST kHostGroup = 64;
+// Triangles that an invocation of bound.comp takes.
+INTEROP_CONST kBoundRun = 16;
 
 INTEROP_SLOT(kSlotWords, 19, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 6, Moved);
@@ -107,6 +146,10 @@ INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
 INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
 INTEROP_SLOT(kSlotGathered, 9, Gathered);
 INTEROP_SLOT(kSlotFitNodes, 10, uint);  // inner nodes of the tree over objects, parents first
+INTEROP_SLOT(kSlotVertexNumbers, 20, uint);  // of deformed meshes, in the host's buffers
+INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes
+INTEROP_SLOT(kSlotExtents, 22, Extent);      // of those
+INTEROP_SLOT(kSlotDeformedSensors, 23, DeformedSensor);
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

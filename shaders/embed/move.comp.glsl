@@ -1,5 +1,6 @@
 // Moves objects to a host's transforms, one invocation per object: writes their poses, which are exact, and their
 // placements, which carry error bounds; and fits the leaves of those without bounds (docs/method.md, "A host's geometry").
+// Objects that stand, but whose meshes a host deforms without bounds, get placements and leaves, too.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,14 +9,14 @@
 layout(local_size_x = kHostGroup) in;
 
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-layout(scalar, binding = kSlotObjects) writeonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kSlotObjects) restrict buffer Objects { ObjectRecord objects[]; };
 layout(scalar, binding = kSlotPlacements) writeonly restrict buffer Placements { Placement placements[]; };
 layout(scalar, binding = kSlotMoved) readonly restrict buffer MovedObjects { Moved movedObjects[]; };
 layout(scalar, binding = kSlotObjectNodes) writeonly restrict buffer Nodes { ObjectNode nodes[]; };
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
-#include "shared/double_bits.glsl"
 #include "byte_load.glsl"
 #include "transform.glsl"
+#include "load_transform.glsl"
 #include "placement.glsl"
 #include "shared/workgroup.glsl"
 
@@ -41,7 +42,13 @@ void main() {
   if (i >= push.count) return;
   const Moved moved = movedObjects[i];
   const MeshRecord mesh = meshes[moved.mesh];
-  const Transform t = transformAt(moved.firstByte, moved.format);
+  const bool isStanding = moved.firstByte == kNobody;
+  Transform t;
+  if (isStanding) {
+    t = transformOf(objects[moved.object].pose);
+  } else {
+    t = transformAt(moved.firstByte, moved.format);
+  }
   const bool fits = fitsFloats(t, mesh);
   Position position;
   PlacedBox box;
@@ -55,7 +62,7 @@ void main() {
     placements[moved.object].perUnit = 0.0;
     return;
   }
-  objects[moved.object].pose = preciseRows(t);
+  if (!isStanding) objects[moved.object].pose = preciseRows(t);
   Placement placement = placementOf(mesh, t, position);
   placement.mask = moved.mask;
   placement.mesh = moved.mesh;

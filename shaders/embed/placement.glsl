@@ -1,4 +1,4 @@
-// Where a host's transform puts a mesh, with error bounds (docs/method.md, "A host's geometry"). Included after
+// Where a transform puts a mesh, with error bounds (docs/method.md, "A host's geometry"). Included after
 // transform.glsl.
 
 const float kUnit = 5.9604645e-8;  // 2^-24
@@ -33,12 +33,13 @@ Position positionOf(Transform t, vec3 origin) {
     const vec4 m = uintBitsToFloat(t.bits[row]);
     const float sum = dot(abs(m.xyz), abs(origin));
 #ifdef RADAR_NO_DOUBLES
-    // Exact if the origin is 0.
+    // Exact if the origin is 0, but for what `low` lacks.
     p.high[row] = origin == vec3(0.0) ? m.w : dot(m.xyz, origin) + m.w;
-    p.low[row] = 0.0;
-    p.error[row] = origin == vec3(0.0) ? 0.0 : 16.0 * kUnit * (sum + abs(m.w));
+    p.low[row] = t.low[row].w;
+    p.error[row] = origin == vec3(0.0) ? 0.0 : 20.0 * kUnit * (sum + abs(m.w));
 #else
-    const double at = dot(dvec3(m.xyz), dvec3(origin)) + double(m.w);
+    const dvec4 exact = dvec4(m) + dvec4(t.low[row]);
+    const double at = dot(exact.xyz, dvec3(origin)) + exact.w;
     p.high[row] = float(at);
     p.low[row] = float(at - double(p.high[row]));
     p.error[row] = 5.7e-14 * (sum + abs(m.w));  // 2^-44
@@ -62,10 +63,10 @@ PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor, ve
     const vec3 m = uintBitsToFloat(t.bits[row].xyz);
     const float offset = (position.high[row] - anchor[row]) + (position.low[row] - anchorLow[row]);
     at[row] = dot(m, middle) + offset;
-    sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 16.0;
+    sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 20.0;
     reach[row] = dot(abs(m), halfExtent);
   }
-  return PlacedBox(at, reach + (16.0 * kUnit * (sum + reach) + flushed), all(lessThanEqual(sum + reach, vec3(1e37))));
+  return PlacedBox(at, reach + (20.0 * kUnit * (sum + reach) + flushed), all(lessThanEqual(sum + reach, vec3(1e37))));
 }
 
 // Approximate rows of the inverse of a matrix whose largest entry is 1 to 2. Any rows are valid, since the caller bounds
@@ -81,9 +82,6 @@ void inverseRows(vec3 m0, vec3 m1, vec3 m2, float most, out vec3 n[3]) {
     n[k] = usable && all(lessThan(abs(row), vec3(most))) ? row : vec3(0.0);
   }
 }
-
-// A power of two, -126 <= exponent <= 127.
-float twoTo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 
 // Exponents of the matrix's largest entry times the mesh's unit, and of the unit. A matrix that may flush to 0 gets an
 // exponent out of range.
@@ -116,12 +114,12 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   for (int row = 0; row < 3; ++row) {
     const vec3 leading = uintBitsToFloat(floatBitsToUint(m[row]) & 0xffffff00u);
     p.coarse[row] = vec4(leading, position.high[row]);
-    p.fine[row] = vec4(m[row] - leading, position.low[row]);
+    p.fine[row] = vec4((m[row] - leading) + t.low[row].xyz * unit, position.low[row]);
     // Residual: n . matrix - unit vector, times the mesh's reach.
     float off = 0.0;
     for (int j = 0; j < 3; ++j) {
       const vec3 column = vec3(scaled[0][j], scaled[1][j], scaled[2][j]);
-      off += (abs(dot(n[row], column) - (j == row ? 1.0 : 0.0)) + 8.0 * kUnit * (dot(abs(n[row]), abs(column)) + 1.0)) * reach[j];
+      off += (abs(dot(n[row], column) - (j == row ? 1.0 : 0.0)) + 10.0 * kUnit * (dot(abs(n[row]), abs(column)) + 1.0)) * reach[j];
     }
     p.inverse[row] = vec4(n[row] * perLarge, 1.00001 * off);
     size += dot(abs(m[row]), reach);
@@ -130,8 +128,8 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   p.reach = reach;
   p.root = mesh.firstNode;
   p.origin = mesh.origin;
-  // 2^-35 of the size, and 1e-37 for numbers that flush to 0.
-  p.error = 1.00001 * (error + 3e-11 * size) + 1e-37;
+  // 2^-35 of the size, and 2e-37 for numbers that flush to 0.
+  p.error = 1.00001 * (error + 3.1e-11 * size) + 2e-37;
   p.size = 1.00001 * size + 1e-37;
   p.perUnit = inRange && size <= 1.2e24 ? mesh.perUnit : 0.0;
   return p;

@@ -16,13 +16,14 @@ layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts coun
 layout(scalar, binding = kSlotTasks) writeonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSweeps) writeonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotExcluded) writeonly restrict buffer Excluded { uint excluded[]; };
-#include "shared/double_bits.glsl"
 #include "byte_load.glsl"
 #include "transform.glsl"
+#include "load_transform.glsl"
 #include "placement.glsl"
 #include "direction.glsl"
 #include "shared/workgroup.glsl"
 #include "world.glsl"
+#include "sensor.glsl"
 
 layout(scalar, push_constant) uniform PushConstants { PlanPush push; };
 
@@ -49,20 +50,6 @@ bool isValid(HostQuery q) {
                            ((q.direction.x | q.direction.y | q.direction.z) & 0x7fffffffu) != 0;
   const bool isDistance = isFinite(q.distance) && (q.distance <= 0x80000000u);
   return isMesh && q.pose.isFinite && isDirection && isDistance && (q.flags & ~kQueryAnyHit) == 0;
-}
-
-// 2^80, which bounds the coordinates.
-const float kMostCoordinate = 1.2e24;
-
-// Whether floats hold the placed mesh's coordinates, and their terms.
-bool holdsTerms(Transform t, MeshRecord mesh) {
-  const vec3 most = abs(mesh.origin) + max(abs(mesh.lo), abs(mesh.hi));
-  bool holds = all(lessThanEqual(abs(mesh.origin), vec3(kMostCoordinate)));
-  for (int row = 0; row < 3; ++row) {
-    const vec4 m = uintBitsToFloat(t.bits[row]);
-    holds = holds && dot(abs(m.xyz), most) + abs(m.w) <= kMostCoordinate;
-  }
-  return holds;
 }
 
 // The distance over 2^exponent, exactly, or the limits of engine/contact/sensors.cpp: at most 2^42; negative below 2^-100.
@@ -120,18 +107,12 @@ uint plan(uint i, HostQuery q, out uint hi) {
   hi = 0;
   if (!isValid(q)) return kSearchNoQuery;
   const MeshRecord mesh = meshes[q.mesh];
-  if (push.inRange == 0 || !fitsFloats(q.pose, mesh) || !holdsTerms(q.pose, mesh)) return kSearchOutOfRange;
-  const Position position = positionOf(q.pose, mesh.origin);
+  if (push.inRange == 0) return kSearchOutOfRange;
+  const PlacedSensor placed = placedSensor(q.pose, mesh, q.mesh, push.anchor, push.anchorLow, push.start != kNobody, 0.0);
+  if (!placed.inRange) return kSearchOutOfRange;
   Sensor sensor;
-  sensor.placement = placementOf(mesh, q.pose, position);
-  sensor.placement.mask = 0;
-  sensor.placement.mesh = q.mesh;
-  const PlacedBox box = boxOf(q.pose, mesh, position, push.anchor, push.anchorLow);
-  const float farthest = push.start == kNobody ? 0.0 : farthestFrom(box.centre);
-  const float size = max(sensor.placement.size, 3.64e-12 * farthest);  // 2^-38
-  if (!(sensor.placement.perUnit > 0.0 && size >= 8.3e-25 && farthest <= 8.0 * kMostCoordinate)) return kSearchOutOfRange;
-
-  const int exponent = int(floatBitsToUint(size) >> 23) - 127, directionExponent = exponentOf(q.direction);
+  sensor.placement = placed.placement;
+  const int exponent = placed.exponent, directionExponent = exponentOf(q.direction);
   sensor.scale = twoTo(-exponent);
   sensor.unscale = twoTo(exponent);
   sensor.distance = scaledDistance(q.distance, exponent);
@@ -140,9 +121,8 @@ uint plan(uint i, HostQuery q, out uint hi) {
   const vec3[3] axes = axesAlong(q.direction, directionExponent);
   for (uint row = 0; row < 3; ++row) sensor.frame[row] = vec4(axes[row], 0.0);
   sensor.direction = axes[2];
-  sensor.centre = box.centre;
-  // 2^-44 of what is placed far away, and 2^-25 of the way, for the direction.
-  sensor.halfExtent = box.halfExtent + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + 3e-8 * farthest + 1e-37;
+  sensor.centre = placed.centre;
+  sensor.halfExtent = placed.halfExtent + 3e-8 * placed.farthest;  // 2^-25 of the way, for the direction
   sensor.mask = q.mask;
   sensor.firstExcluded = i;
   sensor.endExcluded = q.exclude == kNobody ? i : i + 1;

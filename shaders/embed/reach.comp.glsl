@@ -23,7 +23,7 @@ void main() {
   const float farthest = farthestFrom(sensors[i].centre), unscale = sensors[i].unscale;
   // Scaled, every contact is nearer than 2^40, and a clearance is 0 or at least 2^-40 of the scene's extent.
   const float clearance = sensors[i].frame[0].w;
-  const bool inRange = farthest <= 5.4e11 * unscale && farthest <= 9.6e24 &&
+  const bool inRange = farthest <= 5.5e11 * unscale && farthest <= 9.6e24 &&
                        (clearance == 0.0 || clearance * unscale >= 9.2e-13 * (2.0 * unscale + farthest));
   if (!inRange) states[i].flags |= kSearchOutOfRange;
   // 2^-37, for the velocity that sensorBoxOf (contact/nodes.glsl) raises.

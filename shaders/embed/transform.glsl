@@ -1,49 +1,55 @@
-// A host's transform, in any layout of radar/host_transforms.h. Included after byte_load.glsl.
-#include "float_bits.glsl"
+// A transform in two floats per entry: a host's, or the double-precision pose of an object or a query.
+#include "shared/double_bits.glsl"
 
 struct Transform {
-  uvec4 bits[3];
+  uvec4 bits[3];  // of floats
+  vec4 low[3];    // what a double has beyond them, within 2^-46 of itself, 2^-23 of it at most; of a host's transform 0
   bool isFinite;
-  bvec3 flushes;  // the row has an entry that a device may flush to 0
+  bvec3 flushes;  // the row has an entry that a device may flush to 0, or a part of one
 };
 
-uvec3 loadWords(uint byte) { return uvec3(loadWord(byte), loadWord(byte + 4), loadWord(byte + 8)); }
+// A power of two, -126 <= exponent <= 127.
+float twoTo(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 
-// 1 - (p + q).
-uint oneWithout(uint p, uint q) { return floatDifference(0x3f800000u, floatSum(p, q)); }
+struct Parts {
+  uint bits;
+  float low;
+  bool flushes;
+};
 
-void loadTurned(uint firstByte, TransformLayout format, inout Transform t) {
-  const uvec3 position = loadWords(firstByte + format.offsets[0]), q = loadWords(firstByte + format.offsets[1]);
-  const uint w = loadWord(firstByte + format.offsets[1] + 12);
-  uvec3 scales = uvec3(0x3f800000u);
-  if (format.parts == 3) scales = loadWords(firstByte + format.offsets[2]);
-  if (format.parts == 1) scales = uvec3(loadWord(firstByte + format.offsets[2]));
-  const uint twiceX = floatSum(q.x, q.x), twiceY = floatSum(q.y, q.y), twiceZ = floatSum(q.z, q.z);
-  const uint xx = floatProduct(q.x, twiceX), yy = floatProduct(q.y, twiceY), zz = floatProduct(q.z, twiceZ);
-  const uint xy = floatProduct(q.x, twiceY), xz = floatProduct(q.x, twiceZ), yz = floatProduct(q.y, twiceZ);
-  const uint wx = floatProduct(w, twiceX), wy = floatProduct(w, twiceY), wz = floatProduct(w, twiceZ);
-  t.bits[0] = uvec4(oneWithout(yy, zz), floatDifference(xy, wz), floatSum(xz, wy), position.x);
-  t.bits[1] = uvec4(floatSum(xy, wz), oneWithout(xx, zz), floatDifference(yz, wx), position.y);
-  t.bits[2] = uvec4(floatDifference(xz, wy), floatSum(yz, wx), oneWithout(xx, yy), position.z);
-  for (uint row = 0; row < 3; ++row) {
-    for (uint k = 0; k < 3; ++k) t.bits[row][k] = floatProduct(t.bits[row][k], scales[k]);
-  }
+// Of a double: its leading 24 bits, and what follows.
+Parts partsOf(uvec2 d) {
+  const uint sign = d.y & 0x80000000u;
+  const int exponent = int(d.y >> 20 & 0x7ffu) - 1023;
+  if (exponent > 127) return Parts(sign | 0x7f800000u, 0.0, false);
+  if (exponent < -126) return Parts(sign, 0.0, ((d.y & 0x7fffffffu) | d.x) != 0);
+  const uint bits = sign | uint(exponent + 127) << 23 | (d.y & 0xfffffu) << 3 | d.x >> 29;
+  const float rest = float(d.x & 0x1fffffffu) * 1.8626451e-9;  // 2^-29
+  const float low = exponent < -103 ? 0.0 : rest * twoTo(exponent - 23);
+  return Parts(bits, sign != 0 ? -low : low, exponent < -70);
 }
 
-Transform transformAt(uint firstByte, TransformLayout format) {
+uvec2 entryOf(PreciseRows pose, uint row, uint k) {
+#ifdef RADAR_NO_DOUBLES
+  const uvec4 two = pose[2 * row + k / 2];
+  return k % 2 == 0 ? two.xy : two.zw;
+#else
+  return unpackDouble2x32(pose[row][k]);
+#endif
+}
+
+Transform transformOf(PreciseRows pose) {
   Transform t;
-  if (format.parts == kMatrix) {
-    for (uint row = 0; row < 3; ++row) {
-      for (uint k = 0; k < 4; ++k)
-        t.bits[row][k] = loadWord(firstByte + row * format.offsets[0] + k * format.offsets[1]);
-    }
-  } else {
-    loadTurned(firstByte, format, t);
-  }
   t.isFinite = true;
   for (uint row = 0; row < 3; ++row) {
-    t.isFinite = t.isFinite && all(notEqual(t.bits[row] >> 23 & 0xffu, uvec4(0xffu)));
-    t.flushes[row] = any(lessThan((t.bits[row].xyz & 0x7fffffffu) - 1u, uvec3(0x7fffffu)));
+    t.flushes[row] = false;
+    for (uint k = 0; k < 4; ++k) {
+      const Parts parts = partsOf(entryOf(pose, row, k));
+      t.bits[row][k] = parts.bits;
+      t.low[row][k] = parts.low;
+      t.isFinite = t.isFinite && (parts.bits & 0x7f800000u) != 0x7f800000u;
+      if (k < 3) t.flushes[row] = t.flushes[row] || parts.flushes;
+    }
   }
   return t;
 }

@@ -1,7 +1,8 @@
-// Scenes in which a host moves objects without bounds: as the engine knows them, and as they are.
+// Scenes in which a host moves objects and deforms meshes without bounds: as the engine knows them, and as they are.
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -88,7 +89,25 @@ class MovedWorld {
     buffers_.emplace_back(bytes, *device_);
     group_ = {.transforms = buffers_.back().get(), .first = 8, .objects = moved};
   }
-  HostGeometry geometry() const { return {.objects = {&group_, 1}}; }
+  /// Some meshes get another shape in the host's buffers; the others have the scene's.
+  void deformAgain() {
+    deformed_.clear();
+    vertices_.clear();
+    for (const MeshId mesh : meshes) {
+      const std::span<const float> rest = scene.mesh(mesh).positions;
+      std::vector<float> positions(rest.begin(), rest.end());
+      if (random.oneIn(3)) {
+        const double scale = random.uniform(0.25, 2);
+        for (float& x : positions) x = static_cast<float>(scale * x + random.uniform(-0.1, 0.1));
+        std::vector<std::byte> bytes(positions.size() * sizeof(float));
+        std::memcpy(bytes.data(), positions.data(), bytes.size());
+        vertices_.emplace_back(bytes, *device_);
+        deformed_.push_back({mesh, {.buffer = vertices_.back().get()}});
+      }
+      truth.setPositions(mesh, positions);
+    }
+  }
+  HostGeometry geometry() const { return {.meshes = deformed_, .objects = {&group_, 1}}; }
 
   /// Sensors near objects, that move towards others, and some at random.
   std::vector<Query> queries(uint32_t count) {
@@ -148,8 +167,9 @@ class MovedWorld {
   }
 
   const Device* device_;
-  std::deque<OnDevice> buffers_;
+  std::deque<OnDevice> buffers_, vertices_;
   MovedObjects group_;
+  std::vector<DeformedMesh> deformed_;
 };
 
 }  // namespace radar::test

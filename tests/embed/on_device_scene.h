@@ -12,11 +12,12 @@ namespace radar::test {
 
 struct OnDeviceScene {
   OnDeviceScene(const Scene& scene, const HostGeometry& geometry) : copy(test::device().impl()) {
-    CHECK(validate(geometry, scene, true).empty());
+    CHECK(validate(geometry, scene).empty());
     const Device::Impl& device = test::device().impl();
     HostGeometryPass pass(device, copy);
     gpu::Upload upload(device);
     pass.stage(geometry, scene.impl());
+    pass.stageSensors({}, scene.impl());
     upload.begin(copy.prepare(scene.impl()));
     copy.upload(scene.impl(), upload);
     gpu::Submission submission(device, false);
@@ -24,7 +25,7 @@ struct OnDeviceScene {
     upload.record(commands);
     gpu::uploadToRead(commands);
     gpu::transferToComputeReadWrite(commands);
-    pass.record(commands);
+    pass.record(commands, scene.impl());
     submission.submitAndWait();
     CHECK(pass.boundsViolation().empty());
   }

@@ -13,9 +13,8 @@ struct Moving {
 };
 
 // Called while loading. `restPose` holds the character as it was modelled.
-void addMoving(radar::Scene& scene, const radar::Device& device, radar::HostMesh restPose, radar::MeshId crate,
+void addMoving(radar::Scene& scene, const radar::Device& device, const radar::HostMesh& restPose, radar::MeshId crate,
                Moving& moving) {
-  restPose.bounds = radar::Bounds{{-1.5, -1.5, 0}, {1.5, 1.5, 2.5}};  // around its origin, in any pose
   moving.body = radar::addMesh(scene, device, restPose);
   scene.addObject({.mesh = moving.body});
   for (int i = 0; i < 20; ++i) moving.crates.push_back(scene.addObject({.mesh = crate}));

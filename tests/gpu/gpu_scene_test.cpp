@@ -239,8 +239,10 @@ TEST_CASE("data that a host has overwritten is staged again when the host stops 
     return bytes;
   };
   sync({});
-  const auto moved = [](std::vector<ObjectId> objects, std::vector<uint32_t> nodes) {
-    return std::make_shared<const GpuScene::Moved>(GpuScene::Moved{std::move(objects), std::move(nodes)});
+  const auto moved = [](std::vector<ObjectId> objects, std::vector<uint32_t> nodes,
+                        std::vector<ObjectId> standing = {}) {
+    return std::make_shared<const GpuScene::Moved>(
+        GpuScene::Moved{.objects = std::move(objects), .standing = std::move(standing), .nodes = std::move(nodes)});
   };
   CHECK(sync({.meshes = {1}, .moved = moved({2, 7}, {0, 3})}) == 0);
   CHECK(sync({.meshes = {1}, .moved = moved({2, 7}, {0, 3})}) == 0);
@@ -249,8 +251,12 @@ TEST_CASE("data that a host has overwritten is staged again when the host stops 
   const size_t nodes = filled.scene.impl().objectTree().nodes().size();
   const VkDeviceSize nodeBytes = sizeof(gpu::ObjectNode) * std::min<size_t>(nodes, ChangedPages::kPage);
   CHECK(sync({.meshes = {1}, .moved = moved({2}, {0})}) == nodeBytes);
+  // An object that stands instead of being moved has its own pose again.
+  CHECK(sync({.meshes = {1}, .moved = moved({}, {0}, {2, 5})}) == objectBytes);
+  CHECK(sync({.meshes = {1}, .moved = moved({2}, {0}, {5})}) == objectBytes);
   const Mesh& mesh = filled.scene.impl().meshes[1];
-  CHECK(sync({}) == objectBytes + nodeBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
+  const VkDeviceSize recordBytes = gpu::Upload::aligned(filled.scene.impl().meshes.size() * sizeof(gpu::MeshRecord));
+  CHECK(sync({}) == 2 * objectBytes + nodeBytes + recordBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
                         mesh.triangleCount() * sizeof(gpu::Triangle) + mesh.tree.nodes.size() * sizeof(gpu::MeshNode));
   CHECK(sync({}) == 0);
 }

@@ -109,7 +109,7 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
   }
 }
 
-/// The scene learns where the objects are.
+/// The scene learns where the objects and their vertices are.
 void MovedAnswerers::applyAndAsk(const std::vector<Query>& queries) {
   applyGeometry(world_.scene, *device_, world_.geometry());
   CpuSweeper cpu(world_.truth, 1);
@@ -120,6 +120,7 @@ void MovedAnswerers::applyAndAsk(const std::vector<Query>& queries) {
 
 void MovedAnswerers::round() {
   if (random_->oneIn(4)) change();
+  if (random_->oneIn(3)) world_.deformAgain();
   world_.moveAgain();
   const std::vector<Query> queries = choose();
   measured(Who::moved, *tally_, [&] { ask(Who::moved, queries, queries); });

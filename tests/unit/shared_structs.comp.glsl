@@ -51,6 +51,11 @@ layout(scalar, binding = 39) readonly buffer B39 { Gathered b39[]; };
 layout(scalar, binding = 40) readonly buffer B40 { GatherPush b40[]; };
 layout(scalar, binding = 41) readonly buffer B41 { FitPush b41[]; };
 layout(scalar, binding = 42) readonly buffer B42 { ReachPush b42[]; };
+layout(scalar, binding = 43) readonly buffer B43 { Extent b43[]; };
+layout(scalar, binding = 44) readonly buffer B44 { DeformedSensor b44[]; };
+layout(scalar, binding = 45) readonly buffer B45 { BoundPush b45[]; };
+layout(scalar, binding = 46) readonly buffer B46 { NormalisePush b46[]; };
+layout(scalar, binding = 47) readonly buffer B47 { PlacePush b47[]; };
 layout(scalar, binding = 37) readonly buffer B37 { TransformLayout b37[]; };
 layout(scalar, binding = 38) readonly buffer B38 { PlanPush b38[]; };
 

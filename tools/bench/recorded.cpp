@@ -140,7 +140,8 @@ void runFlight(const Device& device, int& status) {
   const DeformedMesh deformed{flight.teapot, {.buffer = there.get()}};
   const MovedObjects moved{.transforms = there.get(), .first = transforms, .objects = flight.teapots};
 
-  Recorder standing(device, flight.standing, kCapacity), moving(device, flight.moving, kCapacity);
+  Recorder standing(device, flight.standing, kCapacity), moving(device, flight.moving, kCapacity),
+      unbounded(device, flight.standing, kCapacity);
   gpu::Submission submission(device.impl(), false);
   const auto method = [&](const char* name, Recorder& recorder, HostGeometry geometry, bool throughCpu = false) {
     return Method{name,
@@ -154,9 +155,12 @@ void runFlight(const Device& device, int& status) {
                   }};
   };
   const std::vector<Method> methods{
-      method("standing", standing, {}), method("moved", moving, {.objects = {&moved, 1}}),
+      method("standing", standing, {}),
+      method("moved", moving, {.objects = {&moved, 1}}),
       method("deformed", moving, {.meshes = {&deformed, 1}}),
+      method("deformed, without bounds", unbounded, {.meshes = {&deformed, 1}}),
       method("moved and deformed", moving, {.meshes = {&deformed, 1}, .objects = {&moved, 1}}),
+      method("moved and deformed, without bounds", unbounded, {.meshes = {&deformed, 1}, .objects = {&moved, 1}}),
       method("deformed by the CPU", moving, {}, true)};
   printRows("figure7", methods, {&flight.batch, 1}, {.least = 15, .most = 15}, status);
 }

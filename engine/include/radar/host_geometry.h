@@ -41,7 +41,8 @@ struct HostMesh {
 RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);
 
 /// New vertex positions of a mesh, numbered as its indices were. Those that addMesh kept are read, each of which is
-/// within the bounds given to it.
+/// finite, at most 2^120, and within the bounds given to it, if any. Without bounds, those that triangles use may be
+/// anywhere: the device bounds them.
 struct DeformedMesh {
   MeshId mesh = kNone;
   HostPositions positions{};

@@ -102,7 +102,7 @@ inline constexpr uint32_t kFlagUnresolved =
 inline constexpr uint32_t kFlagCandidates = 2;  ///< Capacity::candidates, or a list of the search, was too small
 inline constexpr uint32_t kFlagRounds = 4;      ///< Capacity::rounds was too small
 inline constexpr uint32_t kFlagRange = 8;       ///< floats cannot hold the scene, or the sensor or D relative to it
-inline constexpr uint32_t kFlagBounds = 16;     ///< a vertex or an object of HostGeometry has left its declared bounds
+inline constexpr uint32_t kFlagBounds = 16;     ///< something in HostGeometry has left its bounds
 inline constexpr uint32_t kFlagQuery = 32;      ///< no query, or an invalid one, in HostQueries (radar/host_queries.h)
 
 /// An answer. Layout version 3: 128 bytes, natural alignment. Absent ids are kNone. Where no contact within D is

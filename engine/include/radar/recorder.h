@@ -27,7 +27,8 @@ struct Capacity {
   /// read() cannot decide them: kFlagUnresolved stays.
   uint32_t unresolvedPairs = 0;
   /// Searches past one object each, which count as queries above; record() throws if there are more. A query with
-  /// Query::hits above 1, and any if objects have motions, takes one for each object in reach or moved without bounds.
+  /// Query::hits above 1, and any if objects have motions, takes one for each object in reach, and each that is moved,
+  /// or whose mesh is deformed, without bounds; for every object if its sensor's mesh is.
   uint32_t searches = 0;
 };
 
@@ -54,7 +55,8 @@ class RADAR_API Recorder {
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
   ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away, or,
-  ///   beside objects that a host moves without bounds, any object more than 10^11 sensor sizes away;
+  ///   beside objects that a host moves, or whose meshes it deforms, without bounds, any object more than 10^11 sensor
+  ///   sizes away; of a sensor whose mesh a host deforms without bounds, its rest pose counts, too;
   /// - a distance D that is not 0 but below 2^-100 of the sensor's size or 2^-138 of the scene's; no upper limit;
   /// - a direction whose components differ by a factor of more than about 2^1000;
   /// - a clearance above 2^29 times the sensor's size or below 2^-40 of the scene's.

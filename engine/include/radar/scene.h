@@ -93,9 +93,9 @@ class RADAR_API Scene {
   /// it has more, or no triangle, a size is not a multiple of 3, a number is not finite, or an index is out of range;
   /// with `bounds`, also if a lower bound exceeds its upper bound, or a bound or position exceeds 2^120.
   ///
-  /// `bounds`, mesh units: declares that the host will deform the mesh on its device within them
-  /// (radar/host_geometry.h). `positions` are then the rest pose: the closer they are to the deformed mesh, the faster
-  /// the search. All other calls use these positions.
+  /// `bounds`, mesh units: declares that a host that deforms the mesh on its device keeps it within them
+  /// (radar/host_geometry.h): see setBounds. `positions` are the rest pose: the closer they are to the deformed mesh,
+  /// the faster the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
   /// Moves the vertices of a mesh: 3 floats for each, as many as it has. Its tree is fitted to them, and built anew

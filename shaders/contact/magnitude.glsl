@@ -1,0 +1,8 @@
+// radar::placedMagnitude.
+double magnitudeOf(PreciseRows pose, MeshRecord mesh) {
+  const dvec3 origin = dvec3(mesh.origin);
+  const dvec3 most = max(abs(origin + dvec3(mesh.lo)), abs(origin + dvec3(mesh.hi)));
+  double greatest = 0.0LF;
+  for (int row = 0; row < 3; ++row) greatest = max(greatest, dot(abs(pose[row].xyz), most) + abs(pose[row].w));
+  return greatest;
+}

@@ -1,0 +1,45 @@
+// Bounds the vertices of a mesh that a host deforms without bounds; one invocation per kBoundRun triangles. Vertices that no
+// triangle uses may be anywhere.
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+#define RADAR_NO_DOUBLES
+#include "interop.h"
+#include "shared/scene.glsl"
+#include "shared/workgroup.glsl"
+
+layout(local_size_x = kHostGroup) in;
+
+layout(scalar, binding = kSlotExtents) restrict buffer Extents { Extent extents[]; };
+
+layout(push_constant) uniform PushConstants { BoundPush push; };
+
+shared uint least[3], leastNegated[3];
+
+// Numbers in the order of finite floats, and of their negatives. Comparing floats may flush small ones to 0.
+uvec3 inOrder(uvec3 bits) { return mix(bits | 0x80000000u, ~bits, greaterThanEqual(bits, uvec3(0x80000000u))); }
+
+void main() {
+  const uint local = gl_LocalInvocationID.x, first = (workgroupIndex() * kHostGroup + local) * kBoundRun;
+  if (local < 3) least[local] = leastNegated[local] = kNobody;
+  barrier();
+  uvec3 lo = uvec3(kNobody), hi = uvec3(kNobody);
+  for (uint i = first; i < min(first + kBoundRun, push.count); ++i) {
+    const uvec4 corners = triangleAt(push.firstTriangle + i);
+    for (uint k = 0; k < 3; ++k) {
+      const uvec3 at = inOrder(vertexBitsAt(corners[k]));
+      lo = min(lo, at);
+      hi = min(hi, ~at);
+    }
+  }
+  for (uint k = 0; k < 3 && first < push.count; ++k) {
+    atomicMin(least[k], lo[k]);
+    atomicMin(leastNegated[k], hi[k]);
+  }
+  barrier();
+  if (local < 3) {
+    atomicMin(extents[push.extent].lo[local], least[local]);
+    atomicMin(extents[push.extent].hi[local], leastNegated[local]);
+  }
+}

@@ -65,7 +65,7 @@ void selectObjects(const Scene::Impl& scene, const Prism& prism, std::vector<Obj
     world.hi[k] += slack;
   }
   const auto addIfMet = [&](ObjectId object) {
-    if (meets(tree.boxOf(object), prism, world, slack)) out.push_back(object);
+    if (meets(objectBox(scene, object), prism, world, slack)) out.push_back(object);
   };
   if (!tree.inRange()) {
     for (ObjectId object = 0; object < scene.objects.size(); ++object) {

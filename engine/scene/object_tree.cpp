@@ -64,12 +64,19 @@ bool isInRange(const Box& box) {
 
 }  // namespace
 
+Box objectBox(const Scene::Impl& scene, ObjectId id) {
+  const Object& object = scene.objects[id].object;
+  Box box = boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
+  sweep(box, object.motion);
+  if (const Box* bounds = scene.boundsOf(id)) box.merge(*bounds);
+  return box;
+}
+
 void ObjectTree::update(const Scene::Impl& scene, const ObjectChanges& changes) {
   if (seenPose_ == scene.poseVersion) return;
   next_ = scene.poseVersion;
   bool isDone = !nodes_.empty() && !changes.areMany;
   if (isDone) {
-    boxes_.resize(scene.objects.size());
     leaves_.resize(scene.objects.size(), kNone);
     for (const ObjectId object : changes.objects) apply(scene, object);
     isDone = inRange_ && !isWorn();
@@ -85,13 +92,12 @@ bool ObjectTree::isWorn() const {
 
 void ObjectTree::updateAll(const Scene::Impl& scene) {
   const bool sameObjects = seenStructure_ == scene.structureVersion;
-  boxes_.resize(scene.objects.size());
   leaves_.resize(scene.objects.size(), kNone);
   std::mutex merging;
   world_ = {};
   inRange_ = true;
-  parallelFor(boxes_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
-    const Around around = setBoxes(scene, first, last, sameObjects && !nodes_.empty());
+  parallelFor(leaves_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    const Around around = fitLeaves(scene, first, last, sameObjects && !nodes_.empty());
     const std::lock_guard lock(merging);
     world_.merge(around.box);
     inRange_ = inRange_ && around.inRange;
@@ -102,30 +108,22 @@ void ObjectTree::updateAll(const Scene::Impl& scene) {
   changed_.markAll(next_);
 }
 
-// Sets the boxes of a range of objects. `fits`: their leaves are fitted, too.
-ObjectTree::Around ObjectTree::setBoxes(const Scene::Impl& scene, size_t first, size_t last, bool fits) {
+// Looks at a range of objects. `fits`: their leaves are fitted, too.
+ObjectTree::Around ObjectTree::fitLeaves(const Scene::Impl& scene, size_t first, size_t last, bool fits) {
   Around around;
   for (size_t i = first; i < last; ++i) {
     // The leaves of neighbouring objects are far apart in memory.
     const uint32_t ahead = leaves_[std::min(i + kAhead, leaves_.size() - 1)];
     if (ahead < nodes_.size()) __builtin_prefetch(&nodes_[ahead], 1);
     if (!scene.objects[i].used) continue;
-    const bool changed = scene.changedAt[i] > seenPose_;
-    if (changed) setBox(scene, static_cast<ObjectId>(i));
-    around.box.merge(boxes_[i]);
-    around.inRange = around.inRange && isInRange(boxes_[i]);
-    if (!changed || !fits || leaves_[i] == kNone) continue;
+    const Box box = objectBox(scene, static_cast<ObjectId>(i));
+    around.box.merge(box);
+    around.inRange = around.inRange && isInRange(box);
+    if (!fits || leaves_[i] == kNone || scene.changedAt[i] <= seenPose_) continue;
     gpu::ObjectNode& leaf = nodes_[leaves_[i]];
-    fitBox(floatBox(boxes_[i], anchor_), leaf.centre, leaf.halfExtent);
+    fitBox(floatBox(box, anchor_), leaf.centre, leaf.halfExtent);
   }
   return around;
-}
-
-void ObjectTree::setBox(const Scene::Impl& scene, ObjectId id) {
-  const Object& object = scene.objects[id].object;
-  boxes_[id] = radar::boxOf(scene.meshes[object.mesh], object.worldFromMesh.m);
-  sweep(boxes_[id], object.motion);
-  if (const Box* bounds = scene.boundsOf(id)) boxes_[id].merge(*bounds);
 }
 
 void ObjectTree::apply(const Scene::Impl& scene, ObjectId object) {
@@ -133,22 +131,22 @@ void ObjectTree::apply(const Scene::Impl& scene, ObjectId object) {
     if (leaves_[object] != kNone) remove(object);
     return;
   }
-  setBox(scene, object);
-  inRange_ = inRange_ && isInRange(boxes_[object]);
+  const Box box = objectBox(scene, object);
+  inRange_ = inRange_ && isInRange(box);
   if (!inRange_) return;
-  world_.merge(boxes_[object]);
+  world_.merge(box);
   if (leaves_[object] == kNone) {
-    insert(object);
+    insert(object, box);
   } else {
-    fit(leaves_[object], boxes_[object]);
+    fit(leaves_[object], box);
     fitUpwards(parents_[leaves_[object]]);
   }
 }
 
-void ObjectTree::insert(ObjectId object) {
+void ObjectTree::insert(ObjectId object, const Box& world) {
   if (nodes_.empty()) return;  // all others were removed before: it is built anew
   structure_ = next_;
-  const FloatBox box = floatBox(boxes_[object], anchor_);
+  const FloatBox box = floatBox(world, anchor_);
   const auto grown = [&](uint32_t node) {
     gpu::ObjectNode both{};
     const FloatBox sum = around(boxAround(nodes_[node]), box);
@@ -168,7 +166,7 @@ void ObjectTree::insert(ObjectId object) {
   parents_.resize(nodes_.size(), at);
   changed_.resize(nodes_.size());
   touch(first);
-  fit(first + 1, boxes_[object]);
+  fit(first + 1, world);
   nodes_[at].link = first;
   touch(at);
   adopt(first);
@@ -245,7 +243,9 @@ void ObjectTree::build(const Scene::Impl& scene) {
   if (ids.empty() || !inRange_) return;
   for (int k = 0; k < 3; ++k) anchor_[k] = world_.middle(k);
   std::vector<FloatBox> boxes(ids.size());
-  for (size_t i = 0; i < ids.size(); ++i) boxes[i] = floatBox(boxes_[ids[i]], anchor_);
+  parallelFor(ids.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) boxes[i] = floatBox(objectBox(scene, ids[i]), anchor_);
+  });
   const BoxTree tree = buildBoxTree(boxes, 1);
   nodes_.resize(tree.nodes.size());
   for (size_t i = 0; i < nodes_.size(); ++i) {

@@ -14,6 +14,9 @@ namespace radar {
 
 struct BoxTree;
 
+/// An object's world box, its motion and its bounds from setBounds included.
+Box objectBox(const Scene::Impl& scene, ObjectId object);
+
 /// Objects that were added, moved or removed.
 struct ObjectChanges {
   std::vector<ObjectId> objects;  ///< some perhaps several times
@@ -36,8 +39,6 @@ class ObjectTree {
   const Vector& anchor() const { return anchor_; }
   /// A box that contains all objects; empty if there have been none.
   const Box& worldBox() const { return world_; }
-  /// An object's world box, its motion and its bounds from setBounds included.
-  const Box& boxOf(ObjectId object) const { return boxes_[object]; }
   /// The leaf of an object; kNone if floats cannot hold the tree.
   uint32_t leafOf(ObjectId object) const { return leaves_[object]; }
   /// kNone: the node is the root.
@@ -60,15 +61,14 @@ class ObjectTree {
     Box box;
     bool inRange = true;
   };
-  Around setBoxes(const Scene::Impl& scene, size_t first, size_t last, bool fits);
+  Around fitLeaves(const Scene::Impl& scene, size_t first, size_t last, bool fits);
   void listSubtrees(const BoxTree& tree);
   void refit();
   double cost() const;
 
   bool isWorn() const;
   void apply(const Scene::Impl& scene, ObjectId object);
-  void setBox(const Scene::Impl& scene, ObjectId object);
-  void insert(ObjectId object);
+  void insert(ObjectId object, const Box& box);
   void remove(ObjectId object);
   void fit(uint32_t node, const Box& box);
   void fitUpwards(uint32_t node);
@@ -80,7 +80,6 @@ class ObjectTree {
   ChangedPages changed_;
   std::vector<uint32_t> parents_;  // by node; kNone: the root
   std::vector<uint32_t> leaves_;   // by object id; kNone: not in the tree
-  std::vector<Box> boxes_;         // by object id
   struct Range {
     uint32_t first, last;
   };

@@ -20,24 +20,41 @@ Vector placed(const Transform& pose, const float* p) {
   return out;
 }
 
+struct Interval {
+  double lo, hi;
+};
+
+// Of a placed mesh on one axis: `r` are that row's factors of local vertices, whose origin is at `origin`.
+Interval intervalOf(const Mesh& mesh, const double* r, double origin) {
+  double middle = origin, half = 0;
+  for (int k = 0; k < 3; ++k) {
+    middle += r[k] * mesh.box.middle(k);
+    half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
+  }
+  return {middle - half, middle + half};
+}
+
 }  // namespace
 
 Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
-  std::array<double, 12> parentFromLocal = m;
+  // Not yet a Box: reading back as vectors what has just been stored number by number stalls.
+  std::array<Interval, 3> axes;
   double magnitude = 0;
   for (int row = 0; row < 3; ++row) {
     const double* r = &m[4 * row];
-    double sum = std::abs(r[3]);
+    double origin = r[3], sum = std::abs(r[3]);
     for (int k = 0; k < 3; ++k) {
-      parentFromLocal[4 * row + 3] += r[k] * mesh.origin[k];
+      origin += r[k] * mesh.origin[k];
       sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
     }
     magnitude = std::max(magnitude, sum);
+    axes[row] = intervalOf(mesh, r, origin);
   }
-  Box box = boxOfLocal(mesh, parentFromLocal);
+  const double room = 0x1p-47 * magnitude;
+  Box box;
   for (int row = 0; row < 3; ++row) {
-    box.lo[row] -= 0x1p-47 * magnitude;
-    box.hi[row] += 0x1p-47 * magnitude;
+    box.lo[row] = axes[row].lo - room;
+    box.hi[row] = axes[row].hi + room;
   }
   return box;
 }
@@ -45,14 +62,9 @@ Box boxOf(const Mesh& mesh, const std::array<double, 12>& m) {
 Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& m) {
   Box box;
   for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double middle = r[3], half = 0;
-    for (int k = 0; k < 3; ++k) {
-      middle += r[k] * mesh.box.middle(k);
-      half += std::abs(r[k]) * 0.5 * (mesh.box.hi[k] - mesh.box.lo[k]);
-    }
-    box.lo[row] = middle - half;
-    box.hi[row] = middle + half;
+    const auto [lo, hi] = intervalOf(mesh, &m[4 * row], m[4 * row + 3]);
+    box.lo[row] = lo;
+    box.hi[row] = hi;
   }
   return box;
 }

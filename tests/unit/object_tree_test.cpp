@@ -34,7 +34,8 @@ struct WalkResult {
 };
 
 // Checks the nodes below and returns their objects.
-std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, WalkResult& walked) {
+std::vector<ObjectId> walk(const Scene::Impl& scene, const ObjectTree& tree, uint32_t at, uint32_t level,
+                           WalkResult& walked) {
   const gpu::ObjectNode& node = tree.nodes().at(at);
   ++walked.nodes;
   walked.depth = std::max(walked.depth, level);
@@ -44,11 +45,11 @@ std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, 
     ++walked.leaves.at(below[0]);
   } else {
     if (node.link <= at) FAIL("the children of node " << at << " stand before it");
-    below = walk(tree, node.link, level + 1, walked);
-    for (const ObjectId id : walk(tree, node.link + 1, level + 1, walked)) below.push_back(id);
+    below = walk(scene, tree, node.link, level + 1, walked);
+    for (const ObjectId id : walk(scene, tree, node.link + 1, level + 1, walked)) below.push_back(id);
   }
   for (const ObjectId id : below) {
-    const Box& box = tree.boxOf(id);
+    const Box box = objectBox(scene, id);
     if (!holds(node, tree.anchor(), box.lo) || !holds(node, tree.anchor(), box.hi)) {
       FAIL("node " << at << " does not hold object " << id);
     }
@@ -60,7 +61,7 @@ std::vector<ObjectId> walk(const ObjectTree& tree, uint32_t at, uint32_t level, 
 void checkTree(const Scene& scene) {
   const ObjectTree& tree = scene.impl().objectTree();
   WalkResult walked{std::vector<uint32_t>(scene.objectLimit())};
-  if (!tree.nodes().empty()) walk(tree, 0, 1, walked);
+  if (!tree.nodes().empty()) walk(scene.impl(), tree, 0, 1, walked);
   CHECK(walked.depth <= tree.depth());
   CHECK(walked.nodes <= tree.nodes().size());
   CHECK(tree.inRange());
@@ -70,7 +71,8 @@ void checkTree(const Scene& scene) {
     if (!scene.hasObject(id)) continue;
     const Object& object = scene.object(id);
     const MeshView mesh = scene.mesh(object.mesh);
-    const Box &box = tree.boxOf(id), &world = tree.worldBox();
+    const Box box = objectBox(scene.impl(), id);
+    const Box& world = tree.worldBox();
     for (const uint32_t vertex : mesh.indices) {
       const std::array<double, 3> p = transformPoint(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
       for (int k = 0; k < 3; ++k) {
@@ -160,15 +162,15 @@ TEST_CASE("the tree contains the bounds of objects that a host may move") {
   checkTree(boxes.scene);
   const ObjectTree& tree = boxes.scene.impl().objectTree();
   for (int k = 0; k < 3; ++k) {
-    CHECK(tree.boxOf(11).lo[k] <= bounds.lo[k]);
-    CHECK(tree.boxOf(11).hi[k] >= bounds.hi[k]);
+    CHECK(objectBox(boxes.scene.impl(), 11).lo[k] <= bounds.lo[k]);
+    CHECK(objectBox(boxes.scene.impl(), 11).hi[k] >= bounds.hi[k]);
     CHECK(tree.worldBox().lo[k] <= bounds.lo[k]);
   }
   // The bounds end with the object.
   boxes.scene.removeObject(11);
   CHECK(boxes.scene.addObject({boxes.mesh, at(0, 0, 0), ~0u}) == 11);
   checkTree(boxes.scene);
-  CHECK(tree.boxOf(11).lo[0] > -2);
+  CHECK(objectBox(boxes.scene.impl(), 11).lo[0] > -2);
 }
 
 TEST_CASE("far from the origin, boxes are hardly larger than their objects") {
@@ -179,7 +181,7 @@ TEST_CASE("far from the origin, boxes are hardly larger than their objects") {
     const ObjectTree& tree = boxes.scene.impl().objectTree();
     for (const gpu::ObjectNode& node : tree.nodes()) {
       if ((node.link & gpu::kLinkLeaf) == 0) continue;
-      const Box& box = tree.boxOf(node.link & gpu::kLinkItem);
+      const Box box = objectBox(boxes.scene.impl(), node.link & gpu::kLinkItem);
       // Doubles at 10^12 are 10^-4 apart; floats would be 65,536.
       for (int k = 0; k < 3; ++k) CHECK(node.halfExtent[k] < 0.5 * (box.hi[k] - box.lo[k]) + 0.01);
     }
@@ -289,7 +291,7 @@ TEST_CASE("numbers of objects that are free, however many in a row, do not widen
   const ObjectTree& tree = boxes.scene.impl().objectTree();
   Box around;
   for (ObjectId id = 0; id < boxes.scene.objectLimit(); ++id) {
-    if (boxes.scene.hasObject(id)) around.merge(tree.boxOf(id));
+    if (boxes.scene.hasObject(id)) around.merge(objectBox(boxes.scene.impl(), id));
   }
   CHECK(tree.worldBox().lo == around.lo);
   CHECK(tree.worldBox().hi == around.hi);

@@ -5,7 +5,6 @@
 
 #include "embed/host_format.h"
 #include "gpu/barrier.h"
-#include "math/rounding.h"
 #include "spirv/embed_plan_comp.h"
 #include "spirv/embed_plan_comp_RADAR_NO_DOUBLES.h"
 
@@ -36,12 +35,7 @@ struct HostQueriesKernels {
 void describe(const ObjectTree& tree, gpu::PlanPush& push) {
   push.inRange = tree.inRange() ? 1 : 0;
   push.start = tree.nodes().empty() ? gpu::kNobody : tree.nodes()[0].link;
-  if (push.start == gpu::kNobody) return;
-  for (int k = 0; k < 3; ++k) {
-    const TwoFloats anchor = twoFloats(tree.anchor()[k]);
-    push.anchor[k] = anchor.high;
-    push.anchorLow[k] = anchor.low;
-  }
+  setAnchor(push, tree);
 }
 
 }  // namespace

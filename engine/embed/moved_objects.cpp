@@ -168,11 +168,7 @@ void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<con
   for (uint32_t n = 0; n < marks.size(); ++n) {
     if (marks[n]) list->overwritten->nodes.push_back(n);
   }
-  for (int k = 0; k < 3; ++k) {
-    const TwoFloats anchor = twoFloats(tree.anchor()[k]);
-    push_.anchor[k] = anchor.high;
-    push_.anchorLow[k] = anchor.low;
-  }
+  setAnchor(push_, tree);
   push_.count = static_cast<uint32_t>(list->moved.size());
   stageUpload(*list);
   isActive_ = !list->moved.empty();

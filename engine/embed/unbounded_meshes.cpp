@@ -81,11 +81,7 @@ void UnboundedMeshesPass::stageSensors(std::span<const gpu::DeformedSensor> sens
   upload_.add(meshes_.data(), gpu::bytesOf(meshes_), unbounded_);
   upload_.add(sensors.data(), sensors.size_bytes(), sensors_);
   push_.count = static_cast<uint32_t>(sensors.size());
-  for (int k = 0; k < 3; ++k) {
-    const TwoFloats anchor = twoFloats(scene.objectTree().anchor()[k]);
-    push_.anchor[k] = anchor.high;
-    push_.anchorLow[k] = anchor.low;
-  }
+  setAnchor(push_, scene.objectTree());
 }
 
 void UnboundedMeshesPass::recordUpload(const gpu::Commands& commands) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/box.h"
+#include "math/rounding.h"
 #include "radar/scene.h"
 #include "scene/changed_pages.h"
 #include "shaders/shared/interop.h"
@@ -95,6 +96,16 @@ class ObjectTree {
   uint64_t seenStructure_ = 0, seenPose_ = 0, version_ = 0, structure_ = 0;
   uint64_t next_ = 0;  // the version that an update makes
 };
+
+/// Sets the anchor as two floats per axis, as shaders take it.
+template <class Push>
+void setAnchor(Push& push, const ObjectTree& tree) {
+  for (int k = 0; k < 3; ++k) {
+    const TwoFloats anchor = twoFloats(tree.anchor()[k]);
+    push.anchor[k] = anchor.high;
+    push.anchorLow[k] = anchor.low;
+  }
+}
 
 /// Floats hold squares and cubes of coordinates and sizes up to this, with room for the values they are compared with.
 /// Larger world coordinates, and sizes below its inverse, are left to double precision.

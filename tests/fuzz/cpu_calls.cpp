@@ -40,14 +40,10 @@ void run(std::string_view input) {
   }
 }
 
-std::vector<std::string> seeds() {
-  return randomSeeds(64, 600);
-}
-
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run, seeds, {}};
+  static const Target kTarget{run, [] { return randomSeeds(64, 600); }, {}};
   return kTarget;
 }
 

@@ -47,14 +47,10 @@ void run(std::string_view input) {
   for (const std::string& message : test::takeValidationMessages()) require(false, "validation: " + message);
 }
 
-std::vector<std::string> seeds() {
-  return randomSeeds(32, 400);
-}
-
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run, seeds, {}};
+  static const Target kTarget{run, [] { return randomSeeds(32, 400); }, {}};
   return kTarget;
 }
 

@@ -112,19 +112,11 @@ test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queri
   const FaultPlan plan = chooseFault(*random_, false);
   gpu::Submission submission(device_->impl(), false);
   gpu::Commands commands = submission.begin();
-  bool refused = false;
-  const FaultOutcome outcome = under(plan, *tally_, [&] {
-    try {
-      recorder.record(commands, queries);
-    } catch (const Error& error) {
-      if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
-      refused = true;
-    }
-  });
-  require(refused <= outcome.happened, "a failure that was not made");
-  const bool isLeft = !outcome.happened && random_->oneIn(12);
+  const Recording recording = recordUnder(plan, *tally_, [&] { recorder.record(commands, queries); });
+  require(recording.isRefused <= recording.outcome.happened, "a failure that was not made");
+  const bool isLeft = !recording.outcome.happened && random_->oneIn(12);
   if (isLeft) tally_->add(Fault::notSubmitted);
-  if (refused || outcome.threw || isLeft) {
+  if (recording.mustRepeat() || isLeft) {
     recorder.reset();
     commands = submission.begin();
     recorder.record(commands, queries);

@@ -71,4 +71,24 @@ FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const 
   return outcome;
 }
 
+/// The same for a call of a Recorder, which throws an Error if a Vulkan call fails.
+struct Recording {
+  FaultOutcome outcome;
+  bool isRefused = false;  ///< with that Error
+  bool mustRepeat() const { return isRefused || outcome.threw; }
+};
+template <class Record>
+Recording recordUnder(const FaultPlan& plan, Tally& tally, const Record& record) {
+  Recording recording;
+  recording.outcome = under(plan, tally, [&] {
+    try {
+      record();
+    } catch (const Error& error) {
+      if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
+      recording.isRefused = true;
+    }
+  });
+  return recording;
+}
+
 }  // namespace radar::soak

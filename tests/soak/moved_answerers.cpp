@@ -85,16 +85,9 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
     const FaultPlan plan = chooseFault(*random_, false);
     gpu::Submission submission(device_->impl(), false);
     gpu::Commands commands = submission.begin();
-    bool refused = false;
-    const FaultOutcome outcome = under(plan, *tally_, [&] {
-      try {
-        recorder->record(commands, recorded, world_.geometry());
-      } catch (const Error& error) {
-        if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
-        refused = true;
-      }
-    });
-    if (refused || outcome.threw) {
+    const Recording recording =
+        recordUnder(plan, *tally_, [&] { recorder->record(commands, recorded, world_.geometry()); });
+    if (recording.mustRepeat()) {
       recorder->reset();
       commands = submission.begin();
       recorder->record(commands, recorded, world_.geometry());

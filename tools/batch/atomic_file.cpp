@@ -26,13 +26,18 @@ void AtomicFile::fail(const std::string& problem) const {
   throw std::runtime_error(file_.string() + ": expected a place to write to, got " + problem);
 }
 
-void AtomicFile::write(std::string_view bytes) {
+int writeAll(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(std::strerror(errno));
+    if (written < 0) return errno;
     bytes.remove_prefix(static_cast<size_t>(written));
   }
+  return 0;
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  if (const int error = writeAll(descriptor_, bytes); error != 0) fail(std::strerror(error));
 }
 
 void AtomicFile::finish() {

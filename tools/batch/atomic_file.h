@@ -27,7 +27,10 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-/// The same, for content that is at hand.
+/// Writes all bytes to an open file. Returns 0, or errno.
+int writeAll(int descriptor, std::string_view bytes);
+
+/// As AtomicFile, for content that is at hand.
 void writeAtomically(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace radar::tools

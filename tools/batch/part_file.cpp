@@ -197,12 +197,7 @@ void PartWriter::fail(const std::string& problem) const {
 }
 
 void PartWriter::write(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(std::strerror(errno));
-    bytes.remove_prefix(static_cast<size_t>(written));
-  }
+  if (const int error = writeAll(descriptor_, bytes); error != 0) fail(std::strerror(error));
 }
 
 void PartWriter::append(std::string_view rows, uint64_t count) {

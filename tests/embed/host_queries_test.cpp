@@ -70,8 +70,10 @@ Tally compareFamilies(uint32_t rounds) {
     if (family.ignoresLeaving || family.skipsOverlapping) continue;
     for (uint32_t round = 0; round < rounds; ++round) {
       CAPTURE(family.name, round);
-      const tools::Workload workload = tools::hardScene(
-          family, 71 + round, 0, kRoom.queries, round % 2 == 0 ? tools::Company::mixed : tools::Company::isolated);
+      const bool isMixed = round % 2 == 0;
+      const tools::Workload workload =
+          tools::hardScene(family, 71 + round, 0, isMixed ? kRoom.queries : tools::kIsolatedCases,
+                           isMixed ? tools::Company::mixed : tools::Company::isolated);
       tools::replaceBy(workload, 0, scene);
       std::vector<HostQuery> queries;
       for (Query& query : test::queriesOf(workload)) {

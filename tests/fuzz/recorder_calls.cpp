@@ -1,9 +1,17 @@
-// Fuzzes a Recorder: an input is a capacity and a sequence of edits of a scene and of recordings. Each answer is the
-// CPU's, or its flag says which limit was too small; with the capacity that needed() gives, all are answered.
+// Fuzzes a Recorder: an input is a capacity and a sequence of edits of a scene and of recordings, in some of which a
+// host deforms meshes. Each answer is the CPU's, or its flag says which limit was too small; with the capacity that
+// needed() gives, all are answered.
+#include <cmath>
+#include <cstring>
+#include <deque>
+
+#include "embed/on_device.h"
 #include "fuzz/check_recorded.h"
 #include "fuzz/scene_calls.h"
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
+#include "scene/scene.h"
+#include "soak/model.h"
 #include "support/test_device.h"
 
 namespace radar::fuzz {
@@ -47,26 +55,93 @@ std::vector<Query> recordable(SceneCalls& calls, Recorder& recorder, const Capac
   return queries;
 }
 
-void ask(SceneCalls& calls, Recorder& recorder, const Capacity& capacity) {
-  const std::vector<Query> queries = recordable(calls, recorder, capacity);
-  CpuSweeper cpu(calls.scene(), 1);
-  std::vector<Result> exact = cpu.run(queries);
-  const test::Answers expected{std::move(exact), cpu.lists()};
-  test::Answers recorded;
-  try {
-    recorded = test::execute(test::device(), recorder, queries);
-  } catch (const Error& error) {
-    return require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
+/// Vertices that a host deforms, and the scene as it then is.
+struct Deformation {
+  Deformation(Choices& choices, const Scene& scene) : truth(soak::Model::of(scene).build()) {
+    for (MeshId id = 0; id < scene.meshLimit(); ++id) {
+      if (!scene.hasMesh(id) || scene.impl().meshes[id].deforms || !choices.oneIn(2)) continue;
+      const std::span<const float> rest = scene.mesh(id).positions;
+      std::vector<float> positions(rest.begin(), rest.end());
+      const bool isWild = choices.oneIn(4);
+      for (float& x : positions) {
+        if (choices.oneIn(2)) x = choices.number<float>(isWild);
+        if (!(std::abs(x) < 0x1p120f)) isFinite = false;
+      }
+      if (isFinite) truth.setPositions(id, positions);
+      std::vector<std::byte> bytes(positions.size() * sizeof(float));
+      std::memcpy(bytes.data(), positions.data(), bytes.size());
+      buffers.emplace_back(bytes);
+      meshes.push_back({id, {.buffer = buffers.back().get()}});
+    }
   }
+  /// Whether nothing has bounds that it may leave, and floats hold all numbers with room to spare.
+  bool isOrdinary(const Scene& scene) const {
+    const auto isSmall = [](double x) { return std::abs(x) < 0x1p30; };
+    if (!scene.impl().bounds.empty()) return false;
+    for (ObjectId id = 0; id < truth.objectLimit(); ++id) {
+      if (!truth.hasObject(id)) continue;
+      const Object& object = truth.object(id);
+      if (!std::ranges::all_of(object.worldFromMesh.m, isSmall)) return false;
+      if (!std::ranges::all_of(truth.mesh(object.mesh).positions, isSmall)) return false;
+    }
+    return isFinite;
+  }
+  Scene truth;
+  bool isFinite = true;
+  std::deque<test::OnDevice> buffers;
+  std::vector<DeformedMesh> meshes;
+};
+
+/// Compares a recording with the CPU's answers; if capacities were too small, records again with larger ones.
+void compare(const SceneCalls& calls, Recorder& recorder, const std::vector<Query>& queries,
+             const test::Answers& expected, const HostGeometry& geometry = {}) {
+  test::Answers recorded = test::execute(test::device(), recorder, queries, geometry);
   checkRecorded(queries, recorded, expected);
   Capacity enough = enoughFor(recorder);
   for (int i = 0; i < 10 && isTooSmall(recorded); ++i) {
     Recorder larger(test::device(), calls.scene(), enough);
-    recorded = test::execute(test::device(), larger, queries);
+    recorded = test::execute(test::device(), larger, queries, geometry);
     checkRecorded(queries, recorded, expected);
     enough = enoughFor(larger);
   }
   require(!isTooSmall(recorded), "what needed() gives is not enough");
+}
+
+test::Answers answersIn(const Scene& scene, const std::vector<Query>& queries) {
+  CpuSweeper cpu(scene, 1);
+  std::vector<Result> exact = cpu.run(queries);
+  return {std::move(exact), cpu.lists()};
+}
+
+void ask(SceneCalls& calls, Recorder& recorder, const Capacity& capacity) {
+  const std::vector<Query> queries = recordable(calls, recorder, capacity);
+  try {
+    compare(calls, recorder, queries, answersIn(calls.scene(), queries));
+  } catch (const Error& error) {
+    require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
+  }
+}
+
+void deform(Choices& choices, SceneCalls& calls, Recorder& recorder, const Capacity& capacity) {
+  const std::vector<Query> queries = recordable(calls, recorder, capacity);
+  const Deformation deformed(choices, calls.scene());
+  const HostGeometry geometry{.meshes = deformed.meshes};
+  try {
+    const test::Answers recorded = test::execute(test::device(), recorder, queries, geometry);
+    const auto isRefused = [](const Result& result) { return (result.flags & kFlagBounds) != 0; };
+    if (std::ranges::any_of(recorded.results, isRefused)) {
+      require(std::ranges::all_of(recorded.results, isRefused), "some answers are refused and others not");
+      require(!recorder.boundsViolation().empty(), "nobody says what left its bounds");
+      return require(!deformed.isOrdinary(calls.scene()), "refused: " + recorder.boundsViolation());
+    }
+    require(deformed.isFinite || queries.empty(), "vertices that are not finite are searched");
+    if (deformed.isFinite) compare(calls, recorder, queries, answersIn(deformed.truth, queries), geometry);
+  } catch (const Error& error) {
+    const std::string_view why = error.what();
+    require(why.find("Capacity::searches") != std::string_view::npos ||
+                (why.find("beside a HostGeometry") != std::string_view::npos && !deformed.meshes.empty()),
+            error.what());
+  }
 }
 
 void run(std::string_view input) {
@@ -79,6 +154,8 @@ void run(std::string_view input) {
     for (int i = 0; i < 40 && !choices.areOver(); ++i) {
       if (choices.oneIn(4)) {
         ask(calls, recorder, capacity);
+      } else if (choices.oneIn(8)) {
+        deform(choices, calls, recorder, capacity);
       } else {
         calls.edit();
       }

@@ -44,4 +44,4 @@ set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)
 radar_fuzz(sweeper_calls "any calls of the interface get the CPU's answers from the device" MUTATIONS 30
   SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})
 radar_fuzz(recorder_calls "a recording of any capacity has the CPU's answers or says which limit was too small" MUTATIONS 30
-  SOURCES ${fuzzed_scene} fuzz/check_recorded.cpp support/test_device.cpp ${on_device})
+  SOURCES ${fuzzed_scene} fuzz/check_recorded.cpp soak/model.cpp support/test_device.cpp ${on_device})

@@ -189,11 +189,13 @@ double exactLength(const Vector& d, double root) {
   Dyadic square;
   for (double c : d) square = square + Dyadic(c) * Dyadic(c);
   const Dyadic fourfold = square * Dyadic(4);
+  // Infinity stands for 2^1024, the neighbour of the greatest double.
+  const auto exactly = [](double x) { return std::isinf(x) ? Dyadic(0x1p1023) * Dyadic(2) : Dyadic(x); };
   const auto isBeyond = [&](double p, double q) {  // compares twice the length with p + q
-    const Dyadic sum = Dyadic(p) + Dyadic(q);
+    const Dyadic sum = exactly(p) + exactly(q);
     return (fourfold - sum * sum).sign();
   };
-  for (;;) {
+  while (!std::isinf(root)) {
     const double up = std::nextafter(root, INFINITY), down = std::nextafter(root, 0);
     if (isBeyond(root, up) > 0) {
       root = up;
@@ -203,6 +205,7 @@ double exactLength(const Vector& d, double root) {
       return root;
     }
   }
+  return root;
 }
 
 }  // namespace

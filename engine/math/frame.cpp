@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace radar {
 
@@ -22,13 +23,17 @@ Vector unit(Vector v) {
 }  // namespace
 
 Vector scaledDirection(const Vector& direction) {
-  const int exponent = std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])}));
-  Vector out;
-  for (int k = 0; k < 3; ++k) {
-    out[k] = std::scalbn(direction[k], -exponent);
-    if (std::scalbn(out[k], exponent) != direction[k]) return direction;
-  }
-  return out;
+  const double largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
+  const auto scaled = [&](int exponent) -> std::optional<Vector> {
+    Vector out;
+    for (int k = 0; k < 3; ++k) {
+      out[k] = std::scalbn(direction[k], -exponent);
+      if (std::scalbn(out[k], exponent) != direction[k]) return std::nullopt;
+    }
+    return out;
+  };
+  // Otherwise at least so that its length does not overflow.
+  return scaled(std::ilogb(largest)).value_or(largest >= 0x1p1022 ? scaled(2).value_or(direction) : direction);
 }
 
 double lengthOf(const Vector& v) {

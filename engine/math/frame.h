@@ -11,7 +11,8 @@ namespace radar {
 std::array<Vector, 3> axesAlong(const Vector& direction);
 
 /// `direction`, scaled by a power of two so that its largest component is 1 to 2: the same motion, far from underflow.
-/// Unchanged if the components differ too much in size for that to be exact.
+/// If the components differ too much in size for that to be exact, it is scaled only so that its length does not
+/// overflow; unchanged if even that is not exact.
 Vector scaledDirection(const Vector& direction);
 
 /// Length of `v`, without intermediate overflow or underflow.

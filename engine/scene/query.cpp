@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "math/float_environment.h"
+#include "math/frame.h"
 #include "scene/query_lists.h"
 #include "scene/scene.h"
 
@@ -13,6 +14,8 @@ namespace {
 
 // Sums and lengths of displacements up to this do not overflow.
 constexpr double kMostMotion = 0x1p1000;
+// Nor do lengths of directions up to this, if they cannot be scaled exactly.
+constexpr double kMostLength = 0x1p1023;
 // Nor do vertices that poses up to this place, and differences of such vertices.
 constexpr double kMostPose = 0x1p800;
 
@@ -81,6 +84,9 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
     largest = std::max(largest, std::abs(value));
   }
   if (largest == 0) return "direction: expected a vector that is not zero";
+  if (largest >= kMostLength / 2 && !(lengthOf(scaledDirection(query.direction)) < kMostLength)) {
+    return "direction: expected a length below 2^1023 beside a component below 2^-1020";
+  }
   if (!std::isfinite(query.distance) || query.distance < 0) {
     return "distance: expected a finite number of 0 or more, got " + std::to_string(query.distance);
   }

@@ -264,6 +264,10 @@ TEST_CASE("the length of a direction is rounded to the nearest double") {
   for (double size : {1e-320, 1e-200, 1e-60, 1e60, 1e200, 1e307}) check({size, -2 * size, 1.5 * size});
   REQUIRE(length({3, 0, -4}) == 5);
   REQUIRE(length({0, 0, -0.1}) == 0.1);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  REQUIRE(length({kMost, 1e-300, 0}) == kMost);
+  REQUIRE(length({0x1p997, kMost, 0}) == kMost);
+  REQUIRE(std::isinf(length({0x1p998, kMost, 0})));
 }
 
 TEST_CASE("contact point and normal are those of the touching features") {

@@ -28,7 +28,7 @@ enum class Mode : uint32_t {
 struct Query {
   MeshId mesh = kNone;                ///< of the scene
   Transform worldFromMesh{};          ///< invertible
-  std::array<double, 3> direction{};  ///< finite, not zero; its length does not matter
+  std::array<double, 3> direction{};  ///< finite, not zero; no longer than 2^1023 beside a component below 2^-1020
   double distance = 0;                ///< D >= 0, finite, world units
   Mode mode = Mode::contact;
   bool anyHit = false;              ///< asks only whether there is contact within D: see Result. Cheaper if there is

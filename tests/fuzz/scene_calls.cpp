@@ -275,7 +275,12 @@ Query SceneCalls::query() {
   }
   query.ignoreLeaving = choices_.oneIn(4);
   query.skipOverlapping = choices_.oneIn(6);
-  if ((query.ignoreLeaving || query.skipOverlapping) && choices_.oneIn(2)) query.slack = number();
+  // Brute force does not know the bounds of meshes, on which the default depends.
+  const bool hasBounds = std::ranges::any_of(meshes_, [](const auto& mesh) { return mesh.second.within.has_value(); });
+  if (query.ignoreLeaving || query.skipOverlapping) {
+    if (hasBounds) query.slack = 0;
+    if (choices_.oneIn(2)) query.slack = number();
+  }
   if (choices_.oneIn(64)) query.anyHit = !query.anyHit;
   if (choices_.oneIn(16)) query.resolution = choices_.below(4096);
   if (choices_.oneIn(64)) query.distance = number();

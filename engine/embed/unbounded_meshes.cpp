@@ -1,6 +1,5 @@
 #include "embed/unbounded_meshes.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 

@@ -2,6 +2,7 @@
 // and places the sensors that have such a mesh (docs/method.md, "A host's geometry").
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <span>
 #include <vector>

@@ -117,8 +117,9 @@ TEST_CASE("the device places what a host deforms without bounds as precisely as 
   struct Exponents {
     double size, rest, away;
   };
-  const auto [size, rest, away] =
+  const auto exponents =
       GENERATE(values<Exponents>({{0, 0, 4}, {0, 12, 4}, {0, -20, 20}, {40, 30, 44}, {-40, -41, -30}, {10, 0, 30}}));
+  const double size = exponents.size, rest = exponents.rest, away = exponents.away;
   CAPTURE(size, rest, away);
   tools::Random random(static_cast<uint64_t>(100 + size + 3 * rest + 7 * away));
   Scene scene, truth;

@@ -211,9 +211,7 @@ TEST_CASE("every node of a deformed mesh contains its vertices, however far they
       Scene scene;
       scene.addMesh(data.positions, data.indices);  // shifts the nodes of the next mesh in the buffer
       const MeshId mesh = scene.addMesh(rest, data.indices, bounds);
-      std::vector<std::byte> bytes(gpu::bytesOf(moved));
-      std::memcpy(bytes.data(), moved.data(), bytes.size());
-      const OnDevice buffer(bytes);
+      const OnDevice buffer = test::bufferOf(moved);
       CAPTURE(data.triangleCount(), away);
       const DeformedCopy deformed(scene, {mesh, {.buffer = buffer.get()}});
       for (size_t k = 0; k < 3; ++k) CHECK(deformed.vertices[0].position[k] == moved[k]);

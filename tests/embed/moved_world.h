@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -99,9 +98,7 @@ class MovedWorld {
       if (random.oneIn(3)) {
         const double scale = random.uniform(0.25, 2);
         for (float& x : positions) x = static_cast<float>(scale * x + random.uniform(-0.1, 0.1));
-        std::vector<std::byte> bytes(positions.size() * sizeof(float));
-        std::memcpy(bytes.data(), positions.data(), bytes.size());
-        vertices_.emplace_back(bytes, *device_);
+        vertices_.push_back(bufferOf(positions, *device_));
         deformed_.push_back({mesh, {.buffer = vertices_.back().get()}});
       }
       truth.setPositions(mesh, positions);

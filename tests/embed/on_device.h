@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "embed/execute.h"
@@ -41,6 +42,13 @@ void append(std::vector<std::byte>& bytes, std::initializer_list<T> values) {
     bytes.resize(bytes.size() + sizeof(T));
     std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
   }
+}
+
+/// A buffer of vertex positions.
+inline OnDevice bufferOf(std::span<const float> positions, const Device& on = test::device()) {
+  std::vector<std::byte> bytes(positions.size_bytes());
+  std::memcpy(bytes.data(), positions.data(), bytes.size());
+  return OnDevice(bytes, on);
 }
 
 /// The capacity of most recordings in the tests.

@@ -1,18 +1,13 @@
-// Meshes that a host deforms without bounds: how the device describes and places them, with every option of a query,
-// and what it refuses.
-#include <bit>
+// Searches of what a host deforms without bounds: with every option of a query, in turns with other geometry, and what
+// is refused.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <deque>
 #include <limits>
 
-#include "cpu/clearance.h"
-#include "embed/host_geometry.h"
 #include "embed/host_workload.h"
 #include "embed/renderer.h"
-#include "gpu/barrier.h"
 #include "radar/cpu_sweeper.h"
-#include "support/buffer_words.h"
-#include "support/exact_placement.h"
 #include "workloads/hard_cases.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"
@@ -21,241 +16,14 @@ namespace {
 
 using namespace radar;
 using test::append;
+using test::bufferOf;
 using test::execute;
 using test::HostWorkload;
 using test::kRoom;
 using test::OnDevice;
 using test::sameBits;
 
-OnDevice bufferOf(std::span<const float> positions) {
-  std::vector<std::byte> bytes(positions.size_bytes());
-  std::memcpy(bytes.data(), positions.data(), bytes.size());
-  return OnDevice(bytes);
-}
-
-/// What the device writes for queries of the scene in which a host deforms all meshes.
-struct OnDevicePlaces {
-  OnDevicePlaces(const Scene& scene, std::span<const DeformedMesh> meshes, std::span<const Query> queries)
-      : copy(test::device().impl()) {
-    const Device::Impl& device = test::device().impl();
-    const Scene::Impl& impl = scene.impl();
-    ContactPass search(device, copy, {std::shared_ptr<void>(), &device.shared<ContactKernels>()}, {});
-    HostGeometryPass geometry(device, copy);
-    geometry.stage({.meshes = meshes}, impl);
-    SensorBatch batch;
-    std::vector<gpu::DeformedSensor> sensorsOfThem;
-    std::vector<Result> known;
-    for (const Query& query : queries) {
-      REQUIRE(addSensor(batch, query, batch.count(), impl, impl.objectTree()) == Planned::added);
-      sensorsOfThem.push_back(deformedSensor(batch.count() - 1, query, motionPast(query, impl)));
-      known.emplace_back();
-    }
-    geometry.stageSensors(sensorsOfThem, impl);
-    copy.willOverwrite(geometry.overwritten());
-    search.stage(batch, known, impl);
-    gpu::Submission submission(device, false);
-    const gpu::Commands commands = submission.begin();
-    search.recordUpload(commands, [](const char*) {});
-    geometry.record(commands, impl);
-    geometry.recordReach(commands, search);
-    gpu::computeWriteToCopy(commands);
-    geometry.recordReadback(commands);
-    gpu::writtenToHost(commands);
-    submission.submitAndWait();
-    const ContactPass::Encoded encoded = search.encoded();
-    sensors = test::elementsOf(encoded.sensors, 0, queries.size());
-    sweeps = test::elementsOf(encoded.sweeps, 0, queries.size());
-    states = test::elementsOf(encoded.states, 0, queries.size());
-    records = test::elementsOf(copy.buffers().meshes, 0, impl.meshes.size());
-    placements = test::elementsOf(copy.buffers().placements, 0, impl.objects.size());
-    boxes = geometry.unboundedBoxes();
-  }
-  GpuScene copy;
-  std::vector<gpu::Sensor> sensors;
-  std::vector<gpu::Sweep> sweeps;
-  std::vector<gpu::SearchState> states;
-  std::vector<gpu::MeshRecord> records;
-  std::vector<gpu::Placement> placements;
-  std::map<MeshId, Box> boxes;
-};
-
-/// The mesh with the device's origin and unit. Its vertices are normalised as they should be.
-Mesh asDescribed(Mesh mesh, const gpu::MeshRecord& record) {
-  CHECK(record.unit * record.perUnit == 1);
-  mesh.unit = record.unit;
-  for (size_t k = 0; k < 3; ++k) {
-    mesh.origin[k] = record.origin[k];
-    for (const uint32_t vertex : mesh.indices) {
-      const float position = mesh.positions[3 * size_t{vertex} + k];
-      const float local = position - record.origin[k];
-      CHECK(double{local} == double{position} - record.origin[k]);
-      CHECK((local >= record.lo[k] && local <= record.hi[k]));
-      CHECK(std::abs(local * record.perUnit) < 2);
-      mesh.local[k][vertex] = local;
-    }
-  }
-  return mesh;
-}
-
-/// Meshes near their origins and far from them, flat ones, lines and points, too. `size`: the exponent.
-tools::MeshData randomMesh(tools::Random& random, uint32_t number, double size) {
-  const double extent = std::exp2(size + random.uniform(-3, 3)),
-               baked = number % 2 == 0 ? 0 : extent * std::exp2(random.uniform(-4, 12));
-  const std::array<double, 3> middle = random.inCube(baked);
-  tools::MeshData mesh{.positions = {}, .indices = {0, 1, 2, 3, 4, 5}};
-  for (size_t v = 0; v < 18; ++v) {
-    const bool isFlat = (number % 5 == 3 && v % 3 == 2) || (number % 15 == 8 && v % 3 != 0) || number % 30 == 19;
-    mesh.positions.push_back(static_cast<float>(middle[v % 3] + (isFlat ? 0 : random.uniform(-extent, extent))));
-  }
-  return mesh;
-}
-
 }  // namespace
-
-TEST_CASE("the device places what a host deforms without bounds as precisely as the CPU places the same vertices") {
-  // Exponents of the sizes of the deformed meshes, of their rest poses, and of how far away the scene is.
-  struct Exponents {
-    double size, rest, away;
-  };
-  const auto exponents =
-      GENERATE(values<Exponents>({{0, 0, 4}, {0, 12, 4}, {0, -20, 20}, {40, 30, 44}, {-40, -41, -30}, {10, 0, 30}}));
-  const double size = exponents.size, rest = exponents.rest, away = exponents.away;
-  CAPTURE(size, rest, away);
-  tools::Random random(static_cast<uint64_t>(100 + size + 3 * rest + 7 * away));
-  Scene scene, truth;
-  std::deque<OnDevice> buffers;
-  std::vector<DeformedMesh> deformed;
-  for (uint32_t i = 0; i < 60; ++i) {
-    const tools::MeshData there = randomMesh(random, i, size), resting = randomMesh(random, 0, rest);
-    truth.addMesh(there.positions, there.indices);
-    const MeshId id = scene.addMesh(resting.positions, resting.indices);
-    buffers.push_back(bufferOf(there.positions));
-    deformed.push_back({id, {.buffer = buffers.back().get()}});
-  }
-  const std::array<double, 3> centre = random.inCube(std::exp2(away));
-  // In doubles. Objects and sensors stand where the scene has them.
-  const auto poseOf = [&](uint32_t i) {
-    Transform pose = random.affine(centre);
-    for (size_t k = 0; k < 12; ++k) {
-      if (k % 4 == 3) pose.m[k] += std::exp2(size + 3) * random.uniform(-1, 1);
-      // Some are nearly flat, and some have small entries.
-      if (k % 4 == 2 && i % 5 == 1) pose.m[k] *= 0x1p-20;
-      if (k % 4 != 3 && i % 7 == 1) pose.m[k] *= random.oneIn(3) ? 0x1p-90 : 1;
-    }
-    return pose;
-  };
-  for (uint32_t i = 0; i < 300; ++i) {
-    const Object object{i % 60, poseOf(i), ~0u};
-    if (!validate(object.worldFromMesh).empty()) continue;
-    scene.addObject(object);
-    truth.addObject(object);
-  }
-  std::vector<Query> queries;
-  for (uint32_t i = 0; i < 300; ++i) {
-    Query query{.mesh = i % 60, .worldFromMesh = poseOf(i), .direction = random.direction()};
-    query.distance = std::exp2(size + random.uniform(-3, 60));
-    if (random.oneIn(8)) query.distance = 0;
-    query.anyHit = random.oneIn(3);
-    if (random.oneIn(4)) {
-      query.ignoreLeaving = true;
-      if (random.oneIn(2)) query.slack = std::exp2(size - 4);
-    } else if (random.oneIn(4)) {
-      query.clearance = std::exp2(size - 4);
-      if (random.oneIn(2)) query.tolerance = std::exp2(size - 30);
-    }
-    if (random.oneIn(4)) {
-      query.motion = query.direction;
-      for (double& x : *query.motion) x *= query.distance;
-      query.direction = {};
-      query.distance = 0;
-    }
-    const bool wasEncoded = [&] {
-      SensorBatch batch;
-      return addSensor(batch, query, 0, scene.impl(), scene.impl().objectTree()) == Planned::added;
-    }();
-    if (validate(query, scene).empty() && wasEncoded) queries.push_back(query);
-  }
-  const OnDevicePlaces places(scene, deformed, queries);
-  const Scene::Impl& impl = truth.impl();
-  std::vector<Mesh> meshes;
-  for (MeshId id = 0; id < 60; ++id) {
-    CAPTURE(id);
-    meshes.push_back(asDescribed(impl.meshes[id], places.records[id]));
-    const Box& box = places.boxes.at(id);
-    for (int k = 0; k < 3; ++k) {
-      CHECK(box.lo[k] == impl.meshes[id].box.lo[k] + impl.meshes[id].origin[k]);
-      CHECK(box.hi[k] == impl.meshes[id].box.hi[k] + impl.meshes[id].origin[k]);
-    }
-  }
-  test::BoundsUsed used;
-  size_t objectsInRange = 0, sensorsInRange = 0, refused = 0;
-  for (ObjectId id = 0; id < impl.objects.size(); ++id) {
-    CAPTURE(id);
-    const Object& object = truth.object(id);
-    const gpu::Placement& placement = places.placements[id];
-    CHECK(placement.mesh == object.mesh);
-    CHECK(placement.root == places.copy.record(object.mesh).firstNode);
-    if (!isInRange(placement)) continue;
-    ++objectsInRange;
-    test::checkPlacement(meshes[object.mesh], object.worldFromMesh, placement, used);
-  }
-  for (uint32_t i = 0; i < queries.size(); ++i) {
-    const Query& query = queries[i];
-    CAPTURE(i, query.mesh, query.distance, query.clearance, query.ignoreLeaving, query.anyHit);
-    SensorBatch batch;
-    const bool isEncoded = addSensor(batch, query, 0, impl, impl.objectTree()) == Planned::added;
-    if (places.states[i].flags != 0) {
-      CHECK(places.states[i].flags == gpu::kSearchOutOfRange);
-      refused += isEncoded ? 1 : 0;
-      continue;
-    }
-    REQUIRE(isEncoded);
-    ++sensorsInRange;
-    const gpu::Sensor &sensor = places.sensors[i], &encoded = batch.sensors[0];
-    const gpu::Sweep &sweep = places.sweeps[i], &encodedSweep = batch.sweeps[0];
-    test::checkPlacement(meshes[query.mesh], query.worldFromMesh, sensor.placement, used);
-    CHECK(sensor.scale * sensor.unscale == 1);
-    CHECK(sweep.scale == sensor.scale);
-    const double ratio = double{sensor.scale} / encoded.scale;
-    CHECK((ratio == 1 || ratio == 0.5 || ratio == 2));
-    const Motion motion = motionPast(query, impl);
-    const double way = motion.wayUntil(motion.distance) * sensor.scale, clipped = std::min(way, 0x1p42);
-    const auto checkScaled = [&](float found, float expected) {
-      CHECK(double{found} == Approx(ratio * expected).epsilon(2e-6));
-    };
-    CHECK((sensor.distance >= clipped && sensor.distance <= 1.00001 * clipped));
-    CHECK(double{sweep.start} == Approx(clipped).epsilon(2e-6));
-    checkScaled(sensor.frame[3], encoded.frame[3]);
-    if (query.anyHit) CHECK(double{sensor.stopBefore} == Approx(clipped).epsilon(2e-6));
-    if (!query.anyHit) CHECK(sensor.stopBefore == -1);
-    CHECK(sensor.frame[7] == encoded.frame[7]);
-    CHECK((sweep.start <= way || !motion.isStep));
-    CHECK((sensor.stopBefore <= way));
-    if (way > 0) CHECK(sweep.stepPerUnit * way <= (motion.isStep ? 1 : 0));
-    if (way > 0) CHECK(double{sweep.stepPerUnit} * ratio == Approx(encodedSweep.stepPerUnit).epsilon(1e-5));
-    CHECK(sensor.frame[3] >= query.clearance * sensor.scale);
-    if (query.clearance > 0) {
-      CHECK(sensor.frame[11] >= cpu::toleranceOf(query, impl.meshes[query.mesh]) * sensor.scale);
-      CHECK(sensor.frame[11] <= 1.001 * query.tolerance.value_or(1e38) * sensor.scale);
-    }
-    if (query.slack) CHECK(sensor.placement.error >= 2 * *query.slack);
-    if (query.ignoreLeaving && test::device().doubles())
-      CHECK(sweep.magnitude == Approx(encodedSweep.magnitude).epsilon(1e-6));
-    CHECK(std::bit_cast<float>(places.states[i].hi) == sensor.distance);
-    const Box box = boxOf(impl.meshes[query.mesh], query.worldFromMesh.m);
-    const double room = query.clearance + (query.ignoreLeaving ? 2 * query.slack.value_or(0) : 0);
-    for (int k = 0; k < 3; ++k) {
-      using Real = long double;
-      const Real middle = Real(scene.impl().objectTree().anchor()[k]) + sensor.centre[k];
-      CHECK(middle + sensor.halfExtent[k] >= Real(box.hi[k]) + room);
-      CHECK(middle - sensor.halfExtent[k] <= Real(box.lo[k]) - room);
-    }
-  }
-  CHECK(objectsInRange > 150);
-  CHECK(sensorsInRange > 150);
-  CHECK(refused < 5);
-  CHECK(test::takeValidationMessages().empty());
-}
 
 TEST_CASE("lists, steps, clearances and contacts at rest are those of the vertices that a host deforms without bounds",
           "[subgroups]") {

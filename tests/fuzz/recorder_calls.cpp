@@ -2,7 +2,6 @@
 // host deforms meshes. Each answer is the CPU's, or its flag says which limit was too small; with the capacity that
 // needed() gives, all are answered.
 #include <cmath>
-#include <cstring>
 #include <deque>
 
 #include "embed/on_device.h"
@@ -68,9 +67,7 @@ struct Deformation {
         if (!(std::abs(x) < 0x1p120f)) isFinite = false;
       }
       if (isFinite) truth.setPositions(id, positions);
-      std::vector<std::byte> bytes(positions.size() * sizeof(float));
-      std::memcpy(bytes.data(), positions.data(), bytes.size());
-      buffers.emplace_back(bytes);
+      buffers.push_back(test::bufferOf(positions));
       meshes.push_back({id, {.buffer = buffers.back().get()}});
     }
   }

@@ -61,10 +61,15 @@ bool hasExtension(const gpu::Api& vk, const char* name) {
                      [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
+// Since release 1.4.309 the text no longer names the message.
+std::string messageText(const VkDebugUtilsMessengerCallbackDataEXT& data) {
+  return (data.pMessageIdName == nullptr ? "" : data.pMessageIdName + std::string(": ")) + data.pMessage;
+}
+
 // Passes on all messages, and lets the call that caused one proceed.
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-  static_cast<Device::Impl::Owned*>(user)->onValidation(data->pMessage);
+  static_cast<Device::Impl::Owned*>(user)->onValidation(messageText(*data));
   return VK_FALSE;
 }
 

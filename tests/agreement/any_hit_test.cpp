@@ -1,7 +1,7 @@
 // Queries that ask "within D or not" only.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/hard_cases.h"
 #include "workloads/shapes.h"

@@ -1,8 +1,7 @@
 // A real assembly, whose parts touch and cross where they are joined: every part moved out along 26 directions.
-#include <catch2/catch.hpp>
-
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 

@@ -1,7 +1,6 @@
 // Queries that ignore what does not block: the device's answers have the bits of the CPU's.
-#include <catch2/catch.hpp>
-
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "unit/soups.h"

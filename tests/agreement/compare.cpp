@@ -1,10 +1,10 @@
 #include "agreement/compare.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "support/answer.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 namespace radar::test {

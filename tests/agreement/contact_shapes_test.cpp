@@ -1,8 +1,8 @@
 // The search on the device against the CPU's in scenes made by hand.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "agreement/compare.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 

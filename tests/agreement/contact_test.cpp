@@ -1,7 +1,6 @@
 // The search on the device against the CPU's, on seeded workloads.
-#include <catch2/catch.hpp>
-
 #include "agreement/compare.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 using namespace radar;

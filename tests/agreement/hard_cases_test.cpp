@@ -1,11 +1,11 @@
 // A small share of what radar_random_queries and `cyber-radar stability` ask by the ten thousand.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "agreement/compare.h"
 #include "agreement/real_meshes.h"
 #include "radar/cpu_sweeper.h"
 #include "stability/measure.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 namespace {

@@ -1,10 +1,9 @@
 // Mode sampled against the exact answers, on seeded workloads of every kind.
 #include <algorithm>
-#include <catch2/catch.hpp>
-
 #include "agreement/compare.h"
 #include "agreement/real_meshes.h"
 #include "bench/statistics.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 namespace {

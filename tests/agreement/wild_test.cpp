@@ -1,10 +1,10 @@
 // The device against the CPU where floats end: scenes and motions of all sizes, far away and in poses that are nearly
 // singular.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "unit/cpu_wild_scenes.h"

@@ -1,8 +1,7 @@
 #include "bench/harness.h"
 
-#include <catch2/catch.hpp>
-
 #include "bench/statistics.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 using namespace radar;

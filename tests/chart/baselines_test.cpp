@@ -1,7 +1,6 @@
 // Each library on cases whose answers are known, as the chart uses it.
-#include <catch2/catch.hpp>
-
 #include "baselines/baseline.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 using namespace radar;

@@ -1,10 +1,10 @@
 // cyber-radar chart, as a person runs it.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;

@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "chart/charts.h"
 #include "chart/run.h"
 #include "support/answer.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -10,8 +9,8 @@
 
 using namespace radar;
 using namespace radar::tools;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using test::Contains;
+using test::StartsWith;
 
 namespace {
 

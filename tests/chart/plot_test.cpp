@@ -1,14 +1,14 @@
 // Charts as gnuplot draws them.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "chart/charts.h"
 #include "plot/plot.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 
 using namespace radar;
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using test::Contains;
 
 namespace {
 
@@ -81,7 +81,7 @@ TEST_CASE("the points have the front by rising time, and a family's linetype is 
   record.cells[0].us = 1;  // sampled 16, which misses contacts
   writeCharts(folder.path(), record);
   const std::string points = folder.read("points.csv");
-  CHECK_THAT(points, Catch::StartsWith(kHeader));
+  CHECK_THAT(points, test::StartsWith(kHeader));
   CHECK_THAT(points, Contains("front-thin,front,21,16,,1,30,0.001\nfront-thin,front,21,0,,10,0,0.001\n"));
   CHECK_THAT(points, Contains("front-thin,Embree rays,6,") && Contains("growth-boxes,FCL steps,7,"));
   CHECK_THAT(points, Contains("table1,contact,3,") && Contains("front-thin,contact,3,"));

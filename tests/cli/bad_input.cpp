@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;

@@ -2,12 +2,12 @@
 // and the file's name, and leaves nothing half-written.
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runCommand;
 using radar::test::runProgram;

@@ -1,10 +1,10 @@
 // The program with two devices.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;

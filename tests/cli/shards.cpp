@@ -1,9 +1,8 @@
 // Runs in parts: shards, merge, and runs that were interrupted.
-#include <catch2/catch.hpp>
-
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;

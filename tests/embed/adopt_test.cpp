@@ -4,9 +4,8 @@
 #include <thread>
 
 #include <vulkan/vulkan.h>
-#include <catch2/catch.hpp>
-
 #include "embed/host.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/shapes.h"
 
@@ -78,7 +77,7 @@ TEST_CASE("adopt throws and names a function that the host's loader lacks") {
   host.handles.getInstanceProcAddr = [](VkInstance instance, const char* name) -> PFN_vkVoidFunction {
     return std::string(name) == "vkGetDeviceProcAddr" ? nullptr : vkGetInstanceProcAddr(instance, name);
   };
-  CHECK_THROWS_WITH(Device::adopt(host.handles), Catch::Contains("vkGetDeviceProcAddr is missing"));
+  CHECK_THROWS_WITH(Device::adopt(host.handles), test::Contains("vkGetDeviceProcAddr is missing"));
 }
 
 TEST_CASE("two engines on two threads share a host's queue under the host's lock") {
@@ -127,7 +126,7 @@ TEST_CASE("two sweepers on one device follow the same scene") {
 }
 
 TEST_CASE("opening a device that does not exist throws and names its number") {
-  CHECK_THROWS_WITH(Device::open({.index = 1000}), Catch::Contains("device 1000 does not exist"));
+  CHECK_THROWS_WITH(Device::open({.index = 1000}), test::Contains("device 1000 does not exist"));
 }
 
 TEST_CASE("a host with an instance of Vulkan 1.0 is told that it needs one of Vulkan 1.3") {
@@ -138,6 +137,6 @@ TEST_CASE("a host with an instance of Vulkan 1.0 is told that it needs one of Vu
   vkEnumeratePhysicalDevices(host.instance, &count, &host.physicalDevice);
   const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
   REQUIRE(reasons.size() == 1);
-  CHECK_THAT(reasons[0], Catch::StartsWith("needs an instance of Vulkan 1.3 (VkApplicationInfo::apiVersion)"));
+  CHECK_THAT(reasons[0], test::StartsWith("needs an instance of Vulkan 1.3 (VkApplicationInfo::apiVersion)"));
   vkDestroyInstance(host.instance, nullptr);
 }

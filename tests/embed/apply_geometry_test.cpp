@@ -1,9 +1,8 @@
 // What a host's buffers hold is given to the scene.
-#include <catch2/catch.hpp>
-
 #include "embed/on_device.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/random.h"
@@ -119,7 +118,7 @@ TEST_CASE("applyGeometry names the mesh or the object whose numbers cannot be us
   const MeshId bounded = scene.addMesh(positions, indices, Bounds{{0, 0, 0}, {1, 1, 0}});
   const ObjectId object = scene.addObject({.mesh = mesh});
   const auto refused = [&](const HostGeometry& geometry, const char* why) {
-    CHECK_THROWS_WITH(applyGeometry(scene, test::device(), geometry), Catch::Contains(why));
+    CHECK_THROWS_WITH(applyGeometry(scene, test::device(), geometry), test::Contains(why));
   };
   const DeformedMesh unfinished{mesh, {.buffer = buffer.get()}}, unknown{7, {.buffer = buffer.get()}};
   refused({.meshes = {&unfinished, 1}}, "applyGeometry: mesh 0: setPositions: vertex 2 is not finite");

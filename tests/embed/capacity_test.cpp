@@ -1,10 +1,9 @@
 // Capacities of a recording: a query that exceeds one is invalid or unresolved and has its flag; no answer is wrong.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "embed/on_device.h"
 #include "embed/renderer.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 #include "workloads/interlocking.h"
 
@@ -275,7 +274,7 @@ TEST_CASE("with the capacity that the last recording needed, the same queries ar
 TEST_CASE("a Recorder refuses an invalid capacity or one beyond the device's limits and names the member") {
   Row row(1);
   const auto refused = [&](const Capacity& capacity, const char* why) {
-    CHECK_THROWS_WITH(Recorder(test::device(), row.scene, capacity), Catch::Contains(why));
+    CHECK_THROWS_WITH(Recorder(test::device(), row.scene, capacity), test::Contains(why));
   };
   refused({.queries = 1u << 31}, "Capacity::queries: this device allows");
   refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");

@@ -1,6 +1,4 @@
 // Recording costs a host's frames no allocation, no submission and no wait.
-#include <catch2/catch.hpp>
-
 #include <array>
 
 #include "embed/host.h"
@@ -9,6 +7,7 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/host_geometry.h"
 #include "radar/pool.h"
+#include "support/catch.h"
 #include "support/resident.h"
 #include "workloads/shapes.h"
 

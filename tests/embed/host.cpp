@@ -28,7 +28,7 @@ void require(VkResult result, const char* call) {
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
-  onValidation(data->pMessage);
+  onValidation(data->pMessageIdName + std::string(": ") + data->pMessage);
   return VK_FALSE;
 }
 

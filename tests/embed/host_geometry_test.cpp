@@ -1,7 +1,6 @@
 // Meshes that a host deforms and objects that it moves on the device: answers equal those of a scene with the same
 // geometry.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -15,6 +14,7 @@
 #include "exact/dyadic.h"
 #include "radar/recorder.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "support/exact_placement.h"
 #include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
@@ -318,5 +318,5 @@ TEST_CASE("a mesh that a host deforms in a buffer shared with others reads its o
   CHECK(recorder.boundsViolation().empty());
   CHECK(at(outside).flags == kFlagBounds);
   CHECK_THAT(recorder.boundsViolation(),
-             Catch::Contains("vertex 4 ") || Catch::Contains("vertex 5 ") || Catch::Contains("vertex 6 "));
+             test::Contains("vertex 4 ") || test::Contains("vertex 5 ") || test::Contains("vertex 6 "));
 }

@@ -1,6 +1,5 @@
 // The bounds that a host guarantees for meshes that it deforms and objects that it moves, the answers when they are
 // violated, and the cost of such frames.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
@@ -12,6 +11,7 @@
 #include "radar/recorder.h"
 #include "spirv/skin_comp.h"
 #include "support/bindings.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 struct Moving {
@@ -270,7 +270,7 @@ TEST_CASE("the recorder refuses bad geometry, names what is wrong and stays usab
   gpu::Submission submission(test::device().impl(), false);
   const gpu::Commands commands = submission.begin();
   const auto refused = [&](const HostGeometry& geometry, const char* why) {
-    CHECK_THROWS_WITH(recorder.record(commands, wall.queries, geometry), Catch::Contains(why));
+    CHECK_THROWS_WITH(recorder.record(commands, wall.queries, geometry), test::Contains(why));
   };
   const auto mesh = [&](DeformedMesh deformed, const char* why) { refused({.meshes = {&deformed, 1}}, why); };
   mesh({7, {.buffer = buffer.get()}}, "record: geometry: mesh 7 does not exist");
@@ -295,9 +295,9 @@ TEST_CASE("the recorder refuses bad geometry, names what is wrong and stays usab
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
   CHECK_THROWS_WITH(wall.scene.addMesh(corners, triangle, Bounds{{0, 1, 0}, {1, 0, 1}}),
-                    Catch::Contains("addMesh: bounds: expected lo <= hi"));
-  CHECK_THROWS_WITH(wall.scene.setBounds(wall.wall, {{0, 0, 0}, {1, NAN, 1}}), Catch::Contains("setBounds: bounds"));
-  CHECK_THROWS_WITH(wall.scene.setBounds(9, {}), Catch::Contains("object 9 does not exist"));
+                    test::Contains("addMesh: bounds: expected lo <= hi"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(wall.wall, {{0, 0, 0}, {1, NAN, 1}}), test::Contains("setBounds: bounds"));
+  CHECK_THROWS_WITH(wall.scene.setBounds(9, {}), test::Contains("object 9 does not exist"));
   // The recorder still works.
   CHECK(execute(recorder, wall.queries)[0].t == Approx(5));
 }

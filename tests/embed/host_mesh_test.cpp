@@ -1,9 +1,9 @@
 // Meshes read from a host's buffers, in the formats that renderers use.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "embed/on_device.h"
 #include "radar/host_geometry.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 namespace {
@@ -106,13 +106,12 @@ TEST_CASE("addMesh refuses a host's mesh that cannot be read and names the wrong
   Scene scene;
   const auto refused = [&](HostMesh mesh, const char* why) {
     mesh.positions.buffer = buffer.get();
-    CHECK_THROWS_WITH(addMesh(scene, test::device(), mesh), Catch::Contains(why));
+    CHECK_THROWS_WITH(addMesh(scene, test::device(), mesh), test::Contains(why));
   };
   refused({.positions = {.format = VK_FORMAT_R8G8B8_UNORM}, .vertexCount = 3}, "addMesh: positions: format: expected");
   refused({.positions = {.stride = 8}, .vertexCount = 3}, "positions: stride: expected at least 12 bytes, got 8");
   refused({.vertexCount = 0}, "at least one triangle");
-  CHECK_THROWS_WITH(addMesh(scene, test::device(), {.vertexCount = 3}),
-                    Catch::Contains("positions: expected a buffer"));
+  CHECK_THROWS_WITH(addMesh(scene, test::device(), {.vertexCount = 3}), test::Contains("positions: expected a buffer"));
   refused({.vertexCount = 3, .indices = buffer.get(), .indexType = VK_INDEX_TYPE_UINT8_EXT, .indexCount = 3},
           "addMesh: indexType: expected 16 or 32 bits");
   refused({.vertexCount = 3}, "finite");

@@ -1,5 +1,4 @@
 // Queries that a host's shaders write: their answers have the bits of a sweeper's for the same numbers.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -9,6 +8,7 @@
 
 #include "radar/cpu_sweeper.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "unit/cpu_wild_scenes.h"
 #include "workloads/shapes.h"
 
@@ -253,7 +253,7 @@ TEST_CASE("record refuses written queries that do not fit, says why, and records
   Recorder recorder(test::device(), row.scene, {.queries = 3});
   const OnDevice buffer(std::vector<std::byte>(1024));
   const auto refused = [&](const HostQueries& queries, const char* why) {
-    CHECK_THROWS_WITH(execute(recorder, queries), Catch::Contains(why));
+    CHECK_THROWS_WITH(execute(recorder, queries), test::Contains(why));
   };
   refused({.count = 1}, "record: queries: expected a buffer");
   refused({.buffer = buffer.get(), .stride = 79, .count = 1}, "queries: stride: expected at least 80 bytes, got 79");

@@ -1,6 +1,5 @@
 // A host's transforms in every layout: shaders read the same matrices as the CPU.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
@@ -8,6 +7,7 @@
 #include "embed/on_device.h"
 #include "embed/on_device_scene.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "support/exact_placement.h"
 #include "workloads/shapes.h"
 
@@ -147,7 +147,7 @@ TEST_CASE("a recording refuses transforms that overlap, or that have another num
   const std::vector<Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 1}};
   const auto refused = [&](VkDeviceSize stride, const TransformLayout& layout, const char* why) {
     const MovedObjects moved{.transforms = buffer.get(), .stride = stride, .objects = {&object, 1}, .layout = layout};
-    CHECK_THROWS_WITH(execute(recorder, queries, {.objects = {&moved, 1}}), Catch::Contains(why));
+    CHECK_THROWS_WITH(execute(recorder, queries, {.objects = {&moved, 1}}), test::Contains(why));
   };
   refused(47, kRowMajor, "objects: stride: expected at least 48 bytes, got 47");
   refused(59, kColumnMajor, "objects: stride: expected at least 60 bytes, got 59");

@@ -3,8 +3,6 @@
 #include <cstring>
 
 #include <vulkan/vulkan.h>
-#include <catch2/catch.hpp>
-
 #include "embed/execute.h"
 #include "embed/host.h"
 #include "embed/moved_world.h"
@@ -14,6 +12,7 @@
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/recorder.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
@@ -233,7 +232,7 @@ TEST_CASE("a list of excluded objects that exceeds the device's largest storage 
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
   CHECK_THROWS_WITH(recorder.record(commands, {&query, 1}),
-                    Catch::StartsWith("the lists of excluded objects need a buffer of 134217732 bytes"));
+                    test::StartsWith("the lists of excluded objects need a buffer of 134217732 bytes"));
 }
 
 TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the device's largest storage buffer") {
@@ -253,7 +252,7 @@ TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the dev
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
   CHECK_THROWS_WITH(recorder.record(commands, std::span<const Query>(), {.meshes = {&deformed, 1}}),
-                    Catch::StartsWith("the scene's vertices need a buffer of 134217744 bytes"));
+                    test::StartsWith("the scene's vertices need a buffer of 134217744 bytes"));
 }
 
 TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device lacks for it") {
@@ -271,12 +270,12 @@ TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device l
     sweeper.run({&query, 1});
     FAIL("run() did not throw");
   } catch (const Error& error) {
-    CHECK_THAT(error.what(), Catch::StartsWith("query 0: ") && Catch::Contains("does not support mode sampled"));
+    CHECK_THAT(error.what(), test::StartsWith("query 0: ") && test::Contains("does not support mode sampled"));
     CHECK(error.reasons == reasons);
   }
   query.mode = Mode::contact;
   CHECK_THROWS_WITH(sweeper.scopes(query),
-                    Catch::StartsWith("scopes(): ") && Catch::Contains("does not support mode sampled"));
+                    test::StartsWith("scopes(): ") && test::Contains("does not support mode sampled"));
   least.host.handles.sampled = false;
   const Device unaware = Device::adopt(least.host.handles);
   CHECK_FALSE(unaware.supports(Mode::sampled));

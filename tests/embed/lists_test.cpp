@@ -1,11 +1,11 @@
 // Lists of hits, and steps in which objects move, recorded into command buffers.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "embed/on_device.h"
 #include "embed/renderer.h"
 #include "gpu/barrier.h"
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "workloads/random.h"
 
 namespace {
@@ -228,7 +228,7 @@ TEST_CASE("needed() has room for the hits that the CPU lists while it records") 
   CHECK(execute(exact, queries).lists.hits.size() == recorded.lists.hits.size());
   --capacity.searches;
   Recorder less(test::device(), scene, capacity);
-  CHECK_THROWS_WITH(execute(less, queries), Catch::Contains("Capacity::searches"));
+  CHECK_THROWS_WITH(execute(less, queries), test::Contains("Capacity::searches"));
 }
 
 TEST_CASE("queries for the CPU are refused beside a host's geometry") {
@@ -243,7 +243,7 @@ TEST_CASE("queries for the CPU are refused beside a host's geometry") {
   row.queries[1].skipOverlapping = true;
   gpu::Submission submission(test::device().impl(), false);
   CHECK_THROWS_WITH(recorder.record(submission.begin(), row.queries, {.objects = {&objects, 1}}),
-                    Catch::Contains("record: query 1: skipOverlapping") && Catch::Contains("beside a HostGeometry"));
+                    test::Contains("record: query 1: skipOverlapping") && test::Contains("beside a HostGeometry"));
 }
 
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {

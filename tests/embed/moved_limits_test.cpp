@@ -1,10 +1,10 @@
 // Objects that a host moves without bounds: lists and steps, what floats cannot hold, and what is far away.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "embed/moved_world.h"
 #include "embed/written_queries.h"
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 
 namespace {
 
@@ -189,6 +189,6 @@ TEST_CASE("lists and steps search every object that a host moves without bounds,
   for (ObjectId id = 0; id < 60; ++id) world.scene.setMotion(id, {});
   gpu::Submission submission(test::device().impl(), false);
   CHECK_THROWS_WITH(small.record(submission.begin(), one, world.geometry()),
-                    Catch::Contains("at most 39 searches past one object each"));
+                    test::Contains("at most 39 searches past one object each"));
   CHECK(test::takeValidationMessages().empty());
 }

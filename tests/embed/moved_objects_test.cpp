@@ -2,13 +2,13 @@
 // a scene in which they are there.
 #include "embed/moved_world.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "embed/on_device_scene.h"
 #include "embed/written_queries.h"
 #include "radar/cpu_sweeper.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 
 namespace {
 

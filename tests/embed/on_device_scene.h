@@ -1,11 +1,10 @@
 // A scene's copy on the device, overwritten with a host's geometry.
 #pragma once
 
-#include <catch2/catch.hpp>
-
 #include "embed/host_geometry.h"
 #include "gpu/barrier.h"
 #include "gpu/submission.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 namespace radar::test {

@@ -1,6 +1,5 @@
 // The input of the search that a shader encodes from a host's queries, against exact arithmetic and the CPU's encoding.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "contact/pass.h"
@@ -9,6 +8,7 @@
 #include "exact/contact.h"
 #include "math/frame.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "support/exact_placement.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"

@@ -1,9 +1,9 @@
 // Searches recorded into a host's command buffers give a sweeper's answers, on the device and read back.
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "embed/on_device.h"
 #include "embed/renderer.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -130,7 +130,7 @@ TEST_CASE("record throws for a query that it cannot record, names its number and
   gpu::Submission submission(test::device().impl(), false);
   const gpu::Commands commands = submission.begin();
   const auto refused = [&](const char* why) {
-    CHECK_THROWS_WITH(recorder.record(commands, row.queries), Catch::Contains(why));
+    CHECK_THROWS_WITH(recorder.record(commands, row.queries), test::Contains(why));
   };
   row.queries[1].mode = Mode::sampled;
   refused("record: query 1: mode: expected contact");

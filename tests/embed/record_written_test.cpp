@@ -1,5 +1,4 @@
 // A host's shader writes queries and their number in the command buffer that answers them.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "embed/host.h"
@@ -7,6 +6,7 @@
 #include "embed/written_queries.h"
 #include "radar/cpu_sweeper.h"
 #include "spirv/write_queries_comp.h"
+#include "support/catch.h"
 
 // In record_written.cpp.
 struct Asked {

@@ -1,9 +1,9 @@
 #include "embed/renderer.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "spirv/read_results_comp.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 void recordQueries(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries);

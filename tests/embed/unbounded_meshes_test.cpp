@@ -1,6 +1,5 @@
 // Searches of what a host deforms without bounds: with every option of a query, in turns with other geometry, and what
 // is refused.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "embed/host_workload.h"
 #include "embed/renderer.h"
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "workloads/hard_cases.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"

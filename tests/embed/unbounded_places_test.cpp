@@ -1,7 +1,6 @@
 // How the device describes and places what a host deforms without bounds, against exact arithmetic and the CPU's
 // encoding.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 
@@ -10,6 +9,7 @@
 #include "embed/on_device.h"
 #include "gpu/barrier.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "support/exact_placement.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"

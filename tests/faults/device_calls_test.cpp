@@ -1,7 +1,5 @@
 // Every call of the device that may fail does so in turn, for lack of memory, and every submission because the device
 // is lost. Answers are right, or invalid with the reason; afterwards the same objects answer with the same bits.
-#include <catch2/catch.hpp>
-
 #include "embed/moved_world.h"
 #include "faults/adopted.h"
 #include "faults/scenario.h"
@@ -9,6 +7,7 @@
 #include "gpu/check.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
@@ -17,9 +16,9 @@
 namespace {
 
 using namespace radar;
-using Catch::Contains;
 using test::Answers;
 using test::ask;
+using test::Contains;
 using test::sameBits;
 using test::VulkanFault;
 

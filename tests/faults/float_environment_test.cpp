@@ -1,6 +1,5 @@
 // A host may round in any direction, flush subnormal numbers to zero, or trap on exceptions: answers keep their bits,
 // and the host its environment.
-#include <catch2/catch.hpp>
 #include <cfenv>
 #include <cmath>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/host_geometry.h"
 #include "radar/pool.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "support/test_device.h"
 

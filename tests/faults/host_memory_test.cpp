@@ -2,7 +2,6 @@
 // std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing has leaked.
 #include <array>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <functional>
 #include <new>
 
@@ -11,6 +10,7 @@
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
+#include "support/catch.h"
 #include "sweep/sweeper.h"
 
 namespace {

@@ -1,18 +1,19 @@
 // A pool of two devices: each loses its device at every submission in turn, and every request for host memory and
 // threads fails in turn.
-#include <catch2/catch.hpp>
 #include <new>
 
 #include "faults/adopted.h"
 #include "faults/scenario.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
+#include "support/catch.h"
+#include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
-using Catch::Contains;
 using test::Answers;
+using test::Contains;
 using test::FaultyHost;
 using test::sameBits;
 using test::VulkanFault;
@@ -36,8 +37,7 @@ struct TwoDevices {
 };
 
 TwoDevices& twoDevices() {
-  static TwoDevices both;
-  return both;
+  return test::onceInRun([] { return TwoDevices(); });
 }
 
 Answers of(const PoolAnswers& answers) {

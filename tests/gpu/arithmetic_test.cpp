@@ -1,7 +1,6 @@
 // The checks of a device's arithmetic pass, and they detect an operation that is falsified on purpose.
-#include <catch2/catch.hpp>
-
 #include "gpu/arithmetic.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 using namespace radar;

@@ -1,8 +1,8 @@
 // In mode contact, batches do not change answers, and large meshes and many simultaneous contacts are handled.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"

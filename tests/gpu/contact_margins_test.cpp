@@ -1,7 +1,5 @@
 // The search's bounds admit pairs that touch by construction: a vertex of the sensor meets a vertex of an object.
 // Sizes, distances and positions vary widely.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "contact/sensors.h"
@@ -12,6 +10,7 @@
 #include "math/rounding.h"
 #include "scene/gpu_scene.h"
 #include "spirv/contact_margins_comp.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 namespace {

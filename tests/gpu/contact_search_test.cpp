@@ -1,10 +1,9 @@
 // The contact search loses nothing with the smallest lists, in the shortest rounds and over very long lists.
-#include <catch2/catch.hpp>
-
 #include <cstring>
 #include <map>
 #include <ostream>
 
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
@@ -27,7 +26,8 @@ using namespace radar;
 /// Cached for each shape, since compiling takes a second.
 std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
   const Device& device = test::device();  // outlives the kernels
-  static std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>> all;
+  auto& all =
+      test::onceInRun([] { return std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>>(); });
   auto& kernels = all[{shape.queue, shape.stack}];
   if (!kernels) kernels = std::make_shared<ContactKernels>(device.impl(), shape);
   return kernels;

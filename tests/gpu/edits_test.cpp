@@ -1,7 +1,6 @@
 // Answers after any sequence of edits are those of a scene that is built anew, to the bit.
-#include <catch2/catch.hpp>
-
 #include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "support/resident.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"

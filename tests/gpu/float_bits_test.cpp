@@ -1,11 +1,11 @@
 // Sums and products of floats in shaders by their bits: those of the CPU, which rounds to nearest.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "gpu/kernel_fixture.h"
 #include "spirv/float_bits_comp.h"
+#include "support/catch.h"
 
 namespace {
 

@@ -1,12 +1,11 @@
 // A scene's copy on the device equals the scene after every change, and only changed data is uploaded.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cstring>
 
 #include "scene/gpu_scene.h"
 #include "scene/placement.h"
 #include "support/buffer_words.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/shapes.h"
 

@@ -1,6 +1,4 @@
 // The validation layer reports a missing barrier between an upload and a dispatch.
-#include <catch2/catch.hpp>
-
 #include <cstring>
 
 #include "gpu/barrier.h"
@@ -9,6 +7,7 @@
 #include "shaders/contact/interop.h"
 #include "shaders/sampled/interop.h"
 #include "spirv/contact_collect_comp.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 
 namespace {

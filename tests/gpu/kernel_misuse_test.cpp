@@ -1,9 +1,8 @@
 // A wrong argument does not compile, or throws an error that names the kernel and the binding.
-#include <catch2/catch.hpp>
-
 #include "gpu/kernel_fixture.h"
 #include "spirv/refused_comp_BINDS_NOTHING.h"
 #include "spirv/refused_comp_PUSHES_132_BYTES.h"
+#include "support/catch.h"
 
 namespace {
 

@@ -1,8 +1,7 @@
 // Kernels apply their arguments and push constants for any number of workgroups and users.
-#include <catch2/catch.hpp>
-
 #include "gpu/depth_array.h"
 #include "gpu/kernel_fixture.h"
+#include "support/catch.h"
 
 namespace {
 
@@ -95,7 +94,7 @@ TEST_CASE("an indirect dispatch without its barrier is reported as a hazard") {
   }
   const std::vector<std::string> messages = takeValidationMessages();
   REQUIRE_FALSE(messages.empty());
-  CHECK_THAT(messages[0], Catch::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
+  CHECK_THAT(messages[0], test::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
 }
 
 TEST_CASE("two users of one kernel do not see each other's arguments") {

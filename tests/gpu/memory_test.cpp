@@ -1,10 +1,9 @@
 // Devices without enough memory: the tests make the engine's allocations fail. Queries are answered even so.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <limits>
 
 #include "gpu/buffer.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -131,7 +130,7 @@ TEST_CASE("a query of mode sampled whose own picture does not fit the device's m
     CAPTURE(i);
     if (i == large) {
       CHECK(found[i].status == Status::invalid);
-      CHECK_THAT(sweeper.reason(i), Catch::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+      CHECK_THAT(sweeper.reason(i), test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
     } else {
       CHECK(test::sameBits(found[i], teapots.answers[i]));
       CHECK(sweeper.reason(i).empty());

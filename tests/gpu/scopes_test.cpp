@@ -1,9 +1,8 @@
 // Compares the scopes with a raster on the CPU in double precision, pixel by pixel.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 
 #include "gpu/device.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 

@@ -1,12 +1,11 @@
 // Objects shared per device: one of each type, created once for all callers.
-#include <catch2/catch.hpp>
-
 #include <array>
 #include <atomic>
 #include <stdexcept>
 #include <thread>
 
 #include "gpu/kernel_fixture.h"
+#include "support/catch.h"
 
 namespace {
 

@@ -1,11 +1,10 @@
 // Mode sampled: batches do not change answers, edits are followed, and bad queries are refused.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <mutex>
 #include <thread>
 
 #include "gpu/device.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -205,13 +204,13 @@ TEST_CASE("run throws for a query that breaks its contract and names its number"
   const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
   std::vector<Query> queries(3, good);
   queries[2].direction = {0, 0, 0};
-  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 2") && Catch::Contains("direction"));
+  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 2") && test::Contains("direction"));
   queries[2] = good;
   queries[1].distance = -1;
-  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 1") && Catch::Contains("distance"));
+  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 1") && test::Contains("distance"));
   queries[1] = good;
   queries[0].worldFromMesh.m = {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0};
-  CHECK_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 0") && Catch::Contains("singular"));
+  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 0") && test::Contains("singular"));
 }
 
 TEST_CASE("a mesh of more triangles than a shader's loop may have iterations is drawn completely") {

@@ -1,10 +1,9 @@
 // Texel arrays hold what was uploaded or written as storage, also after they have grown.
 #include <algorithm>
-#include <catch2/catch.hpp>
-
 #include <numeric>
 
 #include "gpu/kernel_fixture.h"
+#include "support/catch.h"
 
 namespace {
 
@@ -83,7 +82,7 @@ TEST_CASE("texels have the values that a kernel wrote as storage, and a missing 
   }
   const std::vector<std::string> messages = takeValidationMessages();
   REQUIRE_FALSE(messages.empty());
-  CHECK_THAT(messages[0], Catch::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
+  CHECK_THAT(messages[0], test::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
 }
 
 TEST_CASE("reserve refuses more texels than the device allows, names both numbers and leaves the array as it was") {
@@ -95,7 +94,7 @@ TEST_CASE("reserve refuses more texels than the device allows, names both number
                                                  std::to_string(most));
   CHECK(words.view() == view);
   TexelArray<Node> nodes = makeNodes();
-  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), Catch::StartsWith("nodes: " + std::to_string(2 * (most / 2 + 1))));
+  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), test::StartsWith("nodes: " + std::to_string(2 * (most / 2 + 1))));
 }
 
 TEST_CASE("elements that are not whole texels, and formats that not every device reads, are refused") {

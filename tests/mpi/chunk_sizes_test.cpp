@@ -1,6 +1,5 @@
 #include "mpi/chunk_sizes.h"
-
-#include <catch2/catch.hpp>
+#include "support/catch.h"
 
 using radar::tools::ChunkSizes;
 

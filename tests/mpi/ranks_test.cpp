@@ -1,11 +1,11 @@
 // cyber-radar-mpi on this machine, with more ranks than cores.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cli/program.h"
+#include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runCommand;
 using radar::test::runProgram;

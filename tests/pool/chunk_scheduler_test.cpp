@@ -1,7 +1,6 @@
 // Simulates the chunk scheduler without a clock: devices of given speeds, two chunks in flight on each.
 #include "pool/chunk_scheduler.h"
-
-#include <catch2/catch.hpp>
+#include "support/catch.h"
 
 #include <algorithm>
 #include <deque>

@@ -1,6 +1,4 @@
 // Cancelling, draining, and pools that end with work queued.
-#include <catch2/catch.hpp>
-
 #include <malloc.h>
 
 #include <cstdlib>
@@ -10,6 +8,7 @@
 
 #include "pool/fixture.h"
 #include "pool/work_queue.h"
+#include "support/catch.h"
 
 using namespace radar;
 using test::Boxes;

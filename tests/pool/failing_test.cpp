@@ -1,12 +1,11 @@
 // Devices that are lost or out of memory. The tests inject failures into the engine's calls of the queue and the
 // allocator.
-#include <catch2/catch.hpp>
-
 #include "pool/fixture.h"
+#include "support/catch.h"
 
 using namespace radar;
-using Catch::Contains;
 using test::Boxes;
+using test::Contains;
 using test::differences;
 using test::faults;
 using test::twoDevices;

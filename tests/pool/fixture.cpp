@@ -15,8 +15,7 @@ struct FaultyDevices {
 };
 
 FaultyDevices& faultyDevices() {
-  static FaultyDevices both;
-  return both;
+  return test::onceInRun([] { return FaultyDevices(); });
 }
 
 // The device that has this handle.

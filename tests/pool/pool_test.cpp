@@ -1,11 +1,10 @@
-#include <catch2/catch.hpp>
-
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <thread>
 
 #include "pool/fixture.h"
+#include "support/catch.h"
 
 using namespace radar;
 using test::Boxes;
@@ -129,7 +128,7 @@ TEST_CASE("submit throws for a query that breaks its contract, names it and star
   CHECK(pool.submit({}).get().results.empty());
   std::vector<Query> queries = boxes.queries;
   queries[5].direction = {};
-  CHECK_THROWS_WITH(pool.submit(queries), Catch::Contains("query 5"));
+  CHECK_THROWS_WITH(pool.submit(queries), test::Contains("query 5"));
   pool.drain();
   CHECK(pool.devices()[0].queries + pool.devices()[1].queries == 0);
   bool isEdited = false;
@@ -154,13 +153,13 @@ TEST_CASE("a pool runs one named thread per device and ends them when it is dest
 
 TEST_CASE("openDevices refuses unknown and repeated numbers, and a pool refuses two devices with one queue") {
   const uint32_t twice[] = {1, 1}, missing[] = {0, 7};
-  CHECK_THROWS_WITH(openDevices(twice), Catch::Contains("device 1 is named twice"));
-  CHECK_THROWS_WITH(openDevices(missing), Catch::Contains("device 7 does not exist"));
+  CHECK_THROWS_WITH(openDevices(twice), test::Contains("device 1 is named twice"));
+  CHECK_THROWS_WITH(openDevices(missing), test::Contains("device 7 does not exist"));
   CHECK(twoDevices()[0].handles().physicalDevice != twoDevices()[1].handles().physicalDevice);
   const Scene scene;
-  CHECK_THROWS_WITH(Pool({}, scene), Catch::Contains("at least one device"));
+  CHECK_THROWS_WITH(Pool({}, scene), test::Contains("at least one device"));
   std::vector<Device> same;
   same.reserve(2);
   for (int i = 0; i < 2; ++i) same.push_back(Device::adopt(twoDevices()[0].handles()));
-  CHECK_THROWS_WITH(Pool(same, scene), Catch::Contains("devices 0 and 1 share a queue"));
+  CHECK_THROWS_WITH(Pool(same, scene), test::Contains("devices 0 and 1 share a queue"));
 }

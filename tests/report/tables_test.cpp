@@ -1,6 +1,6 @@
 #include "report/tables.h"
+#include "support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 using namespace radar::tools;

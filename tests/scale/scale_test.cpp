@@ -1,12 +1,11 @@
-#include <catch2/catch.hpp>
-
 #include "scale/report.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 
 using namespace radar;
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using test::Contains;
 
 namespace {
 

@@ -1,7 +1,6 @@
 // The selftest of devices: its report is complete whenever it ends.
 #include "selftest/selftest.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -9,10 +8,11 @@
 #include <sstream>
 
 #include "cli/program.h"
+#include "support/catch.h"
 
 using namespace radar;
 using namespace radar::tools;
-using Catch::Contains;
+using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
@@ -74,7 +74,7 @@ TEST_CASE("a selftest's report tells every number as text, JSON, tables and a pa
         "device,operation,worst_ulps,found\n3,float addition,0.5,rounded up\n3,float copies,,\"the \"\"same\"\", "
         "all\"\n");
   CHECK(files.at("exactness.csv") == "device,family,doubles,queries,wrong\n3,convex,yes,64,0\n");
-  CHECK_THAT(files.at("throughput.csv"), Catch::EndsWith("\n3,light,1000,0.5,5,10,0\n"));
+  CHECK_THAT(files.at("throughput.csv"), test::EndsWith("\n3,light,1000,0.5,5,10,0\n"));
   CHECK(files.at("stages.csv") ==
         "device,mode,workload,stage,us_per_query\n3,contact,light,search,0.25\n3,contact,light,solve,0.1\n"
         "3,sampled,teapots,mask,7\n");
@@ -175,7 +175,7 @@ TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
   INFO(run.err);
   CHECK(run.status == 0);
   CHECK_THAT(run.out, Contains("device 1: ") && Contains("nothing is wrong"));
-  CHECK_THAT(run.out, Catch::StartsWith(folder.read("report/report.txt")));
+  CHECK_THAT(run.out, test::StartsWith(folder.read("report/report.txt")));
   CHECK(nlohmann::json::parse(folder.read("report/report.json"))["right"] == true);
   for (const char* file : {"index.html", "arithmetic.csv", "exactness.csv", "throughput.csv", "stages.csv"}) {
     CAPTURE(file);

@@ -1,9 +1,9 @@
 #include "stability/measure.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "support/answer.h"
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/same_contact.h"
 

@@ -1,9 +1,9 @@
 #include "stability/judge.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "support/answer.h"
+#include "support/catch.h"
 #include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
 

@@ -1,7 +1,6 @@
 #include "stability/measure.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/hard_cases.h"
 

@@ -1,6 +1,5 @@
 #include "stability/measure.h"
-
-#include <catch2/catch.hpp>
+#include "support/catch.h"
 
 using namespace radar::tools;
 

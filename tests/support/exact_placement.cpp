@@ -1,10 +1,10 @@
 #include "support/exact_placement.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "exact/dyadic.h"
+#include "support/catch.h"
 
 namespace radar::test {
 

@@ -1,16 +1,37 @@
 // Runs Catch2, and fails the running test on any message of the validation layers.
+#if __has_include(<catch2/catch_all.hpp>)
+#include <catch2/catch_all.hpp>
+#else
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
+#endif
 
 #include "support/test_device.h"
 
 namespace {
 
-struct ValidationListener : Catch::TestEventListenerBase {
-  using TestEventListenerBase::TestEventListenerBase;
-  void testCaseEnded(const Catch::TestCaseStats& stats) override {
+#if CATCH_VERSION_MAJOR < 3
+using Listener = Catch::TestEventListenerBase;
+std::string nameOf(const Catch::TestCaseStats& stats) {
+  return stats.testInfo.name;
+}
+#else
+using Listener = Catch::EventListenerBase;
+std::string nameOf(const Catch::TestCaseStats& stats) {
+  return stats.testInfo->name;
+}
+#endif
+
+struct ValidationListener : Listener {
+  using Listener::Listener;
+  void testCaseEnded(const Catch::TestCaseStats& stats) override { report(nameOf(stats)); }
+  void testRunEnded(const Catch::TestRunStats&) override {
+    radar::test::endRun();
+    report("the end of the run");
+  }
+  static void report(const std::string& when) {
     for (const std::string& message : radar::test::takeValidationMessages()) {
-      std::fprintf(stderr, "validation message in \"%s\":\n%s\n", stats.testInfo.name.c_str(), message.c_str());
+      std::fprintf(stderr, "validation message in \"%s\":\n%s\n", when.c_str(), message.c_str());
       failed = true;
     }
   }

@@ -1,10 +1,10 @@
 // Ranges of an arena never overlap, and what is freed can be allocated again.
 #include "scene/arena.h"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "scene/changed_pages.h"
+#include "support/catch.h"
 #include "workloads/random.h"
 
 namespace {

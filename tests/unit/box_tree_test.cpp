@@ -1,11 +1,10 @@
 // The tree over boxes: every box is in one leaf, every node's box is the smallest around its items, and the number of
 // threads does not change the tree.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <cstring>
 
 #include "scene/box_tree.h"
+#include "support/catch.h"
 #include "workloads/random.h"
 
 namespace {

@@ -1,11 +1,11 @@
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <stdexcept>
 
 #include "child/in_child.h"
+#include "support/catch.h"
 
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 
 TEST_CASE("a child hands over bytes, an exception's words, the signal that ended it, or that it took too long") {
   const std::string bytes("a\0b", 3);

@@ -138,7 +138,7 @@ TEST_CASE("the CPU answers no query of a batch in which one breaks its contract,
   }
   queries[1].distance = -1;
   CpuSweeper sweeper(scene);
-  REQUIRE_THROWS_WITH(sweeper.run(queries), Catch::Contains("query 1: distance"));
+  REQUIRE_THROWS_WITH(sweeper.run(queries), test::Contains("query 1: distance"));
   queries[1].distance = 1;
   REQUIRE(sweeper.run(queries).size() == 3);
   REQUIRE(sweeper.stats().queries == 3);
@@ -185,13 +185,13 @@ TEST_CASE("positions that a mesh cannot take are refused") {
   const MeshId mesh = soups::add(scene, box);
   const MeshId bounded = scene.addMesh(box.positions, box.indices, Bounds{{-2, -2, -2}, {2, 2, 2}});
   std::vector<float> positions = box.positions;
-  CHECK_THROWS_WITH(scene.setPositions(9, positions), Catch::Contains("mesh 9 does not exist"));
+  CHECK_THROWS_WITH(scene.setPositions(9, positions), test::Contains("mesh 9 does not exist"));
   positions[4] = 2;
   scene.setPositions(bounded, positions);
   positions[4] = std::nextafter(2.0f, 3.0f);
-  CHECK_THROWS_WITH(scene.setPositions(bounded, positions), Catch::Contains("vertex 1 is outside the mesh's bounds"));
+  CHECK_THROWS_WITH(scene.setPositions(bounded, positions), test::Contains("vertex 1 is outside the mesh's bounds"));
   positions[5] = NAN;
-  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), Catch::Contains("vertex 1 is not finite"));
+  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), test::Contains("vertex 1 is not finite"));
   positions.pop_back();
-  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), Catch::Contains("expected 24 floats"));
+  CHECK_THROWS_WITH(scene.setPositions(mesh, positions), test::Contains("expected 24 floats"));
 }

@@ -205,15 +205,15 @@ TEST_CASE("queries and objects that break the contract of a step are refused by 
   const MeshId box = soups::add(scene, soups::box(1, 1, 1));
   const ObjectId object = scene.addObject({.mesh = box});
   Query query{.mesh = box, .motion = Motion3{1, 0, NAN}};
-  CHECK_THAT(validate(query, scene), Catch::StartsWith("motion: expected 3 finite numbers"));
+  CHECK_THAT(validate(query, scene), test::StartsWith("motion: expected 3 finite numbers"));
   query.motion = Motion3{1, 0, 0};
   CHECK(validate(query, scene).empty());
   query.distance = 1;
-  CHECK_THAT(validate(query, scene), Catch::Contains("no distance"));
+  CHECK_THAT(validate(query, scene), test::Contains("no distance"));
   query.distance = 0;
   query.mode = Mode::sampled;
-  CHECK_THAT(validate(query, scene), Catch::StartsWith("mode: expected contact with a motion"));
-  CHECK_THROWS_WITH(scene.setMotion(object, {INFINITY, 0, 0}), Catch::StartsWith("setMotion: expected 3 finite"));
-  CHECK_THROWS_WITH(scene.setMotion(7, {}), Catch::Contains("object 7 does not exist"));
-  CHECK_THROWS_WITH(scene.addObject({.mesh = box, .motion = {0, 1e305, 0}}), Catch::StartsWith("addObject: motion"));
+  CHECK_THAT(validate(query, scene), test::StartsWith("mode: expected contact with a motion"));
+  CHECK_THROWS_WITH(scene.setMotion(object, {INFINITY, 0, 0}), test::StartsWith("setMotion: expected 3 finite"));
+  CHECK_THROWS_WITH(scene.setMotion(7, {}), test::Contains("object 7 does not exist"));
+  CHECK_THROWS_WITH(scene.addObject({.mesh = box, .motion = {0, 1e305, 0}}), test::StartsWith("addObject: motion"));
 }

@@ -1,9 +1,8 @@
 // Compares the decisions on pairs that block or cross with the definition in exact integers.
-#include <catch2/catch.hpp>
-
 #include "blocking_oracle.h"
 #include "exact/blocking.h"
 #include "soups.h"
+#include "support/catch.h"
 
 using radar::Vector;
 using radar::exact::Triangle;

@@ -1,11 +1,10 @@
 // Compares the contact interval of two triangles with separating axes in exact rationals.
-#include <catch2/catch.hpp>
-
 #include "exact/common_point.h"
 #include "exact/contact.h"
 #include "exact/event.h"
 #include "exact_oracle.h"
 #include "soups.h"
+#include "support/catch.h"
 
 using namespace radar::exact;
 using oracle::Fraction;

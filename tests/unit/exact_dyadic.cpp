@@ -1,11 +1,11 @@
 // Compares the integers and double-doubles of engine/exact with Boost's rationals.
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "exact/double_double.h"
 #include "exact/dyadic.h"
 #include "exact_oracle.h"
 #include "soups.h"
+#include "support/catch.h"
 
 using namespace radar::exact;
 using oracle::Rational;

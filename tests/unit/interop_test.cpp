@@ -1,6 +1,4 @@
 // Structs that C++ and GLSL share have the same layout: compares offsetof with the SPIR-V's decorations.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cstddef>
 #include <fstream>
@@ -21,6 +19,7 @@
 #include "spirv/host_query_comp_SCALAR.h"
 #include "spirv/shared_structs_comp.h"
 #include "spirv/shared_structs_comp_RADAR_NO_DOUBLES.h"
+#include "support/catch.h"
 
 namespace {
 

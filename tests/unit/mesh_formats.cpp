@@ -1,17 +1,17 @@
 // Our readers of OBJ, STL, PLY and OFF number what a file holds as assimp does, so that answers name the same
 // triangles.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
 #include "import/mesh_import.h"
 #include "import/readers.h"
 #include "import/regular_file.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "workloads/random.h"
 
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::ScratchFolder;
 
 namespace {

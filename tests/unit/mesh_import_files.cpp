@@ -1,12 +1,12 @@
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "import/mesh_import.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::ScratchFolder;
 
 namespace {

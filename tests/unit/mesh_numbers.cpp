@@ -1,6 +1,5 @@
 // Numbers in mesh files of text become the nearest floats.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "import/mesh_import.h"
 #include "import/number_text.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "workloads/random.h"
 
@@ -271,6 +271,6 @@ TEST_CASE("what only begins with a number is refused, with its line") {
     CAPTURE(vertex);
     std::vector<std::string> warnings;
     CHECK_THROWS_WITH(readMesh(folder.write("a.obj", vertex + rest), warnings),
-                      Catch::Matchers::Contains("a.obj: line 1: expected"));
+                      radar::test::Contains("a.obj: line 1: expected"));
   }
 }

@@ -1,7 +1,5 @@
 // The tree over a mesh's triangles: every triangle is in one leaf, and boxes and slabs contain all triangles below
 // them, in exact arithmetic.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,6 +7,7 @@
 #include "exact/dyadic.h"
 #include "scene/box_tree.h"
 #include "scene/scene.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 namespace {

@@ -2,18 +2,18 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "batch/query_file.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "workloads/random.h"
 
 using namespace radar::tools;
-using Catch::Matchers::Contains;
+using radar::test::Contains;
 using radar::test::ScratchFolder;
 
 namespace {

@@ -1,11 +1,10 @@
 // The tree over a scene's objects contains all of them, wherever they are and however the scene has changed.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cmath>
 
 #include "exact/dyadic.h"
 #include "scene/scene.h"
+#include "support/catch.h"
 #include "workloads/shapes.h"
 
 namespace {

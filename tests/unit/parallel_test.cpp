@@ -1,6 +1,4 @@
 // Parallel loops: each index once, no worker twice at a time, exceptions for the caller.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "scene/parallel.h"
+#include "support/catch.h"
 
 namespace {
 

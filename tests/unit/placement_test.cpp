@@ -1,9 +1,8 @@
 // Checks placements with exact arithmetic: the floats by which the device's search knows a placed mesh, and their
 // errors.
-#include <catch2/catch.hpp>
-
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/exact_placement.h"
 #include "workloads/shapes.h"
 

@@ -1,16 +1,16 @@
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "batch/query_file.h"
+#include "support/catch.h"
 #include "support/scratch_folder.h"
 #include "workloads/generate.h"
 
 using namespace radar;
 using namespace radar::tools;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using radar::test::Contains;
 using radar::test::ScratchFolder;
+using radar::test::StartsWith;
 
 namespace {
 

@@ -1,10 +1,9 @@
 // The reasons why made-up devices are unsupported.
-#include <catch2/catch.hpp>
-
-#include "engine_shaders.h"
 #include "gpu/requirements.h"
+#include "engine_shaders.h"
 #include "gpu/spirv.h"
 #include "radar/radar.h"
+#include "support/catch.h"
 
 namespace {
 
@@ -204,8 +203,8 @@ TEST_CASE("a host's struct of single features that would break the chain is refu
                                                   .pNext = &own12};
   Requirements needed = requirements(Mode::contact, true);
   CHECK_THROWS_WITH(needed.chain(&single),
-                    Catch::Contains("VkPhysicalDeviceSynchronization2Features, which Vulkan does not allow beside "
-                                    "VkPhysicalDeviceVulkan13Features"));
+                    test::Contains("VkPhysicalDeviceSynchronization2Features, which Vulkan does not allow beside "
+                                   "VkPhysicalDeviceVulkan13Features"));
   CHECK(own12.scalarBlockLayout == VK_FALSE);
   CHECK(needed.vulkan13.pNext == nullptr);
 }

@@ -1,11 +1,10 @@
 // Rounding of doubles to floats in a given direction.
-#include <catch2/catch.hpp>
-
 #include <bit>
 #include <limits>
 #include <random>
 
 #include "math/rounding.h"
+#include "support/catch.h"
 
 namespace {
 

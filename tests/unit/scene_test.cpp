@@ -1,6 +1,4 @@
 // The scene: ids, contracts, boxes and frames.
-#include <catch2/catch.hpp>
-
 #include <sys/mman.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "math/frame.h"
 #include "scene/scene.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -68,8 +67,8 @@ TEST_CASE("a mesh of more vertices or triangles than a link counts is refused be
   const std::vector<uint32_t> triangle{0, 1, 2};
   const Zeros<float> positions(3 * ((size_t{1} << 30) + 1));
   const Zeros<uint32_t> indices(3 * ((size_t{1} << 29) + 1));
-  CHECK_THROWS_WITH(scene.addMesh(positions.all(), triangle), Catch::Contains("expected at most 1073741824 vertices"));
-  CHECK_THROWS_WITH(scene.addMesh(few, indices.all()), Catch::Contains("expected at most 536870912 triangles"));
+  CHECK_THROWS_WITH(scene.addMesh(positions.all(), triangle), test::Contains("expected at most 1073741824 vertices"));
+  CHECK_THROWS_WITH(scene.addMesh(few, indices.all()), test::Contains("expected at most 536870912 triangles"));
   CHECK(scene.meshLimit() == 0);
 }
 
@@ -81,7 +80,7 @@ TEST_CASE("a mesh in use cannot be removed, and every change changes the version
   const ObjectId object = scene.addObject({mesh, {}, ~0u});
   CHECK(changed());
   CHECK_FALSE(changed());
-  CHECK_THROWS_WITH(scene.removeMesh(mesh), Catch::Contains("used by 1"));
+  CHECK_THROWS_WITH(scene.removeMesh(mesh), test::Contains("used by 1"));
   scene.setTransform(object, {{2, 0, 0, 1, 0, 2, 0, 1, 0, 0, 2, 1}});
   CHECK(changed());
   scene.removeObject(object);
@@ -95,18 +94,18 @@ TEST_CASE("a call that breaks its contract throws and describes the error") {
   Scene scene;
   const MeshId mesh = addBox(scene);
   const std::vector<float> corner{0, 0, 0, 1, 0, 0, 0, 1, 0};
-  CHECK_THROWS_WITH(scene.addMesh(corner, {}), Catch::Contains("at least one triangle"));
-  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1, 3}), Catch::Contains("vertex 3 of 3"));
-  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1}), Catch::Contains("3 per triangle"));
+  CHECK_THROWS_WITH(scene.addMesh(corner, {}), test::Contains("at least one triangle"));
+  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1, 3}), test::Contains("vertex 3 of 3"));
+  CHECK_THROWS_WITH(scene.addMesh(corner, std::vector<uint32_t>{0, 1}), test::Contains("3 per triangle"));
   CHECK_THROWS_WITH(
       scene.addMesh(std::vector<float>{0, 2e36f, 0}, std::vector<uint32_t>{0, 0, 0}, Bounds{{-1, -1, -1}, {1, 1, 1}}),
-      Catch::Contains("vertex 0 of a mesh with bounds: expected coordinates of at most 2^120"));
+      test::Contains("vertex 0 of a mesh with bounds: expected coordinates of at most 2^120"));
   CHECK_THROWS_WITH(scene.addMesh(std::vector<float>{0, 0, NAN}, std::vector<uint32_t>{0, 0, 0}),
-                    Catch::Contains("vertex 0 is not finite"));
-  CHECK_THROWS_WITH(scene.addObject({mesh + 1, {}, ~0u}), Catch::Contains("does not exist"));
-  CHECK_THROWS_WITH(scene.addObject({mesh, {{1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0}}, ~0u}), Catch::Contains("singular"));
-  CHECK_THROWS_WITH(scene.setTransform(0, {}), Catch::Contains("does not exist"));
-  CHECK_THROWS_WITH(scene.removeObject(7), Catch::Contains("does not exist"));
+                    test::Contains("vertex 0 is not finite"));
+  CHECK_THROWS_WITH(scene.addObject({mesh + 1, {}, ~0u}), test::Contains("does not exist"));
+  CHECK_THROWS_WITH(scene.addObject({mesh, {{1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0}}, ~0u}), test::Contains("singular"));
+  CHECK_THROWS_WITH(scene.setTransform(0, {}), test::Contains("does not exist"));
+  CHECK_THROWS_WITH(scene.removeObject(7), test::Contains("does not exist"));
   CHECK(validate(Transform{{1e-6, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 1e-6, 0}}).empty());
   CHECK(validate(Transform{{1, 0, 0, INFINITY, 0, 1, 0, 0, 0, 0, 1, 0}}).find("finite") != std::string::npos);
 }
@@ -145,7 +144,7 @@ TEST_CASE("many transforms are set at once, or none") {
   poses[9'000] = Transform{};
   poses[9'000].m[5] = 0;
   CHECK_THROWS_WITH(scene.setTransforms(objects, poses),
-                    Catch::Contains("setTransforms: object 9000: expected an invertible matrix"));
+                    test::Contains("setTransforms: object 9000: expected an invertible matrix"));
   objects[4] = 30'000;
   CHECK_THROWS_WITH(scene.setTransforms(objects, poses), "setTransforms: object 30000 does not exist");
   objects[4] = 4;
@@ -159,7 +158,7 @@ TEST_CASE("a pose that would place vertices at infinity is refused") {
   Scene scene;
   const MeshId mesh =
       scene.addMesh(std::vector<float>{0, 0, 0, 1e30f, 0, 0, 0, 1e30f, 0}, std::vector<uint32_t>{0, 1, 2});
-  const auto refused = Catch::Contains("expected 12 finite numbers of at most 2^800");
+  const auto refused = test::Contains("expected 12 finite numbers of at most 2^800");
   const Transform huge{{1e300, -1e300, 0, 0, 1e300, 1e300, 0, 0, 0, 0, 1e300, 0}};
   const Transform far{{1, 0, 0, 0, 0, 1, 0, -1e241, 0, 0, 1, 0}},
       least{{0x1p800, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -0x1p800}};

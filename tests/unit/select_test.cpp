@@ -1,10 +1,9 @@
 // Selects the objects in a swept prism while the scene changes.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 
 #include "math/frame.h"
 #include "sampled/select.h"
+#include "support/catch.h"
 #include "workloads/generate.h"
 
 namespace {

@@ -1,11 +1,11 @@
 // Seeded triangle soups for the tests of the exact search, and the comparison with the oracle.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "brute_force.h"
 #include "support/answer.h"
+#include "support/catch.h"
 
 namespace soups {
 

@@ -1,6 +1,4 @@
 // The descriptors and push constants of a shader are read from its SPIR-V.
-#include <catch2/catch.hpp>
-
 #include <vector>
 
 #include "gpu/spirv.h"
@@ -20,6 +18,7 @@
 #include "spirv/contact_search_comp.h"
 #include "spirv/sampled_depth_vert.h"
 #include "spirv/sampled_reduce_comp.h"
+#include "support/catch.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <map>
 
+#include "support/catch.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
 

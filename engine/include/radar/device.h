@@ -95,7 +95,8 @@ struct DeviceOptions {
   bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
 };
 
-/// A logical device with one queue: opened here and owned, or borrowed from a host.
+/// A logical device with one queue: opened here and owned, or borrowed from a host. It, and all that uses it, ends
+/// before main() does: when static objects are destroyed, the driver may be gone.
 class RADAR_API Device {
  public:
   /// Throws, listing devices and reasons, if no device is usable, or the requested one is not.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "exact/double_double.h"
 #include "gpu/barrier.h"
 #include "gpu/kernel.h"
 #include "gpu/submission.h"
@@ -75,6 +76,10 @@ std::vector<FloatTrial> floatTrials() {
       t.x = std::ldexp(t.x, 80);
       t.y = std::ldexp(t.y, 80);
     }
+    t.low = static_cast<float>(0x1p-24 * double{t.x} * numbers.wide(0));
+    const double precise = numbers.wide(79);
+    t.bits[0] = static_cast<uint32_t>(std::bit_cast<uint64_t>(precise));
+    t.bits[1] = static_cast<uint32_t>(std::bit_cast<uint64_t>(precise) >> 32);
     // Any bits but those of infinities and NaNs; includes subnormal numbers.
     const auto bits = static_cast<uint32_t>(numbers.bits());
     t.copied = std::bit_cast<float>((bits & 0x7f800000u) == 0x7f800000u || i % 4 == 0 ? bits & 0x807fffffu : bits);
@@ -248,6 +253,10 @@ const char* inWords(size_t kept, size_t flushed) {
   return flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "sometimes kept, sometimes flushed to 0";
 }
 
+float leading(float x, uint32_t mask) {
+  return std::bit_cast<float>(std::bit_cast<uint32_t>(x) & mask);
+}
+
 bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, const std::vector<FloatOutcome>& outcomes) {
   bool usable = checkRounded(
       findings, "float addition", trials, outcomes, [](const FloatTrial& t) { return exactSum(t.x, t.y); },
@@ -277,6 +286,48 @@ bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, cons
     findings.result(off < ulp, off / ulp);
   }
   usable &= findings.end("not fused", kBoundsHold, kUnusable);
+
+  findings.begin("float sums in two parts, declared precise", "within 2^-40 of the terms");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (!isOrdinary(i)) continue;
+    const FloatTrial& t = trials[i];
+    const double product = double{leading(t.x, 0xffffff00u)} * leading(t.z, 0xffff0000u);
+    const double exact = t.low + (double{t.y} + product);
+    const double terms = 2 * std::abs(t.x) + std::abs(t.low) + std::abs(t.y) + std::abs(product);
+    const double off = std::abs(outcomes[i].addedHigh - exact + outcomes[i].addedLow);
+    findings.result(off <= 0x1p-40 * terms);
+  }
+  usable &= findings.end("as needed", kBoundsHold, kUnusable);
+
+  findings.begin("float differences in two parts, declared precise", "within 2^-23 of each part's and the result's");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (!isOrdinary(i)) continue;
+    const FloatTrial &t = trials[i], &first = trials[0];
+    const auto isNear = [](double high, double low, double result) {
+      const double exact = high + low;
+      return std::abs(result - exact) <= 0x1p-23 * (std::abs(high) + std::abs(low) + std::abs(exact));
+    };
+    findings.result(isNear(double{t.x} - t.y, double{t.low} - t.z, outcomes[i].apart) &&
+                    isNear(double{t.x} - first.x, double{t.low} - first.low, outcomes[i].apartFirst));
+  }
+  usable &= findings.end("as needed", kBoundsHold, kUnusable);
+
+  findings.begin("double to two floats, by bits", "within 2^-46 of itself");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    const double exact = std::bit_cast<double>(uint64_t{trials[i].bits[1]} << 32 | trials[i].bits[0]);
+    const double off = (exact - std::bit_cast<float>(outcomes[i].high)) - outcomes[i].rest;
+    findings.result(std::abs(off) <= 0x1p-46 * std::abs(exact) + 0x1p-126);
+  }
+  usable &= findings.end("as needed", kBoundsHold, kUnusable);
+
+  findings.begin("float box around two corners, declared precise", "contains them");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (!isOrdinary(i)) continue;
+    const double x = trials[i].x, most = x + std::abs(x) * (0.0001 - 0x1p-22);
+    const double centre = outcomes[i].centre, halfExtent = outcomes[i].halfExtent;
+    findings.result(centre - halfExtent <= x && centre + halfExtent >= most && halfExtent <= 0.0001 * std::abs(x));
+  }
+  usable &= findings.end("as needed", kBoundsHold, kUnusable);
 
   findings.begin("float inverse square root", "at most 2 ulp off");
   for (size_t i = 0; i < trials.size(); ++i) {
@@ -351,6 +402,16 @@ bool checkBits(Findings& findings, const char* operation, const std::vector<Doub
   return findings.end("the same bits as on the CPU", otherwise, consequence);
 }
 
+// `restOf`: of a trial, what x + y, the larger plus the smaller, and x * y lost to rounding.
+template <class RestOf>
+void checkRests(Findings& findings, const std::vector<DoubleTrial>& trials, const RestOf& restOf) {
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal) continue;
+    const double x = trials[i].x, y = trials[i].y, ofSum = exactSum(x, y).low;
+    findings.result(restOf(i, 0) == ofSum && restOf(i, 1) == ofSum && restOf(i, 2) == std::fma(x, y, -(x * y)));
+  }
+}
+
 double placedOf(const DoubleTrial& t) {
   Transform pose;
   std::copy(std::begin(t.row), std::end(t.row), pose.m.begin());
@@ -377,6 +438,32 @@ void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<
   usable &= checkBits(
       findings, "loading and storing doubles", trials, outcomes, [](const DoubleTrial& t) { return t.row[0]; },
       &DoubleOutcome::copied, true);
+
+  findings.begin("what double sums and products lose, declared precise", "exact");
+  checkRests(findings, trials, [&](size_t i, int k) { return outcomes[i].rests[k]; });
+  usable &= findings.end("exact", kSolved, kUnsolved);
+  findings.begin("the same, of vectors", "exact");
+  for (int axis = 0; axis < 3; ++axis) {
+    checkRests(findings, trials, [&](size_t i, int k) { return outcomes[i].vectorRests[3 * k + axis]; });
+  }
+  usable &= findings.end("exact", kSolved, kUnsolved);
+
+  findings.begin("sums and products of two doubles each, declared precise", "the bits of the CPU");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal) continue;
+    const exact::DoubleDouble x{trials[i].x, 0}, y{trials[i].y, 0}, xy = exact::product(x.high, y.high);
+    const exact::DoubleDouble chain = (x + xy) * (xy - y);
+    findings.result(outcomes[i].chain[0] == chain.high && outcomes[i].chain[1] == chain.low);
+  }
+  usable &= findings.end("the same bits", kSolved, kUnsolved);
+
+  findings.begin("double split into two floats", "within 2^-46 of itself");
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (kindOf(i) == Kind::subnormal) continue;
+    const double off = (trials[i].x - outcomes[i].high) - outcomes[i].low;
+    findings.result(std::abs(off) <= 0x1p-46 * std::abs(trials[i].x));
+  }
+  usable &= findings.end("as needed", kSolved, kUnsolved);
 
   findings.begin("double comparison, least and greatest", "exact");
   for (size_t i = 0; i < trials.size(); ++i) {

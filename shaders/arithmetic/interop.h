@@ -22,25 +22,39 @@ INTEROP_CONST kFloatOrder = 6;
 INTEROP_CONST kFloatOfInteger = 7;
 INTEROP_CONST kFloatCopy = 8;
 INTEROP_CONST kFloatSubnormal = 9;
-INTEROP_CONST kDoubleSum = 10;
-INTEROP_CONST kDoubleProduct = 11;
-INTEROP_CONST kDoubleQuotient = 12;
-INTEROP_CONST kDoubleCorrected = 13;  // correctedQuotient() of divide.glsl
-INTEROP_CONST kDoublePlaced = 14;     // the formula of Transform
-INTEROP_CONST kDoubleOrder = 15;
-INTEROP_CONST kDoubleOfFloat = 16;
-INTEROP_CONST kFloatOfDouble = 17;
-INTEROP_CONST kDoubleCopy = 18;
-INTEROP_CONST kOperations = 19;
+INTEROP_CONST kFloatAdded = 10;  // addExactly() of two_floats.glsl
+INTEROP_CONST kFloatDifference = 11;  // differenceInParts()
+INTEROP_CONST kFloatParts = 12;  // partsOf() of embed/transform.glsl
+INTEROP_CONST kFloatBox = 13;  // boxAround() of embed/box_around.glsl
+INTEROP_CONST kDoubleSum = 14;
+INTEROP_CONST kDoubleProduct = 15;
+INTEROP_CONST kDoubleQuotient = 16;
+INTEROP_CONST kDoubleCorrected = 17;  // correctedQuotient() of divide.glsl
+INTEROP_CONST kDoublePlaced = 18;  // the formula of Transform
+INTEROP_CONST kDoubleOrder = 19;
+INTEROP_CONST kDoubleOfFloat = 20;
+INTEROP_CONST kFloatOfDouble = 21;
+INTEROP_CONST kDoubleCopy = 22;
+INTEROP_CONST kDoubleRests = 23;  // what sums and products of double_double.glsl lose
+INTEROP_CONST kDoubleVectors = 24;  // the same, of vectors
+INTEROP_CONST kDoubleSplit = 25;  // split() of widen.glsl
+INTEROP_CONST kOperations = 26;
 
 struct FloatTrial {
   float x, y, z;
   uint integer;  // below 2^24
   float copied;
+  float low;        // small beside x
+  uint bits[2];     // the bits of a double, low word first
 };
 
 struct FloatOutcome {
   float sum, product, quotient, chain, inverseRoot, ofInteger, copied;
+  float addedHigh, addedLow;  // x + low + y + p - x, p an exact product of leading bits of x and z
+  float apart, apartFirst;    // (x, low) - (y, z), and - (x, low) of the first trial
+  uint high;                  // of `bits`: the leading ones, and what follows
+  float rest;
+  float centre, halfExtent;  // of the box from x to x + |x| / 10,000
   uint order;  // 1: x < y, 2: min(x, y) is x, 4: max(x, y) is x
 };
 
@@ -53,7 +67,11 @@ struct DoubleTrial {
 
 struct DoubleOutcome {
   double sum, product, quotient, corrected, placed, ofFloat, copied;
+  double rests[3];        // of x + y, of the larger plus the smaller, of x * y
+  double vectorRests[9];  // of (x, y, x) and (y, x, y): the same, for each axis
+  double chain[2];        // high and low of (x + x * y) * (x * y - y)
   float ofDouble;
+  float high, low;  // x split
   uint order;  // as above
 };
 

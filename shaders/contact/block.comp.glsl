@@ -38,7 +38,7 @@ struct BoundedVector {
 #include "slack.glsl"
 
 Bounded minus(Bounded p, Bounded q) {
-  const double value = p.value - q.value;
+  precise double value = p.value - q.value;
   return Bounded(value, (p.error + q.error + kHalfUlp * abs(value)) * kMore);
 }
 Bounded negative(Bounded p) { return Bounded(-p.value, p.error); }
@@ -49,7 +49,10 @@ Bounded most(Bounded p, Bounded q, Bounded r) {
 
 BoundedVector exactly(dvec3 v) { return BoundedVector(v, dvec3(0.0LF)); }
 // The difference of exact vectors.
-BoundedVector difference(dvec3 p, dvec3 q) { return BoundedVector(p - q, kHalfUlp * kMore * abs(p - q)); }
+BoundedVector difference(dvec3 p, dvec3 q) {
+  precise dvec3 value = p - q;
+  return BoundedVector(value, kHalfUlp * kMore * abs(value));
+}
 
 // Bounds the error of products of components, added up to `sum`.
 dvec3 productError(dvec3 p, dvec3 errorP, dvec3 q, dvec3 errorQ) {
@@ -58,13 +61,15 @@ dvec3 productError(dvec3 p, dvec3 errorP, dvec3 q, dvec3 errorQ) {
 
 Bounded inner(BoundedVector p, BoundedVector q) {
   const dvec3 error = productError(p.value, p.error, q.value, q.error);
-  return Bounded(dot(p.value, q.value), (error.x + error.y + error.z) * kMore);
+  precise double sum = (p.value.x * q.value.x + p.value.y * q.value.y) + p.value.z * q.value.z;
+  return Bounded(sum, (error.x + error.y + error.z) * kMore);
 }
 
 BoundedVector crossProduct(BoundedVector p, BoundedVector q) {
   const dvec3 error = productError(p.value.yzx, p.error.yzx, q.value.zxy, q.error.zxy) +
                       productError(p.value.zxy, p.error.zxy, q.value.yzx, q.error.yzx);
-  return BoundedVector(p.value.yzx * q.value.zxy - p.value.zxy * q.value.yzx, error * kMore);
+  precise dvec3 value = p.value.yzx * q.value.zxy - p.value.zxy * q.value.yzx;
+  return BoundedVector(value, error * kMore);
 }
 
 // ---- answers -----------------------------------------------------------------------------------------------------------

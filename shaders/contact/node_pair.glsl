@@ -1,6 +1,7 @@
 // Bounds when two nodes may meet, by slabs along both meshes' axes and both nodes' normals (docs/method.md, "Pairs of nodes").
 // A slab along any axis bounds the parameters at which two boxes, one of them moving, can overlap there; the intersection of
 // these intervals is the result. Margins cover all rounding errors, and the clearance.
+#include "shared/two_floats.glsl"
 
 // A sensor's mesh A relative to an object's mesh B, and the reverse. Parameters are scaled distances.
 struct MeshPair {
@@ -36,7 +37,8 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const vec3 reachA = sensorTexel(sensor, kTexelReach).xyz, reachB = objectTexel(object, kTexelReach).xyz;
 
   const vec3 high = vec3(b0.w, b1.w, b2.w) - vec3(a0.w, a1.w, a2.w), low = vec3(fb0.w, fb1.w, fb2.w) - vec3(fa0.w, fa1.w, fa2.w);
-  const vec3 apart = (high + low) * scale;
+  const vec3 apart = differenceInParts(vec3(b0.w, b1.w, b2.w), vec3(fb0.w, fb1.w, fb2.w), vec3(a0.w, a1.w, a2.w),
+                                       vec3(fa0.w, fa1.w, fa2.w)) * scale;
   const float clearance = clearanceOf(sensor);
   const float error = scale * (sizesA.x + sizesB.x) + clearance;
   const float most = sum3(abs(apart)) + scale * (sizesA.y + sizesB.y) + clearance;

@@ -2,6 +2,8 @@
 // in float"). Triangles are placed about points near them, so that neither the size of their meshes nor the distance between
 // the meshes costs precision.
 
+#include "shared/two_floats.glsl"
+
 // Places the triangles of a pair of leaves: turned * (q - anchor), for the scene's plus offset.
 struct PairFrame {
   mat3 turnedA, turnedB;
@@ -12,15 +14,6 @@ struct PairFrame {
   vec3 columnsA, columnsB;  // column sums of the absolute scaled matrices
   float errorA, errorB;     // error of a vertex on any axis, without the part due to its distance from the anchor
 };
-
-// Adds q to high + low; only the sum of the low parts may be rounded.
-void addExactly(inout float high, inout float low, float q) {
-  precise float s = high + q;
-  precise float part = s - high;
-  precise float rest = (high - (s - part)) + (q - part);
-  high = s;
-  low += rest;
-}
 
 // One row of B's anchor minus A's, in the world. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
 float rowApart(vec4 coarseA, vec4 fineA, vec3 anchorA, vec4 coarseB, vec4 fineB, vec3 anchorB) {

@@ -6,6 +6,7 @@
 #define RADAR_NO_DOUBLES
 #include "interop.h"
 #include "shared/workgroup.glsl"
+#include "box_around.glsl"
 
 layout(local_size_x = kHostGroup) in;
 
@@ -20,7 +21,6 @@ void main() {
   const uint n = fitNodes[push.first + i], left = nodes[n].link;
   const ObjectNode p = nodes[left], q = nodes[left + 1];
   const vec3 low = min(p.centre - p.halfExtent, q.centre - q.halfExtent),
-             high = max(p.centre + p.halfExtent, q.centre + q.halfExtent), centre = 0.5 * low + 0.5 * high;
-  nodes[n].centre = centre;
-  nodes[n].halfExtent = max(high - centre, centre - low) * 1.000001 + 2.4e-38;
+             high = max(p.centre + p.halfExtent, q.centre + q.halfExtent);
+  boxAround(low, high, nodes[n].centre, nodes[n].halfExtent);
 }

@@ -28,10 +28,11 @@ void main() {
   float largest = 0.0;
   for (uint k = 0; k < 3; ++k) {
     const float lo = floatOf(extent.lo[k]), hi = floatOf(~extent.hi[k]);
-    const float middle = 0.5 * lo + 0.5 * hi, halfExtent = 0.5 * hi - 0.5 * lo;
+    precise float middle = 0.5 * lo + 0.5 * hi;
+    const float halfExtent = 0.5 * hi - 0.5 * lo;
     // By Sterbenz's lemma all vertices - origin are exact.
     mesh.origin[k] = abs(middle) >= 2.5 * halfExtent ? middle : 0.0;
-    const float localLo = lo - mesh.origin[k], localHi = hi - mesh.origin[k];
+    precise float localLo = lo - mesh.origin[k], localHi = hi - mesh.origin[k];
     largest = max(largest, max(abs(localLo), abs(localHi)));
     // Room for coordinates that flush to 0.
     mesh.lo[k] = localLo - 2.4e-38;

@@ -1,5 +1,9 @@
 // Where a transform puts a mesh, with error bounds (docs/method.md, "A host's geometry"). Included after
 // transform.glsl.
+#include "shared/two_floats.glsl"
+#ifndef RADAR_NO_DOUBLES
+#include "shared/widen.glsl"
+#endif
 
 const float kUnit = 5.9604645e-8;  // 2^-24
 
@@ -7,7 +11,8 @@ float sum3(vec3 v) { return v.x + v.y + v.z; }
 
 // The greatest coordinates, times `factor`.
 vec3 coordinatesOf(MeshRecord mesh, float factor) {
-  return factor * abs(mesh.origin) + factor * max(abs(mesh.lo), abs(mesh.hi));
+  precise vec3 sum = factor * abs(mesh.origin) + factor * max(abs(mesh.lo), abs(mesh.hi));
+  return sum;
 }
 
 // Whether the absolute terms that place a vertex add up to less than about 2^123. The test itself cannot overflow.
@@ -17,7 +22,9 @@ bool fitsFloats(Transform t, MeshRecord mesh) {
   bool fits = t.isFinite;
   for (int row = 0; row < 3; ++row) {
     const vec4 m = uintBitsToFloat(t.bits[row]);
-    fits = fits && dot(abs(m.xyz) * small, coordinates) <= 0.001953125 && abs(m.w) <= 1e37;
+    precise vec3 scaled = abs(m.xyz) * small;
+    precise vec3 terms = scaled * coordinates;
+    fits = fits && sum3(terms) <= 0.001953125 && abs(m.w) <= 1e37;
   }
   return fits;
 }
@@ -40,8 +47,7 @@ Position positionOf(Transform t, vec3 origin) {
 #else
     const dvec4 exact = dvec4(m) + dvec4(t.low[row]);
     const double at = dot(exact.xyz, dvec3(origin)) + exact.w;
-    p.high[row] = float(at);
-    p.low[row] = float(at - double(p.high[row]));
+    split(at, p.high[row], p.low[row]);
     p.error[row] = 5.7e-14 * (sum + abs(m.w));  // 2^-44
 #endif
   }
@@ -56,12 +62,12 @@ struct PlacedBox {
 
 // The anchor is the sum of two floats.
 PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor, vec3 anchorLow) {
-  const vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
+  precise vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
   const vec3 flushed = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
   vec3 at, sum, reach;
   for (int row = 0; row < 3; ++row) {
     const vec3 m = uintBitsToFloat(t.bits[row].xyz);
-    const float offset = (position.high[row] - anchor[row]) + (position.low[row] - anchorLow[row]);
+    const float offset = differenceInParts(position.high[row], position.low[row], anchor[row], anchorLow[row]);
     at[row] = dot(m, middle) + offset;
     sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 20.0;
     reach[row] = dot(abs(m), halfExtent);
@@ -114,7 +120,7 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   for (int row = 0; row < 3; ++row) {
     const vec3 leading = uintBitsToFloat(floatBitsToUint(m[row]) & 0xffffff00u);
     p.coarse[row] = vec4(leading, position.high[row]);
-    p.fine[row] = vec4((m[row] - leading) + t.low[row].xyz * unit, position.low[row]);
+    p.fine[row] = vec4(differenceInParts(m[row], t.low[row].xyz * unit, leading, vec3(0.0)), position.low[row]);
     // Residual: n . matrix - unit vector, times the mesh's reach.
     float off = 0.0;
     for (int j = 0; j < 3; ++j) {

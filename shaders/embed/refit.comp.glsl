@@ -7,6 +7,7 @@
 #include "interop.h"
 #include "shared/scene.glsl"
 #include "shared/workgroup.glsl"
+#include "box_around.glsl"
 
 layout(local_size_x = kHostGroup) in;
 
@@ -24,11 +25,7 @@ struct Range {
   float most;
 };
 
-void setBox(uint n, vec3 low, vec3 high) {
-  const vec3 centre = 0.5 * low + 0.5 * high;
-  nodes[n].centre = centre;
-  nodes[n].halfExtent = max(high - centre, centre - low) * 1.000001 + 2.4e-38;
-}
+void setBox(uint n, vec3 low, vec3 high) { boxAround(low, high, nodes[n].centre, nodes[n].halfExtent); }
 
 // The slab of a normal of 0 holds every vertex.
 void setSlab(uint n, vec3 normal, Range range) {

@@ -24,8 +24,8 @@ Parts partsOf(uvec2 d) {
   if (exponent > 127) return Parts(sign | 0x7f800000u, 0.0, false);
   if (exponent < -126) return Parts(sign, 0.0, ((d.y & 0x7fffffffu) | d.x) != 0);
   const uint bits = sign | uint(exponent + 127) << 23 | (d.y & 0xfffffu) << 3 | d.x >> 29;
-  const float rest = float(d.x & 0x1fffffffu) * 1.8626451e-9;  // 2^-29
-  const float low = exponent < -103 ? 0.0 : rest * twoTo(exponent - 23);
+  precise float rest = float(d.x & 0x1fffffffu) * 1.8626451e-9;  // 2^-29
+  precise float low = exponent < -103 ? 0.0 : rest * twoTo(exponent - 23);
   return Parts(bits, sign != 0 ? -low : low, exponent < -70);
 }
 

@@ -1,0 +1,95 @@
+// Unevaluated sums of two doubles. The operations are those of engine/exact/double_double.h, in the same order, so that both
+// give the same bits.
+#ifndef RADAR_DOUBLE_DOUBLE_GLSL
+#define RADAR_DOUBLE_DOUBLE_GLSL
+
+struct DoubleDouble {
+  double high;
+  double low;
+};
+
+// Requires |p| >= |q| or p = 0.
+DoubleDouble quickSum(double p, double q) {
+  precise double s = p + q;
+  precise double low = q - (s - p);
+  return DoubleDouble(s, low);
+}
+
+DoubleDouble sum(double p, double q) {
+  precise double s = p + q;
+  precise double qPart = s - p;
+  precise double low = (p - (s - qPart)) + (q - qPart);
+  return DoubleDouble(s, low);
+}
+
+DoubleDouble product(double p, double q) {
+  const double kSplit = 134217729.0LF;  // 2^27 + 1
+  precise double pc = kSplit * p, qc = kSplit * q;
+  precise double p1 = pc - (pc - p), q1 = qc - (qc - q);
+  precise double p2 = p - p1, q2 = q - q1;
+  precise double r = p * q;
+  precise double low = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  return DoubleDouble(r, low);
+}
+
+DoubleDouble negated(DoubleDouble p) { return DoubleDouble(-p.high, -p.low); }
+
+DoubleDouble plus(DoubleDouble p, DoubleDouble q) {
+  const DoubleDouble s = sum(p.high, q.high), t = sum(p.low, q.low);
+  precise double below = s.low + t.high;
+  const DoubleDouble v = quickSum(s.high, below);
+  precise double rest = t.low + v.low;
+  return quickSum(v.high, rest);
+}
+
+DoubleDouble minus(DoubleDouble p, DoubleDouble q) { return plus(p, negated(q)); }
+
+DoubleDouble times(DoubleDouble p, DoubleDouble q) {
+  const DoubleDouble r = product(p.high, q.high);
+  precise double low = r.low + (p.high * q.low + p.low * q.high);
+  return quickSum(r.high, low);
+}
+
+// A DoubleDouble for each component.
+struct DoubleDoubleVector {
+  dvec3 high;
+  dvec3 low;
+};
+
+DoubleDoubleVector quickSum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 low = q - (s - p);
+  return DoubleDoubleVector(s, low);
+}
+
+DoubleDoubleVector sum(dvec3 p, dvec3 q) {
+  precise dvec3 s = p + q;
+  precise dvec3 qPart = s - p;
+  precise dvec3 low = (p - (s - qPart)) + (q - qPart);
+  return DoubleDoubleVector(s, low);
+}
+
+DoubleDoubleVector minus(DoubleDoubleVector p, DoubleDoubleVector q) {
+  const DoubleDoubleVector s = sum(p.high, -q.high), t = sum(p.low, -q.low);
+  precise dvec3 below = s.low + t.high;
+  const DoubleDoubleVector v = quickSum(s.high, below);
+  precise dvec3 rest = t.low + v.low;
+  return quickSum(v.high, rest);
+}
+
+DoubleDoubleVector times(DoubleDoubleVector p, DoubleDoubleVector q) {
+  const double kSplit = 134217729.0LF;  // 2^27 + 1
+  precise dvec3 pc = kSplit * p.high, qc = kSplit * q.high;
+  precise dvec3 p1 = pc - (pc - p.high), q1 = qc - (qc - q.high);
+  precise dvec3 p2 = p.high - p1, q2 = q.high - q1;
+  precise dvec3 r = p.high * q.high;
+  precise dvec3 rest = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  precise dvec3 low = rest + (p.high * q.low + p.low * q.high);
+  return quickSum(r, low);
+}
+
+DoubleDoubleVector yzx(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.yzx, v.low.yzx); }
+DoubleDoubleVector zxy(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.zxy, v.low.zxy); }
+double sum3(dvec3 v) { return v.x + v.y + v.z; }
+
+#endif

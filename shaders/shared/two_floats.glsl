@@ -1,0 +1,26 @@
+// Numbers of two floats, high + low. Where the order of operations carries the precision, they are `precise`; so is the last
+// one, since optimisers may reorder a sum that is not, with all sums that it is made of.
+#ifndef RADAR_TWO_FLOATS_GLSL
+#define RADAR_TWO_FLOATS_GLSL
+
+// Adds q to high + low; only the sum of the low parts may be rounded.
+void addExactly(inout float high, inout float low, float q) {
+  precise float s = high + q;
+  precise float part = s - high;
+  precise float rest = (high - (s - part)) + (q - part);
+  precise float more = low + rest;
+  high = s;
+  low = more;
+}
+
+// The difference of two such numbers.
+float differenceInParts(float high, float low, float otherHigh, float otherLow) {
+  precise float sum = (high - otherHigh) + (low - otherLow);
+  return sum;
+}
+vec3 differenceInParts(vec3 high, vec3 low, vec3 otherHigh, vec3 otherLow) {
+  precise vec3 sum = (high - otherHigh) + (low - otherLow);
+  return sum;
+}
+
+#endif

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include <vulkan/vulkan_core.h>
+
 #include "cpu/clearance.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"

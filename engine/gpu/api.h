@@ -9,7 +9,7 @@
   X(CreateInstance) X(EnumerateInstanceExtensionProperties)
 
 #define RADAR_INSTANCE_FUNCTIONS(X) \
-  X(CreateDevice) X(DestroyInstance) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr) \
+  X(CreateDevice) X(DestroyInstance) X(EnumerateDeviceExtensionProperties) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr) \
   X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties) X(GetPhysicalDeviceProperties) \
   X(GetPhysicalDeviceProperties2) X(GetPhysicalDeviceQueueFamilyProperties)
 

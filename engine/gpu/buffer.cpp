@@ -22,19 +22,23 @@ uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryProper
 }
 
 Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
-    : device_(&device), name_(name), domain_(domain), usage_(usage) {
-  reserve(1024);
-}
+    : device_(&device), name_(name), domain_(domain), usage_(usage) {}
 
 bool Buffer::reserve(VkDeviceSize bytes) {
-  if (bytes <= capacity_) return false;
+  if (bytes <= capacity_ && capacity_ != 0) return false;
+  if (bytes > device_->maxBufferBytes) {
+    throw LimitError(std::string(name_) + ": " + std::to_string(bytes) + " bytes, but the device's maxBufferSize is " +
+                     std::to_string(device_->maxBufferBytes));
+  }
   // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
   // seldom made and filled anew.
   const auto roundedUp = [](VkDeviceSize n, VkDeviceSize step) { return (n + step - 1) / step * step; };
-  const VkDeviceSize size = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
-                                     roundedUp(capacity_ + capacity_ / 2, 256));
+  const VkDeviceSize wanted = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
+                                       roundedUp(capacity_ + capacity_ / 2, 256));
+  const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), device_->maxBufferBytes);
   const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
+  DeviceMemory owned;  // outlives the buffer in it, old or new
   VkBuffer handle;
   check(device_->vk.CreateBuffer(device_->device(), &info, device_->host.allocator, &handle),
         "vkCreateBuffer (" + what + ")");
@@ -54,7 +58,7 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   VkDeviceMemory memory;
   check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory),
         "vkAllocateMemory (" + what + ")");
-  DeviceMemory owned(*device_, memory);
+  owned = {*device_, memory};
   check(device_->vk.BindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");
   void* mapped = nullptr;
   if (!onDevice) {
@@ -99,9 +103,7 @@ TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, BufferDom
     : device_(&device),
       format_(format),
       texelBytes_(bytesOfTexel(format, name)),
-      buffer_(device, name, domain, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {
-  makeView();
-}
+      buffer_(device, name, domain, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {}
 
 VkDeviceSize TexelBuffer::maxBytes() const {
   // Shaders index texels by an int.
@@ -138,7 +140,8 @@ Upload::Upload(const Device::Impl& device)
 void Upload::begin(VkDeviceSize bytes) {
   staging_.reserve(bytes);
   used_ = 0;
-  copies_.clear();
+  regions_.clear();
+  targets_.clear();
 }
 
 void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
@@ -149,29 +152,27 @@ std::byte* Upload::place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize 
   assert(used_ + bytes <= staging_.capacity() && offset + bytes <= target.capacity());
   std::byte* at = staging_.mapped() + used_;
   // Adjacent pieces of one target are merged into one copy.
-  if (!copies_.empty()) {
-    Copy& last = copies_.back();
-    if (last.target == target.get() && last.region.srcOffset + last.region.size == used_ &&
-        last.region.dstOffset + last.region.size == offset) {
-      last.region.size += bytes;
+  if (!regions_.empty()) {
+    VkBufferCopy& last = regions_.back();
+    if (targets_.back() == target.get() && last.srcOffset + last.size == used_ &&
+        last.dstOffset + last.size == offset) {
+      last.size += bytes;
       used_ = aligned(used_ + bytes);
       return at;
     }
   }
-  copies_.push_back({target.get(), {used_, offset, bytes}});
+  regions_.push_back({used_, offset, bytes});
+  targets_.push_back(target.get());
   used_ = aligned(used_ + bytes);
   return at;
 }
 
 void Upload::record(const Commands& commands) const {
   // One command for each run of copies to one target.
-  std::vector<VkBufferCopy> regions;
-  for (size_t i = 0; i < copies_.size(); ++i) {
-    regions.push_back(copies_[i].region);
-    if (i + 1 < copies_.size() && copies_[i + 1].target == copies_[i].target) continue;
-    commands->CmdCopyBuffer(commands, staging_.get(), copies_[i].target, static_cast<uint32_t>(regions.size()),
-                            regions.data());
-    regions.clear();
+  for (size_t first = 0, end = 0; first < targets_.size(); first = end) {
+    while (end < targets_.size() && targets_[end] == targets_[first]) ++end;
+    commands->CmdCopyBuffer(commands, staging_.get(), targets_[first], static_cast<uint32_t>(end - first),
+                            &regions_[first]);
   }
 }
 

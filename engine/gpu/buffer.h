@@ -21,8 +21,9 @@ class Buffer {
  public:
   Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage);
 
-  /// Makes the buffer hold at least `bytes`, and at most half as many more; growing loses the contents. Returns whether
-  /// the handle changed. The device must not be using it.
+  /// Makes the buffer hold at least `bytes`, and at most half as many more; growing loses the contents. Even if `bytes`
+  /// are 0, get() then is a buffer. Returns whether the handle changed. The device must not be using it. Throws Error,
+  /// and changes nothing, if `bytes` exceed the device's maxBufferSize.
   bool reserve(VkDeviceSize bytes);
 
   VkBuffer get() const { return buffer_.get(); }
@@ -87,17 +88,14 @@ class Upload {
   /// The same for data that the caller then writes where this returns. Of consecutive calls for multiples of 8 bytes,
   /// one place begins where the last ends.
   std::byte* place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset);
-  /// Records all copies. The caller records the barriers.
+  /// Records all copies; allocates nothing. The caller records the barriers.
   void record(const Commands& commands) const;
 
  private:
-  struct Copy {
-    VkBuffer target;
-    VkBufferCopy region;
-  };
   Buffer staging_;
   VkDeviceSize used_ = 0;
-  std::vector<Copy> copies_;
+  std::vector<VkBufferCopy> regions_;
+  std::vector<VkBuffer> targets_;  ///< of the regions
 };
 
 /// A memory type with all `needed` properties, and if possible all `wanted` ones. Throws if there is none.

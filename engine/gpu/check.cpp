@@ -36,7 +36,7 @@ void check(VkResult result, const std::string& call) {
 }
 
 bool isOutOfMemory(const Error& error) {
-  return error.result == VK_ERROR_OUT_OF_HOST_MEMORY || error.result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  return error.vulkan == VK_ERROR_OUT_OF_HOST_MEMORY || error.vulkan == VK_ERROR_OUT_OF_DEVICE_MEMORY;
 }
 
 }  // namespace radar::gpu

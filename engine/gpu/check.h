@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <vulkan/vulkan_core.h>
+
 #include "radar/scene.h"
 
 namespace radar::gpu {

@@ -37,10 +37,16 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   } else {
     reasonsAgainstSampled = {"HostDevice::sampled is false"};
   }
+  VkPhysicalDeviceVulkan13Properties sizes{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES};
+  VkPhysicalDeviceProperties2 chain{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &sizes};
+  vk.GetPhysicalDeviceProperties2(host.physicalDevice, &chain);
+  maxBufferBytes = sizes.maxBufferSize;
   maxLayers = std::min(properties.limits.maxImageArrayLayers, properties.limits.maxFramebufferLayers);
 }
 
-Device::Impl::~Impl() = default;
+Device::Impl::~Impl() {
+  if (abandoned) static_cast<void>(owned.release());
+}
 
 void Device::Impl::requireSampled(const std::string& who) const {
   if (reasonsAgainstSampled.empty()) return;

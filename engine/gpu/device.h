@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -32,11 +33,14 @@ struct Device::Impl {
   HostDevice host;
   gpu::Api vk;
   mutable std::mutex queueMutex;  ///< held around each submission
+  /// The device has been given up while it was at work, so that nothing of it may be destroyed.
+  mutable std::atomic<bool> abandoned = false;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   std::string name, driver;
   std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled is not supported; empty if it is
   uint32_t maxLayers = 0;
+  uint64_t maxBufferBytes = 0;
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may request a size; else all have the same
   bool doubles = false;              ///< shaders may compute with them

@@ -51,14 +51,29 @@ int preference(VkPhysicalDeviceType type) {
   }
 }
 
-bool hasExtension(const gpu::Api& vk, const char* name) {
-  uint32_t count = 0;
-  check(vk.EnumerateInstanceExtensionProperties(nullptr, &count, nullptr), "vkEnumerateInstanceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vk.EnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()),
-        "vkEnumerateInstanceExtensionProperties");
+bool has(const std::vector<VkExtensionProperties>& extensions, const char* name) {
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+// `enumerate` is one of Vulkan's functions for them, with its first arguments bound.
+template <class Enumerate>
+std::vector<VkExtensionProperties> extensionsOf(const Enumerate& enumerate, const char* call) {
+  uint32_t count = 0;
+  check(enumerate(&count, nullptr), call);
+  std::vector<VkExtensionProperties> extensions(count);
+  check(enumerate(&count, extensions.data()), call);
+  return extensions;
+}
+
+std::vector<VkExtensionProperties> extensionsOf(const gpu::Api& vk) {
+  return extensionsOf([&](auto... out) { return vk.EnumerateInstanceExtensionProperties(nullptr, out...); },
+                      "vkEnumerateInstanceExtensionProperties");
+}
+
+std::vector<VkExtensionProperties> extensionsOf(const gpu::Api& vk, VkPhysicalDevice device) {
+  return extensionsOf([&](auto... out) { return vk.EnumerateDeviceExtensionProperties(device, nullptr, out...); },
+                      "vkEnumerateDeviceExtensionProperties");
 }
 
 // Since release 1.4.309 the text no longer names the message.
@@ -77,10 +92,15 @@ std::unique_ptr<Device::Impl::Owned> openInstance(std::function<void(const std::
   auto owned = std::make_unique<Device::Impl::Owned>();
   owned->onValidation = std::move(onValidation);
   const bool listens = owned->onValidation != nullptr;
-  if (listens && !hasExtension(owned->vk, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) {
+  const std::vector<VkExtensionProperties> available = extensionsOf(owned->vk);
+  if (listens && !has(available, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) {
     throw Error("DeviceOptions::onValidation: the instance extension VK_EXT_debug_utils is missing");
   }
-  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  std::vector<const char*> extensions;
+  if (listens) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  // Without it loaders hide drivers that lack parts of Vulkan, such as MoltenVK.
+  const bool isPortable = has(available, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+  if (isPortable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
   const VkDebugUtilsMessengerCreateInfoEXT messenger{
       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
       .messageSeverity =
@@ -92,11 +112,13 @@ std::unique_ptr<Device::Impl::Owned> openInstance(std::function<void(const std::
                                       .pEngineName = "Cyber Radar",
                                       .engineVersion = VK_MAKE_VERSION(kVersionMajor, kVersionMinor, kVersionPatch),
                                       .apiVersion = VK_API_VERSION_1_3};
-  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                  .pNext = listens ? &messenger : nullptr,
-                                  .pApplicationInfo = &application,
-                                  .enabledExtensionCount = listens ? 1u : 0u,
-                                  .ppEnabledExtensionNames = extensions};
+  const VkInstanceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+      .pNext = listens ? &messenger : nullptr,
+      .flags = isPortable ? VkInstanceCreateFlags{VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR} : 0,
+      .pApplicationInfo = &application,
+      .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
+      .ppEnabledExtensionNames = extensions.data()};
   check(owned->vk.CreateInstance(&info, nullptr, &owned->instance), "vkCreateInstance (is a Vulkan driver installed?)");
   owned->vk.load(owned->instance);
   if (listens) {
@@ -197,10 +219,15 @@ Device Device::open(const DeviceOptions& options) {
   host.doubles = options.doubles && facts.doubles;
   host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
   Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
-  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                .pNext = needed.chain(),
-                                .queueCreateInfoCount = 1,
-                                .pQueueCreateInfos = &queue};
+  // Such a driver wants to be told that the application knows.
+  const char* portable = "VK_KHR_portability_subset";
+  const VkDeviceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+      .pNext = needed.chain(),
+      .queueCreateInfoCount = 1,
+      .pQueueCreateInfos = &queue,
+      .enabledExtensionCount = has(extensionsOf(owned->vk, host.physicalDevice), portable) ? 1u : 0u,
+      .ppEnabledExtensionNames = &portable};
   check(owned->vk.CreateDevice(host.physicalDevice, &info, nullptr, &owned->device), "vkCreateDevice");
   owned->vk.load(owned->device);
   host.device = owned->device;

@@ -123,7 +123,7 @@ void Worker::finish(Lane& lane) {
     const bool forMemory = gpu::isOutOfMemory(*sweep.failure);
     const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
-    if (sweep.failure->result == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
+    if (sweep.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
   bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];

@@ -255,7 +255,12 @@ VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
     for (Place& place : places_) place.uploadedIndices = 0;
   }
   VkDeviceSize bytes = 0;
+  const uint32_t most = device_->properties.limits.maxDrawIndexedIndexValue;
   for (MeshId id = 0; id < places_.size(); ++id) {
+    if (places_[id].vertices > 0 && records_[id].firstVertex + (places_[id].vertices - 1) > most) {
+      throw gpu::LimitError("the scene's meshes have vertices beyond number " + std::to_string(most) +
+                            ", the device's maxDrawIndexedIndexValue");
+    }
     if (places_[id].uploadedIndices == scene.meshes[id].version) continue;
     changedIndices_.push_back(id);
     bytes += Upload::aligned(12 * places_[id].triangles);
@@ -396,7 +401,7 @@ void GpuScene::sync(const Scene::Impl& scene) {
 }
 
 void GpuScene::confirm(const Scene::Impl& scene) {
-  overwritten_ = next_;  // first, as only this may throw
+  overwritten_ = std::exchange(next_, {});
   seenScene_ = scene.identity;
   seenMeshes_ = scene.meshVersion;
   for (const MeshId id : changedMeshes_) places_[id].uploaded = scene.meshes[id].version;

@@ -49,7 +49,8 @@ class GpuScene {
   VkDeviceSize prepare(const Scene::Impl& scene);
   /// Stages the changes found by the last `prepare`.
   void upload(const Scene::Impl& scene, gpu::Upload& upload);
-  /// Marks staged changes as uploaded. Without this call, as after a failed submission, they are staged again.
+  /// Marks staged changes as uploaded, and overwritten what willOverwrite() declared. Throws nothing. Without this
+  /// call, as after a failed submission, they are staged again.
   void confirm(const Scene::Impl& scene);
   /// Uploads the changes and waits. The device must have a queue.
   void sync(const Scene::Impl& scene);

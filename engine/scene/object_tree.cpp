@@ -271,7 +271,8 @@ void ObjectTree::listSubtrees(const BoxTree& tree) {
     if (node.count <= kSubtree) {
       subtrees_.push_back({node.child, node.child + 2 * node.count - 2});
     } else {
-      topNodes_.insert(topNodes_.end(), {node.child, node.child + 1});
+      topNodes_.push_back(node.child);
+      topNodes_.push_back(node.child + 1);
     }
   }
 }

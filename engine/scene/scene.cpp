@@ -260,14 +260,16 @@ void Scene::setPositions(MeshId id, std::span<const float> positions) {
   requireFinite("setPositions", positions);
   if (mesh.deforms) requireInside(mesh, positions);
   const Box bounds = mesh.deforms ? boundsOf(mesh) : Box{};
-  std::vector<float> moved(positions.begin(), positions.end());
-  mesh.positions.swap(moved);
-  derive(mesh, bounds);
+  const std::vector<float> before = mesh.positions;
+  const auto move = [&](std::span<const float> to) {  // in place: a MeshView shows them
+    std::copy(to.begin(), to.end(), mesh.positions.begin());
+    derive(mesh, bounds);
+  };
+  move(positions);
   try {
     refitMeshTree(mesh, mesh.tree);
   } catch (...) {
-    mesh.positions.swap(moved);
-    derive(mesh, bounds);
+    move(before);
     throw;
   }
   mesh.version = impl_->meshVersion = nextVersion();

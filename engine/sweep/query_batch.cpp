@@ -6,7 +6,7 @@
 namespace radar {
 
 void QueryBatch::fail(size_t query, const Error& error) {
-  if (error.result == VK_SUCCESS) throw error;
+  if (error.vulkan == VK_SUCCESS) throw error;
   if (!failure) failure = error;
   answers[query] = Result();
   reasons[query] = error.what();

@@ -134,7 +134,7 @@ TEST_CASE(
       try {
         recorder.record(commands, queries);
       } catch (const Error& error) {
-        CHECK(error.result == shortage(n));
+        CHECK(error.vulkan == shortage(n));
         CHECK_THAT(error.what(), Contains(fault.failed()));
         happened = true;
       }
@@ -207,7 +207,7 @@ TEST_CASE(
             try {
               call();
             } catch (const Error& error) {
-              CHECK(error.result == shortage(number));
+              CHECK(error.vulkan == shortage(number));
             }
             return fault.happened();
           });
@@ -242,7 +242,7 @@ TEST_CASE("whichever call of the device fails while setting up, it is named, and
         setUp();
         if (fault.happened()) CHECK(fault.failed() == "vkWaitForFences");  // it waits again
       } catch (const Error& error) {
-        CHECK(error.result == shortage(n));
+        CHECK(error.vulkan == shortage(n));
         CHECK_THAT(error.what(), Contains(fault.failed()));
       }
       CHECK(test::liveVulkanObjects() == objects);

@@ -292,3 +292,31 @@ TEST_CASE("a scene without objects or without meshes can be copied") {
   checkCopy(copy, scene);
   CHECK(test::takeValidationMessages().empty());
 }
+
+TEST_CASE("a scene beyond the device's largest buffer, or its largest index, is refused, and the limit is named") {
+  Device::Impl& impl = test::device().impl();
+  const std::shared_ptr<void> restore(nullptr,
+                                      [&, limits = impl.properties.limits, bytes = impl.maxBufferBytes](void*) {
+                                        impl.properties.limits = limits;
+                                        impl.maxBufferBytes = bytes;
+                                      });
+  GpuScene copy(impl);
+  Scene scene;
+  tools::Random random(3);
+  for (int i = 0; i < 3; ++i) addSoup(scene, random, 40);
+  copy.sync(scene.impl());
+  impl.properties.limits.maxDrawIndexedIndexValue = 3 * 120 - 2;
+  copy.needIndices();
+  CHECK_THROWS_WITH(copy.sync(scene.impl()), test::Contains("vertices beyond number 358, the device's maxDraw"));
+  ++impl.properties.limits.maxDrawIndexedIndexValue;
+  copy.sync(scene.impl());
+  checkCopy(copy, scene);
+  impl.maxBufferBytes = copy.buffers().vertices.bytes();
+  for (int i = 0; i < 3; ++i) addSoup(scene, random, 40);
+  impl.properties.limits.maxDrawIndexedIndexValue = 1u << 24;
+  CHECK_THROWS_WITH(copy.sync(scene.impl()),
+                    test::StartsWith("vertices: ") && test::Contains("the device's maxBufferSize"));
+  impl.maxBufferBytes = 1u << 30;
+  copy.sync(scene.impl());
+  checkCopy(copy, scene);
+}

@@ -19,6 +19,7 @@ using gpu::BufferDomain;
 template <class T>
 Array<T> zeros(const char* name) {
   Array<T> array(test::device().impl(), name, BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  array.reserve(1);
   std::memset(array.mapped(), 0, array.bytes());
   return array;
 }

@@ -29,10 +29,17 @@ constexpr Slot<Node> kValuesAsNodes{kSlotValues.number};
 constexpr Slot<uint32_t> kGroupsAsNumber{kSlotGroups.number};
 constexpr Slot<gpu::SampledImage> kValuesAsImage{kSlotValues.number};
 
+template <class T>
+Array<T> one(const char* name) {
+  Array<T> array(impl(), name, BufferDomain::device);
+  array.reserve(1);
+  return array;
+}
+
 struct Buffers {
   Array<uint32_t> values = numbers("values", 10), results = numbers("results", 10);
-  Array<Node> nodes{impl(), "nodes", BufferDomain::device};
-  Array<Groups> groups{impl(), "groups", BufferDomain::device};
+  Array<Node> nodes = one<Node>("nodes");
+  Array<Groups> groups = one<Groups>("groups");
 };
 
 std::string messageOf(const std::function<void()>& call) {

@@ -59,6 +59,7 @@ TEST_CASE("more workgroups than one axis allows are laid out in rows") {
 
 TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wrote, and the count can be overwritten") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  command.reserve(1);
   KernelArguments count(kernels().countGroups), scale(kernels().scaleAndAdd5);
   const uint32_t most = 70000;
   const Array<uint32_t> values = numbers("values", most), results = untouched(most);
@@ -82,6 +83,7 @@ TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wro
 
 TEST_CASE("an indirect dispatch without its barrier is reported as a hazard") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  command.reserve(1);
   KernelArguments count(kernels().countGroups), scale(kernels().scale);
   const Array<uint32_t> values = numbers("values", 1), results = untouched(1);
   count.set({{kSlotGroups, command}});
@@ -166,6 +168,7 @@ TEST_CASE("setting arguments writes only the descriptors whose buffers have chan
   for (int i = 0; i < 8; ++i) {
     values = Array<uint32_t>(impl(), "none", BufferDomain::device);
     values = Array<uint32_t>(impl(), "values", BufferDomain::device);
+    values.reserve(10);
     CHECK(updatesOf(set) == 1);
   }
 }

@@ -84,7 +84,7 @@ Recording recordUnder(const FaultPlan& plan, Tally& tally, const Record& record)
     try {
       record();
     } catch (const Error& error) {
-      if (!plan.fault || error.result != plan.result || plan.result == VK_SUCCESS) throw;
+      if (!plan.fault || error.vulkan != plan.result || plan.result == VK_SUCCESS) throw;
       recording.isRefused = true;
     }
   });

@@ -90,6 +90,18 @@ TEST_CASE("a mesh in use cannot be removed, and every change changes the version
   CHECK(addBox(scene) == mesh);
 }
 
+TEST_CASE("a view of a mesh stays valid, and shows what setPositions sets") {
+  Scene scene;
+  const MeshId mesh = addBox(scene);
+  const MeshView view = scene.mesh(mesh);
+  std::vector<float> moved(view.positions.begin(), view.positions.end());
+  for (float& x : moved) x += 3;
+  for (int i = 0; i < 20; ++i) addBox(scene);
+  scene.setPositions(mesh, moved);
+  CHECK(scene.mesh(mesh).positions.data() == view.positions.data());
+  CHECK(std::equal(moved.begin(), moved.end(), view.positions.begin()));
+}
+
 TEST_CASE("a call that breaks its contract throws and describes the error") {
   Scene scene;
   const MeshId mesh = addBox(scene);

@@ -74,7 +74,7 @@ std::vector<ChartMethod> peerMethods(const BaselineRow& row, const std::string& 
   if (section != "front") {
     sizes = {has(sizes, kGrowthSize) ? kGrowthSize : sizes.front()};
   } else if (!full && sizes.size() > 1) {
-    sizes = {16, 64, 256};
+    sizes.assign({16, 64, 256});
   }
   if (settings.extent == Extent::least) sizes.resize(1);
   std::vector<ChartMethod> methods;

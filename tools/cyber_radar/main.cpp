@@ -71,7 +71,7 @@ int main(int argc, char** argv) try {
   std::string message = error.what();
   for (const std::string& reason : error.reasons) message += "\n  " + reason;
   // A failed Vulkan call, or no device: what a person can do about it.
-  if (error.result != VK_SUCCESS || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
+  if (error.vulkan != 0 || !error.reasons.empty()) message.append("\n").append(kNoDeviceHint);
   return fail(message);
 } catch (const std::exception& error) {
   return fail(error.what());

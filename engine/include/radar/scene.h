@@ -8,34 +8,15 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <vulkan/vulkan_core.h>
-
-// Exports a symbol from a shared library.
-#if defined(_WIN32)
-#define RADAR_API
-#else
-#define RADAR_API __attribute__((visibility("default")))
-#endif
+#include "radar/error.h"
 
 namespace radar {
 
 /// No object, no triangle.
 inline constexpr uint32_t kNone = 0xffffffffu;
-
-/// The message names the call, the value and what was expected. `reasons`: one line per device if no device was usable,
-/// else empty. `result`: the VkResult of a failed Vulkan call, else VK_SUCCESS.
-class RADAR_API Error : public std::runtime_error {
- public:
-  explicit Error(const std::string& what, VkResult code = VK_SUCCESS, std::vector<std::string> perDevice = {})
-      : std::runtime_error(what), result(code), reasons(std::move(perDevice)) {}
-  VkResult result;
-  std::vector<std::string> reasons;
-};
 
 class Device;
 struct HostMesh;
@@ -122,7 +103,7 @@ class RADAR_API Scene {
 
   bool hasMesh(MeshId mesh) const;
   bool hasObject(ObjectId object) const;
-  /// Valid until the mesh is removed.
+  /// Valid until the mesh is removed; shows what setPositions() sets.
   MeshView mesh(MeshId mesh) const;
   /// Valid until the scene changes.
   const Object& object(ObjectId object) const;

@@ -12,6 +12,7 @@
 #include "embed/gather.h"
 #include "embed/host_geometry.h"
 #include "embed/host_queries.h"
+#include "embed/known_recordings.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
 #include "scene/query_lists.h"
@@ -298,12 +299,18 @@ std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lis
   return answers;
 }
 
+Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Recorder Recorder::unproved(const Device::Impl& device, const Scene& scene, const Capacity& capacity) {
+  return Recorder(std::make_unique<Impl>(device, scene, std::make_shared<GpuScene>(device), capacity));
+}
 Recorder::Recorder(const Device& device, const Scene& scene, const Capacity& capacity) {
   const FloatEnvironment floats;
+  requireRecorderProof(device.impl());
   impl_ = std::make_unique<Impl>(device.impl(), scene, std::make_shared<GpuScene>(device.impl()), capacity);
 }
 Recorder::Recorder(SceneCopy& copy, const Capacity& capacity) {
   const FloatEnvironment floats;
+  requireRecorderProof(copy.impl_->device);
   impl_ = std::make_unique<Impl>(copy.impl_->device, copy.impl_->scene, copy.impl_->copy, capacity);
   impl_->isShared = true;
 }
@@ -370,12 +377,13 @@ void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, 
   self.usedBuffers.reset();
   self.pass.stage(self.sensors, self.known, self.scene.impl());
   self.gathers.stage();
-  self.recordSearch(commands, static_cast<uint32_t>(self.known.size()), false);
-  self.recordedQueries.assign(queries.begin(), queries.end());
   self.tolerances.clear();
   for (const Query& query : queries) {
     self.tolerances.push_back(cpu::toleranceOf(query, self.scene.impl().meshes[query.mesh]));
   }
+  std::vector<Query> recorded(queries.begin(), queries.end());
+  self.recordSearch(commands, static_cast<uint32_t>(self.known.size()), false);  // from here on nothing throws
+  self.recordedQueries = std::move(recorded);
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
@@ -419,7 +427,7 @@ std::vector<Result> Recorder::Impl::copyResults(size_t count) const {
 std::vector<Result> Recorder::Impl::readHost() const {
   const UnresolvedPairs unresolved(pass.unresolved(counts()));
   const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(readback.mapped() + firstSweep());
-  std::vector<Result> results = copyResults(counts().queries);
+  std::vector<Result> results = copyResults(std::min(counts().queries, mostWritten));
   for (uint32_t i = 0; i < results.size(); ++i) {
     const auto pairs = unresolved.of(i);
     if (results[i].flags != kFlagUnresolved || pairs.empty()) continue;

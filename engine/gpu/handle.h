@@ -20,7 +20,8 @@ class Handle {
     return *this;
   }
   ~Handle() {
-    if (value_ != VK_NULL_HANDLE) (device_->vk.*Destroy)(device_->device(), value_, device_->host.allocator);
+    if (value_ != VK_NULL_HANDLE && !device_->abandoned)
+      (device_->vk.*Destroy)(device_->device(), value_, device_->host.allocator);
   }
   T get() const { return value_; }
 

@@ -13,6 +13,8 @@ namespace radar::gpu {
 namespace {
 
 constexpr int kMostWaits = 100;  // five seconds in all
+// Compiling shaders may be part of a submission, and takes some drivers minutes.
+constexpr uint64_t kPatience = 600'000'000'000;  // nanoseconds
 
 }  // namespace
 
@@ -103,13 +105,18 @@ void Submission::wait() {
   // A lack of memory says nothing about the device, which may still be at work.
   VkResult waited = VK_SUCCESS;
   for (int tries = 0; tries < kMostWaits; ++tries) {
-    waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, UINT64_MAX);
+    waited = device_->vk.WaitForFences(device_->device(), 1, &fence, VK_TRUE, kPatience);
     if (waited != VK_ERROR_OUT_OF_HOST_MEMORY && waited != VK_ERROR_OUT_OF_DEVICE_MEMORY) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(tries));
   }
   pending_ = false;
   if (waited == VK_ERROR_OUT_OF_HOST_MEMORY || waited == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
     throw Error(std::string("vkWaitForFences: ") + resultName(waited) + ", again and again: expected the device to end",
+                VK_ERROR_DEVICE_LOST);
+  }
+  if (waited == VK_TIMEOUT) {
+    device_->abandoned = true;
+    throw Error("vkWaitForFences: " + device_->name + " has not ended a submission in 10 minutes, and is given up",
                 VK_ERROR_DEVICE_LOST);
   }
   check(waited, "vkWaitForFences");

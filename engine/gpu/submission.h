@@ -23,7 +23,8 @@ class Submission {
   void stage(const char* name);
   /// Submits the recorded commands without waiting; call wait() before anything else.
   void submit();
-  /// Blocks until the submission is done. Throws Error with VK_ERROR_DEVICE_LOST if the device is lost.
+  /// Blocks until the submission is done. Throws Error with VK_ERROR_DEVICE_LOST if the device is lost, or does not
+  /// end: then nothing that the engine made on it is destroyed any more.
   void wait();
   void submitAndWait();
   /// Adds the milliseconds of the last submission's stages to those of the same name; nothing without timestamps.

@@ -6,6 +6,7 @@
 #include "cpu/clearance.h"
 #include "gpu/limit_error.h"
 #include "scene/parallel.h"
+#include "sweep/known_answers.h"
 
 namespace radar {
 
@@ -19,11 +20,6 @@ constexpr size_t kMostSensors = 1u << 14;
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
 // Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
 constexpr size_t kMostDecided = 256;
-
-// The device's own kernels, which live as long as it does.
-std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device) {
-  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
-}
 
 // Of one submission: what a texel buffer of sensors holds.
 size_t mostSensorsOf(const Device::Impl& device) {
@@ -41,6 +37,10 @@ uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
 
 }  // namespace
 
+std::shared_ptr<const ContactKernels> ContactTier::kernelsOf(const Device::Impl& device) {
+  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
+}
+
 ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
                          GpuScene& resident, std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room,
                          QueryBatch& batch)
@@ -53,7 +53,9 @@ ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const S
       mostSensors_(mostSensorsOf(device)),
       batch_(batch),
       pending_(batch) {
-  if (!kernels_ && !isOnCpu()) kernels_ = kernelsOf(device);
+  if (kernels_ || isOnCpu()) return;
+  requireProof(device);
+  kernels_ = kernelsOf(device);
 }
 
 void ContactTier::answerOnCpu(std::span<const size_t> which) {

@@ -11,7 +11,9 @@ namespace radar {
 
 class ContactTier {
  public:
-  /// `kernels`: null: the device's, created here unless isOnCpu().
+  /// The device's own kernels, which live as long as it does.
+  static std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device);
+  /// `kernels`: null: the device's, created here and proved (known_answers.h) unless isOnCpu().
   ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room, QueryBatch& batch);
 

@@ -44,7 +44,8 @@ struct SweeperOptions {
   /// Batches with fewer queries of mode contact are answered on the CPU, with the same answers. 0: none. kNone: 16, or
   /// every batch if the device runs on the CPU (lavapipe), where its search is slower.
   uint32_t cpuBatch = kNone;
-  uint32_t cpuThreads = 0;  ///< threads of the CPU's search; 0: one per core
+  /// Threads of the CPU's search; 0: one per core. Large changes of a scene are prepared on all cores.
+  uint32_t cpuThreads = 0;
 };
 
 /// Time of one stage, summed over the submissions of the last run(), milliseconds.
@@ -86,7 +87,8 @@ struct Scopes {
 class RADAR_API Sweeper {
  public:
   /// Creates the pipelines of mode contact if the device answers it; those of mode sampled are created at first use.
-  /// `device` and `scene` must outlive the sweeper. Throws if the device has no queue.
+  /// `device` and `scene` must outlive the sweeper. Throws if the device has no queue, and with reasons if it would
+  /// search there and the device answers known queries wrongly.
   Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options = {});
   /// With a copy of the scene that it shares with others.
   explicit Sweeper(SceneCopy& copy, const SweeperOptions& options = {});

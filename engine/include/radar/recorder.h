@@ -1,7 +1,8 @@
 // Records searches into a host's own command buffers; the answers stay on the device.
 //
-// The engine submits nothing and waits for nothing here: HostDevice::queue may be null. radar/result.glsl declares the
-// answers' layout for shaders.
+// The engine submits nothing and waits for nothing here, but for known queries when a device with a queue makes its
+// first Recorder (radar/arithmetic.h): HostDevice::queue may be null. radar/result.glsl declares the answers' layout
+// for shaders.
 #pragma once
 
 #include "radar/host_geometry.h"
@@ -38,7 +39,7 @@ struct Capacity {
 class RADAR_API Recorder {
  public:
   /// With a copy of the scene of its own. `device` and `scene` outlive it. Throws, naming the member, if the device's
-  /// buffers cannot hold `capacity`.
+  /// buffers cannot hold `capacity`; and with reasons if the device answers known queries wrongly.
   Recorder(const Device& device, const Scene& scene, const Capacity& capacity = {});
   /// With a copy that it shares.
   explicit Recorder(SceneCopy& copy, const Capacity& capacity = {});
@@ -105,7 +106,8 @@ class RADAR_API Recorder {
   /// Declares that the last recording has not executed and will not.
   void reset();
 
-  /// The answers on the device: one buffer for storage and transfer, owned by the engine.
+  /// The answers on the device: one buffer for storage and transfer, owned by the engine; the same as long as this
+  /// object lives.
   VkBuffer results() const;
   /// Where the last recording's lists are in results(), in answers: one number per query, and the end of the last list.
   std::span<const uint32_t> hitOffsets() const;
@@ -124,8 +126,11 @@ class RADAR_API Recorder {
   std::string boundsViolation() const;
 
   struct Impl;
+  /// For the queries by which a device proves itself.
+  static Recorder unproved(const Device::Impl& device, const Scene& scene, const Capacity& capacity);
 
  private:
+  explicit Recorder(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

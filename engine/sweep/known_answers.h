@@ -1,0 +1,34 @@
+// Scenes and queries whose answers the CPU knows, by which a device proves itself: an optimiser of its driver, or
+// shaders from a stale cache, may compute wrongly what the checks of its arithmetic (gpu/arithmetic.h) find right.
+#pragma once
+
+#include "gpu/device.h"
+#include "radar/arithmetic.h"
+#include "radar/scene.h"
+
+namespace radar {
+
+/// Boxes on a lattice, jagged bodies, needles and sheets, turned and sheared, whose meshes have origins of their own:
+/// near the origin if `seed` is even, else 65,536 units from it. The poses of objects are floats.
+struct KnownScene {
+  explicit KnownScene(uint64_t seed);
+  Scene scene;
+  std::vector<MeshId> meshes;
+  std::vector<Query> queries;
+};
+
+/// The seeds of the scenes by which a device proves itself.
+inline constexpr uint64_t kProofs = 2;
+
+/// Compares answers with the CPU's, to the bit.
+AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact);
+/// Mode contact's answers of a Sweeper: first contacts, lists, steps, and with `clearances` those with a clearance.
+std::vector<AnswerCheck> checkSweeper(const Device::Impl& device, uint64_t seed, bool clearances);
+/// Mode sampled's: each bracket holds the exact distance.
+AnswerCheck checkSampled(const Device::Impl& device, uint64_t seed);
+/// Throws Error with reasons, naming the device, if a check failed.
+void requirePassed(const Device::Impl& device, std::span<const AnswerCheck> checks);
+/// The same if a Sweeper's answers to `kProofs` scenes are wrong; asks them once per device.
+void requireProof(const Device::Impl& device);
+
+}  // namespace radar

@@ -86,7 +86,7 @@ def test_an_assembly_has_the_answers_of_the_program(tmp_path):
     }  # fmt: skip
     answers = ask_program(tmp_path, queries)
     casts = scene.cast(
-        held.meshes, held.transforms, [0, 1000, 0], exclude=objects[:, None], mode="reference",
+        held.meshes, held.transforms, [0, 1000, 0], distances=1000, exclude=objects[:, None], mode="reference",
         ignore_leaving=True, skip_overlapping=True, hits="all",
     )  # fmt: skip
     assert (column(answers, "t", np.inf) == casts.distance).all()

@@ -240,8 +240,8 @@ class Scene:
 
         mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
         poses: (..., 4, 4) world from mesh at the start, affine; None: the identity.
-        displacements: (..., 3) the way to go, world units. With a zero the mesh rests: only what is there at the start,
-            or moves (set_motions), meets it.
+        displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
+            rests: only what is there at the start, or moves (set_motions), meets it.
         Leading shapes broadcast together, also those of the next three; the result has the common shape.
 
         distances: (...) how far to go; displacements then give the direction alone.

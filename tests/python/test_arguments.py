@@ -67,8 +67,6 @@ def test_messages_name_the_argument_and_the_shape(boxes):
     assert len(scene) == 200 and scene.meshes == [0]
     with pytest.raises(TypeError, match="speed"):
         cast(mesh, None, DOWN, speed=2)
-    with pytest.raises(TypeError, match="speed"):
-        scene.cast_async(mesh, None, DOWN, speed=2)
 
 
 def test_out_must_be_able_to_take_the_answers(boxes):

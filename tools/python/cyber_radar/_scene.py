@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import contextlib
-import inspect
 import os
 import threading
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal, NamedTuple
 
@@ -18,7 +17,6 @@ from ._arguments import MOST_ID, Mode, cast_options, device_choice, mesh_vertice
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
 from ._files import Path, read_mesh
-from ._handle import CastHandle
 from ._warnings import MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
@@ -46,7 +44,8 @@ class Scene:
 
     Lengths are in any one unit. Meshes are triangle soups seen from both sides: they need not be closed or convex. A
     scene pickles as its recipe: meshes, objects, names and these settings. Any thread may use a scene; calls wait for
-    each other.
+    each other. A forked process may use it, unless another thread was using it at that moment: then calls raise
+    RuntimeError.
 
     >>> scene = Scene()
     >>> plate = scene.add_mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
@@ -75,11 +74,9 @@ class Scene:
         )
         self._names: dict[int, str] = {}
         self._lock = threading.Lock()
-        self._queueing = threading.Lock()  # of the worker and what is queued; never held for long
         self._user: int | None = None  # the thread that holds the lock
-        self._worker: concurrent.futures.ThreadPoolExecutor | None = None
-        self._process = os.getpid()  # which the worker and what is queued belong to
-        self._queued: list[concurrent.futures.Future[Casts]] = []
+        self._is_lost = False  # to a thread of the process that forked this one
+        _scenes.add(self)
 
     # ------------------------------------------------------------------------------------------------------ contents
 
@@ -121,20 +118,22 @@ class Scene:
 
     def remove_mesh(self, mesh: int) -> None:
         """Removes a mesh that no object uses."""
-        number = self._known_mesh(mesh)
         with self._exclusive() as engine:
+            number = self._known_mesh(mesh)
             if (engine.objects()[1] == number).any():
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
 
     def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """A copy of a mesh: vertices (N, 3), faces (M, 3)."""
-        return self._engine.mesh(self._known_mesh(mesh))
+        with self._reading() as engine:
+            return engine.mesh(self._known_mesh(mesh))
 
     @property
     def meshes(self) -> list[int]:
         """The ids of all meshes."""
-        return self._engine.mesh_ids()
+        with self._reading() as engine:
+            return engine.mesh_ids()
 
     def add(
         self, mesh: npt.ArrayLike, transforms: npt.ArrayLike | None = None, *, mask: npt.ArrayLike = _ALL_BITS
@@ -144,11 +143,11 @@ class Scene:
         mesh: (...) ids. transforms: (..., 4, 4) world from mesh, any invertible affine matrices; None: the identity.
         mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
         """
-        meshes = self._known_meshes(mesh)
         matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
         masks = whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK)
-        shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
         with self._exclusive() as engine:
+            meshes = self._known_meshes(mesh)
+            shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
             ids = engine.add(
                 np.broadcast_to(meshes, shape).ravel(),
                 np.broadcast_to(matrices, (*shape, 4, 4)).reshape(-1, 4, 4),
@@ -183,8 +182,9 @@ class Scene:
 
     def set_vertices(self, mesh: int, vertices: npt.ArrayLike) -> None:
         """Moves the vertices of a mesh: (N, 3), as many as it has, as in add_mesh()."""
-        number, placed = self._known_mesh(mesh), mesh_vertices(vertices)
+        placed = mesh_vertices(vertices)
         with self._exclusive() as engine:
+            number = self._known_mesh(mesh)
             count = len(engine.mesh(number)[0])
             if len(placed) != count:
                 raise ValueError(f"vertices: expected shape ({count}, 3), got shape {placed.shape}")
@@ -200,7 +200,8 @@ class Scene:
 
     def objects(self) -> Objects:
         """Ids, meshes, transforms, masks and motions of all objects: copies."""
-        return Objects(*self._engine.objects())
+        with self._reading() as engine:
+            return Objects(*engine.objects())
 
     @property
     def names(self) -> dict[int, str]:
@@ -208,7 +209,8 @@ class Scene:
         return dict(self._names)
 
     def __len__(self) -> int:
-        return len(self._engine.object_ids())
+        with self._reading() as engine:
+            return len(engine.object_ids())
 
     def __repr__(self) -> str:
         return f"<Scene of {len(self)} objects, {len(self.meshes)} meshes>"
@@ -275,44 +277,16 @@ class Scene:
         with self._exclusive() as engine:
             return self._run(engine, batch, after_chunk)
 
-    def cast_async(
-        self, mesh: npt.ArrayLike, poses: npt.ArrayLike | None, displacements: npt.ArrayLike, **options: Any
-    ) -> CastHandle:
-        """Begins a cast on another thread and returns at once; arguments as cast(). They are copied, except `out`.
-
-        Casts of one scene run one after the other. What changes the scene waits until those begun before are done.
-        """
-        bound = inspect.signature(self.cast).bind(mesh, poses, displacements, **options)
-        bound.apply_defaults()
-        given = bound.arguments
-        chosen = cast_options(**{name: given[name] for name in inspect.signature(cast_options).parameters})
-        per_cast = {name: given[name] for name in ("mesh", "poses", "displacements", "distances", "exclude", "mask")}
-        batch = self._batch(**per_cast, options=chosen, out=given["out"], copy=True)
-        handle = CastHandle(_count(batch.shape), given["progress"])
-
-        def work() -> Casts:
-            with self._exclusive(settle=False) as engine:
-                return self._run(engine, batch, handle._after_chunk)
-
-        self._refuse_callbacks()
-        with self._queueing:
-            if self._worker is None or self._process != os.getpid():  # threads do not follow a fork
-                self._worker = concurrent.futures.ThreadPoolExecutor(1, "cyber-radar-cast")
-                self._process, self._queued = os.getpid(), []
-            self._queued = [future for future in self._queued if not future.done()]
-            handle._future = self._worker.submit(work)
-            self._queued.append(handle._future)
-        return handle
-
     @property
     def device_names(self) -> list[str]:
         """The devices that have been opened for this scene."""
-        return self._engine.device_names()
+        with self._reading() as engine:
+            return engine.device_names()
 
     # ------------------------------------------------------------------------------------------------------- pickling
 
     def __getstate__(self) -> dict[str, Any]:
-        with self._exclusive() as engine:
+        with self._reading() as engine:
             return {
                 "settings": self._settings,
                 "meshes": {mesh: engine.mesh(mesh) for mesh in engine.mesh_ids()},
@@ -342,23 +316,27 @@ class Scene:
     # ---------------------------------------------------------------------------------------------------------- inner
 
     @contextlib.contextmanager
-    def _exclusive(self, settle: bool = True) -> Iterator[_engine.Scene]:
-        """The engine's scene, for this thread alone; `settle`: once all casts begun before are done."""
-        self._refuse_callbacks()
-        if settle and self._process == os.getpid():
-            with self._queueing:
-                queued = list(self._queued)
-            concurrent.futures.wait(queued)
+    def _exclusive(self) -> Iterator[_engine.Scene]:
+        """The engine's scene, for this thread alone."""
+        if self._user == threading.get_ident():
+            raise RuntimeError("a progress callback cannot change the scene that is being cast, or cast in it")
+        if self._is_lost:
+            raise RuntimeError("another thread was using this scene when the process forked: send it pickled instead")
         with self._lock:
-            self._user = threading.get_ident()
             try:
+                self._user = threading.get_ident()
                 yield self._engine
             finally:
                 self._user = None
 
-    def _refuse_callbacks(self) -> None:
+    @contextlib.contextmanager
+    def _reading(self) -> Iterator[_engine.Scene]:
+        """The same; a thread that has the scene already, such as in a progress callback, may look at it."""
         if self._user == threading.get_ident():
-            raise RuntimeError("a progress callback cannot use the scene that is being cast")
+            yield self._engine
+        else:
+            with self._exclusive() as engine:
+                yield engine
 
     def _batch(
         self,
@@ -370,7 +348,6 @@ class Scene:
         mask: npt.ArrayLike,
         options: dict[str, Any],
         out: Casts | None,
-        copy: bool = False,
     ) -> _Batch:
         arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
             "mesh": (self._known_meshes(mesh), 0),
@@ -384,8 +361,7 @@ class Scene:
         shape = common_shape(arrays)
         arguments: dict[str, Any] = {"distances": None}
         for name, (array, inner) in arrays.items():
-            own = array.copy() if copy else array
-            arguments[name] = np.broadcast_to(own, shape + own.shape[own.ndim - inner :])
+            arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
         sampled = options["sampled"]
         results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
         return _Batch(shape, arguments, options, results, out)
@@ -421,7 +397,7 @@ class Scene:
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
         ids = whole_numbers(mesh, "mesh", np.uint32, 0, MOST_ID)
-        known = np.isin(ids, self._engine.mesh_ids())
+        known = np.isin(ids, self.meshes)
         if not known.all():
             raise ValueError(f"mesh: expected ids of meshes of the scene, got {ids[~known].flat[0]}")
         return ids
@@ -433,7 +409,8 @@ class Scene:
         """`inner` is given for `exclude`, where -1 is none."""
         ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, MOST_ID, inner)
         if ids.size:
-            unknown = np.setdiff1d(ids, self._engine.object_ids())
+            with self._reading() as engine:
+                unknown = np.setdiff1d(ids, engine.object_ids())
             unknown = unknown[unknown >= 0]
             if unknown.size:
                 raise ValueError(f"{name}: expected ids of objects of the scene, got {unknown[0]}")
@@ -450,3 +427,16 @@ class _Batch(NamedTuple):
 
 def _count(shape: tuple[int, ...]) -> int:
     return int(np.prod(shape, dtype=np.int64))
+
+
+_scenes: weakref.WeakSet[Scene] = weakref.WeakSet()
+
+
+def _after_fork() -> None:
+    """Other threads do not follow a fork: what they began with a scene is never finished."""
+    for scene in _scenes:
+        scene._is_lost = scene._lock.locked() and scene._user != threading.get_ident()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)

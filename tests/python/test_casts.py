@@ -81,14 +81,14 @@ def test_leading_shapes_broadcast_and_are_those_of_the_arrays(boxes):
     rng = np.random.default_rng(4)
     poses, displacements = random_poses(rng, 15, 20).reshape(5, 1, 3, 4, 4), rng.normal(size=(2, 1, 3)) * 5
     exclude, distances = rng.integers(-1, 200, (3, 4)), np.array([[[6.0]], [[7.0]]] * 5).reshape(5, 2, 1)
-    casts = scene.cast(mesh, poses, displacements, exclude=exclude, distances=distances, mode="reference")
+    casts = scene.cast(mesh, poses, displacements, exclude_from_each=exclude, distances=distances, mode="reference")
     assert casts.shape == casts.object.shape == (5, 2, 3)
     assert casts.triangles.shape == (5, 2, 3, 2) and casts.point.shape == casts.normal.shape == (5, 2, 3, 3)
     assert casts.touches.any()
     for i in np.ndindex(5, 2, 3):
         one = scene.cast(
             mesh, poses[i[0], 0, i[2]], displacements[i[1], 0], mode="reference",
-            exclude=exclude[i[2]], distances=distances[i[0], i[1], 0],
+            exclude_from_all=exclude[i[2]][exclude[i[2]] >= 0], distances=distances[i[0], i[1], 0],
         )  # fmt: skip
         assert one.shape == ()
         assert one.distance == casts.distance[i] and one.object == casts.object[i]
@@ -280,13 +280,86 @@ def test_hits_and_what_overlaps_are_listed():
     assert plain.hits is None and plain.overlapping is None
 
 
+def test_an_index_gives_the_casts_there_with_all_that_they_list(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(15)
+    poses, displacements = random_poses(rng, 24, 20), rng.normal(size=(24, 3)) * 5
+    poses[[6, 23]] = np.nan
+    options = {"hits": 3, "skip_overlapping": True, "mode": "reference"}
+    places = np.arange(24).reshape(2, 3, 4)
+    casts = scene.cast(mesh, poses[places], displacements[places], **options)
+    even = places % 2 == 0
+    for index in (
+        *(1, -1, (0, 2), (1, 2, 3), np.int8(1), slice(1), (0, slice(1, 3)), (slice(None), [2, 0]), [], None, (1, None)),
+        *(..., (..., 1), (0, ..., slice(1, 3)), (..., [[0], [1]], [2, 3]), (None, ..., even[1])),
+        *(even, even[0, :, 0][:2], (even[..., 0], 2), (0, even[0]), casts.touches, ~casts.touches, [True, False]),
+    ):
+        part, chosen = casts[index], places[index]
+        again = scene.cast(mesh, poses[chosen], displacements[chosen], **options)
+        assert part.shape == again.shape == chosen.shape
+        assert same_answers(part, again) and same_answers(part.hits, again.hits)
+        for ragged in ("hits", "overlapping"):
+            a, b = getattr(part, ragged), getattr(again, ragged)
+            assert a.of_shape == b.of_shape and (a.offsets == b.offsets).all() and (a.object == b.object).all()
+        assert {reason: which.tolist() for reason, which in part.reasons.items()} == {
+            reason: which.tolist() for reason, which in again.reasons.items()
+        }
+    plain = scene.cast(mesh, poses, displacements, mode="sampled", resolution=16)
+    assert plain[3:5].resolution.shape == (2,) and plain[3:5].hits is None
+
+
+def test_casts_have_a_length_and_are_gone_through():
+    casts = cyber_radar.Casts.empty((3, 2))
+    casts.distance[:] = np.arange(6).reshape(3, 2)
+    assert len(casts) == 3
+    assert [[float(one.distance) for one in row] for row in casts] == [[0, 1], [2, 3], [4, 5]]
+    assert casts[0, 0].shape == () and casts[0, 0].point.shape == (3,)
+    for ask in (lambda: len(casts[0, 0]), lambda: list(casts[0, 0])):
+        with pytest.raises(TypeError, match=r"casts of shape \(\) are one cast, without a length"):
+            ask()
+    for index in (3, (0, 2), (0, 0, 0), [True, False], "a"):
+        with pytest.raises(IndexError, match=r"casts of shape \(3, 2\): "):
+            casts[index]
+
+
+def test_casts_become_a_dict_of_arrays(tmp_path):
+    for mode, count in (("contact", 12), ("sampled", 14)):
+        casts = cyber_radar.Casts.empty((5, 2), mode)
+        arrays = casts.to_dict()
+        assert len(arrays) == count and arrays["distance"] is casts.distance
+        assert all(array.shape[:2] == (5, 2) for array in arrays.values())
+        np.savez(tmp_path / "casts.npz", **arrays)
+        with np.load(tmp_path / "casts.npz") as read:
+            assert same_answers(cyber_radar.Casts(**read), casts)
+
+
+def test_an_index_of_lists_has_errors_of_its_own():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh)
+    casts = scene.cast(mesh, np.zeros((3, 2, 1, 1)) + np.eye(4), DOWN, hits="all", mode="reference")
+    assert casts.hits.of(-1, -2) == casts.hits.of(2, 0) == slice(4, 5)
+    for index, words in (
+        ((3,), r"of\(3\): expected 2 whole numbers, as the casts have shape \(3, 2\)"),
+        ((), r"of\(\): expected 2 whole numbers, as the casts have shape \(3, 2\)"),
+        ((0, 2), r"of\(0, 2\): expected a place in the casts' shape \(3, 2\)"),
+        ((-4, 0), r"of\(-4, 0\): expected a place in the casts' shape \(3, 2\)"),
+    ):
+        with pytest.raises(IndexError, match=words):
+            casts.hits.of(*index)
+    with pytest.raises(IndexError, match=r"of\(3\): expected 0 whole numbers, as the casts have shape \(\)"):
+        casts[0, 0].hits.of(3)
+
+
 def test_masks_exclusions_clearance_and_any_hit():
     scene = cyber_radar.Scene()
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
     scene.add(mesh, at([[0, 0, -3], [0, 0, -6]]), mask=[1, 2])
     cast = lambda **options: scene.cast(mesh, None, DOWN, mode="reference", **options)  # noqa: E731
     assert cast(mask=[1, 2, 3, 4]).distance.tolist() == [2, 5, 2, np.inf]
-    assert cast(exclude=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
+    assert cast(exclude_from_each=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
+    assert [cast(exclude_from_all=ids).distance for ids in ([], 0, [0], [0, 1])] == [2, 5, 5, np.inf]
+    assert cast(exclude_from_all=[0], exclude_from_each=[[-1], [1]]).distance.tolist() == [5, np.inf]
     near = cast(clearance=0.5, tolerance=1e-3)
     assert 1.5 - 1e-3 <= near.lo <= 1.5 <= near.hi <= near.lo + 1e-3
     any_hit = cast(any_hit=True)

@@ -252,13 +252,13 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   BatchInput input{.shape = shape};
   const auto argument = [&](const char* name) { return arguments[name].cast<py::array>(); };
   const py::array meshes = argument("mesh"), poses = argument("poses"), displacements = argument("displacements"),
-                  masks = argument("mask"), excluded = argument("exclude");
+                  masks = argument("mask"), excluded = argument("exclude_from_each");
   input.meshes = perQuery<uint32_t>(meshes, shape, 1, "mesh");
   input.poses = perQuery<double>(poses, shape, 16, "poses");
   input.displacements = perQuery<double>(displacements, shape, 3, "displacements");
   input.masks = perQuery<uint32_t>(masks, shape, 1, "mask");
   input.excludedCount = static_cast<size_t>(excluded.shape(excluded.ndim() - 1));
-  input.excluded = perQuery<int64_t>(excluded, shape, input.excludedCount, "exclude");
+  input.excluded = perQuery<int64_t>(excluded, shape, input.excludedCount, "exclude_from_each");
   py::array distances;
   if (!arguments["distances"].is_none()) {
     distances = argument("distances");

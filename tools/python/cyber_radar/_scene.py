@@ -13,7 +13,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from ._arguments import MOST_ID, Mode, cast_options, device_choice, mesh_vertices, one_whole_number, regular
+from ._arguments import (
+    MOST_ID,
+    Mode,
+    cast_options,
+    device_choice,
+    mesh_arrays,
+    mesh_vertices,
+    one_whole_number,
+    refuse_one_each,
+    regular,
+)
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
 from ._files import Path, read_mesh
@@ -80,16 +90,16 @@ class Scene:
 
     # ------------------------------------------------------------------------------------------------------ contents
 
-    def add_mesh(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> int:
+    def add_mesh(self, vertices: Any, faces: npt.ArrayLike | None = None) -> int:
         """Adds a mesh and returns its id.
 
         vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that changes any.
         faces: (M, 3), whole numbers: the vertices of each triangle.
+
+        Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or
+        `triangles`, as in Open3D.
         """
-        placed = mesh_vertices(vertices)
-        corners = whole_numbers(faces, "faces", np.uint32, 0, max(len(placed) - 1, 0), (3,))
-        if corners.ndim != 2 or len(corners) == 0 or len(placed) == 0:
-            raise ValueError(f"faces: expected shape (M, 3) with a triangle at least, got shape {corners.shape}")
+        placed, corners = mesh_arrays(vertices, faces)
         with self._exclusive() as engine:
             return engine.add_mesh(placed, corners)
 
@@ -225,7 +235,8 @@ class Scene:
         *,
         mode: Mode = "contact",
         distances: npt.ArrayLike | None = None,
-        exclude: npt.ArrayLike = (),
+        exclude_from_all: npt.ArrayLike = (),
+        exclude_from_each: npt.ArrayLike | None = None,
         mask: npt.ArrayLike = _ALL_BITS,
         any_hit: bool = False,
         ignore_leaving: bool = False,
@@ -247,9 +258,10 @@ class Scene:
         Leading shapes broadcast together, also those of the next three; the result has the common shape.
 
         distances: (...) how far to go; displacements then give the direction alone.
-        exclude: (..., K) ids of objects to ignore; -1 is none.
+        exclude_from_each: (..., K) ids of objects to ignore, a row for each cast; -1 is none. ids[:, None] is one each.
         mask: (...) 32 bits; an object takes part if its mask shares one.
 
+        exclude_from_all: (K,) ids of objects that every cast ignores, or one id.
         mode: "contact", exact, on device or CPU; "sampled", the paper's depth pictures, an upper bound; "reference",
             exact, on the CPU alone. "contact" and "reference" give the same numbers.
         any_hit: ask only whether there is a contact; cheaper if there is one.
@@ -271,7 +283,10 @@ class Scene:
         options = cast_options(
             mode, any_hit, ignore_leaving, skip_overlapping, slack, clearance, tolerance, hits, resolution
         )
-        batch = self._batch(mesh, poses, displacements, distances, exclude, mask, options, out)
+        excluded = self._excluded(exclude_from_all, exclude_from_each)
+        batch = self._batch(mesh, poses, displacements, distances, excluded, mask, options, out)
+        if exclude_from_each is not None:
+            refuse_one_each(np.shape(exclude_from_each), batch.shape)
         total = _count(batch.shape)
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
@@ -344,7 +359,7 @@ class Scene:
         poses: npt.ArrayLike | None,
         displacements: npt.ArrayLike,
         distances: npt.ArrayLike | None,
-        exclude: npt.ArrayLike,
+        excluded: npt.NDArray[np.int64],
         mask: npt.ArrayLike,
         options: dict[str, Any],
         out: Casts | None,
@@ -354,7 +369,7 @@ class Scene:
             "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
             "displacements": (reals(displacements, "displacements", (3,)), 1),
             "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
-            "exclude": (self._known_objects(exclude, "exclude", (-1,)), 1),
+            "exclude_from_each": (excluded, 1),
         }
         if distances is not None:
             arrays["distances"] = (reals(distances, "distances"), 0)
@@ -365,6 +380,25 @@ class Scene:
         sampled = options["sampled"]
         results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
         return _Batch(shape, arguments, options, results, out)
+
+    def _excluded(self, from_all: npt.ArrayLike, from_each: npt.ArrayLike | None) -> npt.NDArray[np.int64]:
+        """Rows of objects to ignore: (..., K)."""
+        all_ids = self._known_objects(from_all, "exclude_from_all")
+        if all_ids.ndim > 1:
+            raise ValueError(
+                f"exclude_from_all: expected shape (K,), ids that every cast ignores, got shape {all_ids.shape}; "
+                "exclude_from_each has a row for each cast"
+            )
+        all_ids = all_ids.reshape(-1)
+        if from_each is None:
+            return all_ids
+        rows = self._known_objects(from_each, "exclude_from_each", least=-1)
+        if rows.ndim < 2:
+            raise ValueError(
+                f"exclude_from_each: expected shape (..., K), a row of ids for each cast, got shape {rows.shape}; for "
+                "one id each, pass ids[:, None]; for the same ids in every cast, exclude_from_all"
+            )
+        return np.concatenate([rows, np.broadcast_to(all_ids, (*rows.shape[:-1], all_ids.size))], axis=-1)
 
     def _run(
         self,
@@ -405,9 +439,9 @@ class Scene:
     def _known_mesh(self, mesh: int) -> int:
         return int(self._known_meshes(one_whole_number(mesh, "mesh", 0, MOST_ID)))
 
-    def _known_objects(self, objects: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.NDArray[np.int64]:
-        """`inner` is given for `exclude`, where -1 is none."""
-        ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, MOST_ID, inner)
+    def _known_objects(self, objects: npt.ArrayLike, name: str, least: int = 0) -> npt.NDArray[np.int64]:
+        """`least`: -1 if that is none."""
+        ids = whole_numbers(objects, name, np.int64, least, MOST_ID)
         if ids.size:
             with self._reading() as engine:
                 unknown = np.setdiff1d(ids, engine.object_ids())

@@ -25,6 +25,11 @@ class Hold:
         self.begun.set()
         self.gate.wait()
 
+    def wait_for(self, casts: concurrent.futures.Future) -> None:
+        """Until it is called, or there is an error that keeps it from that."""
+        casts.add_done_callback(lambda _: self.begun.set())
+        self.begun.wait()
+
 
 def many(count: int):
     rng = np.random.default_rng(10)
@@ -145,7 +150,7 @@ def test_what_other_threads_ask_and_change_waits_for_a_cast(boxes):
     hold, asked = Hold(), []
     with concurrent.futures.ThreadPoolExecutor(3) as threads:
         casts = threads.submit(scene.cast, mesh, poses, displacements, progress=hold)
-        hold.begun.wait()
+        hold.wait_for(casts)
         names = threads.submit(lambda: asked.append(scene.device_names))
         moved = threads.submit(scene.set_transforms, np.arange(200), at([0, 0, 99]))
         early = bool(asked) or names.done() or moved.done()
@@ -225,7 +230,7 @@ def test_a_process_forked_while_another_thread_casts_is_told_instead_of_waiting_
     hold = Hold()
     with concurrent.futures.ThreadPoolExecutor(1) as threads:
         casts = threads.submit(scene.cast, mesh, poses, displacements, mode="reference", progress=hold)
-        hold.begun.wait()
+        hold.wait_for(casts)
         _inherited = (scene, mesh, poses, "reference")
         context = multiprocessing.get_context("fork")
         queue = context.SimpleQueue()

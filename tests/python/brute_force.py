@@ -24,14 +24,14 @@ def _point_meets_face(point: np.ndarray, face: np.ndarray, displacement: np.ndar
     """point + t d = face0 + u e1 + v e2."""
     e1, e2 = face[:, 1] - face[:, 0], face[:, 2] - face[:, 0]
     columns = np.stack([np.broadcast_to(displacement, e1.shape), -e1, -e2], axis=-1)
-    t, u, v = np.linalg.solve(columns, face[:, 0] - point).T
+    t, u, v = _solve(columns, face[:, 0] - point)
     return np.where((t >= 0) & (t <= 1) & (u >= 0) & (v >= 0) & (u + v <= 1), t, np.inf)
 
 
 def _edges_meet(a: np.ndarray, along_a: np.ndarray, b: np.ndarray, along_b: np.ndarray, displacement: np.ndarray):
     """a + u along_a + t d = b + v along_b."""
     columns = np.stack([np.broadcast_to(displacement, a.shape), along_a, -along_b], axis=-1)
-    t, u, v = np.linalg.solve(columns, b - a).T
+    t, u, v = _solve(columns, b - a)
     inside = (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
     return np.where(inside, t, np.inf)
 
@@ -43,6 +43,11 @@ def _cross(edges_of: np.ndarray, faces: np.ndarray) -> np.ndarray:
         start = edges_of[:, i]
         along = edges_of[:, (i + 1) % 3] - start
         e1, e2 = faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]
-        s, u, v = np.linalg.solve(np.stack([along, -e1, -e2], axis=-1), faces[:, 0] - start).T
+        s, u, v = _solve(np.stack([along, -e1, -e2], axis=-1), faces[:, 0] - start)
         crosses |= (s >= 0) & (s <= 1) & (u >= 0) & (v >= 0) & (u + v <= 1)
     return crosses
+
+
+def _solve(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """The three unknowns of each system, (3, n)."""
+    return np.linalg.solve(matrices, vectors[..., None])[..., 0].T

@@ -33,15 +33,16 @@ def test_messages_name_the_argument_and_the_shape(boxes):
         (lambda: cast(mesh + 1, None, DOWN), "mesh: expected ids of meshes of the scene, got 1"),
         (lambda: cast(0.5, None, DOWN), "mesh: expected whole numbers, got dtype float64"),
         (lambda: cast(-1, None, DOWN), "mesh: expected whole numbers from 0 to 4294967294, got -1"),
-        (lambda: cast(mesh, None, DOWN, exclude=3), "exclude: expected whole numbers of shape (..., K), got shape ()"),
-        (lambda: cast(mesh, None, DOWN, exclude=[200]), "exclude: expected ids of objects of the scene, got 200"),
+        (lambda: cast(mesh, None, DOWN, exclude_from_all=[200]), "exclude_from_all: expected ids of objects of the"),
+        (lambda: cast(mesh, None, DOWN, exclude_from_all=-1), "exclude_from_all: expected whole numbers from 0"),
+        (lambda: cast(mesh, None, DOWN, exclude_from_each=[[200]]), "exclude_from_each: expected ids of objects"),
         (lambda: cast(mesh, None, DOWN, mask=2**32), "mask: expected whole numbers from 0 to 4294967295"),
         (lambda: cast(mesh, None, DOWN, mode="fast"), 'mode: expected "contact", "sampled" or "reference"'),
         (lambda: cast(mesh, None, DOWN, slack=-1), "slack: expected a finite number of 0 or more, got -1"),
         (lambda: cast(mesh, None, DOWN, clearance=np.inf), "clearance: expected a finite number of 0 or more"),
         (lambda: cast(mesh, None, DOWN, tolerance=[1]), "tolerance: expected a finite number of 0 or more"),
         (lambda: cast(mesh, None, DOWN, hits=0), "hits: expected whole numbers from 1 to"),
-        (lambda: cast(mesh, None, DOWN, hits="some"), "hits: expected whole numbers, got dtype <U4"),
+        (lambda: cast(mesh, None, DOWN, hits="al"), "hits: expected a whole number of 1 or more, or \"all\", got 'al'"),
         (lambda: cast(mesh, None, DOWN, hits=2, any_hit=True), "hits: expected 1 with any_hit"),
         (lambda: cast(mesh, None, DOWN, hits=2, mode="sampled"), 'mode: expected "contact" or "reference" with'),
         (lambda: cast(mesh, None, DOWN, resolution=2049), "resolution: expected whole numbers from 0 to 2048"),
@@ -56,7 +57,8 @@ def test_messages_name_the_argument_and_the_shape(boxes):
         (lambda: scene.add_mesh(box(1, 1, 1)[:, :2], FACES), "vertices: expected numbers of shape (..., 3)"),
         (lambda: scene.add_mesh(box(1, 1, 1)[None], FACES), "vertices: expected shape (N, 3), got shape (1, 8, 3)"),
         (lambda: scene.add_mesh([[0, 0, 1e39]], FACES), "vertices[0]: expected 3 finite numbers that float32 can hold"),
-        (lambda: scene.add_mesh(box(1, 1, 1), FACES + 1), "faces: expected whole numbers from 0 to 7, got 8"),
+        (lambda: scene.add_mesh(box(1, 1, 1), FACES + 1), "faces[2]: expected vertices from 0 to 7, got 8"),
+        (lambda: scene.add_mesh(box(1, 1, 1)), "faces: expected them beside the vertices, or a mesh that has"),
         (lambda: scene.add_mesh(box(1, 1, 1), FACES[:0]), "faces: expected shape (M, 3) with a triangle at least"),
         (lambda: scene.add_mesh(box(1, 1, 1), FACES * 1.0), "faces: expected whole numbers, got dtype float64"),
         (lambda: cyber_radar.Scene(device="gpu"), "device: expected a number of devices()"),
@@ -67,8 +69,36 @@ def test_messages_name_the_argument_and_the_shape(boxes):
     assert len(scene) == 200 and scene.meshes == [0]
     with pytest.raises(TypeError, match="speed"):
         cast(mesh, None, DOWN, speed=2)
-    with pytest.raises(TypeError, match="speed"):
-        scene.cast_async(mesh, None, DOWN, speed=2)
+
+
+def test_what_each_cast_excludes_is_never_taken_for_what_all_exclude(boxes):
+    scene, mesh = boxes
+    poses = at(np.arange(18).reshape(6, 3))
+    cast = lambda poses, **excluded: scene.cast(mesh, poses, DOWN, mode="reference", **excluded)  # noqa: E731
+    ids = np.arange(6)
+    own = [cast(pose, exclude_from_all=i).object.tolist() for i, pose in enumerate(poses)]
+    assert cast(poses, exclude_from_each=ids[:, None]).object.tolist() == own
+    for shape in ((), (1,), (6,)):
+        words = f"expected shape (..., K), a row of ids for each cast, got shape {shape}; for one id each, pass"
+        assert words in refusal(lambda: cast(poses, exclude_from_each=np.zeros(shape, int)))
+    assert "got shape (6, 1); exclude_from_each has a row for each" in refusal(
+        lambda: cast(poses, exclude_from_all=ids[:, None])
+    )
+    square = np.broadcast_to(ids, (6, 6))
+    words = "shape (6, 6) may mean rows of 6 ids, or one id for each cast of shape (6, 6); for one each, pass ids[..., "
+    assert words in refusal(lambda: cast(poses[:, None], mask=np.ones(6, int), exclude_from_each=square))
+    all_pairs = cast(poses[:, None], mask=np.ones(6, int), exclude_from_each=square[..., None])
+    assert (all_pairs.object[range(6), range(6)] == own).all()
+    with pytest.raises(TypeError, match="exclude"):
+        cast(poses, exclude=ids)
+
+
+def test_triangle_strips_are_refused_with_the_triangle_that_betrays_them(boxes):
+    scene, _ = boxes
+    for restart in (2**16 - 1, 2**32 - 1):
+        faces = np.append(FACES, [[0, 1, restart]], axis=0)
+        words = f"faces[12]: expected vertices from 0 to 7, got {restart}; are they strips? Each row is a triangle"
+        assert words in refusal(lambda: scene.add_mesh(box(1, 1, 1), faces))
 
 
 def test_out_must_be_able_to_take_the_answers(boxes):
@@ -134,10 +164,10 @@ def test_odd_arguments_never_crash(boxes):
             else:
                 casts = scene.cast(
                     odd(plain=mesh), odd(4, 4, plain=at([[0, 0, 0], [1, 2, 3]])), odd(3, plain=DOWN),
-                    mode=("reference", "contact")[round_ % 2], exclude=odd(3, plain=[]), mask=odd(plain=7),
-                    distances=odd(plain=None), clearance=odd(plain=0.0), slack=odd(plain=None),
-                    hits=odd(plain=2), skip_overlapping=rng.random() < 0.5, ignore_leaving=rng.random() < 0.5,
-                    out=out if rng.random() < 0.1 else None,
+                    mode=("reference", "contact")[round_ % 2], exclude_from_all=odd(3, plain=[]), mask=odd(plain=7),
+                    exclude_from_each=odd(2, 3, plain=None), distances=odd(plain=None), clearance=odd(plain=0.0),
+                    slack=odd(plain=None), hits=odd(plain=2), skip_overlapping=rng.random() < 0.5,
+                    ignore_leaving=rng.random() < 0.5, out=out if rng.random() < 0.1 else None,
                 )  # fmt: skip
                 answered += casts.distance.size
         except (ValueError, TypeError) as error:
@@ -154,7 +184,7 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
         engine.add(np.zeros(2, np.uint32), np.zeros((1, 4, 4)), np.zeros(2, np.uint32))
     with pytest.raises((TypeError, ValueError)):
         engine.set_transforms(np.zeros(2, np.uint32), np.zeros((1, 4, 4)))
-    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, (), 1, {"sampled": False}, None)
+    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, np.zeros(0, int), 1, {"sampled": False}, None)
     options = dict.fromkeys(("sampled", "on_cpu", "any_hit", "ignore_leaving", "skip_overlapping"), False)
     options |= {"slack": None, "clearance": 0.0, "tolerance": None, "hits": 1, "resolution": 0}
     for wrong in itertools.chain(batch.arguments, batch.results):

@@ -81,14 +81,14 @@ def test_leading_shapes_broadcast_and_are_those_of_the_arrays(boxes):
     rng = np.random.default_rng(4)
     poses, displacements = random_poses(rng, 15, 20).reshape(5, 1, 3, 4, 4), rng.normal(size=(2, 1, 3)) * 5
     exclude, distances = rng.integers(-1, 200, (3, 4)), np.array([[[6.0]], [[7.0]]] * 5).reshape(5, 2, 1)
-    casts = scene.cast(mesh, poses, displacements, exclude=exclude, distances=distances, mode="reference")
+    casts = scene.cast(mesh, poses, displacements, exclude_from_each=exclude, distances=distances, mode="reference")
     assert casts.shape == casts.object.shape == (5, 2, 3)
     assert casts.triangles.shape == (5, 2, 3, 2) and casts.point.shape == casts.normal.shape == (5, 2, 3, 3)
     assert casts.touches.any()
     for i in np.ndindex(5, 2, 3):
         one = scene.cast(
             mesh, poses[i[0], 0, i[2]], displacements[i[1], 0], mode="reference",
-            exclude=exclude[i[2]], distances=distances[i[0], i[1], 0],
+            exclude_from_all=exclude[i[2]][exclude[i[2]] >= 0], distances=distances[i[0], i[1], 0],
         )  # fmt: skip
         assert one.shape == ()
         assert one.distance == casts.distance[i] and one.object == casts.object[i]
@@ -116,6 +116,125 @@ def test_a_distance_is_exact_where_single_precision_would_round(boxes):
     scene.add(mesh, at([1e8, 0, 0]))
     casts = scene.cast(mesh, at([1e8 - 3.0625, 0.25, 0.25]), [5, 0, 0], mode="reference")
     assert casts.distance == 2.0625
+
+
+SMALL = np.array([way for way in np.ndindex(11, 6, 6) if way != (5, 0, 0)], float) * [1, 1, -1] - [5, 0, 0]
+
+
+def starts_that_end_in_touch(displacements: np.ndarray) -> np.ndarray:
+    """Where a box of side 2 begins that first meets another one, around the origin, at the end of the displacement."""
+    axis, rows = np.abs(displacements).argmax(axis=1), np.arange(len(displacements))
+    ends = np.zeros(displacements.shape)
+    ends[rows, axis] = -2 * np.sign(displacements[rows, axis])
+    return ends - displacements
+
+
+@pytest.mark.parametrize("mode", ["reference", "contact"])
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"hits": "all"}, {"hits": 2, "skip_overlapping": True}, {"ignore_leaving": True}, {"any_hit": True}],
+    ids=lambda options: " ".join(options),
+)
+def test_contact_at_the_end_of_a_displacement_is_found_and_none_beyond(mode, options):
+    scene = cyber_radar.Scene(cpu_batch=0)
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    starts = starts_that_end_in_touch(SMALL)
+    casts = scene.cast(mesh, at(starts), SMALL, mode=mode, **options)
+    assert (casts.status == Status.HIT).all()
+    if "any_hit" not in options:
+        length = np.linalg.norm(SMALL, axis=1)
+        np.testing.assert_allclose(casts.distance, length, rtol=4e-16)
+        assert (casts.fraction == 1).all() and (casts.lo <= length).all() and (length <= casts.hi).all()
+    if "hits" in options:
+        assert casts.hits.cast.tolist() == list(range(len(SMALL)))
+        assert (casts.hits.distance == casts.distance).all() and (casts.hits.hi == casts.hi).all()
+    beyond = scene.cast(mesh, at(starts - SMALL * 2.0**-45), SMALL, mode=mode, **options)
+    assert (beyond.status == Status.CLEAR).all()
+
+
+def test_mode_sampled_finds_contact_at_the_end_of_a_displacement():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    ways = SMALL[::7]
+    casts = scene.cast(mesh, at(starts_that_end_in_touch(ways)), ways, mode="sampled", resolution=64)
+    assert (casts.status == Status.HIT).all()
+    np.testing.assert_allclose(casts.distance, np.linalg.norm(ways, axis=1), rtol=1e-15)
+
+
+@pytest.mark.parametrize("mode", ["reference", "contact"])
+def test_edges_that_graze_for_a_moment_of_a_step_touch(mode):
+    rng = np.random.default_rng(13)
+    scene = cyber_radar.Scene(cpu_batch=0)
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    places = np.arange(200)[:, None] * np.array([1000.0, 0, 0])
+    objects = scene.add(mesh, at(places))
+    # Relative to the object at its place, each cast moves along (1, -1, 0), past the edge at (2, 2).
+    passing = rng.integers(3, 9, 200)[:, None] * np.array([1.0, -1.0, 0.0])
+    displacements = rng.integers(-9, 10, (200, 3)).astype(float)
+    scene.set_motions(objects, displacements - passing)
+    casts = scene.cast(mesh, at(places + [2, 2, 0] - passing / 2), displacements, mode=mode)
+    assert (casts.object == objects).all() and (casts.fraction == 0.5).all()
+    np.testing.assert_allclose(casts.distance, np.linalg.norm(displacements, axis=1) / 2, rtol=4e-16)
+    beside = scene.cast(mesh, at(places + [2, 2 + 2.0**-40, 0] - passing / 2), displacements, mode=mode)
+    assert not beside.touches.any()
+
+
+def test_distances_of_casts_along_an_axis_are_rounded_once():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    # 1 / 49 * 49 is not 1 in doubles, and so for many more.
+    lengths = np.arange(1.0, 200.0)
+    casts = scene.cast(mesh, at([0, 0, 3]), lengths[:, None] * np.array([0, 0, -1]), mode="reference")
+    assert (casts.distance == 1).all() and (casts.lo <= 1).all() and (1 <= casts.hi).all()
+
+
+def test_brackets_of_distances_hold_where_lengths_are_whole():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    # Along (1, 2, 2), of length 3, the boxes meet after 3 of each length.
+    lengths = np.arange(6.0, 606.0, 3.0)
+    casts = scene.cast(mesh, at([0, -1, -4]), lengths[:, None] * np.array([1, 2, 2]) / 3, mode="reference")
+    np.testing.assert_allclose(casts.distance, 3, rtol=1e-15)
+    assert (casts.lo <= 3).all() and (3 <= casts.hi).all() and (casts.hi - casts.lo < 3e-14).all()
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_clearance_counts_to_the_end_of_a_displacement(moves):
+    scene = cyber_radar.Scene(cpu_batch=0)
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    if moves:
+        scene.set_motions(scene.add(mesh, at([0, 0, 1000])), [0, 0, 1])
+    for mode in ("reference", "contact"):
+        for gap, status in ((0.125, Status.HIT), (0.375, Status.CLEAR)):
+            starts = starts_that_end_in_touch(SMALL)
+            axis, rows = np.abs(SMALL).argmax(axis=1), np.arange(len(SMALL))
+            starts[rows, axis] -= gap * np.sign(SMALL[rows, axis])
+            casts = scene.cast(mesh, at(starts), SMALL, clearance=0.25, tolerance=1e-9, mode=mode)
+            assert (casts.status == status).all()
+            if status == Status.HIT:
+                length = np.linalg.norm(SMALL, axis=1)
+                assert (casts.distance == casts.lo).all() and (casts.hi <= length * (1 + 1e-15)).all()
+                assert (casts.hi - casts.lo <= 1.001e-9).all()
+
+
+def test_displacements_of_any_size_are_taken_as_they_are():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(2, 2, 2), FACES)
+    scene.add(mesh)
+    way = np.array([0.0, 3.0, -5.0])
+    for size in (2.0**-1070, 2.0**-600, 2.0**600, 2.0**996):
+        touching = scene.cast(mesh, at([0, 0, 2]), way * size, mode="reference", ignore_leaving=True)
+        assert touching.distance == 0 and touching.lo == touching.hi == touching.fraction == 0
+        beside = scene.cast(mesh, at([0, 0, 3]), way * size, mode="reference")
+        assert beside.distance == (np.inf if size < 1 else pytest.approx(np.sqrt(34) / 5))
+    long = scene.cast(mesh, None, way * 2.0**1000, mode="reference")
+    assert long.status == Status.INVALID
+    assert list(long.reasons)[0].startswith("displacements: expected 3 finite numbers of at most 2^1000, got")
 
 
 def test_no_displacement_asks_whether_the_surfaces_meet():
@@ -161,13 +280,86 @@ def test_hits_and_what_overlaps_are_listed():
     assert plain.hits is None and plain.overlapping is None
 
 
+def test_an_index_gives_the_casts_there_with_all_that_they_list(boxes):
+    scene, mesh = boxes
+    rng = np.random.default_rng(15)
+    poses, displacements = random_poses(rng, 24, 20), rng.normal(size=(24, 3)) * 5
+    poses[[6, 23]] = np.nan
+    options = {"hits": 3, "skip_overlapping": True, "mode": "reference"}
+    places = np.arange(24).reshape(2, 3, 4)
+    casts = scene.cast(mesh, poses[places], displacements[places], **options)
+    even = places % 2 == 0
+    for index in (
+        *(1, -1, (0, 2), (1, 2, 3), np.int8(1), slice(1), (0, slice(1, 3)), (slice(None), [2, 0]), [], None, (1, None)),
+        *(..., (..., 1), (0, ..., slice(1, 3)), (..., [[0], [1]], [2, 3]), (None, ..., even[1])),
+        *(even, even[0, :, 0][:2], (even[..., 0], 2), (0, even[0]), casts.touches, ~casts.touches, [True, False]),
+    ):
+        part, chosen = casts[index], places[index]
+        again = scene.cast(mesh, poses[chosen], displacements[chosen], **options)
+        assert part.shape == again.shape == chosen.shape
+        assert same_answers(part, again) and same_answers(part.hits, again.hits)
+        for ragged in ("hits", "overlapping"):
+            a, b = getattr(part, ragged), getattr(again, ragged)
+            assert a.of_shape == b.of_shape and (a.offsets == b.offsets).all() and (a.object == b.object).all()
+        assert {reason: which.tolist() for reason, which in part.reasons.items()} == {
+            reason: which.tolist() for reason, which in again.reasons.items()
+        }
+    plain = scene.cast(mesh, poses, displacements, mode="sampled", resolution=16)
+    assert plain[3:5].resolution.shape == (2,) and plain[3:5].hits is None
+
+
+def test_casts_have_a_length_and_are_gone_through():
+    casts = cyber_radar.Casts.empty((3, 2))
+    casts.distance[:] = np.arange(6).reshape(3, 2)
+    assert len(casts) == 3
+    assert [[float(one.distance) for one in row] for row in casts] == [[0, 1], [2, 3], [4, 5]]
+    assert casts[0, 0].shape == () and casts[0, 0].point.shape == (3,)
+    for ask in (lambda: len(casts[0, 0]), lambda: list(casts[0, 0])):
+        with pytest.raises(TypeError, match=r"casts of shape \(\) are one cast, without a length"):
+            ask()
+    for index in (3, (0, 2), (0, 0, 0), [True, False], "a"):
+        with pytest.raises(IndexError, match=r"casts of shape \(3, 2\): "):
+            casts[index]
+
+
+def test_casts_become_a_dict_of_arrays(tmp_path):
+    for mode, count in (("contact", 12), ("sampled", 14)):
+        casts = cyber_radar.Casts.empty((5, 2), mode)
+        arrays = casts.to_dict()
+        assert len(arrays) == count and arrays["distance"] is casts.distance
+        assert all(array.shape[:2] == (5, 2) for array in arrays.values())
+        np.savez(tmp_path / "casts.npz", **arrays)
+        with np.load(tmp_path / "casts.npz") as read:
+            assert same_answers(cyber_radar.Casts(**read), casts)
+
+
+def test_an_index_of_lists_has_errors_of_its_own():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh)
+    casts = scene.cast(mesh, np.zeros((3, 2, 1, 1)) + np.eye(4), DOWN, hits="all", mode="reference")
+    assert casts.hits.of(-1, -2) == casts.hits.of(2, 0) == slice(4, 5)
+    for index, words in (
+        ((3,), r"of\(3\): expected 2 whole numbers, as the casts have shape \(3, 2\)"),
+        ((), r"of\(\): expected 2 whole numbers, as the casts have shape \(3, 2\)"),
+        ((0, 2), r"of\(0, 2\): expected a place in the casts' shape \(3, 2\)"),
+        ((-4, 0), r"of\(-4, 0\): expected a place in the casts' shape \(3, 2\)"),
+    ):
+        with pytest.raises(IndexError, match=words):
+            casts.hits.of(*index)
+    with pytest.raises(IndexError, match=r"of\(3\): expected 0 whole numbers, as the casts have shape \(\)"):
+        casts[0, 0].hits.of(3)
+
+
 def test_masks_exclusions_clearance_and_any_hit():
     scene = cyber_radar.Scene()
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
     scene.add(mesh, at([[0, 0, -3], [0, 0, -6]]), mask=[1, 2])
     cast = lambda **options: scene.cast(mesh, None, DOWN, mode="reference", **options)  # noqa: E731
     assert cast(mask=[1, 2, 3, 4]).distance.tolist() == [2, 5, 2, np.inf]
-    assert cast(exclude=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
+    assert cast(exclude_from_each=[[-1, -1], [0, -1], [1, 0]]).distance.tolist() == [2, 5, np.inf]
+    assert [cast(exclude_from_all=ids).distance for ids in ([], 0, [0], [0, 1])] == [2, 5, 5, np.inf]
+    assert cast(exclude_from_all=[0], exclude_from_each=[[-1], [1]]).distance.tolist() == [5, np.inf]
     near = cast(clearance=0.5, tolerance=1e-3)
     assert 1.5 - 1e-3 <= near.lo <= 1.5 <= near.hi <= near.lo + 1e-3
     any_hit = cast(any_hit=True)
@@ -205,7 +397,7 @@ def test_one_bad_cast_is_invalid_and_leaves_the_others_alone(boxes):
         bad = [3, 4, 500, 600, 899]
         assert np.flatnonzero(casts.status == Status.INVALID).tolist() == bad
         assert sorted(np.concatenate(list(casts.reasons.values())).tolist()) == bad
-        assert casts.reasons["displacements: expected 3 finite numbers, got nan"].tolist() == [4, 899]
+        assert casts.reasons["displacements: expected 3 finite numbers of at most 2^1000, got nan"].tolist() == [4, 899]
         assert np.isnan(casts.distance[bad]).all() and (casts.object[bad] == -1).all()
         good = np.setdiff1d(np.arange(900), bad)
         assert (casts.distance[good] == expected.distance[good]).all()

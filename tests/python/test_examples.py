@@ -19,8 +19,9 @@ from test_scene import ENGINE  # noqa: E402
 
 
 def run(example: str, *arguments) -> str:
+    strict = ["-W", "error", "-W", "ignore:Undefined-Value-Layer-Written"]  # as in pytest.ini
     done = subprocess.run(
-        [sys.executable, "-W", "error", EXAMPLES / example, *map(str, arguments)], capture_output=True, text=True
+        [sys.executable, *strict, EXAMPLES / example, *map(str, arguments)], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
     return done.stdout

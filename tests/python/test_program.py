@@ -86,8 +86,8 @@ def test_an_assembly_has_the_answers_of_the_program(tmp_path):
     }  # fmt: skip
     answers = ask_program(tmp_path, queries)
     casts = scene.cast(
-        held.meshes, held.transforms, [0, 1000, 0], exclude=objects[:, None], mode="reference",
-        ignore_leaving=True, skip_overlapping=True, hits="all",
+        held.meshes, held.transforms, [0, 1000, 0], distances=1000, exclude_from_each=objects[:, None],
+        mode="reference", ignore_leaving=True, skip_overlapping=True, hits="all",
     )  # fmt: skip
     assert (column(answers, "t", np.inf) == casts.distance).all()
     for i, answer in enumerate(answers):

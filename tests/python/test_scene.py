@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import types
 import warnings
 
 import numpy as np
@@ -92,6 +93,18 @@ def test_meshes_are_kept_as_given_and_rounding_is_said():
     scene.add(2)
     with pytest.raises(ValueError, match="mesh: expected a mesh that no object uses, got 2"):
         scene.remove_mesh(2)
+
+
+def test_a_mesh_of_another_package_is_taken_as_it_is():
+    scene = cyber_radar.Scene()
+    vertices = box(1, 1, 1)
+    like_trimesh = types.SimpleNamespace(vertices=vertices.astype(float), faces=FACES)
+    like_open3d = types.SimpleNamespace(vertices=vertices.astype(float), triangles=FACES.astype(np.int32))
+    for mesh in (like_trimesh, like_open3d):
+        kept, faces = scene.mesh(scene.add_mesh(mesh))
+        assert (kept == vertices).all() and (faces == FACES).all()
+    with pytest.raises(ValueError, match="or a mesh that has .vertices and .faces or .triangles, got SimpleNamespace"):
+        scene.add_mesh(types.SimpleNamespace(points=vertices, faces=FACES))
 
 
 def test_a_mesh_file_is_read_as_the_program_reads_it(tmp_path):

@@ -40,11 +40,43 @@ int64_t idOf(uint32_t id) {
   return id == kNone ? -1 : int64_t(id);
 }
 
+// Displacements of steps are no longer.
+constexpr double kMostWay = 0x1p1000;
+
+double lengthOf(const std::array<double, 3>& way) {
+  return std::hypot(std::hypot(way[0], way[1]), way[2]);
+}
+
+// Contact at the very end of a displacement counts, and none beyond it. Lengths round, so most queries are steps, whose
+// end is exact. Sweeps are those along an axis, where the length is a component and distances round only once; and
+// those that may round the length up: mode sampled, which has no steps, and a clearance where nothing moves, for which
+// the device has none. Both bracket the distance more widely than that.
+void setWay(Query& query, const std::array<double, 3>& way, bool mayRoundUp) {
+  const double length = lengthOf(way);
+  const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2;
+  query.motion.reset();
+  if (query.mode == Mode::sampled && length == 0) {
+    query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
+    query.distance = 0;
+  } else if (isAlongAxis && length <= kMostWay) {
+    for (int k = 0; k < 3; ++k) query.direction[k] = way[k] / length;
+    query.distance = length;
+  } else if (query.mode == Mode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
+    query.direction = way;
+    query.distance = std::nextafter((1 + 0x1p-50) * length, std::numeric_limits<double>::infinity());
+  } else {
+    query.motion = way;
+    query.direction = {};
+    query.distance = 0;
+  }
+}
+
 /// Goes through the queries in row-major order.
 class Reader {
  public:
-  /// Begins with query `first`.
-  Reader(const BatchInput& input, size_t first) : input_(input), index_(input.shape.size()) {
+  /// Begins with query `first`. `mayRoundUp`: see setWay.
+  Reader(const BatchInput& input, size_t first, bool mayRoundUp)
+      : input_(input), mayRoundUp_(mayRoundUp), index_(input.shape.size()) {
     for (size_t d = index_.size(); d-- > 0; first /= input.shape[d]) {
       index_[d] = static_cast<ptrdiff_t>(first % input.shape[d]);
     }
@@ -68,6 +100,7 @@ class Reader {
   }
 
   const BatchInput& input_;
+  bool mayRoundUp_;
   std::vector<ptrdiff_t> index_;
   std::vector<int64_t> excluded_;
 };
@@ -75,20 +108,14 @@ class Reader {
 void Reader::next(Query& query) {
   read(input_.meshes, &query.mesh, 1);
   read(input_.poses, query.worldFromMesh.m.data(), 12);
-  read(input_.displacements, query.direction.data(), 3);
   read(input_.masks, &query.mask, 1);
+  std::array<double, 3> way;
+  read(input_.displacements, way.data(), 3);
   if (input_.distances.data) {
+    query.direction = way;
     read(input_.distances, &query.distance, 1);
   } else {
-    query.motion.reset();
-    query.distance = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
-    if (query.distance == 0 && query.direction == std::array<double, 3>{}) {
-      if (query.mode == Mode::sampled) {
-        query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
-      } else {
-        query.motion = query.direction;
-      }
-    }
+    setWay(query, way, mayRoundUp_);
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
@@ -102,8 +129,9 @@ void Reader::next(Query& query) {
 /// A query's broken contract in the words of the arguments; empty if it is kept.
 std::string wrongWith(const Query& query, const Scene& scene) {
   std::string wrong = validate(query, scene);
-  for (const auto& [engine, argument] : {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
-                                         std::pair{"distance: ", "distances: "}}) {
+  for (const auto& [engine, argument] :
+       {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
+        std::pair{"motion: ", "displacements: "}, std::pair{"distance: ", "distances: "}}) {
     if (wrong.rfind(engine, 0) == 0) return argument + wrong.substr(std::strlen(engine));
   }
   return wrong;
@@ -153,15 +181,26 @@ PoolAnswers answer(CastingScene& scene, const std::vector<Query>& queries, bool 
   return answerValid(scene, queries, onCpu);
 }
 
-/// The times of a sensor that rests are fractions of the step, in which it goes nowhere.
+/// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a
+/// subnormal product loses.
+void toDistances(Result& result, double length) {
+  constexpr double kRoom = 0x1p-50, kFloor = std::numeric_limits<double>::denorm_min();
+  const auto scaled = [&](double time) { return time == 0 || std::isinf(time) ? time : time * length; };
+  const bool isLo = result.t == result.lo && result.lo < result.hi;
+  if (length == 0) result.hi = std::isinf(result.hi) ? result.hi : 0;
+  result.lo = std::max((1 - kRoom) * scaled(result.lo) - kFloor, 0.0);
+  result.t = isLo ? result.lo : scaled(result.t);
+  result.hi = result.hi == 0 ? 0 : (1 + kRoom) * scaled(result.hi) + kFloor;
+}
+
 void timesToDistances(const std::vector<Query>& queries, PoolAnswers& answers) {
-  const auto toDistance = [](Result& result) { result.t = result.lo = result.hi = 0; };
   for (size_t i = 0; i < queries.size(); ++i) {
     if (!queries[i].motion) continue;
-    toDistance(answers.results[i]);
+    const double length = lengthOf(*queries[i].motion);
+    toDistances(answers.results[i], length);
     if (answers.lists.hitOffsets.empty()) continue;
     for (size_t hit = answers.lists.hitOffsets[i]; hit < answers.lists.hitOffsets[i + 1]; ++hit) {
-      toDistance(answers.lists.hits[hit]);
+      toDistances(answers.lists.hits[hit], length);
     }
   }
 }
@@ -213,6 +252,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
   BatchLists lists;
   lists.lists.hitOffsets = lists.lists.overlappingOffsets = {0};
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
+  const bool mayRoundUp = input.options.clearance > 0 && !scene.moves();
   const size_t count = input.count();
   std::vector<Query> queries;
   size_t chunk = kFirstChunk;
@@ -221,7 +261,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
     const size_t end = std::min(first + chunk, count);
     queries.resize(end - first, input.options);
     inParts(end - first, [&](size_t from, size_t to) {
-      Reader reader(input, first + from);
+      Reader reader(input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
     PoolAnswers answers = answer(scene, queries, input.onCpu);

@@ -24,7 +24,7 @@ struct BatchInput {
   PerQuery meshes;            ///< uint32_t
   PerQuery poses;             ///< 16 doubles; the last row is 0 0 0 1
   PerQuery displacements;     ///< 3 doubles
-  PerQuery distances;         ///< double; without data, the length of the displacement
+  PerQuery distances;         ///< double; without data, each goes to the end of its displacement
   PerQuery masks;             ///< uint32_t
   PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;

@@ -50,6 +50,13 @@ CastingScene::Answerers& CastingScene::answerers() {
   return *answerers_;
 }
 
+bool CastingScene::moves() const {
+  for (ObjectId id = 0; id < scene_.objectLimit(); ++id) {
+    if (scene_.hasObject(id) && scene_.object(id).motion != std::array<double, 3>{}) return true;
+  }
+  return false;
+}
+
 void CastingScene::edit(const std::function<void(Scene&)>& change) {
   Answerers& by = answerers();
   if (by.pool) {

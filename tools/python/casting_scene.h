@@ -28,6 +28,8 @@ class CastingScene {
   ~CastingScene();
 
   const Scene& scene() const { return scene_; }
+  /// Whether an object has a motion.
+  bool moves() const;
   /// Every change is made here, since a pool must know of it.
   void edit(const std::function<void(Scene&)>& change);
 

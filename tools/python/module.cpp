@@ -58,12 +58,32 @@ std::unique_ptr<CastingScene> makeScene(std::optional<uint32_t> device, std::opt
       DeviceChoice{device.value_or(kNone), std::move(pool), cpuBatch.value_or(kNone), threads});
 }
 
+/// Works while other Python threads run, which may write to arrays: it must have copied what it reads of them.
+template <class Work>
+auto released(const Work& work) {
+  const py::gil_scoped_release release;
+  return work();
+}
+
+void edit(CastingScene& scene, const std::function<void(Scene&)>& change) {
+  released([&] { scene.edit(change); });
+}
+
+template <class T>
+std::vector<T> copyOf(const Array<T>& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
 MeshId addMesh(CastingScene& scene, const Array<float>& vertices, const Array<uint32_t>& faces) {
   MeshId mesh = kNone;
-  scene.edit([&](Scene& to) {
-    mesh = to.addMesh({vertices.data(), size_t(vertices.size())}, {faces.data(), size_t(faces.size())});
+  edit(scene, [&, positions = copyOf(vertices), indices = copyOf(faces)](Scene& to) {
+    mesh = to.addMesh(positions, indices);
   });
   return mesh;
+}
+
+void setVertices(CastingScene& scene, MeshId mesh, const Array<float>& vertices) {
+  edit(scene, [mesh, positions = copyOf(vertices)](Scene& to) { to.setPositions(mesh, positions); });
 }
 
 Array<int64_t> add(CastingScene& scene, const Array<uint32_t>& meshes, const Array<double>& transforms,
@@ -84,7 +104,7 @@ void setTransforms(CastingScene& scene, const Array<uint32_t>& objects, const Ar
   requireCount(transforms, "transforms", 16 * static_cast<size_t>(objects.size()));
   std::vector<Transform> given;
   for (py::ssize_t i = 0; i < objects.size(); ++i) given.push_back(transformFrom(transforms.data() + 16 * i));
-  scene.edit([&](Scene& to) { to.setTransforms({objects.data(), given.size()}, given); });
+  edit(scene, [&, ids = copyOf(objects)](Scene& to) { to.setTransforms(ids, given); });
 }
 
 void setMotions(CastingScene& scene, const Array<uint32_t>& objects, const Array<double>& motions) {
@@ -232,13 +252,13 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   BatchInput input{.shape = shape};
   const auto argument = [&](const char* name) { return arguments[name].cast<py::array>(); };
   const py::array meshes = argument("mesh"), poses = argument("poses"), displacements = argument("displacements"),
-                  masks = argument("mask"), excluded = argument("exclude");
+                  masks = argument("mask"), excluded = argument("exclude_from_each");
   input.meshes = perQuery<uint32_t>(meshes, shape, 1, "mesh");
   input.poses = perQuery<double>(poses, shape, 16, "poses");
   input.displacements = perQuery<double>(displacements, shape, 3, "displacements");
   input.masks = perQuery<uint32_t>(masks, shape, 1, "mask");
   input.excludedCount = static_cast<size_t>(excluded.shape(excluded.ndim() - 1));
-  input.excluded = perQuery<int64_t>(excluded, shape, input.excludedCount, "exclude");
+  input.excluded = perQuery<int64_t>(excluded, shape, input.excludedCount, "exclude_from_each");
   py::array distances;
   if (!arguments["distances"].is_none()) {
     distances = argument("distances");
@@ -249,9 +269,9 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;
   {
-    const py::gil_scoped_release released;
+    const py::gil_scoped_release release;
     found = cast(scene, input, output, [&](size_t done) {
-      const py::gil_scoped_acquire acquired;
+      const py::gil_scoped_acquire acquire;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (!afterChunk.is_none()) afterChunk(done);
     });
@@ -263,7 +283,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
 
 py::list deviceReports() {
   py::list list;
-  for (const DeviceReport& report : listDevices()) {
+  for (const DeviceReport& report : released(listDevices)) {
     py::dict device;
     device["name"] = report.name;
     device["driver"] = report.driver;
@@ -280,13 +300,13 @@ py::list deviceReports() {
 
 py::tuple readMesh(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
-  const tools::MeshData mesh = tools::readMesh(file, warnings);
+  const tools::MeshData mesh = released([&] { return tools::readMesh(file, warnings); });
   return py::make_tuple(meshArrays(mesh.positions, mesh.indices), warnings);
 }
 
 py::tuple readAssembly(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
-  const tools::Assembly assembly = tools::readAssembly(file, warnings);
+  const tools::Assembly assembly = released([&] { return tools::readAssembly(file, warnings); });
   py::list meshes, names;
   std::vector<uint32_t> placed;
   std::vector<double> transforms;
@@ -351,10 +371,7 @@ PYBIND11_MODULE(_engine, module) {
       .def("add", &add)
       .def("set_transforms", &setTransforms)
       .def("set_motions", &setMotions)
-      .def("set_vertices",
-           [](CastingScene& scene, radar::MeshId mesh, const Array<float>& vertices) {
-             scene.edit([&](radar::Scene& in) { in.setPositions(mesh, {vertices.data(), size_t(vertices.size())}); });
-           })
+      .def("set_vertices", &setVertices)
       .def("remove", &removeObjects)
       .def("objects", &objects)
       .def("object_ids", &objectIds)

@@ -26,13 +26,11 @@ from . import _engine
 from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
 from ._engine import Error
 from ._files import read_mesh
-from ._handle import CastHandle
 from ._scene import Objects, Scene
 from ._warnings import MeshFileWarning, RoundingWarning, ValidationWarning
 
 __version__: str = _engine.version
 __all__ = [
-    "CastHandle",
     "Casts",
     "DeviceInfo",
     "Error",

@@ -28,9 +28,9 @@ def cast_options(
 ) -> dict[str, Any]:
     if mode not in ("contact", "sampled", "reference"):
         raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
-    count = one_whole_number(
-        _engine.ALL_HITS if isinstance(hits, str) and hits == "all" else hits, "hits", 1, _engine.ALL_HITS
-    )
+    if isinstance(hits, str) and hits != "all":
+        raise ValueError(f'hits: expected a whole number of 1 or more, or "all", got {hits!r}')
+    count = one_whole_number(_engine.ALL_HITS if isinstance(hits, str) else hits, "hits", 1, _engine.ALL_HITS)
     least = _length(clearance, "clearance") or 0.0
     if count > 1 and any_hit:
         raise ValueError(f"hits: expected 1 with any_hit, got {hits}")
@@ -82,6 +82,27 @@ def device_choice(device: Any) -> tuple[int | None, list[int] | None]:
     return (int(numbers), None) if numbers.ndim == 0 else (None, numbers.tolist())
 
 
+def mesh_arrays(vertices: Any, faces: npt.ArrayLike | None) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
+    """`faces` may be missing if `vertices` is a mesh of another package."""
+    if faces is None:
+        name = "faces" if hasattr(vertices, "faces") else "triangles"
+        if not (hasattr(vertices, "vertices") and hasattr(vertices, name)):
+            raise ValueError(
+                "faces: expected them beside the vertices, or a mesh that has .vertices and .faces or .triangles, "
+                f"got {type(vertices).__name__}"
+            )
+        vertices, faces = vertices.vertices, getattr(vertices, name)
+    placed = mesh_vertices(vertices)
+    corners = whole_numbers(faces, "faces", np.uint32, 0, MOST_ID + 1, (3,))
+    if corners.ndim != 2 or len(corners) == 0 or len(placed) == 0:
+        raise ValueError(f"faces: expected shape (M, 3) with a triangle at least, got shape {corners.shape}")
+    if (wrong := corners >= len(placed)).any():
+        row, got = int(np.argwhere(wrong)[0][0]), int(corners[wrong][0])
+        hint = "; are they strips? Each row is a triangle of its own" if got in (2**16 - 1, 2**32 - 1) else ""
+        raise ValueError(f"faces[{row}]: expected vertices from 0 to {len(placed) - 1}, got {got}{hint}")
+    return placed, corners
+
+
 def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
     given = reals(value, "vertices", (3,))
     if given.ndim != 2:
@@ -98,6 +119,16 @@ def mesh_vertices(value: npt.ArrayLike) -> npt.NDArray[np.float32]:
             RoundingWarning,
         )
     return rounded
+
+
+def refuse_one_each(ids: tuple[int, ...], casts: tuple[int, ...]) -> None:
+    """Refuses rows of ids if their shape is also that of one id for each cast."""
+    fits = len(ids) <= len(casts) and all(n in (1, length) for n, length in zip(ids[::-1], casts[::-1]))
+    if fits and ids[-1] > 1:
+        raise ValueError(
+            f"exclude_from_each: shape {ids} may mean rows of {ids[-1]} ids, or one id for each cast of shape {casts}; "
+            "for one each, pass ids[..., None]; for rows, ids[None]"
+        )
 
 
 def regular(matrices: npt.NDArray[np.float64], name: str) -> npt.NDArray[np.float64]:

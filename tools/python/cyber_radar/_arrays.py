@@ -18,7 +18,7 @@ def reals(value: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.N
         raise ValueError(f"{name}: expected numbers of at most double precision, got dtype {array.dtype}")
     if array.dtype.kind in "iu" and array.dtype.itemsize == 8 and ((array > MOST_EXACT) | (array < -MOST_EXACT)).any():
         raise ValueError(f"{name}: expected whole numbers up to 2^53, which doubles can hold, got larger ones")
-    return np.array(array, dtype=np.float64, order="C", copy=False)
+    return np.asarray(array, dtype=np.float64, order="C")
 
 
 def whole_numbers(
@@ -33,7 +33,7 @@ def whole_numbers(
     if array.size and (int(array.min()) < least or int(array.max()) > most):
         wrong = array[(array < least) | (array > most)].flat[0]
         raise ValueError(f"{name}: expected whole numbers from {least} to {most}, got {wrong}")
-    return np.array(array, dtype=dtype, order="C", copy=False)
+    return np.asarray(array, dtype=dtype, order="C")
 
 
 def poses(value: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:

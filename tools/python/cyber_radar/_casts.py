@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import operator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -65,6 +67,9 @@ class Casts:
 
     Distances are in world units along the displacement. A number that an answer does not have is NaN, an id -1; a
     distance is infinite if there is no contact. 109 bytes a cast, and 12 more in mode "sampled".
+
+    An index into the leading shape gives the casts there, with all that they list, as numpy's index would: casts[3],
+    casts[:, 0], casts[casts.touches]. len() and iteration go through the first dimension.
     """
 
     distance: npt.NDArray[np.float64]
@@ -118,6 +123,37 @@ class Casts:
         """(...) whether there certainly is a contact: status HIT or OVERLAP."""
         return np.isin(self.status, (Status.HIT, Status.OVERLAP))
 
+    def to_dict(self) -> dict[str, npt.NDArray[Any]]:
+        """The arrays by name, without what is listed: numpy.savez(file, **casts.to_dict())."""
+        arrays = {name: getattr(self, name) for name in _FIELDS | _SAMPLED_FIELDS}
+        return {name: array for name, array in arrays.items() if array is not None}
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("casts of shape () are one cast, without a length")
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[Casts]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self, index: Any) -> Casts:
+        places = _leading(index, self.shape)
+        part = Casts(**{name: array[places] for name, array in self.to_dict().items()})
+        if self.hits is None and self.overlapping is None and not self.reasons:
+            return part
+        chosen = np.arange(self.distance.size).reshape(self.shape)[places].ravel()
+        if self.hits is not None:
+            rows, offsets = self.hits._rows_of(chosen)
+            arrays: dict[str, Any] = self.hits[rows].to_dict()
+            part.hits = Hits(**arrays, offsets=offsets, of_shape=part.shape)
+        if self.overlapping is not None:
+            rows, offsets = self.overlapping._rows_of(chosen)
+            part.overlapping = Overlapping(self.overlapping.object[rows], offsets, part.shape)
+        for reason, casts in self.reasons.items():
+            if (isin := np.isin(chosen, casts)).any():
+                part.reasons[reason] = np.flatnonzero(isin)
+        return part
+
     def __repr__(self) -> str:
         counts = np.bincount(self.status.ravel(), minlength=len(Status))
         words = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status if counts[status])
@@ -132,9 +168,23 @@ class _Ragged:
     of_shape: tuple[int, ...]
 
     def of(self, *index: int) -> slice:
-        """The rows of one cast: hits.object[hits.of(3, 1)]."""
-        i = int(np.ravel_multi_index(index, self.of_shape)) if self.of_shape else 0
+        """The rows of one cast: hits.object[hits.of(3, 1)]. As many whole numbers as the casts have dimensions."""
+        shape, called = self.of_shape, f"of({', '.join(map(str, index))})"
+        if len(index) != len(shape):
+            raise IndexError(f"{called}: expected {len(shape)} whole numbers, as the casts have shape {shape}")
+        i = 0
+        for k, length in zip(map(operator.index, index), shape):
+            if not -length <= k < length:
+                raise IndexError(f"{called}: expected a place in the casts' shape {shape}")
+            i = i * length + k % length
         return slice(int(self.offsets[i]), int(self.offsets[i + 1]))
+
+    def _rows_of(self, casts: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """The rows of these casts, one cast after the other, and their offsets."""
+        counts = np.diff(self.offsets)[casts]
+        offsets = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
+        rows = np.arange(offsets[-1]) + np.repeat(self.offsets[casts] - offsets[:-1], counts)
+        return rows.astype(np.int64), offsets
 
     @property
     def cast(self) -> npt.NDArray[np.int64]:
@@ -144,7 +194,8 @@ class _Ragged:
 
 @dataclasses.dataclass(eq=False, repr=False)
 class Hits(Casts, _Ragged):
-    """First contacts with several objects, one row each, for each cast in the order of (distance, object)."""
+    """First contacts with several objects, one row each, for each cast in the order of (distance, object). An index
+    gives rows."""
 
     offsets: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.zeros(1, np.int64))
     of_shape: tuple[int, ...] = ()
@@ -157,6 +208,28 @@ class Overlapping(_Ragged):
     object: npt.NDArray[np.int64]
     offsets: npt.NDArray[np.int64]
     of_shape: tuple[int, ...]
+
+
+def _leading(index: Any, shape: tuple[int, ...]) -> tuple[Any, ...]:
+    """An index into the leading shape as one into arrays that have more dimensions behind it."""
+    try:
+        np.broadcast_to(False, shape)[index]
+    except IndexError as error:
+        raise IndexError(f"casts of shape {shape}: {error}") from None
+    items = list(index) if isinstance(index, tuple) else [index]
+    where = [i for i, item in enumerate(items) if item is Ellipsis]
+    if where:
+        others = items[: where[0]] + items[where[0] + 1 :]
+        items[where[0] : where[0] + 1] = [slice(None)] * (len(shape) - sum(map(_dimensions, others)))
+    return (*items, Ellipsis)
+
+
+def _dimensions(item: Any) -> int:
+    """How many dimensions an item of an index takes."""
+    if item is None:
+        return 0
+    array = None if isinstance(item, slice) else np.asarray(item)
+    return 1 if array is None or array.dtype != bool else array.ndim
 
 
 def _new_arrays(shape: tuple[int, ...], sampled: bool) -> dict[str, Any]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import concurrent.futures
 import contextlib
-import inspect
 import os
 import threading
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal, NamedTuple
 
@@ -14,11 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from ._arguments import MOST_ID, Mode, cast_options, device_choice, mesh_vertices, one_whole_number, regular
+from ._arguments import (
+    MOST_ID,
+    Mode,
+    cast_options,
+    device_choice,
+    mesh_arrays,
+    mesh_vertices,
+    one_whole_number,
+    refuse_one_each,
+    regular,
+)
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
 from ._files import Path, read_mesh
-from ._handle import CastHandle
 from ._warnings import MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
@@ -46,7 +54,8 @@ class Scene:
 
     Lengths are in any one unit. Meshes are triangle soups seen from both sides: they need not be closed or convex. A
     scene pickles as its recipe: meshes, objects, names and these settings. Any thread may use a scene; calls wait for
-    each other.
+    each other. A forked process may use it, unless another thread was using it at that moment: then calls raise
+    RuntimeError.
 
     >>> scene = Scene()
     >>> plate = scene.add_mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
@@ -75,24 +84,22 @@ class Scene:
         )
         self._names: dict[int, str] = {}
         self._lock = threading.Lock()
-        self._queueing = threading.Lock()  # of the worker and what is queued; never held for long
         self._user: int | None = None  # the thread that holds the lock
-        self._worker: concurrent.futures.ThreadPoolExecutor | None = None
-        self._process = os.getpid()  # which the worker and what is queued belong to
-        self._queued: list[concurrent.futures.Future[Casts]] = []
+        self._is_lost = False  # to a thread of the process that forked this one
+        _scenes.add(self)
 
     # ------------------------------------------------------------------------------------------------------ contents
 
-    def add_mesh(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> int:
+    def add_mesh(self, vertices: Any, faces: npt.ArrayLike | None = None) -> int:
         """Adds a mesh and returns its id.
 
         vertices: (N, 3), float32. Other numbers are rounded to float32, with a RoundingWarning if that changes any.
         faces: (M, 3), whole numbers: the vertices of each triangle.
+
+        Or only one argument, a mesh of another package: anything with `vertices` and `faces`, as in trimesh, or
+        `triangles`, as in Open3D.
         """
-        placed = mesh_vertices(vertices)
-        corners = whole_numbers(faces, "faces", np.uint32, 0, max(len(placed) - 1, 0), (3,))
-        if corners.ndim != 2 or len(corners) == 0 or len(placed) == 0:
-            raise ValueError(f"faces: expected shape (M, 3) with a triangle at least, got shape {corners.shape}")
+        placed, corners = mesh_arrays(vertices, faces)
         with self._exclusive() as engine:
             return engine.add_mesh(placed, corners)
 
@@ -121,20 +128,22 @@ class Scene:
 
     def remove_mesh(self, mesh: int) -> None:
         """Removes a mesh that no object uses."""
-        number = self._known_mesh(mesh)
         with self._exclusive() as engine:
+            number = self._known_mesh(mesh)
             if (engine.objects()[1] == number).any():
                 raise ValueError(f"mesh: expected a mesh that no object uses, got {number}")
             engine.remove_mesh(number)
 
     def mesh(self, mesh: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """A copy of a mesh: vertices (N, 3), faces (M, 3)."""
-        return self._engine.mesh(self._known_mesh(mesh))
+        with self._reading() as engine:
+            return engine.mesh(self._known_mesh(mesh))
 
     @property
     def meshes(self) -> list[int]:
         """The ids of all meshes."""
-        return self._engine.mesh_ids()
+        with self._reading() as engine:
+            return engine.mesh_ids()
 
     def add(
         self, mesh: npt.ArrayLike, transforms: npt.ArrayLike | None = None, *, mask: npt.ArrayLike = _ALL_BITS
@@ -144,11 +153,11 @@ class Scene:
         mesh: (...) ids. transforms: (..., 4, 4) world from mesh, any invertible affine matrices; None: the identity.
         mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
         """
-        meshes = self._known_meshes(mesh)
         matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
         masks = whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK)
-        shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
         with self._exclusive() as engine:
+            meshes = self._known_meshes(mesh)
+            shape = common_shape({"mesh": (meshes, 0), "transforms": (matrices, 2), "mask": (masks, 0)})
             ids = engine.add(
                 np.broadcast_to(meshes, shape).ravel(),
                 np.broadcast_to(matrices, (*shape, 4, 4)).reshape(-1, 4, 4),
@@ -183,8 +192,9 @@ class Scene:
 
     def set_vertices(self, mesh: int, vertices: npt.ArrayLike) -> None:
         """Moves the vertices of a mesh: (N, 3), as many as it has, as in add_mesh()."""
-        number, placed = self._known_mesh(mesh), mesh_vertices(vertices)
+        placed = mesh_vertices(vertices)
         with self._exclusive() as engine:
+            number = self._known_mesh(mesh)
             count = len(engine.mesh(number)[0])
             if len(placed) != count:
                 raise ValueError(f"vertices: expected shape ({count}, 3), got shape {placed.shape}")
@@ -200,7 +210,8 @@ class Scene:
 
     def objects(self) -> Objects:
         """Ids, meshes, transforms, masks and motions of all objects: copies."""
-        return Objects(*self._engine.objects())
+        with self._reading() as engine:
+            return Objects(*engine.objects())
 
     @property
     def names(self) -> dict[int, str]:
@@ -208,7 +219,8 @@ class Scene:
         return dict(self._names)
 
     def __len__(self) -> int:
-        return len(self._engine.object_ids())
+        with self._reading() as engine:
+            return len(engine.object_ids())
 
     def __repr__(self) -> str:
         return f"<Scene of {len(self)} objects, {len(self.meshes)} meshes>"
@@ -223,7 +235,8 @@ class Scene:
         *,
         mode: Mode = "contact",
         distances: npt.ArrayLike | None = None,
-        exclude: npt.ArrayLike = (),
+        exclude_from_all: npt.ArrayLike = (),
+        exclude_from_each: npt.ArrayLike | None = None,
         mask: npt.ArrayLike = _ALL_BITS,
         any_hit: bool = False,
         ignore_leaving: bool = False,
@@ -240,14 +253,15 @@ class Scene:
 
         mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
         poses: (..., 4, 4) world from mesh at the start, affine; None: the identity.
-        displacements: (..., 3) the way to go, world units. With a zero the mesh rests: only what is there at the start,
-            or moves (set_motions), meets it.
+        displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
+            rests: only what is there at the start, or moves (set_motions), meets it.
         Leading shapes broadcast together, also those of the next three; the result has the common shape.
 
         distances: (...) how far to go; displacements then give the direction alone.
-        exclude: (..., K) ids of objects to ignore; -1 is none.
+        exclude_from_each: (..., K) ids of objects to ignore, a row for each cast; -1 is none. ids[:, None] is one each.
         mask: (...) 32 bits; an object takes part if its mask shares one.
 
+        exclude_from_all: (K,) ids of objects that every cast ignores, or one id.
         mode: "contact", exact, on device or CPU; "sampled", the paper's depth pictures, an upper bound; "reference",
             exact, on the CPU alone. "contact" and "reference" give the same numbers.
         any_hit: ask only whether there is a contact; cheaper if there is one.
@@ -269,50 +283,25 @@ class Scene:
         options = cast_options(
             mode, any_hit, ignore_leaving, skip_overlapping, slack, clearance, tolerance, hits, resolution
         )
-        batch = self._batch(mesh, poses, displacements, distances, exclude, mask, options, out)
+        excluded = self._excluded(exclude_from_all, exclude_from_each)
+        batch = self._batch(mesh, poses, displacements, distances, excluded, mask, options, out)
+        if exclude_from_each is not None:
+            refuse_one_each(np.shape(exclude_from_each), batch.shape)
         total = _count(batch.shape)
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
             return self._run(engine, batch, after_chunk)
 
-    def cast_async(
-        self, mesh: npt.ArrayLike, poses: npt.ArrayLike | None, displacements: npt.ArrayLike, **options: Any
-    ) -> CastHandle:
-        """Begins a cast on another thread and returns at once; arguments as cast(). They are copied, except `out`.
-
-        Casts of one scene run one after the other. What changes the scene waits until those begun before are done.
-        """
-        bound = inspect.signature(self.cast).bind(mesh, poses, displacements, **options)
-        bound.apply_defaults()
-        given = bound.arguments
-        chosen = cast_options(**{name: given[name] for name in inspect.signature(cast_options).parameters})
-        per_cast = {name: given[name] for name in ("mesh", "poses", "displacements", "distances", "exclude", "mask")}
-        batch = self._batch(**per_cast, options=chosen, out=given["out"], copy=True)
-        handle = CastHandle(_count(batch.shape), given["progress"])
-
-        def work() -> Casts:
-            with self._exclusive(settle=False) as engine:
-                return self._run(engine, batch, handle._after_chunk)
-
-        self._refuse_callbacks()
-        with self._queueing:
-            if self._worker is None or self._process != os.getpid():  # threads do not follow a fork
-                self._worker = concurrent.futures.ThreadPoolExecutor(1, "cyber-radar-cast")
-                self._process, self._queued = os.getpid(), []
-            self._queued = [future for future in self._queued if not future.done()]
-            handle._future = self._worker.submit(work)
-            self._queued.append(handle._future)
-        return handle
-
     @property
     def device_names(self) -> list[str]:
         """The devices that have been opened for this scene."""
-        return self._engine.device_names()
+        with self._reading() as engine:
+            return engine.device_names()
 
     # ------------------------------------------------------------------------------------------------------- pickling
 
     def __getstate__(self) -> dict[str, Any]:
-        with self._exclusive() as engine:
+        with self._reading() as engine:
             return {
                 "settings": self._settings,
                 "meshes": {mesh: engine.mesh(mesh) for mesh in engine.mesh_ids()},
@@ -342,23 +331,27 @@ class Scene:
     # ---------------------------------------------------------------------------------------------------------- inner
 
     @contextlib.contextmanager
-    def _exclusive(self, settle: bool = True) -> Iterator[_engine.Scene]:
-        """The engine's scene, for this thread alone; `settle`: once all casts begun before are done."""
-        self._refuse_callbacks()
-        if settle and self._process == os.getpid():
-            with self._queueing:
-                queued = list(self._queued)
-            concurrent.futures.wait(queued)
+    def _exclusive(self) -> Iterator[_engine.Scene]:
+        """The engine's scene, for this thread alone."""
+        if self._user == threading.get_ident():
+            raise RuntimeError("a progress callback cannot change the scene that is being cast, or cast in it")
+        if self._is_lost:
+            raise RuntimeError("another thread was using this scene when the process forked: send it pickled instead")
         with self._lock:
-            self._user = threading.get_ident()
             try:
+                self._user = threading.get_ident()
                 yield self._engine
             finally:
                 self._user = None
 
-    def _refuse_callbacks(self) -> None:
+    @contextlib.contextmanager
+    def _reading(self) -> Iterator[_engine.Scene]:
+        """The same; a thread that has the scene already, such as in a progress callback, may look at it."""
         if self._user == threading.get_ident():
-            raise RuntimeError("a progress callback cannot use the scene that is being cast")
+            yield self._engine
+        else:
+            with self._exclusive() as engine:
+                yield engine
 
     def _batch(
         self,
@@ -366,29 +359,46 @@ class Scene:
         poses: npt.ArrayLike | None,
         displacements: npt.ArrayLike,
         distances: npt.ArrayLike | None,
-        exclude: npt.ArrayLike,
+        excluded: npt.NDArray[np.int64],
         mask: npt.ArrayLike,
         options: dict[str, Any],
         out: Casts | None,
-        copy: bool = False,
     ) -> _Batch:
         arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
             "mesh": (self._known_meshes(mesh), 0),
             "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
             "displacements": (reals(displacements, "displacements", (3,)), 1),
             "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
-            "exclude": (self._known_objects(exclude, "exclude", (-1,)), 1),
+            "exclude_from_each": (excluded, 1),
         }
         if distances is not None:
             arrays["distances"] = (reals(distances, "distances"), 0)
         shape = common_shape(arrays)
         arguments: dict[str, Any] = {"distances": None}
         for name, (array, inner) in arrays.items():
-            own = array.copy() if copy else array
-            arguments[name] = np.broadcast_to(own, shape + own.shape[own.ndim - inner :])
+            arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
         sampled = options["sampled"]
         results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
         return _Batch(shape, arguments, options, results, out)
+
+    def _excluded(self, from_all: npt.ArrayLike, from_each: npt.ArrayLike | None) -> npt.NDArray[np.int64]:
+        """Rows of objects to ignore: (..., K)."""
+        all_ids = self._known_objects(from_all, "exclude_from_all")
+        if all_ids.ndim > 1:
+            raise ValueError(
+                f"exclude_from_all: expected shape (K,), ids that every cast ignores, got shape {all_ids.shape}; "
+                "exclude_from_each has a row for each cast"
+            )
+        all_ids = all_ids.reshape(-1)
+        if from_each is None:
+            return all_ids
+        rows = self._known_objects(from_each, "exclude_from_each", least=-1)
+        if rows.ndim < 2:
+            raise ValueError(
+                f"exclude_from_each: expected shape (..., K), a row of ids for each cast, got shape {rows.shape}; for "
+                "one id each, pass ids[:, None]; for the same ids in every cast, exclude_from_all"
+            )
+        return np.concatenate([rows, np.broadcast_to(all_ids, (*rows.shape[:-1], all_ids.size))], axis=-1)
 
     def _run(
         self,
@@ -421,7 +431,7 @@ class Scene:
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
         ids = whole_numbers(mesh, "mesh", np.uint32, 0, MOST_ID)
-        known = np.isin(ids, self._engine.mesh_ids())
+        known = np.isin(ids, self.meshes)
         if not known.all():
             raise ValueError(f"mesh: expected ids of meshes of the scene, got {ids[~known].flat[0]}")
         return ids
@@ -429,11 +439,12 @@ class Scene:
     def _known_mesh(self, mesh: int) -> int:
         return int(self._known_meshes(one_whole_number(mesh, "mesh", 0, MOST_ID)))
 
-    def _known_objects(self, objects: npt.ArrayLike, name: str, inner: tuple[int, ...] = ()) -> npt.NDArray[np.int64]:
-        """`inner` is given for `exclude`, where -1 is none."""
-        ids = whole_numbers(objects, name, np.int64, -1 if inner else 0, MOST_ID, inner)
+    def _known_objects(self, objects: npt.ArrayLike, name: str, least: int = 0) -> npt.NDArray[np.int64]:
+        """`least`: -1 if that is none."""
+        ids = whole_numbers(objects, name, np.int64, least, MOST_ID)
         if ids.size:
-            unknown = np.setdiff1d(ids, self._engine.object_ids())
+            with self._reading() as engine:
+                unknown = np.setdiff1d(ids, engine.object_ids())
             unknown = unknown[unknown >= 0]
             if unknown.size:
                 raise ValueError(f"{name}: expected ids of objects of the scene, got {unknown[0]}")
@@ -450,3 +461,16 @@ class _Batch(NamedTuple):
 
 def _count(shape: tuple[int, ...]) -> int:
     return int(np.prod(shape, dtype=np.int64))
+
+
+_scenes: weakref.WeakSet[Scene] = weakref.WeakSet()
+
+
+def _after_fork() -> None:
+    """Other threads do not follow a fork: what they began with a scene is never finished."""
+    for scene in _scenes:
+        scene._is_lost = scene._lock.locked() and scene._user != threading.get_ident()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)

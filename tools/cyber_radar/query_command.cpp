@@ -26,7 +26,6 @@ Lines, one per query, in the file's order. cyber-radar workload writes query fil
 
 struct Options {
   RunOptions run;
-  std::string stats;
   uint32_t repeat = 1;
   bool repeated = false;
 };
@@ -134,16 +133,15 @@ class Run {
 int query(const Options& options) {
   AnsweringOptions engine = options.run.engine.checked();
   options.run.check();
-  if (!options.stats.empty()) requireFolderOf("--stats", options.stats);
 
   const double start = bench::now();
   std::vector<std::string> warnings;
-  const QueryFile queries(options.run.file, warnings);
+  const QueryFile queries(options.run.file, warnings, options.run.outputs());
   Times times;
   times.loadMs = 1e3 * (bench::now() - start);
   printWarnings(warnings);
 
-  engine.timestamps = !options.stats.empty() && !options.repeated;
+  engine.timestamps = !options.run.stats.empty() && !options.repeated;
   Run run(options, queries, engine);
   times.setupMs = run.setUp();
   if (options.repeated) {
@@ -161,10 +159,10 @@ int query(const Options& options) {
   times.loadMs += run.readMs();
   run.finish();
   times.writeMs = run.writeMs();
-  if (!options.stats.empty()) {
+  if (!options.run.stats.empty()) {
     // A separate pass measures the stages, since timestamps slow the others.
     if (options.repeated) pass.stages = run.stages(engine);
-    writeAtomically(options.stats, textOf(run.count(), run.answering(), pass, times));
+    writeAtomically(options.run.stats, textOf(run.count(), run.answering(), pass, times));
   }
   if (options.run.engine.resolution == "auto") {
     const std::string chosen = resolutionsInWords(pass);
@@ -182,7 +180,7 @@ void addQueryCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
-  options->run.addTo(*command);
+  options->run.addTo(*command, "times and counts");
   CLI::Option* repeat =
       command
           ->add_option("--repeat", options->repeat,
@@ -191,8 +189,6 @@ void addQueryCommand(CLI::App& app, int& status) {
           ->check(CLI::Range(1u, 1'000'000u))
           ->type_name("N")
           ->capture_default_str();
-  command->add_option("--stats", options->stats, "Writes times and counts here, as one JSON object")
-      ->type_name("FILE.json");
   command->callback([=, &status] {
     options->repeated = repeat->count() > 0;
     status = query(*options);

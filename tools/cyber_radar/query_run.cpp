@@ -8,7 +8,7 @@
 
 namespace radar::tools {
 
-void RunOptions::addTo(CLI::App& command) {
+void RunOptions::addTo(CLI::App& command, const std::string& about) {
   command.add_option("FILE.json", file, "Query file; - for standard input")->required();
   command
       .add_option("--out", out,
@@ -19,15 +19,24 @@ void RunOptions::addTo(CLI::App& command) {
                   "Answers part I of N equal parts of the queries, I from 0; cyber-radar merge joins the parts")
       ->type_name("I/N");
   command.add_flag("--resume", resume, "Finishes what an interrupted run with the same options left in FILE.partial");
+  command.add_option("--stats", stats, "Writes " + about + " here, as one JSON object")->type_name("FILE.json");
   engine.severalDevices = true;
   engine.addTo(command);
 }
 
 void RunOptions::check() const {
-  if (!out.empty()) requireFolderOf("--out", out);
   if (!shard.empty() && out.empty()) throw InputError("--shard", "", "expected --out beside it, got none");
   if (resume && out.empty()) throw InputError("--resume", "", "expected --out beside it, got none");
   if (!shard.empty()) shardFrom(shard);
+}
+
+Outputs RunOptions::outputs() const {
+  Outputs outputs;
+  if (!out.empty()) outputs.add("--out", out);
+  if (!out.empty() && !isStream(out)) outputs.add("--out", out + ".partial");
+  if (!stats.empty()) outputs.add("--stats", stats);
+  if (resume && isStream(out)) throw InputError("--resume", out, "expected a file, got a device or a pipe");
+  return outputs;
 }
 
 Part RunOptions::part(const QueryFile& queries, std::span<const Device> devices) const {

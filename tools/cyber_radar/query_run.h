@@ -9,15 +9,18 @@
 
 namespace radar::tools {
 
-/// --out, --shard and --resume, beside the options of the engine.
+/// --out, --stats, --shard and --resume, beside the options of the engine.
 struct RunOptions {
   EngineOptions engine;
-  std::string file, out, shard;
+  std::string file, out, stats, shard;
   bool resume = false;
 
-  void addTo(CLI::App& command);
+  /// `about`: what --stats writes.
+  void addTo(CLI::App& command, const std::string& about);
   /// Throws InputError that names the option.
   void check() const;
+  /// What the run writes. Throws InputError that names the option.
+  Outputs outputs() const;
   /// What the answers of this run are part of. `devices`: those that answer.
   Part part(const QueryFile& queries, std::span<const Device> devices) const;
 };

@@ -69,7 +69,9 @@ ScalePoint firstOf(const Workload& whole, uint32_t most) {
 
 std::vector<ScalePoint> filePoints(const Options& options) {
   std::vector<std::string> warnings;
-  const Workload whole = readQueryFile(options.file, warnings);
+  Outputs outputs;
+  if (!options.out.empty()) outputs.addIn("--out", options.out, {"scale.csv", "trace.json"});
+  const Workload whole = readQueryFile(options.file, warnings, outputs);
   printWarnings(warnings);
   if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
   std::vector<ScalePoint> points;

@@ -121,10 +121,11 @@ void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, c
       mesh.positions.push_back(value);
     }
   }
-  for (const uint32_t index : part.indices) {
+  for (size_t i = 0; i < part.indices.size(); ++i) {
+    const uint32_t index = part.indices[i];
     if (index >= count) {
-      throw InputError(name, place,
-                       "expected vertex numbers below " + std::to_string(count) + ", got " + std::to_string(index));
+      throw InputError(name, place + ": triangle " + std::to_string(i / 3),
+                       "expected vertices below " + std::to_string(count) + ", got " + std::to_string(index));
     }
     mesh.indices.push_back(static_cast<uint32_t>(first + index));
   }

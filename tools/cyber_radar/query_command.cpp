@@ -68,11 +68,13 @@ class Run {
     if (!options.run.out.empty()) {
       writer_.emplace(options.run.out, part, queries, options.run.resume);
       first_ = writer_->next();
+      kept_ = first_ - part.first();
       someInvalid_ = writer_->keptInvalid();
     }
   }
 
   uint64_t count() const { return end_ - first_; }
+  uint64_t kept() const { return kept_; }
   const Answering& answering() const { return answering_; }
   double setUp() { return setUp(answering_); }
   /// Answers everything and drops the answers.
@@ -125,7 +127,7 @@ class Run {
   const QueryFile& queries_;
   Answering answering_;
   std::optional<PartWriter> writer_;
-  uint64_t first_ = 0, end_ = 0;
+  uint64_t first_ = 0, end_ = 0, kept_ = 0;
   double readMs_ = 0, writeMs_ = 0;
   bool someInvalid_ = false;
 };
@@ -153,11 +155,13 @@ int query(const Options& options) {
     sweepTimes.push_back(run.rehearse("answering").ms);
     run.setUp();
   }
+  const double begun = bench::now();
   AnsweringStats pass = run.write();
   sweepTimes.push_back(pass.ms);
   times.sweepMs = median(sweepTimes);
   times.loadMs += run.readMs();
   run.finish();
+  const double seconds = bench::now() - begun;
   times.writeMs = run.writeMs();
   if (!options.run.stats.empty()) {
     // A separate pass measures the stages, since timestamps slow the others.
@@ -171,6 +175,7 @@ int query(const Options& options) {
   for (const PoolDevice& device : run.answering().poolDevices()) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
+  sayDone("cyber-radar", {run.count(), run.kept(), seconds, begun - start}, statusesInWords(pass));
   return run.status();
 }
 

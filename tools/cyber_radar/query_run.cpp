@@ -1,7 +1,9 @@
 #include "cyber_radar/query_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
+#include <iostream>
 
 #include "bench/clock.h"
 #include "commit/commit.h"
@@ -65,6 +67,16 @@ std::string namesOf(std::span<const Device> devices) {
     if (names.find(name) == names.npos) names += (names.empty() ? "" : "; ") + name;
   }
   return names;
+}
+
+void sayDone(const char* program, const Done& done, const std::string& more) {
+  const double rate = static_cast<double>(done.queries) / std::max(done.seconds, 1e-6);
+  const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(rate, 1.0))) - 2));  // three digits
+  std::cerr << program << ": answered " << counted(done.queries, "query", "queries") << " in " << inTime(done.seconds);
+  if (done.queries > 0) std::cerr << " (" << std::llround(unit * std::round(rate / unit)) << " per second)";
+  std::cerr << more << "; reading and preparing took " << inTime(done.preparation);
+  if (done.kept > 0) std::cerr << "; " << done.kept << " had been answered before";
+  std::cerr << "\n";
 }
 
 namespace {

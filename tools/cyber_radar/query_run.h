@@ -28,6 +28,14 @@ struct RunOptions {
 /// The names of devices and drivers, for messages and for runs in mode sampled.
 std::string namesOf(std::span<const Device> devices);
 
+/// What a run did.
+struct Done {
+  uint64_t queries = 0, kept = 0;       ///< answered, and answered before it
+  double seconds = 0, preparation = 0;  ///< answering, and reading the file and setting up
+};
+/// The last line on standard error. `more` stands behind the time: " on 3 ranks".
+void sayDone(const char* program, const Done& done, const std::string& more);
+
 /// Receives the answers to consecutive queries, the first of which has the index `first`.
 using AnswerSink =
     std::function<void(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers)>;

@@ -67,8 +67,9 @@ void addWorkload(CLI::App& parent, const char* name, const char* about,
     requireUntouched(*settings, *out);
     const Workload workload = makeWorkload(*settings);
     const auto file = writeQueryFile(workload, *out, *binary);
-    std::cout << file.string() << ": " << workload.queries.size() << " queries, " << workload.scenes.size()
-              << " scenes, " << workload.meshes.size() << " meshes\n";
+    std::cout << file.string() << ": " << counted(workload.queries.size(), "query", "queries") << ", "
+              << counted(workload.scenes.size(), "scene") << ", " << counted(workload.meshes.size(), "mesh", "meshes")
+              << "\n";
   });
 }
 

@@ -9,6 +9,7 @@
 #include "batch/atomic_file.h"
 #include "bench/clock.h"
 #include "commit/commit.h"
+#include "cyber_radar/command_line.h"
 #include "cyber_radar/exit_status.h"
 #include "cyber_radar/query_run.h"
 #include "mpi/coordinator.h"
@@ -173,6 +174,7 @@ class Rank {
       const AnsweringOptions engine = options_.engine.checked();
       if (!allCanAnswer(packedReports, reports_, modes_.asks(AnswerMode::sampled, engine.mode))) return false;
       const Part part = options_.part(*queries_, answering_->devices());
+      first_ = part.first();
       end_ = part.end();
       writer_.emplace(options_.out, part, *queries_, options_.resume);
       return true;
@@ -188,6 +190,7 @@ class Rank {
     std::signal(SIGTERM, sayFarewell);
     try {
       const double start = bench::now();
+      const uint64_t next = writer_->next();
       Coordinator coordinator(*queries_, *writer_, end_, static_cast<size_t>(session_.count()));
       coordinator.run(answers);
       const double sweepMs = 1e3 * (bench::now() - start);
@@ -195,6 +198,8 @@ class Rank {
       if (!options_.stats.empty()) {
         writeAtomically(options_.stats, statsOf(reports_, coordinator, loadMs_, setupMs_, sweepMs));
       }
+      sayDone("cyber-radar-mpi", {end_ - next, next - first_, bench::now() - start, 1e-3 * (loadMs_ + setupMs_)},
+              " on " + counted(reports_.size(), "rank"));
       return coordinator.someInvalid() ? kStatusSomeInvalid : 0;
     } catch (const RankFailure& failure) {
       std::cerr << "cyber-radar-mpi: rank " << failure.rank() << " on " << reports_[failure.rank()].host << ": "
@@ -216,13 +221,14 @@ class Rank {
   std::optional<Answering> answering_;
   std::vector<RankReport> reports_;
   std::optional<PartWriter> writer_;
-  uint64_t end_ = 0;
+  uint64_t first_ = 0, end_ = 0;
   double loadMs_ = 0, setupMs_ = 0;
 };
 
 int run(int argc, char** argv, const MpiSession& session) {
   CLI::App app{"Cyber Radar on many machines: answers a query file with the ranks of an MPI run", "cyber-radar-mpi"};
   app.require_subcommand(1);
+  addBasics(app);
   CLI::App* command = app.add_subcommand("query", "Answers a query file");
   command->footer(kExamples);
   RunOptions options;

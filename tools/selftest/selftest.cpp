@@ -18,22 +18,14 @@ Json newPart() {
 }
 
 // All keys are there from the start, so that no reference to a value becomes invalid.
-Json newDevice(uint32_t number, const DeviceReport& facts) {
-  Json device{{"number", number},           {"name", facts.name},
-              {"type", facts.type},         {"driver", facts.driver},
-              {"vulkan", facts.version},    {"memory_bytes", facts.memory},
-              {"subgroup", facts.subgroup}, {"has_doubles", facts.doubles},
-              {"uses_doubles", false},      {"usable", facts.usable()},
-              {"reasons", facts.reasons},   {"sampled_reasons", facts.sampledReasons},
-              {"answers_checked", 0},       {"answers_wrong", 0},
-              {"parts_ended", 0},           {"right", false},
-              {"limits", Json::array()},    {"parts", Json::object()}};
-  for (const DeviceLimit& limit : facts.limits) {
-    device["limits"].push_back({{"limit", limit.name},
-                                {"has", limit.has},
-                                {"needed", limit.needed},
-                                {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
-  }
+Json newDevice(uint32_t number, const DeviceReport& report) {
+  Json device = factsOf(number, report);
+  device.update({{"uses_doubles", false},
+                 {"answers_checked", 0},
+                 {"answers_wrong", 0},
+                 {"parts_ended", 0},
+                 {"right", false},
+                 {"parts", Json::object()}});
   for (const SelftestPart& part : selftestParts()) device["parts"][part.name] = newPart();
   return device;
 }
@@ -82,6 +74,28 @@ void testDevice(Json& test, double seconds, const std::function<void()>& onChang
 }
 
 }  // namespace
+
+Json factsOf(uint32_t number, const DeviceReport& report) {
+  Json facts{{"number", number},
+             {"name", report.name},
+             {"type", report.type},
+             {"driver", report.driver},
+             {"vulkan", report.version},
+             {"memory_bytes", report.memory},
+             {"subgroup", report.subgroup},
+             {"has_doubles", report.doubles},
+             {"usable", report.usable()},
+             {"reasons", report.reasons},
+             {"sampled_reasons", report.sampledReasons},
+             {"limits", Json::array()}};
+  for (const DeviceLimit& limit : report.limits) {
+    facts["limits"].push_back({{"limit", limit.name},
+                               {"has", limit.has},
+                               {"needed", limit.needed},
+                               {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
+  }
+  return facts;
+}
 
 Json lookAtDevices(const std::vector<uint32_t>& asked) {
   const std::vector<DeviceReport> all = listDevices();

@@ -13,9 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "radar/radar.h"
 #include "report/tables.h"
 
 namespace radar::tools {
+
+/// What a device is: the values of the report above from "number" to "limits". `number`: in listDevices().
+Json factsOf(uint32_t number, const DeviceReport& report);
 
 /// A report on the devices of these numbers in listDevices(), on all if none is given: what they are, and no part
 /// begun. A device that is not usable is in it with its reasons. Throws Error if a device does not exist or is named

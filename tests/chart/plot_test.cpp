@@ -56,13 +56,18 @@ bool isSvg(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("every chart of a record is drawn with its title and the name of each of its methods") {
+TEST_CASE("every chart of a record is drawn with its title, the name of each of its methods, and where it is from") {
   const test::ScratchFolder folder;
-  writeCharts(folder.path(), smallRecord());
+  Record record = smallRecord();
+  record.add("device", "some device");
+  record.add("machine", "a processor");
+  record.add("commit", "1234567");
+  writeCharts(folder.path(), record);
   const auto shows = [&](const std::string& file, const std::vector<std::string>& texts) {
     const std::string svg = folder.read(file);
     CAPTURE(file);
     CHECK(isSvg(svg));
+    CHECK_THAT(svg, Contains("<text>some device; a processor; commit 1234567</text>"));
     for (const std::string& text : texts) CHECK_THAT(svg, Contains("<text>" + text + "</text>"));
   };
   shows("front-thin.svg", {"Thin shapes", "sheets and rods", "sampled", "contact", "Embree rays", "on the front",
@@ -73,6 +78,20 @@ TEST_CASE("every chart of a record is drawn with its title and the name of each 
   shows("growth-triangles.svg", {"FCL steps", "triangles of each mesh"});
   shows("growth-resolution.svg", {"Time against resolution", "sampled", "Embree rays", "64"});
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 6 + 4);  // the points and three tables
+  CHECK_THAT(folder.read("front-thin.svg"), Contains("Other libraries (hollow)"));
+  CHECK_THAT(folder.read("table1.svg"), Contains("hollow: other libraries"));
+}
+
+TEST_CASE("a chart without other libraries has none in its legend") {
+  const test::ScratchFolder folder;
+  Record record = smallRecord();
+  std::erase_if(record.cells, [](const Cell& cell) { return cell.family.find(' ') != std::string::npos; });
+  writeCharts(folder.path(), record);
+  for (const char* file : {"front-thin.svg", "table1.svg", "growth-resolution.svg"}) {
+    CAPTURE(file);
+    CHECK(isSvg(folder.read(file)));
+    CHECK_THAT(folder.read(file), Contains("sampled") && !Contains("ther libraries"));
+  }
 }
 
 TEST_CASE("the points have the front by rising time, and a family's linetype is the same in every chart") {

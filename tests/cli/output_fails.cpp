@@ -1,7 +1,5 @@
 // Output that cannot be written: a full disk, a folder that takes no files, a kill. The program says so with status 2
 // and the file's name, and leaves nothing half-written.
-#include <sys/stat.h>
-
 #include <vector>
 
 #include "cli/program.h"
@@ -151,20 +149,6 @@ TEST_CASE("a merge into a folder that takes no files is refused by name") {
     const Run run = runProgram(folder, "merge p --out " + out);
     CHECK(run.status == 2);
     CHECK_THAT(run.err, Contains(out) && Contains("expected a"));
-  }
-}
-
-TEST_CASE("an output that is a device or a pipe is refused, not replaced by a file") {
-  const ScratchFolder folder;
-  makeQueries(folder);
-  REQUIRE(mkfifo((folder.path() / "pipe").c_str(), 0600) == 0);
-  for (const std::string& arguments :
-       std::vector<std::string>{kQuery + "--out pipe", kQuery + "--stats pipe", std::string("merge p --out pipe")}) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, arguments);
-    CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains("pipe: expected a regular file, or none yet, got a device or a pipe"));
-    CHECK(std::filesystem::is_fifo(folder.path() / "pipe"));
   }
 }
 

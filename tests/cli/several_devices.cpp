@@ -53,7 +53,7 @@ TEST_CASE("scale prints tables and writes a table, a chart and a trace") {
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("speed_up") && Contains("\n      3  0+1 ") && Contains("readback"));
   CHECK_THAT(folder.read("s/scale.svg"),
-             Contains("mode sampled") && Contains("<text>0+1</text>") && Contains("</svg>"));
+             Contains("mode sampled") && Contains("; commit ") && Contains("<text>0+1</text>") && Contains("</svg>"));
   const std::string csv = folder.read("s/scale.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * 4);  // one device, the other, and both: four lines each
   const auto trace = nlohmann::json::parse(folder.read("s/trace.json"));
@@ -75,4 +75,7 @@ TEST_CASE("scale measures the first queries of each batch of a query file") {
   INFO(run.err);
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("w/queries.json") && Contains("\n     12  0+1 "));
+  CHECK(run.err.empty());
+  CHECK_THAT(runProgram(folder, "scale w/queries.json --mode contact --sensors 4 --repeat 1 --device 1").err,
+             Contains("warning: there is one device, so nothing is compared"));
 }

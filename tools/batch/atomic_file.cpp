@@ -10,14 +10,45 @@
 
 namespace radar::tools {
 
-AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(file), unfinished_(file) {
-  unfinished_ += ".unfinished-" + std::to_string(getpid());
-  descriptor_ = open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(std::strerror(errno));
+int Descriptor::close() {
+  return number_ >= 0 && ::close(std::exchange(number_, -1)) != 0 ? errno : 0;
+}
+
+bool isStream(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  return exists(status) && !is_regular_file(status) && !is_directory(status);
+}
+
+std::filesystem::path targetOf(std::filesystem::path file) {
+  std::error_code error;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(file, error); ++links) {
+    file = file.parent_path() / std::filesystem::read_symlink(file, error);
+  }
+  return file;
+}
+
+AtomicFile::AtomicFile(const std::filesystem::path& file) : file_(isStream(file) ? file : targetOf(file)) {
+  if (isStream(file_)) {
+    descriptor_ = Descriptor(open(file_.c_str(), O_WRONLY | O_CLOEXEC));
+  } else {
+    createUnfinished();
+  }
+  if (!descriptor_) fail(std::strerror(errno));
+}
+
+// Its name can be foretold, so it must be a file of our own, not one, or a link, that waits there.
+void AtomicFile::createUnfinished() {
+  constexpr int kMost = 100;
+  for (int i = 0; i < kMost && !descriptor_; ++i) {
+    unfinished_ = file_;
+    unfinished_ += ".unfinished-" + std::to_string(getpid()) + (i == 0 ? "" : "-" + std::to_string(i));
+    descriptor_ = Descriptor(open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!descriptor_ && errno != EEXIST) return;
+  }
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) close(descriptor_);
   std::error_code ignored;
   if (!unfinished_.empty()) std::filesystem::remove(unfinished_, ignored);
 }
@@ -37,12 +68,12 @@ int writeAll(int descriptor, std::string_view bytes) {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  if (const int error = writeAll(descriptor_, bytes); error != 0) fail(std::strerror(error));
+  if (const int error = writeAll(descriptor_.get(), bytes); error != 0) fail(std::strerror(error));
 }
 
 void AtomicFile::finish() {
-  // Some file systems report only now that there was no room.
-  if (close(std::exchange(descriptor_, -1)) != 0) fail(std::strerror(errno));
+  if (const int error = descriptor_.close(); error != 0) fail(std::strerror(error));
+  if (unfinished_.empty()) return;
   std::error_code error;
   std::filesystem::rename(unfinished_, file_, error);
   if (error) fail(error.message());

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -112,57 +113,74 @@ void requireSameRun(const std::string& file, const Part& part, const Part& expec
 }
 
 PartWriter::PartWriter(const std::filesystem::path& file, const Part& part, const QueryFile& queries, bool resume)
-    : file_(file), partial_(file), part_(part), next_(part.first()) {
+    : file_(isStream(file) ? file : targetOf(file)), partial_(file_), part_(part), next_(part.first()) {
+  if (isStream(file_)) {
+    descriptor_ = Descriptor(open(file_.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!descriptor_) fail(std::strerror(errno));
+    write(part_.shard ? headerOf(part_) : startOf(part_.format, part_.queries));
+    return;
+  }
   partial_ += ".partial";
   std::error_code error;
-  if (!resume && std::filesystem::exists(partial_, error)) {
-    throw InputError(partial_.string(), "",
-                     "expected no such file, got what an interrupted run left: finish it with --resume, or remove it");
-  }
   const bool isFinished =
       resume && part.shard && !std::filesystem::exists(partial_, error) && std::filesystem::exists(file_, error);
+  const std::filesystem::path& found = isFinished ? file_ : partial_;
+  openAlone(found);
+  keep(queries, found, resume);
   if (isFinished) std::filesystem::rename(file_, partial_);
-  descriptor_ = open(partial_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(std::strerror(errno));
-  try {
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) fail("one that another process writes");
-    keep(queries, isFinished ? file_ : partial_);
-  } catch (...) {
-    close(descriptor_);
-    if (isFinished) std::filesystem::rename(partial_, file_, error);
-    throw;
-  }
 }
 
 PartWriter::~PartWriter() {
   std::error_code ignored;
-  if (next_ == part_.first()) std::filesystem::remove(partial_, ignored);
-  close(descriptor_);
+  if (next_ == part_.first() && !writesAtOnce()) std::filesystem::remove(partial_, ignored);
 }
 
-// `file`: for messages. What the file has is kept up to the last complete row. Without a complete first line it begins
-// anew.
-void PartWriter::keep(const QueryFile& queries, const std::filesystem::path& file) {
+// Opens what other processes then leave alone, or makes it.
+void PartWriter::openAlone(const std::filesystem::path& found) {
+  for (struct stat opened{}, named{};;) {
+    descriptor_ = Descriptor(open(found.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
+    if (!descriptor_) fail(errno == ELOOP ? "a symbolic link" : std::strerror(errno));
+    if (flock(descriptor_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      throw InputError(found.string(), "", "expected a file of this process alone, got one that another is writing");
+    }
+    // The other may just have completed this file and given it its last name.
+    const bool isNamed = fstat(descriptor_.get(), &opened) == 0 && lstat(found.c_str(), &named) == 0;
+    if (isNamed && opened.st_dev == named.st_dev && opened.st_ino == named.st_ino) return;
+  }
+}
+
+// What the file has is kept up to the last complete row. If it ends within the first line, it begins anew. A file that
+// no run of ours left is not touched.
+void PartWriter::keep(const QueryFile& queries, const std::filesystem::path& found, bool resume) {
   size_t kept = 0;
   {
-    const MappedFile mapped(partial_, "a part file");
-    if (headerLength(mapped.bytes()) > 0) kept = keptBytes(mapped.bytes(), queries, file.string());
+    const MappedFile mapped(found, "a part file");
+    const std::string_view bytes = mapped.bytes();
+    if (!headerOf(part_).starts_with(bytes)) {
+      const Part left = partFrom(found.string(), bytes);
+      if (!resume) {
+        throw InputError(
+            found.string(), "",
+            "expected no such file, got what an interrupted run left: finish it with --resume, or remove it");
+      }
+      kept = keptBytes(left, bytes, queries, found.string());
+    }
   }
-  if (ftruncate(descriptor_, static_cast<off_t>(kept)) != 0) fail(std::strerror(errno));
-  if (lseek(descriptor_, 0, SEEK_END) < 0) fail(std::strerror(errno));
+  if (ftruncate(descriptor_.get(), static_cast<off_t>(kept)) != 0) fail(std::strerror(errno));
+  if (lseek(descriptor_.get(), 0, SEEK_END) < 0) fail(std::strerror(errno));
   if (kept > 0) return;
   try {
     write(headerOf(part_));
   } catch (...) {
     std::error_code ignored;
-    std::filesystem::remove(partial_, ignored);  // it has nothing to resume
+    std::filesystem::remove(found, ignored);  // it has nothing to resume
     throw;
   }
 }
 
 // The length of the first line and the complete rows, which are checked and counted.
-size_t PartWriter::keptBytes(std::string_view bytes, const QueryFile& queries, const std::string& name) {
-  const Part found = partFrom(name, bytes);
+size_t PartWriter::keptBytes(const Part& found, std::string_view bytes, const QueryFile& queries,
+                             const std::string& name) {
   requireSameRun(name, found, part_, "this run");
   if (found.shard != part_.shard) {
     throw InputError(name, "shard", "expected " + inWords(part_.shard) + ", got " + inWords(found.shard));
@@ -197,7 +215,7 @@ void PartWriter::fail(const std::string& problem) const {
 }
 
 void PartWriter::write(std::string_view bytes) {
-  if (const int error = writeAll(descriptor_, bytes); error != 0) fail(std::strerror(error));
+  if (const int error = writeAll(descriptor_.get(), bytes); error != 0) fail(std::strerror(error));
 }
 
 void PartWriter::append(std::string_view rows, uint64_t count) {
@@ -206,6 +224,7 @@ void PartWriter::append(std::string_view rows, uint64_t count) {
 }
 
 void PartWriter::finish() {
+  if (writesAtOnce()) return;
   std::error_code error;
   if (part_.shard) {
     std::filesystem::rename(partial_, file_, error);
@@ -216,7 +235,7 @@ void PartWriter::finish() {
   const std::string start = startOf(part_.format, part_.queries);
   if (start.size() == headerLength(mapped.bytes())) {
     // The records need not be copied: what numpy wants before them takes the place of the first line.
-    if (pwrite(descriptor_, start.data(), start.size(), 0) != static_cast<ssize_t>(start.size())) {
+    if (pwrite(descriptor_.get(), start.data(), start.size(), 0) != static_cast<ssize_t>(start.size())) {
       fail(std::strerror(errno));
     }
     std::filesystem::rename(partial_, file_, error);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "batch/answer_rows.h"
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
 
 namespace radar::tools {
@@ -46,10 +47,11 @@ void requireSameRun(const std::string& file, const Part& part, const Part& expec
 /// The answers of one run, written as they become complete: to FILE.partial, which becomes FILE at the end.
 class PartWriter {
  public:
-  /// Creates FILE.partial. `resume`: keeps the complete rows of one that an interrupted run of the same part left, if
-  /// there is one, and drops a row that was cut off; and keeps a shard's FILE that is complete. Throws InputError if it
-  /// is another part's, has a row that is not that of its query, or exists without `resume`; std::runtime_error if it
-  /// cannot be written or another process writes it.
+  /// Creates FILE.partial, which other processes then refuse to write. `resume`: keeps the complete rows of one that an
+  /// interrupted run of the same part left, if there is one, and drops a row that was cut off; and keeps a shard's FILE
+  /// that is complete. A stream (isStream) gets its bytes at once. Throws InputError if FILE.partial is no part file or
+  /// another part's, has a row that is not that of its query, exists without `resume`, or is another process's;
+  /// std::runtime_error if it cannot be written.
   PartWriter(const std::filesystem::path& file, const Part& part, const QueryFile& queries, bool resume);
   /// Removes FILE.partial if it has no row.
   ~PartWriter();
@@ -67,8 +69,10 @@ class PartWriter {
   void finish();
 
  private:
-  void keep(const QueryFile& queries, const std::filesystem::path& file);
-  size_t keptBytes(std::string_view bytes, const QueryFile& queries, const std::string& name);
+  bool writesAtOnce() const { return partial_ == file_; }
+  void openAlone(const std::filesystem::path& found);
+  void keep(const QueryFile& queries, const std::filesystem::path& found, bool resume);
+  size_t keptBytes(const Part& found, std::string_view bytes, const QueryFile& queries, const std::string& name);
   void write(std::string_view bytes);
   [[noreturn]] void fail(const std::string& problem) const;
 
@@ -76,7 +80,7 @@ class PartWriter {
   Part part_;
   uint64_t next_ = 0;
   bool keptInvalid_ = false;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 }  // namespace radar::tools

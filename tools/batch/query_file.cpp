@@ -67,8 +67,8 @@ ModesAsked modesOf(const Workload& workload) {
   return modes;
 }
 
-QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  JsonQueryFile json = readJsonQueryFile(file, warnings);
+QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
+  JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
   world_ = std::move(json.workload);
   Fingerprint fingerprint;
   fingerprint.addWorld(world_);
@@ -96,8 +96,8 @@ std::span<const QuerySpec> QueryFile::read(uint64_t first, uint64_t count, std::
   return room;
 }
 
-Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  JsonQueryFile json = readJsonQueryFile(file, warnings);
+Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
+  JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
   if (json.queriesFile) {
     const BinaryQueries binary(*json.queriesFile, json.workload, json.listedMeshes);
     for (uint64_t i = 0; i < binary.count(); ++i) json.workload.queries.push_back(binary.read(i));

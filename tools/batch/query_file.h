@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "batch/outputs.h"
 #include "import/input_error.h"
 #include "workloads/workload.h"
 
@@ -17,8 +18,10 @@ namespace radar::tools {
 
 /// Reads a query file with its meshes and instance files; "-" is standard input, in the current folder. Everything is
 /// checked: what is returned keeps the contracts of radar::Scene and radar::Query. Throws InputError that names the
-/// file, the JSON path (or line) and what was expected. Appends the warnings about mesh files to `warnings`.
-Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+/// file, the JSON path (or line) and what was expected; also if one of `outputs` is read, before it is. Appends the
+/// warnings about mesh files to `warnings`.
+Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                       const Outputs& outputs = {});
 
 class BinaryQueries;
 
@@ -42,7 +45,7 @@ ModesAsked modesOf(const Workload& workload);
 class QueryFile {
  public:
   /// Reads and checks the whole file, as readQueryFile(). Queries in a queries file stay there.
-  QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+  QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs = {});
   ~QueryFile();
 
   /// Its meshes and scenes.

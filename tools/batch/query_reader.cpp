@@ -68,13 +68,14 @@ std::array<double, 3> readVector(const JsonValue& list) {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, std::vector<std::string>& warnings)
-      : file_(file), name_(file == "-" ? "standard input" : file.string()), warnings_(warnings) {}
+  Reader(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs)
+      : file_(file), name_(file == "-" ? "standard input" : file.string()), warnings_(warnings), outputs_(outputs) {}
 
   JsonQueryFile read();
 
  private:
   std::string content() const;
+  std::filesystem::path pathOf(const JsonValue& value) const;
   void readMesh(const JsonValue& value);
   void readScene(const JsonValue& scene);
   void readInstances(const JsonValue& scene, SceneSpec& spec);
@@ -90,6 +91,7 @@ class Reader {
   std::filesystem::path file_;
   std::string name_;
   std::vector<std::string>& warnings_;
+  const Outputs& outputs_;
   Workload workload_;
   size_t listed_ = 0;  ///< of the meshes, those that the file lists; those of assemblies follow
   std::map<std::filesystem::path, Assembly> assemblies_;
@@ -98,8 +100,16 @@ class Reader {
 };
 
 std::string Reader::content() const {
+  outputs_.requireNone(file_ == "-" ? "/dev/stdin" : file_);
   if (file_ == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
   return readRegularFile(file_, "a query file, or - for standard input");
+}
+
+// A file that the query file names, or a node of one.
+std::filesystem::path Reader::pathOf(const JsonValue& value) const {
+  std::filesystem::path path = file_.parent_path() / value.string();
+  outputs_.requireNone(splitMeshName(path).file);
+  return path;
 }
 
 JsonQueryFile Reader::read() {
@@ -115,7 +125,7 @@ JsonQueryFile Reader::read() {
   if (root.has("queries_file")) {
     const JsonValue name = root.member("queries_file");
     if (root.has("queries")) name.refuse("expected either \"queries\" or \"queries_file\", got both");
-    result.queriesFile = file_.parent_path() / name.string();
+    result.queriesFile = pathOf(name);
   } else {
     root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
   }
@@ -125,14 +135,13 @@ JsonQueryFile Reader::read() {
 }
 
 void Reader::readMesh(const JsonValue& value) {
-  const std::string name = value.string();
-  const std::filesystem::path path = file_.parent_path() / name;
+  const std::filesystem::path path = pathOf(value);
   workload_.meshes.push_back(value.guard([&] {
     const MeshName split = splitMeshName(path);
     return split.node ? assembly(split.file).meshOf(split.file.string(), *split.node)
                       : tools::readMesh(path, warnings_);
   }));
-  workload_.meshes.back().name = name;
+  workload_.meshes.back().name = value.string();
 }
 
 const Assembly& Reader::assembly(const std::filesystem::path& file) {
@@ -166,12 +175,12 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
   }
   if (scene.has("instances_file")) {
     const JsonValue file = scene.member("instances_file");
-    const std::string name = file.string();
-    spec.instances = file.guard([&] { return readInstanceFile(file_.parent_path() / name); });
+    const std::filesystem::path path = pathOf(file);
+    spec.instances = file.guard([&] { return readInstanceFile(path); });
   } else if (scene.has("assembly")) {
     const JsonValue file = scene.member("assembly");
-    const std::string name = file.string();
-    const Assembly& parts = file.guard([&]() -> const Assembly& { return assembly(file_.parent_path() / name); });
+    const std::filesystem::path path = pathOf(file);
+    const Assembly& parts = file.guard([&]() -> const Assembly& { return assembly(path); });
     const auto [first, isNew] = firstMesh_.emplace(&parts, static_cast<uint32_t>(workload_.meshes.size()));
     if (isNew) workload_.meshes.insert(workload_.meshes.end(), parts.meshes.begin(), parts.meshes.end());
     for (const Assembly::Part& part : parts.parts) {
@@ -212,7 +221,7 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
     if (pair.size() != 2) pair.expected("[mesh, \"file of positions\"]");
     const uint32_t mesh = pair[0].index(listed_, "meshes");
     if (!named.insert(mesh).second) pair[0].expected("each mesh once");
-    const std::filesystem::path file = file_.parent_path() / pair[1].string();
+    const std::filesystem::path file = pathOf(pair[1]);
     deforms.push_back({mesh, pair[1].guard([&] { return readPositions(file, workload_.meshes[mesh]); })});
   });
   return deforms;
@@ -337,8 +346,9 @@ void Reader::readQuery(const JsonValue& query) {
 
 }  // namespace
 
-JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  return Reader(file, warnings).read();
+JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                const Outputs& outputs) {
+  return Reader(file, warnings, outputs).read();
 }
 
 bool needsExactMode(const Workload& workload, const QuerySpec& query) {

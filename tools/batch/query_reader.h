@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "batch/outputs.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
@@ -17,6 +18,7 @@ struct JsonQueryFile {
 };
 
 /// As readQueryFile(), but for the content of a queries file.
-JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
+JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                const Outputs& outputs);
 
 }  // namespace radar::tools

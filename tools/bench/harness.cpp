@@ -23,7 +23,7 @@ void inTurns(const Repetition& repetition, size_t methods, const std::function<v
   const auto round = [&](bool counts) {
     for (size_t method = 0; method < methods; ++method) run(method, counts);
   };
-  for (uint32_t i = 0; i < repetition.warmUps; ++i) round(false);
+  for (uint32_t i = 0; i < repetition.warmUps && !repetition.deadline.isOver(); ++i) round(false);
   const double begun = now();
   for (uint32_t counted = 0; counted < repetition.most; ++counted) {
     const bool isEnough = counted >= repetition.least && now() - begun >= repetition.seconds;

@@ -31,7 +31,7 @@ struct Repetition {
   uint32_t warmUps = 1;            ///< passes that do not count
   uint32_t least = 3, most = 15;   ///< passes that count
   double seconds = 1;              ///< once so much time has passed since the warm-up, `least` suffice
-  Deadline deadline = Deadline();  ///< no further pass begins after it
+  Deadline deadline = Deadline();  ///< no further pass, and no warm-up, begins after it
 };
 
 /// Calls run(method, counts) for each method below `methods`, round by round.

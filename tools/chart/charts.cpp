@@ -244,11 +244,17 @@ void writeCharts(const std::filesystem::path& folder, const Record& record) {
   const std::filesystem::path file = folder / "points.csv";
   writeAtomically(file, csvOf(points));
   // Charts without points are left out. A colon in a title begins a second line.
+  std::string origin;
+  for (const char* key : {"device", "machine", "commit"}) {
+    for (const std::string& value : record.values(key)) {
+      origin += (origin.empty() ? "" : "; ") + (key == std::string("commit") ? "commit " + value : value);
+    }
+  }
   const auto draw = [&](const std::string& chart, std::string title, const std::string& xLabel) {
     if (std::none_of(points.begin(), points.end(), [&](const Json& point) { return point["chart"] == chart; })) return;
     if (const size_t colon = title.find(": "); colon != std::string::npos) title.replace(colon, 2, "\n");
     const char* script = xLabel.empty() ? kFrontScript : kTimesScript;
-    writeAtomically(folder / (chart + ".svg"), plot(script, file, {chart, title, xLabel}));
+    writeAtomically(folder / (chart + ".svg"), plot(script, file, {chart, title, xLabel, origin}));
   };
   const std::vector<WorkloadNote> workloads = workloadsOf(record);
   for (const WorkloadNote& workload : workloads) draw("front-" + workload.name, workload.about, "");

@@ -89,6 +89,7 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
                                   {overlapping.begin(), overlapping.end()}};
     }
     for (const Result& result : found.results) {
+      ++stats_.statuses[static_cast<size_t>(result.status)];
       if (result.resolution == 0) continue;
       stats_.leastResolution = std::min(stats_.leastResolution, result.resolution);
       stats_.mostResolution = std::max(stats_.mostResolution, result.resolution);

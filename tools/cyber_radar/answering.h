@@ -1,6 +1,7 @@
 // Answers workloads with the engine.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,10 +29,11 @@ struct AnsweringOptions {
 
 /// What answering took.
 struct AnsweringStats {
-  double ms = 0;          ///< from handing over the queries to having the answers, scene changes included
-  uint64_t batches = 0;   ///< calls of the engine's
-  uint64_t pairs = 0;     ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
-  uint64_t cpuPairs = 0;  ///< those of them decided on the CPU
+  double ms = 0;                       ///< from handing over the queries to having the answers, scene changes included
+  uint64_t batches = 0;                ///< calls of the engine's
+  uint64_t pairs = 0;                  ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
+  uint64_t cpuPairs = 0;               ///< those of them decided on the CPU
+  std::array<uint64_t, 5> statuses{};  ///< answers of each Status
   uint32_t leastResolution = kNone, mostResolution = 0;  ///< of the pictures; 0 if none was drawn
   std::vector<StageTime> stages;
 };

@@ -19,5 +19,7 @@ void addStabilityCommand(CLI::App& app, int& status);
 void addChartCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app, int& status);
 void addWorkloadCommand(CLI::App& app);
+/// `completion` and `man`, which describe all commands of `app`; it must outlive the parsing.
+void addDescribeCommands(CLI::App& app);
 
 }  // namespace radar::tools

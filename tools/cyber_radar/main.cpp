@@ -1,6 +1,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "cyber_radar/command_line.h"
 #include "cyber_radar/commands.h"
 #include "radar/radar.h"
 
@@ -48,6 +49,7 @@ int main(int argc, char** argv) try {
   CLI::App app{kAbout, "cyber-radar"};
   app.footer(kExamples);
   app.require_subcommand(1);
+  radar::tools::addBasics(app);
   int status = 0;
   radar::tools::addSweepCommand(app, status);
   radar::tools::addQueryCommand(app, status);
@@ -60,6 +62,7 @@ int main(int argc, char** argv) try {
   radar::tools::addStabilityCommand(app, status);
   radar::tools::addChartCommand(app);
   radar::tools::addWorkloadCommand(app);
+  radar::tools::addDescribeCommands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,6 +1,6 @@
 #include "batch/merge.h"
+#include "batch/outputs.h"
 #include "cyber_radar/commands.h"
-#include "cyber_radar/options.h"
 
 namespace radar::tools {
 
@@ -23,7 +23,9 @@ void addMergeCommand(CLI::App& app, int& status) {
   command->add_option("PART", options->files, "The answer files of all shards, in any order")->required();
   command->add_option("--out", options->out, "Where the answers go")->required()->type_name("FILE");
   command->callback([options, &status] {
-    requireFolderOf("--out", options->out);
+    Outputs outputs;
+    outputs.add("--out", options->out);
+    for (const std::string& part : options->files) outputs.requireNone(part);
     status = mergeShards(options->files, options->out) ? 0 : kStatusSomeInvalid;
   });
 }

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 
 #include "batch/query_file.h"
@@ -177,19 +176,6 @@ Workload SweepOptions::load() const {
 
 void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::cerr << "cyber-radar: warning: " << warning << "\n";
-}
-
-void requireFolderOf(const char* option, const std::string& file) {
-  const std::filesystem::path path(file), folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) {
-    throw InputError(option, file, "expected a file in a folder that exists, got no folder " + folder.string());
-  }
-  if (std::filesystem::is_directory(path, error)) throw InputError(option, file, "expected a file, got a folder");
-  // It would be replaced by a file, as the system's /dev/null.
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-    throw InputError(option, file, "expected a regular file, or none yet, got a device or a pipe");
-  }
 }
 
 }  // namespace radar::tools

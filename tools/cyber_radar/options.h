@@ -43,7 +43,4 @@ std::vector<uint32_t> devicesFrom(const std::string& text);
 
 void printWarnings(const std::vector<std::string>& warnings);
 
-/// Throws InputError if the file's folder does not exist. Commands call it before long work.
-void requireFolderOf(const char* option, const std::string& file);
-
 }  // namespace radar::tools

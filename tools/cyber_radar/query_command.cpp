@@ -26,7 +26,6 @@ Lines, one per query, in the file's order. cyber-radar workload writes query fil
 
 struct Options {
   RunOptions run;
-  std::string stats;
   uint32_t repeat = 1;
   bool repeated = false;
 };
@@ -69,11 +68,13 @@ class Run {
     if (!options.run.out.empty()) {
       writer_.emplace(options.run.out, part, queries, options.run.resume);
       first_ = writer_->next();
+      kept_ = first_ - part.first();
       someInvalid_ = writer_->keptInvalid();
     }
   }
 
   uint64_t count() const { return end_ - first_; }
+  uint64_t kept() const { return kept_; }
   const Answering& answering() const { return answering_; }
   double setUp() { return setUp(answering_); }
   /// Answers everything and drops the answers.
@@ -126,7 +127,7 @@ class Run {
   const QueryFile& queries_;
   Answering answering_;
   std::optional<PartWriter> writer_;
-  uint64_t first_ = 0, end_ = 0;
+  uint64_t first_ = 0, end_ = 0, kept_ = 0;
   double readMs_ = 0, writeMs_ = 0;
   bool someInvalid_ = false;
 };
@@ -134,16 +135,15 @@ class Run {
 int query(const Options& options) {
   AnsweringOptions engine = options.run.engine.checked();
   options.run.check();
-  if (!options.stats.empty()) requireFolderOf("--stats", options.stats);
 
   const double start = bench::now();
   std::vector<std::string> warnings;
-  const QueryFile queries(options.run.file, warnings);
+  const QueryFile queries(options.run.file, warnings, options.run.outputs());
   Times times;
   times.loadMs = 1e3 * (bench::now() - start);
   printWarnings(warnings);
 
-  engine.timestamps = !options.stats.empty() && !options.repeated;
+  engine.timestamps = !options.run.stats.empty() && !options.repeated;
   Run run(options, queries, engine);
   times.setupMs = run.setUp();
   if (options.repeated) {
@@ -155,16 +155,18 @@ int query(const Options& options) {
     sweepTimes.push_back(run.rehearse("answering").ms);
     run.setUp();
   }
+  const double begun = bench::now();
   AnsweringStats pass = run.write();
   sweepTimes.push_back(pass.ms);
   times.sweepMs = median(sweepTimes);
   times.loadMs += run.readMs();
   run.finish();
+  const double seconds = bench::now() - begun;
   times.writeMs = run.writeMs();
-  if (!options.stats.empty()) {
+  if (!options.run.stats.empty()) {
     // A separate pass measures the stages, since timestamps slow the others.
     if (options.repeated) pass.stages = run.stages(engine);
-    writeAtomically(options.stats, textOf(run.count(), run.answering(), pass, times));
+    writeAtomically(options.run.stats, textOf(run.count(), run.answering(), pass, times));
   }
   if (options.run.engine.resolution == "auto") {
     const std::string chosen = resolutionsInWords(pass);
@@ -173,6 +175,7 @@ int query(const Options& options) {
   for (const PoolDevice& device : run.answering().poolDevices()) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
+  sayDone("cyber-radar", {run.count(), run.kept(), seconds, begun - start}, statusesInWords(pass));
   return run.status();
 }
 
@@ -182,7 +185,7 @@ void addQueryCommand(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("query", "Answers a query file: many sweeps, many scenes, in batches");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
-  options->run.addTo(*command);
+  options->run.addTo(*command, "times and counts");
   CLI::Option* repeat =
       command
           ->add_option("--repeat", options->repeat,
@@ -191,8 +194,6 @@ void addQueryCommand(CLI::App& app, int& status) {
           ->check(CLI::Range(1u, 1'000'000u))
           ->type_name("N")
           ->capture_default_str();
-  command->add_option("--stats", options->stats, "Writes times and counts here, as one JSON object")
-      ->type_name("FILE.json");
   command->callback([=, &status] {
     options->repeated = repeat->count() > 0;
     status = query(*options);

@@ -1,14 +1,16 @@
 #include "cyber_radar/query_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
+#include <iostream>
 
 #include "bench/clock.h"
 #include "commit/commit.h"
 
 namespace radar::tools {
 
-void RunOptions::addTo(CLI::App& command) {
+void RunOptions::addTo(CLI::App& command, const std::string& about) {
   command.add_option("FILE.json", file, "Query file; - for standard input")->required();
   command
       .add_option("--out", out,
@@ -19,15 +21,24 @@ void RunOptions::addTo(CLI::App& command) {
                   "Answers part I of N equal parts of the queries, I from 0; cyber-radar merge joins the parts")
       ->type_name("I/N");
   command.add_flag("--resume", resume, "Finishes what an interrupted run with the same options left in FILE.partial");
+  command.add_option("--stats", stats, "Writes " + about + " here, as one JSON object")->type_name("FILE.json");
   engine.severalDevices = true;
   engine.addTo(command);
 }
 
 void RunOptions::check() const {
-  if (!out.empty()) requireFolderOf("--out", out);
   if (!shard.empty() && out.empty()) throw InputError("--shard", "", "expected --out beside it, got none");
   if (resume && out.empty()) throw InputError("--resume", "", "expected --out beside it, got none");
   if (!shard.empty()) shardFrom(shard);
+}
+
+Outputs RunOptions::outputs() const {
+  Outputs outputs;
+  if (!out.empty()) outputs.add("--out", out);
+  if (!out.empty() && !isStream(out)) outputs.add("--out", out + ".partial");
+  if (!stats.empty()) outputs.add("--stats", stats);
+  if (resume && isStream(out)) throw InputError("--resume", out, "expected a file, got a device or a pipe");
+  return outputs;
 }
 
 Part RunOptions::part(const QueryFile& queries, std::span<const Device> devices) const {
@@ -56,6 +67,16 @@ std::string namesOf(std::span<const Device> devices) {
     if (names.find(name) == names.npos) names += (names.empty() ? "" : "; ") + name;
   }
   return names;
+}
+
+void sayDone(const char* program, const Done& done, const std::string& more) {
+  const double rate = static_cast<double>(done.queries) / std::max(done.seconds, 1e-6);
+  const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(rate, 1.0))) - 2));  // three digits
+  std::cerr << program << ": answered " << counted(done.queries, "query", "queries") << " in " << inTime(done.seconds);
+  if (done.queries > 0) std::cerr << " (" << std::llround(unit * std::round(rate / unit)) << " per second)";
+  std::cerr << more << "; reading and preparing took " << inTime(done.preparation);
+  if (done.kept > 0) std::cerr << "; " << done.kept << " had been answered before";
+  std::cerr << "\n";
 }
 
 namespace {

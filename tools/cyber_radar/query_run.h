@@ -9,21 +9,32 @@
 
 namespace radar::tools {
 
-/// --out, --shard and --resume, beside the options of the engine.
+/// --out, --stats, --shard and --resume, beside the options of the engine.
 struct RunOptions {
   EngineOptions engine;
-  std::string file, out, shard;
+  std::string file, out, stats, shard;
   bool resume = false;
 
-  void addTo(CLI::App& command);
+  /// `about`: what --stats writes.
+  void addTo(CLI::App& command, const std::string& about);
   /// Throws InputError that names the option.
   void check() const;
+  /// What the run writes. Throws InputError that names the option.
+  Outputs outputs() const;
   /// What the answers of this run are part of. `devices`: those that answer.
   Part part(const QueryFile& queries, std::span<const Device> devices) const;
 };
 
 /// The names of devices and drivers, for messages and for runs in mode sampled.
 std::string namesOf(std::span<const Device> devices);
+
+/// What a run did.
+struct Done {
+  uint64_t queries = 0, kept = 0;       ///< answered, and answered before it
+  double seconds = 0, preparation = 0;  ///< answering, and reading the file and setting up
+};
+/// The last line on standard error. `more` stands behind the time: " on 3 ranks".
+void sayDone(const char* program, const Done& done, const std::string& more);
 
 /// Receives the answers to consecutive queries, the first of which has the index `first`.
 using AnswerSink =

@@ -8,6 +8,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
+#include "cyber_radar/query_run.h"
 #include "plot/plot.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
@@ -69,7 +70,9 @@ ScalePoint firstOf(const Workload& whole, uint32_t most) {
 
 std::vector<ScalePoint> filePoints(const Options& options) {
   std::vector<std::string> warnings;
-  const Workload whole = readQueryFile(options.file, warnings);
+  Outputs outputs;
+  if (!options.out.empty()) outputs.addIn("--out", options.out, {"scale.csv", "trace.json"});
+  const Workload whole = readQueryFile(options.file, warnings, outputs);
   printWarnings(warnings);
   if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
   std::vector<ScalePoint> points;
@@ -108,6 +111,9 @@ int scale(Options options) {
   }
   const std::vector<ScalePoint> points = options.file.empty() ? figure7Points(options) : filePoints(options);
   const std::vector<Device> devices = openDevices(asked);
+  if (devices.size() == 1) {
+    printWarnings({"there is one device, so nothing is compared; the tables say what limits it alone"});
+  }
   ScaleReport report;
   {
     Progress progress("measuring", scaleSteps(devices.size(), points.size(), settings));
@@ -128,7 +134,8 @@ int scale(Options options) {
     const std::filesystem::path folder = options.out;
     writeAtomically(folder / "scale.csv", csvOf(shareTable(report)));
     writeAtomically(folder / "trace.json", traceOf(report));
-    writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title}));
+    const std::string origin = namesOf(devices) + "; " + processorInWords() + "; commit " + commit();
+    writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title, origin}));
     std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": scale.csv, scale.svg, trace.json\n";
   }
   return 0;

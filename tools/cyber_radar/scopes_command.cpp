@@ -48,7 +48,9 @@ Workload load(Options& options) {
     if (given) throw InputError(name, "", "expected no such option beside a query file, which says it");
   }
   std::vector<std::string> warnings;
-  Workload workload = readQueryFile(options.files[0], warnings);
+  Outputs outputs;
+  outputs.addIn("--out", options.out, {"scopes.json", "R.f32", "M.f32", "L.f32"});
+  Workload workload = readQueryFile(options.files[0], warnings, outputs);
   printWarnings(warnings);
   return workload;
 }

@@ -51,7 +51,7 @@ int selftest(const Options& options) {
     tellProgress(report);
     for (const auto& [name, content] : selftestFiles(report)) writeAtomically(folder / name, content);
   });
-  std::cout << selftestText(report) << "\nIn " << std::filesystem::absolute(folder).string()
+  std::cout << selftestSummary(report) << "\nIn " << std::filesystem::absolute(folder).string()
             << ": index.html, report.txt, report.json, and tables as .csv\n";
   return report["right"] ? 0 : 1;
 }

@@ -28,7 +28,7 @@ struct Options {
 std::string introduction(const Workload& workload) {
   const auto describe = [&](size_t number) {
     const MeshData& mesh = workload.meshes[number];
-    return mesh.name + ", " + std::to_string(mesh.triangleCount()) + " triangles\n";
+    return mesh.name + ", " + counted(mesh.triangleCount(), "triangle") + "\n";
   };
   const QuerySpec& query = workload.queries.front();
   return "scene:  " + describe(0) + "sensor: " + describe(1) + "moves " + inDigits(query.distance) + " along " +

@@ -75,6 +75,15 @@ std::string inWords(const Workload& workload, const QuerySpec& query, const Answ
   return "invalid: " + answer.reason + "\n";
 }
 
+std::string statusesInWords(const AnsweringStats& stats) {
+  std::string text;
+  for (size_t i = 0; i < stats.statuses.size(); ++i) {
+    if (stats.statuses[i] == 0) continue;
+    text += (text.empty() ? ": " : ", ") + std::to_string(stats.statuses[i]) + " " + nameOf(static_cast<Status>(i));
+  }
+  return text;
+}
+
 std::string resolutionsInWords(const AnsweringStats& stats) {
   if (stats.mostResolution == 0) return {};
   std::string text = "resolution: " + std::to_string(stats.leastResolution);

@@ -14,6 +14,9 @@ std::string inDigits(const std::array<double, 3>& vector);  ///< (x, y, z)
 /// What is hit, where and when, in a few lines; `workload` gives the names.
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer);
 
+/// ": 5 hit, 1 clear"; empty for none.
+std::string statusesInWords(const AnsweringStats& stats);
+
 /// What --resolution auto chose: "resolution: 64 to 256"; empty where no picture was drawn.
 std::string resolutionsInWords(const AnsweringStats& stats);
 

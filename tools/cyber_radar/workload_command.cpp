@@ -24,6 +24,17 @@ struct MeshFiles : RandomPoses {
   std::vector<std::string> files;
 };
 
+// What writeQueryFile() would write over.
+void requireUntouched(const MeshFiles& settings, const std::string& folder) {
+  Outputs outputs;
+  for (size_t i = 0; i < settings.files.size(); ++i) {
+    outputs.addIn("--out", folder, {"mesh-" + std::to_string(i) + ".ply"});
+  }
+  for (const std::string& file : settings.files) outputs.requireNone(splitMeshName(file).file);
+}
+template <class Other>
+void requireUntouched(const Other&, const std::string&) {}
+
 Workload makeWorkload(const MeshFiles& options) {
   RandomPoses settings = options;
   std::vector<std::string> warnings;
@@ -53,10 +64,12 @@ void addWorkload(CLI::App& parent, const char* name, const char* about,
   command->add_flag("--binary", *binary, "Writes the queries as arrays, in queries.npz, without their ids");
   addOptions(*command, *settings);
   command->callback([settings, out, binary] {
+    requireUntouched(*settings, *out);
     const Workload workload = makeWorkload(*settings);
     const auto file = writeQueryFile(workload, *out, *binary);
-    std::cout << file.string() << ": " << workload.queries.size() << " queries, " << workload.scenes.size()
-              << " scenes, " << workload.meshes.size() << " meshes\n";
+    std::cout << file.string() << ": " << counted(workload.queries.size(), "query", "queries") << ", "
+              << counted(workload.scenes.size(), "scene") << ", " << counted(workload.meshes.size(), "mesh", "meshes")
+              << "\n";
   });
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <new>
 
+#include "import/gltf_poses.h"
 #include "import/readers.h"
 
 namespace radar::tools {
@@ -55,16 +56,22 @@ bool tellsOfBrokenGeometry(const std::string& logLine) {
   return false;
 }
 
-Transform product(const Transform& a, const aiMatrix4x4& b) {
+Transform product(const Transform& a, const Transform& b) {
   Transform result;
   for (unsigned row = 0; row < 3; ++row) {
     for (unsigned column = 0; column < 4; ++column) {
       double sum = column == 3 ? a.m[4 * row + 3] : 0.0;
-      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * double(b[k][column]);
+      for (unsigned k = 0; k < 3; ++k) sum += a.m[4 * row + k] * b.m[4 * k + column];
       result.m[4 * row + column] = sum;
     }
   }
   return result;
+}
+
+Transform transformFrom(const aiMatrix4x4& matrix) {
+  Transform transform;
+  for (unsigned i = 0; i < 12; ++i) transform.m[i] = double(matrix[i / 4][i % 4]);
+  return transform;
 }
 
 MeshFile::Part partFrom(const aiMesh& mesh) {
@@ -82,19 +89,23 @@ MeshFile::Part partFrom(const aiMesh& mesh) {
   return part;
 }
 
-MeshFile meshFileFrom(const aiScene& scene) {
+MeshFile meshFileFrom(const aiScene& scene, const GltfPoses& poses) {
   MeshFile file;
   std::map<unsigned, uint32_t> parts;  // assimp's mesh -> part
   struct Entry {
     const aiNode* node;
     Transform fileFromParent;
+    GltfPoses::Node gltf;
   };
-  std::vector<Entry> open{{scene.mRootNode, {}}};  // no recursion: a file may nest its nodes as deeply as it likes
+  // No recursion: a file may nest its nodes as deeply as it likes.
+  std::vector<Entry> open{{scene.mRootNode, {}, poses.root()}};
   while (!open.empty()) {
-    const auto [node, fileFromParent] = open.back();
+    const auto [node, fileFromParent, gltf] = open.back();
     open.pop_back();
-    const Transform fileFromNode = product(fileFromParent, node->mTransformation);
-    for (unsigned i = node->mNumChildren; i > 0; --i) open.push_back({node->mChildren[i - 1], fileFromNode});
+    const Transform fileFromNode = product(fileFromParent, gltf.pose(transformFrom(node->mTransformation)));
+    for (unsigned i = node->mNumChildren; i > 0; --i) {
+      open.push_back({node->mChildren[i - 1], fileFromNode, gltf.child(i - 1, node->mNumChildren)});
+    }
     if (node->mNumMeshes == 0) continue;
     MeshFile::Node& to = file.nodes.emplace_back();
     to.name = node->mName.C_Str();
@@ -131,7 +142,7 @@ MeshFile readWithAssimp(const std::filesystem::path& file) {
     if (tellsOfBrokenGeometry(line))
       throw InputError(name, "", "expected an intact mesh file, got: " + printable(line, 200));
   }
-  return meshFileFrom(*scene);
+  return meshFileFrom(*scene, GltfPoses(file));
 }
 
 }  // namespace radar::tools

@@ -1,7 +1,6 @@
 #include "import/input_error.h"
 
 #include <bit>
-#include <cstdint>
 
 namespace radar::tools {
 
@@ -20,6 +19,10 @@ size_t characterLength(std::string_view text) {
 }
 
 }  // namespace
+
+std::string counted(uint64_t count, const std::string& one, const std::string& several) {
+  return std::to_string(count) + " " + (count == 1 ? one : several.empty() ? one + "s" : several);
+}
 
 std::string printable(std::string_view text, size_t most) {
   constexpr char kDigits[] = "0123456789abcdef";

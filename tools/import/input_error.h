@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -8,6 +9,9 @@ namespace radar::tools {
 
 /// `text` for a message: control characters and what is no UTF-8 as \xNN, cut short after about `most` bytes.
 std::string printable(std::string_view text, size_t most = 1000);
+
+/// "1 scene", "2 scenes"; `several`: where that is not the word with an s.
+std::string counted(uint64_t count, const std::string& one, const std::string& several = "");
 
 /// Input that breaks its contract: "FILE: PLACE: expected ..., got ...", each printable. PLACE is empty where the file
 /// as a whole is meant.

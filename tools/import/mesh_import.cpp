@@ -45,10 +45,6 @@ constexpr uint64_t kMostCopied = uint64_t(1) << 27;
 
 constexpr unsigned kMostSeconds = 600;  // of assimp
 
-std::string plural(uint64_t count, const char* noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string placeOf(const MeshFile::Node& node) {
   return "node \"" + node.name + "\"";
 }
@@ -121,10 +117,11 @@ void Collector::add(const MeshFile::Part& part, const Transform& meshFromPart, c
       mesh.positions.push_back(value);
     }
   }
-  for (const uint32_t index : part.indices) {
+  for (size_t i = 0; i < part.indices.size(); ++i) {
+    const uint32_t index = part.indices[i];
     if (index >= count) {
-      throw InputError(name, place,
-                       "expected vertex numbers below " + std::to_string(count) + ", got " + std::to_string(index));
+      throw InputError(name, place + ": triangle " + std::to_string(i / 3),
+                       "expected vertices below " + std::to_string(count) + ", got " + std::to_string(index));
     }
     mesh.indices.push_back(static_cast<uint32_t>(first + index));
   }
@@ -155,15 +152,15 @@ void requireSize(const std::string& name, const MeshFile& file, bool shared) {
 
 void warnOfDropped(const Collector& collected, std::vector<std::string>& warnings) {
   if (collected.points + collected.lines == 0) return;
-  warnings.push_back(printable(collected.name) + ": dropped " + plural(collected.points, "point") + " and " +
-                     plural(collected.lines, "line") + ", which are no surface");
+  warnings.push_back(printable(collected.name) + ": dropped " + counted(collected.points, "point") + " and " +
+                     counted(collected.lines, "line") + ", which are no surface");
 }
 
 void requireTriangles(bool some, const Collector& collected) {
   if (some) return;
   throw InputError(collected.name, "",
-                   "expected at least one triangle, got " + plural(collected.points, "point") + " and " +
-                       plural(collected.lines, "line"));
+                   "expected at least one triangle, got " + counted(collected.points, "point") + " and " +
+                       counted(collected.lines, "line"));
 }
 
 MeshData readWholeFile(const std::filesystem::path& path, std::vector<std::string>& warnings) {
@@ -209,7 +206,7 @@ const MeshData& Assembly::meshOf(const std::string& file, const std::string& nod
     uint32_t number = 0;
     const auto [end, error] = std::from_chars(node.data(), node.data() + node.size(), number);
     if (node.empty() || error != std::errc() || number >= parts.size()) {
-      throw InputError(file + "#" + node, "", "expected one of the " + plural(parts.size(), "node") + ", from 0");
+      throw InputError(file + "#" + node, "", "expected one of the " + counted(parts.size(), "node") + ", from 0");
     }
     return meshes[parts[number].mesh];
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 
 namespace radar::tools {
 
@@ -32,12 +31,9 @@ std::optional<Real> nearest(std::string_view text) {
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, value);
   if (error == std::errc::invalid_argument || end != last) return {};
-  if (error == std::errc::result_out_of_range) {
-    // Too large, or so small that 0 is nearest.
-    value = isLarge(text) ? std::numeric_limits<Real>::infinity() : Real(0);
-    if (text.starts_with('-')) value = -value;
-  }
-  return value;
+  if (error != std::errc::result_out_of_range) return value;
+  if (isLarge(text)) return {};
+  return text.starts_with('-') ? -Real(0) : Real(0);
 }
 template std::optional<float> nearest<float>(std::string_view);
 template std::optional<double> nearest<double>(std::string_view);

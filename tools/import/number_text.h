@@ -7,8 +7,8 @@
 
 namespace radar::tools {
 
-/// The number nearest to the decimal number that `text` is, of two equally near ones the even one; infinite if it is
-/// too large. Takes "nan" and "inf", too. Nothing if `text` is anything else, or only begins with a number.
+/// The number nearest to the decimal number that `text` is, of two equally near ones the even one. Takes "nan" and
+/// "inf", too. Nothing if the number is too large, or if `text` is anything else or only begins with a number.
 template <class Real>
 std::optional<Real> nearest(std::string_view text);
 

@@ -3,7 +3,6 @@
 #include <optional>
 #include <unordered_map>
 
-#include "import/number_text.h"
 #include "import/readers.h"
 
 namespace radar::tools {
@@ -103,14 +102,10 @@ void ObjReader::readVertex(Text line) {
   if (count != 3 && count != 4 && count != 6) {
     line.expected("3 or 4 coordinates, or 3 and a colour", std::to_string(count) + (count == 7 ? " or more" : ""));
   }
-  const auto read = [&]<class Real>(std::string_view word, Real) {
-    const std::optional<Real> value = nearest<Real>(word);
-    if (!value) line.expected("a number", word);
-    return *value;
-  };
-  const double weight = count == 4 ? read(words[3], 1.0) : 1;
+  const double weight = count == 4 ? line.number<double>(words[3]) : 1;
   for (size_t k = 0; k < 3; ++k) {
-    positions_.push_back(weight == 1 ? read(words[k], 1.0f) : static_cast<float>(read(words[k], 1.0) / weight));
+    positions_.push_back(weight == 1 ? line.number<float>(words[k])
+                                     : static_cast<float>(line.number<double>(words[k]) / weight));
   }
 }
 

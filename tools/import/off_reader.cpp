@@ -1,6 +1,5 @@
 #include <optional>
 
-#include "import/number_text.h"
 #include "import/readers.h"
 
 namespace radar::tools {
@@ -30,22 +29,16 @@ Text dataLine(Text& text, const char* what, uint64_t i, uint64_t count) {
               "expected " + std::to_string(count) + " in all, the file ends");
 }
 
-template <class Real>
-Real coordinate(Text& line) {
-  const std::string_view word = line.token();
-  const std::optional<Real> value = nearest<Real>(word);
-  if (!value) line.expected("the number of a coordinate", word);
-  return *value;
-}
-
 void readVertex(Text line, bool homogeneous, std::vector<float>& positions) {
   double weight = 1;
   if (homogeneous) {
     Text ahead = line;
-    for (int k = 0; k < 4; ++k) weight = coordinate<double>(ahead);
+    for (int k = 0; k < 4; ++k) weight = ahead.number<double>(ahead.token());
   }
   for (int k = 0; k < 3; ++k) {
-    positions.push_back(weight == 1 ? coordinate<float>(line) : static_cast<float>(coordinate<double>(line) / weight));
+    const std::string_view word = line.token();
+    positions.push_back(weight == 1 ? line.number<float>(word)
+                                    : static_cast<float>(line.number<double>(word) / weight));
   }
 }
 

@@ -63,6 +63,7 @@ class PlyReader {
   };
   Value take(const Type& type);
   uint64_t takeWhole(const Type& type, const char* what, uint64_t end);
+  static std::string inWords(const Value& value);
   [[noreturn]] void refuse(const std::string& problem) const;
 
   Text text_;
@@ -154,7 +155,9 @@ void PlyReader::readItem() {
     const size_t axis = property.name.size() == 1 ? std::string_view("xyz").find(property.name) : 3;
     if (element_->name != "vertex" || axis > 2) continue;
     position[axis] = format_ == Format::ascii ? nearest<float>(value.word) : static_cast<float>(value.number);
-    if (!position[axis]) refuse("expected the number of a coordinate, got \"" + std::string(value.word) + "\"");
+    if (!position[axis] || (std::isinf(*position[axis]) && std::isfinite(value.number) && value.word.empty())) {
+      refuse("expected a coordinate in the range of floats, got " + inWords(value));
+    }
   }
   if (element_->name != "vertex") return;
   for (const std::optional<float>& coordinate : position) {
@@ -178,6 +181,13 @@ void PlyReader::readList(const Property& property, bool areCorners) {
     corners_.push_back(static_cast<uint32_t>(takeWhole(property.type, "the number of a vertex", vertices_)));
   }
   part_.addFace(corners_);
+}
+
+std::string PlyReader::inWords(const Value& value) {
+  if (!value.word.empty()) return "\"" + std::string(value.word) + "\"";
+  std::ostringstream number;
+  number << value.number;
+  return number.str();
 }
 
 PlyReader::Value PlyReader::take(const Type& type) {
@@ -214,10 +224,8 @@ uint64_t PlyReader::takeWhole(const Type& type, const char* what, uint64_t end) 
     const auto whole = static_cast<uint64_t>(value.number);
     if (whole < end) return whole;
   }
-  std::ostringstream number;
-  number << value.number;
   refuse("expected " + std::string(what) + (end < UINT64_MAX ? ", below " + std::to_string(end) : "") + ", got " +
-         (format_ == Format::ascii ? "\"" + std::string(value.word) + "\"" : number.str()));
+         inWords(value));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
+#include <algorithm>
 #include <bit>
 #include <cstring>
-#include <optional>
 
-#include "import/number_text.h"
 #include "import/readers.h"
 
 namespace radar::tools {
@@ -12,13 +11,23 @@ namespace {
 constexpr size_t kHeader = 80, kFacet = 50, kNormal = 12;
 
 /// Whether the file is as long as a binary one of its number of facets. Text may not be told by its first word: some
-/// binary files begin with "solid", too.
-bool isBinary(std::string_view bytes) {
+/// binary files begin with "solid", too. A binary file of another length is refused: text has no zeros.
+bool isBinary(const Text& text) {
   static_assert(std::endian::native == std::endian::little);
+  const std::string_view bytes = text.rest();
   uint32_t facets = 0;
   if (bytes.size() < kHeader + sizeof facets) return false;
   std::memcpy(&facets, bytes.data() + kHeader, sizeof facets);
-  return bytes.size() == kHeader + sizeof facets + kFacet * uint64_t(facets);
+  const uint64_t expected = kHeader + sizeof facets + kFacet * uint64_t(facets);
+  if (bytes.size() == expected) return true;
+  if (bytes.substr(0, kHeader + sizeof facets + kFacet).find('\0') == bytes.npos) return false;
+  text.refuse("", "expected " + std::to_string(expected) + " bytes, as its " + std::to_string(facets) +
+                      " facets take in a binary file, got " + std::to_string(bytes.size()));
+}
+
+/// Keywords may be written in capitals.
+bool is(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, {}, [](char c) { return c | 0x20; });
 }
 
 /// The last three vertices become a triangle.
@@ -42,16 +51,11 @@ MeshFile readBinary(std::string_view bytes) {
 
 void readFacet(Text& text, MeshFile::Part& part) {
   size_t vertices = 0;
-  for (std::string_view word; (word = text.token()) != "endfacet";) {
+  for (std::string_view word; !is(word = text.token(), "endfacet");) {
     if (word.empty()) text.expected("endfacet", word);
-    if (word != "vertex") continue;  // the normal, "outer", "loop", "endloop"
+    if (!is(word, "vertex")) continue;  // the normal, "outer", "loop", "endloop"
     if (++vertices > 3) text.expected("a facet of 3 vertices", "another one");
-    for (int k = 0; k < 3; ++k) {
-      const std::string_view number = text.token();
-      const std::optional<float> value = nearest<float>(number);
-      if (!value) text.expected("the number of a coordinate", number);
-      part.positions.push_back(*value);
-    }
+    for (int k = 0; k < 3; ++k) part.positions.push_back(text.number<float>(text.token()));
   }
   if (vertices < 3) text.expected("a facet of 3 vertices", std::to_string(vertices));
   addTriangle(part);
@@ -60,15 +64,15 @@ void readFacet(Text& text, MeshFile::Part& part) {
 }  // namespace
 
 MeshFile readStl(Text text) {
-  if (isBinary(text.rest())) return readBinary(text.rest());
+  if (isBinary(text)) return readBinary(text.rest());
   MeshFile file;
   for (std::string_view word; !(word = text.token()).empty();) {
-    if (word != "solid") text.expected("solid, or a binary file as long as its number of facets asks", word);
+    if (!is(word, "solid")) text.expected("solid, or a binary file", word);
     Text name(text.file(), text.lineOfText());
     file.nodes.push_back({std::string(name.token()), {}, {static_cast<uint32_t>(file.parts.size())}});
     MeshFile::Part& part = file.parts.emplace_back();
-    while ((word = text.token()) != "endsolid") {
-      if (word != "facet") text.expected("facet or endsolid", word);
+    while (!is(word = text.token(), "endsolid")) {
+      if (!is(word, "facet")) text.expected("facet or endsolid", word);
       readFacet(text, part);
     }
     text.lineOfText();

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "import/input_error.h"
+#include "import/number_text.h"
 
 namespace radar::tools {
 
@@ -29,6 +30,13 @@ class Text {
     const std::string_view found = rest_.substr(0, rest_.find('\n'));
     drop(std::min(found.size() + 1, rest_.size()));
     return found.ends_with('\r') ? found.substr(0, found.size() - 1) : found;
+  }
+  /// Of a coordinate. Throws unless `word` is a number, be it no finite one, that is not too large.
+  template <class Real>
+  Real number(std::string_view word) const {
+    const std::optional<Real> value = nearest<Real>(word);
+    if (!value) expected("a number in the range of floats", word);
+    return *value;
   }
   /// False if fewer bytes are left.
   bool skipBytes(uint64_t count) {

@@ -1,69 +1,6 @@
 #include "mpi/coordinator.h"
 
-#include <chrono>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
-#include <thread>
-
 namespace radar::tools {
-
-// Rank 0 computes, too, while its main thread serves the others: MPI is called by that one alone.
-class Coordinator::OwnThread {
- public:
-  OwnThread(const QueryFile& queries, ChunkAnswers& answers)
-      : queries_(queries), answers_(answers), thread_([this](const std::stop_token& stop) { work(stop); }) {}
-  ~OwnThread() {
-    thread_.request_stop();
-    given_.notify_all();
-  }
-
-  void give(uint64_t first, uint64_t count) {
-    {
-      const std::lock_guard lock(mutex_);
-      waiting_.emplace_back(first, count);
-    }
-    given_.notify_one();
-  }
-  /// Waits for answers, but not for long: other ranks may have sent some.
-  std::optional<Answered> take() {
-    std::unique_lock lock(mutex_);
-    answered_.wait_for(lock, std::chrono::microseconds(500), [&] { return !done_.empty(); });
-    if (done_.empty()) return std::nullopt;
-    Answered first = std::move(done_.front());
-    done_.pop_front();
-    return first;
-  }
-
- private:
-  void work(const std::stop_token& stop) {
-    std::vector<QuerySpec> room;
-    for (;;) {
-      std::pair<uint64_t, uint64_t> chunk;
-      {
-        std::unique_lock lock(mutex_);
-        given_.wait(lock, [&] { return stop.stop_requested() || !waiting_.empty(); });
-        if (stop.stop_requested()) return;
-        chunk = waiting_.front();
-        waiting_.pop_front();
-      }
-      Answered answered = answers_.answer(chunk.first, queries_.read(chunk.first, chunk.second, room));
-      {
-        const std::lock_guard lock(mutex_);
-        done_.push_back(std::move(answered));
-      }
-      answered_.notify_one();
-    }
-  }
-
-  const QueryFile& queries_;
-  ChunkAnswers& answers_;
-  std::mutex mutex_;
-  std::condition_variable given_, answered_;
-  std::deque<std::pair<uint64_t, uint64_t>> waiting_;
-  std::deque<Answered> done_;
-  std::jthread thread_;
-};
 
 Coordinator::Coordinator(const QueryFile& queries, PartWriter& writer, uint64_t end, size_t ranks)
     : queries_(queries),
@@ -77,7 +14,9 @@ Coordinator::Coordinator(const QueryFile& queries, PartWriter& writer, uint64_t 
       someInvalid_(writer.keptInvalid()) {}
 
 void Coordinator::run(ChunkAnswers& own) {
-  OwnThread thread(queries_, own);
+  OwnThread thread([&, room = std::vector<QuerySpec>()](uint64_t first, uint64_t count) mutable {
+    return own.answer(first, queries_.read(first, count, room));
+  });
   while (writer_.next() < end_) {
     handOut(thread);
     bool isIdle = true;

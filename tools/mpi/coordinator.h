@@ -7,6 +7,7 @@
 #include "cyber_radar/progress.h"
 #include "mpi/chunk_answers.h"
 #include "mpi/chunk_sizes.h"
+#include "mpi/own_thread.h"
 #include "mpi/ranks.h"
 
 namespace radar::tools {
@@ -39,7 +40,6 @@ class Coordinator {
   bool someInvalid() const { return someInvalid_; }
 
  private:
-  class OwnThread;
   void handOut(OwnThread& own);
   void give(size_t rank, OwnThread& own);
   void take(size_t rank, Answered answered);

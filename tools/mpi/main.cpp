@@ -9,6 +9,7 @@
 #include "batch/atomic_file.h"
 #include "bench/clock.h"
 #include "commit/commit.h"
+#include "cyber_radar/command_line.h"
 #include "cyber_radar/exit_status.h"
 #include "cyber_radar/query_run.h"
 #include "mpi/coordinator.h"
@@ -23,11 +24,6 @@ constexpr const char* kExamples = R"(Examples:
 
 One rank a node answers on the node's devices; ranks that share a node share its devices and cores. Rank 0 reads the
 file and writes the answers, with the bytes that cyber-radar query writes.)";
-
-struct Options {
-  RunOptions run;
-  std::string stats;
-};
 
 // What a signal's handler prints.
 std::string farewell;
@@ -105,7 +101,7 @@ std::string statsOf(const std::vector<RankReport>& reports, const Coordinator& c
 /// One rank's part in a run.
 class Rank {
  public:
-  Rank(const Options& options, const MpiSession& session) : options_(options), session_(session) {}
+  Rank(const RunOptions& options, const MpiSession& session) : options_(options), session_(session) {}
 
   int run() {
     if (!broadcast(isFirst() ? reads() : false)) return kStatusBadInput;
@@ -123,7 +119,7 @@ class Rank {
     }
     const std::vector<std::string> reports = gather(packed(prepare()));
     if (!broadcast(isFirst() ? opens(reports) : false)) return kStatusBadInput;
-    ChunkAnswers answers(world(), *answering_, answerFormatOf(options_.run.out));
+    ChunkAnswers answers(world(), *answering_, answerFormatOf(options_.out));
     if (!isFirst()) {
       answers.serve();
       return 0;
@@ -138,10 +134,9 @@ class Rank {
   // Rank 0: the options and the query file are good.
   bool reads() {
     try {
-      if (!options_.stats.empty()) requireFolderOf("--stats", options_.stats);
       const double start = bench::now();
       std::vector<std::string> warnings;
-      queries_.emplace(options_.run.file, warnings);
+      queries_.emplace(options_.file, warnings, options_.outputs());
       loadMs_ = 1e3 * (bench::now() - start);
       printWarnings(warnings);
       modes_ = queries_->modes();
@@ -156,10 +151,10 @@ class Rank {
     RankReport report{hostName(), "", ""};
     try {
       const double start = bench::now();
-      AnsweringOptions engine = options_.run.engine.checked();
+      AnsweringOptions engine = options_.engine.checked();
       const bool needsDevice =
           modes_.asks(AnswerMode::sampled, engine.mode) || modes_.asks(AnswerMode::contact, engine.mode);
-      takeShare(engine, options_.run.engine, session_, needsDevice);
+      takeShare(engine, options_.engine, session_, needsDevice);
       answering_.emplace(world(), modes_, engine);
       if (!world().scenes.empty()) answering_->setUp(0);
       report.devices = namesOf(answering_->devices());
@@ -176,11 +171,12 @@ class Rank {
   // Rank 0: all ranks can answer, and the answers have a place.
   bool opens(const std::vector<std::string>& packedReports) {
     try {
-      const AnsweringOptions engine = options_.run.engine.checked();
+      const AnsweringOptions engine = options_.engine.checked();
       if (!allCanAnswer(packedReports, reports_, modes_.asks(AnswerMode::sampled, engine.mode))) return false;
-      const Part part = options_.run.part(*queries_, answering_->devices());
+      const Part part = options_.part(*queries_, answering_->devices());
+      first_ = part.first();
       end_ = part.end();
-      writer_.emplace(options_.run.out, part, *queries_, options_.run.resume);
+      writer_.emplace(options_.out, part, *queries_, options_.resume);
       return true;
     } catch (const std::exception& error) {
       std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
@@ -190,10 +186,11 @@ class Rank {
 
   int coordinate(ChunkAnswers& answers) {
     // mpirun ends all ranks with this signal when one was killed.
-    farewell = resumeHint(options_.run.out);
+    farewell = resumeHint(options_.out);
     std::signal(SIGTERM, sayFarewell);
     try {
       const double start = bench::now();
+      const uint64_t next = writer_->next();
       Coordinator coordinator(*queries_, *writer_, end_, static_cast<size_t>(session_.count()));
       coordinator.run(answers);
       const double sweepMs = 1e3 * (bench::now() - start);
@@ -201,6 +198,8 @@ class Rank {
       if (!options_.stats.empty()) {
         writeAtomically(options_.stats, statsOf(reports_, coordinator, loadMs_, setupMs_, sweepMs));
       }
+      sayDone("cyber-radar-mpi", {end_ - next, next - first_, bench::now() - start, 1e-3 * (loadMs_ + setupMs_)},
+              " on " + counted(reports_.size(), "rank"));
       return coordinator.someInvalid() ? kStatusSomeInvalid : 0;
     } catch (const RankFailure& failure) {
       std::cerr << "cyber-radar-mpi: rank " << failure.rank() << " on " << reports_[failure.rank()].host << ": "
@@ -209,12 +208,12 @@ class Rank {
       std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
     }
     writer_.reset();
-    if (std::filesystem::exists(options_.run.out + ".partial")) std::cerr << farewell << std::flush;
+    if (std::filesystem::exists(options_.out + ".partial")) std::cerr << farewell << std::flush;
     MPI_Abort(MPI_COMM_WORLD, kStatusBadInput);
     return kStatusBadInput;
   }
 
-  const Options& options_;
+  const RunOptions& options_;
   const MpiSession& session_;
   std::optional<QueryFile> queries_;  ///< rank 0
   Workload world_;                    ///< of the other ranks
@@ -222,25 +221,24 @@ class Rank {
   std::optional<Answering> answering_;
   std::vector<RankReport> reports_;
   std::optional<PartWriter> writer_;
-  uint64_t end_ = 0;
+  uint64_t first_ = 0, end_ = 0;
   double loadMs_ = 0, setupMs_ = 0;
 };
 
 int run(int argc, char** argv, const MpiSession& session) {
   CLI::App app{"Cyber Radar on many machines: answers a query file with the ranks of an MPI run", "cyber-radar-mpi"};
   app.require_subcommand(1);
+  addBasics(app);
   CLI::App* command = app.add_subcommand("query", "Answers a query file");
   command->footer(kExamples);
-  Options options;
-  options.run.addTo(*command);
+  RunOptions options;
+  options.addTo(*command, "times, and what each rank did,");
   command->get_option("--out")->required();
-  command->add_option("--stats", options.stats, "Writes times, and what each rank did, here, as one JSON object")
-      ->type_name("FILE.json");
   // All ranks read the same options, and one speaks.
   try {
     app.parse(argc, argv);
-    options.run.engine.checked();
-    options.run.check();
+    options.engine.checked();
+    options.check();
   } catch (const CLI::ParseError& error) {
     if (session.rank() > 0) return error.get_exit_code() == 0 ? 0 : kStatusBadInput;
     if (app.exit(error) != 0) return kStatusBadInput;

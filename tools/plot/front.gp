@@ -1,5 +1,5 @@
 # Accuracy against speed on one workload:
-#   gnuplot tools/plot/style.gp -c tools/plot/front.gp docs/chart/points.csv front-thin 'Thin shapes' > thin.svg
+#   gnuplot tools/plot/style.gp -c tools/plot/front.gp docs/chart/points.csv front-thin 'Thin shapes' '' 'an H100' > thin.svg
 # Methods with wrong answers are in the upper panel, at their share; the others in the lower one, at their worst error.
 
 csv = ARG1; chart = ARG2
@@ -18,6 +18,10 @@ us(n) = strcol('chart') eq chart && column('linetype') == n ? column('us') : NaN
 wrongOr(otherwise) = column('wrong_percent') > 0 ? column('wrong_percent') : otherwise
 errorOr(otherwise) = column('wrong_percent') > 0 ? otherwise : column('worst_error')
 markSize(n) = column('size') > 0 ? 0.4 + 0.1 * log(column('size')) : 1.1
+
+others = 0
+do for [n = 6:20] { others = others || Name[n] ne '' }
+set label 1 ARG5
 
 set multiplot
 set logscale xy
@@ -42,6 +46,7 @@ plot for [n = 1:20] csv using (us(n)):(wrongOr(NaN)):(markSize(n)) with linespoi
 set tmargin at screen 0.475
 set bmargin at screen 0.11
 unset title
+unset label 1
 set xlabel 'microseconds per query; larger marks: more pixels, rays or steps'
 set ylabel 'worst error, in sensor sizes'
 unset mytics
@@ -49,7 +54,7 @@ set yrange [3e-14 : 10 * worst]
 set ytics 100
 set ytics add ("≤ 1e-13" 1e-13)
 set format '%g'
-set key title "Other libraries (hollow)"
+set key title (others ? 'Other libraries (hollow)' : '')
 plot for [n = 1:20] csv using (us(n)):(errorOr(NaN)):(markSize(n)) with linespoints linetype n pointsize variable notitle, \
      csv using (us(21)):(errorOr(NaN)) with points linetype 21 notitle, \
      csv using (us(21)):(errorOr(1e200)) with steps linetype 21 notitle, \

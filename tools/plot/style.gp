@@ -2,7 +2,8 @@
 
 if (GPVAL_VERSION < 5.4) exit error 'gnuplot 5.4 or newer is needed'
 
-set terminal svg size 900,600 dynamic noenhanced font 'DejaVu Sans,13' background rgb 'white'
+look = "dynamic noenhanced font 'DejaVu Sans,13' background rgb 'white'"
+eval 'set terminal svg size 900,600 ' . look
 set encoding utf8
 set datafile separator comma
 set datafile columnheaders
@@ -11,6 +12,8 @@ set tics nomirror textcolor rgb '#333333'
 set grid linecolor rgb '#dddddd' linetype 1 linewidth 1
 set key outside right top vertical Left reverse noenhanced samplen 2
 set key spacing 1.1
+# The first label says where the figures are from: the device, the processor, the commit.
+set label 1 '' at screen 0.01, 0.985 left font ',9' textcolor rgb '#777777' noenhanced
 
 # Colours of M. Okabe and K. Ito, which colour-blind readers can tell apart. Cyber Radar's methods are filled.
 set linetype 1 linewidth 1.5 linecolor rgb '#0072b2' pointtype 7 pointsize 0.9

@@ -1,5 +1,5 @@
 # Times of several methods as the work grows:
-#   gnuplot tools/plot/style.gp -c tools/plot/times.gp docs/chart/points.csv growth-boxes 'More boxes' boxes > boxes.svg
+#   gnuplot tools/plot/style.gp -c tools/plot/times.gp docs/chart/points.csv growth-boxes 'More boxes' boxes 'an H100' > boxes.svg
 
 csv = ARG1; chart = ARG2
 
@@ -19,5 +19,8 @@ set logscale xy
 set title ARG3
 set xlabel ARG4
 set ylabel 'microseconds per query'
-set key title "filled: Cyber Radar\nhollow: other libraries"
+set label 1 ARG5
+others = 0
+do for [n = 6:20] { others = others || Name[n] ne '' }
+set key title (others ? "filled: Cyber Radar\nhollow: other libraries" : '')
 plot for [n = 1:23] csv using (isHere(n) ? column('x') : NaN):(column('us')) with linespoints linetype n title Name[n]

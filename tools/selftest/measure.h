@@ -12,7 +12,7 @@ namespace radar::tools {
 /// A part of the test of a device.
 struct SelftestPart {
   const char* name;
-  double weight;  ///< share of the device's time
+  double weight;  ///< share of the device's time; 0: as much as all the others leave
   /// Makes the first row whatever the time is, and stops at the deadline; returns false if the deadline kept it from
   /// something. `number`: of the device, in listDevices().
   bool (*measure)(const Device& device, uint32_t number, const bench::Deadline& deadline, Json& rows);

@@ -13,11 +13,11 @@ namespace {
 std::string fieldsText(const Json& object, const std::string& indent) {
   std::string text;
   for (const auto& [name, value] : object.items()) {
-    if (value.is_object() || (value.is_string() && value.get<std::string>().empty())) continue;
+    if (name == "verdict" || value.is_object() || (value.is_string() && value.get<std::string>().empty())) continue;
     const Json values = value.is_array() ? value : Json::array({value});
     for (const Json& one : values) {
       if (one.is_object()) continue;
-      text += indent + name + ": " + (one.is_string() ? one.get<std::string>() : one.dump()) + "\n";
+      text += indent + name + ": " + cellText(one) + "\n";
     }
   }
   return text;
@@ -118,6 +118,10 @@ std::string tableElement(const Json& table, std::string_view bars = {}) {
   return text + "</table>\n";
 }
 
+std::string folded(const std::string& title, const std::string& content) {
+  return "<details>" + element("summary", title) + content + "</details>\n";
+}
+
 // Bars of rates can be compared over all sizes of batches; those of microseconds would vanish beside the batch of one.
 Json ratesOf(const Json& throughput) {
   Json rates = Json::array();
@@ -137,15 +141,15 @@ std::string sectionElement(const std::string& name, const Json& part) {
   const auto section =
       std::find_if(std::begin(kSections), std::end(kSections), [&](const Section& one) { return one.part == name; });
   if (section == std::end(kSections)) throw std::logic_error("the page has no section for the part " + name);
-  return element("h3", section->title) + element("p", stateText(part)) +
-         tableElement(name == "throughput" ? ratesOf(part["rows"]) : part["rows"], section->bars);
+  return folded(section->title + (": " + stateText(part)),
+                tableElement(name == "throughput" ? ratesOf(part["rows"]) : part["rows"], section->bars));
 }
 
 std::string selftestPage(const Json& report) {
-  std::string text = kPageHead + element("pre", fieldsText(report, ""));
+  std::string text = kPageHead + element("p", report["verdict"]) + element("pre", fieldsText(report, ""));
   for (const Json& device : report["devices"]) {
     text += element("h2", titleOf(device)) + (device["usable"] ? element("b", verdictText(device)) : "") +
-            element("pre", fieldsText(device, "")) + tableElement(device["limits"]);
+            folded("What it is", element("pre", fieldsText(device, "")) + tableElement(device["limits"]));
     if (!device["usable"]) continue;
     for (const auto& [name, part] : device["parts"].items()) text += sectionElement(name, part);
   }
@@ -154,13 +158,23 @@ std::string selftestPage(const Json& report) {
 
 }  // namespace
 
+std::string selftestSummary(const Json& report) {
+  std::string text = report["verdict"].get<std::string>() + "\n";
+  for (const Json& device : report["devices"]) {
+    text += "\n" + titleOf(device) + (device["usable"] ? "\n  " + verdictText(device) : ": not usable") + "\n";
+    if (!device["usable"]) continue;
+    for (const auto& [name, part] : device["parts"].items()) text += "  " + name + ": " + stateText(part) + "\n";
+  }
+  if (report["together"]["state"] == "impossible") return text;
+  return text + "\nall devices together: " + stateText(report["together"]) + "\n";
+}
+
 std::string selftestText(const Json& report) {
-  std::string text = "Cyber Radar selftest\n" + fieldsText(report, "");
+  std::string text = selftestSummary(report) + "\n" + fieldsText(report, "");
   for (const Json& device : report["devices"]) {
     text += "\n" + titleOf(device) + "\n" + fieldsText(device, "  ") + textOf(device["limits"], "    ");
     if (!device["usable"]) continue;
     for (const auto& [name, part] : device["parts"].items()) text += partText(name, part);
-    text += "\ndevice " + device["number"].dump() + ": " + verdictText(device) + "\n";
   }
   return text + partText("all devices together", report["together"]);
 }

@@ -18,22 +18,14 @@ Json newPart() {
 }
 
 // All keys are there from the start, so that no reference to a value becomes invalid.
-Json newDevice(uint32_t number, const DeviceReport& facts) {
-  Json device{{"number", number},           {"name", facts.name},
-              {"type", facts.type},         {"driver", facts.driver},
-              {"vulkan", facts.version},    {"memory_bytes", facts.memory},
-              {"subgroup", facts.subgroup}, {"has_doubles", facts.doubles},
-              {"uses_doubles", false},      {"usable", facts.usable()},
-              {"reasons", facts.reasons},   {"sampled_reasons", facts.sampledReasons},
-              {"answers_checked", 0},       {"answers_wrong", 0},
-              {"parts_ended", 0},           {"right", false},
-              {"limits", Json::array()},    {"parts", Json::object()}};
-  for (const DeviceLimit& limit : facts.limits) {
-    device["limits"].push_back({{"limit", limit.name},
-                                {"has", limit.has},
-                                {"needed", limit.needed},
-                                {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
-  }
+Json newDevice(uint32_t number, const DeviceReport& report) {
+  Json device = factsOf(number, report);
+  device.update({{"uses_doubles", false},
+                 {"answers_checked", 0},
+                 {"answers_wrong", 0},
+                 {"parts_ended", 0},
+                 {"right", false},
+                 {"parts", Json::object()}});
   for (const SelftestPart& part : selftestParts()) device["parts"][part.name] = newPart();
   return device;
 }
@@ -57,31 +49,65 @@ void run(Json& part, const std::function<bool(Json&)>& work, const std::function
   onChange();
 }
 
-void testDevice(Json& test, double seconds, const std::function<void()>& onChange) {
-  const Deadline end(seconds);
-  std::optional<Device> device;
-  double weights = 1;
-  for (const SelftestPart& part : selftestParts()) {
-    const Deadline deadline(end.left() * part.weight / weights);
-    weights -= part.weight;
-    Json& report = test["parts"][part.name];
-    if (part.sampled && !test["sampled_reasons"].empty()) {
-      report["state"] = "impossible";
-      report["note"] = test["sampled_reasons"].front();
-      continue;
+// A device under test.
+struct Test {
+  Json& report;
+  std::optional<Device> device{};
+  bool failed = false;  ///< it could not be opened; the part that tried says why
+
+  void run(const SelftestPart& part, const Deadline& deadline, const std::function<void()>& onChange) {
+    Json& partReport = report["parts"][part.name];
+    if (part.sampled && !report["sampled_reasons"].empty()) {
+      partReport["state"] = "impossible";
+      partReport["note"] = report["sampled_reasons"].front();
+    } else if (!failed) {
+      const auto work = [&](Json& rows) {
+        const uint32_t number = report["number"];
+        if (!device) device.emplace(Device::open({.index = number}));
+        report["uses_doubles"] = device->doubles();
+        return part.measure(*device, number, deadline, rows);
+      };
+      tools::run(partReport, work, onChange);
+      failed = !device;
     }
-    const auto work = [&](Json& rows) {
-      const uint32_t number = test["number"];
-      if (!device) device.emplace(Device::open({.index = number}));
-      test["uses_doubles"] = device->doubles();
-      return part.measure(*device, number, deadline, rows);
-    };
-    run(report, work, onChange);
-    if (!device) return;  // it could not be opened; the part says why
+  }
+};
+
+// The parts that take a share each. What one does not use is left to the next.
+void measure(Test& test, double seconds, const std::function<void()>& onChange) {
+  const Deadline end(seconds);
+  double weights = 0;
+  for (const SelftestPart& part : selftestParts()) weights += part.weight;
+  for (const SelftestPart& part : selftestParts()) {
+    if (part.weight == 0) continue;
+    test.run(part, Deadline(end.left() * part.weight / weights), onChange);
+    weights -= part.weight;
   }
 }
 
 }  // namespace
+
+Json factsOf(uint32_t number, const DeviceReport& report) {
+  Json facts{{"number", number},
+             {"name", report.name},
+             {"type", report.type},
+             {"driver", report.driver},
+             {"vulkan", report.version},
+             {"memory_bytes", report.memory},
+             {"subgroup", report.subgroup},
+             {"has_doubles", report.doubles},
+             {"usable", report.usable()},
+             {"reasons", report.reasons},
+             {"sampled_reasons", report.sampledReasons},
+             {"limits", Json::array()}};
+  for (const DeviceLimit& limit : report.limits) {
+    facts["limits"].push_back({{"limit", limit.name},
+                               {"has", limit.has},
+                               {"needed", limit.needed},
+                               {"mode", limit.mode == Mode::contact ? "contact" : "sampled"}});
+  }
+  return facts;
+}
 
 Json lookAtDevices(const std::vector<uint32_t>& asked) {
   const std::vector<DeviceReport> all = listDevices();
@@ -89,8 +115,9 @@ Json lookAtDevices(const std::vector<uint32_t>& asked) {
   if (numbers.empty()) {
     for (uint32_t i = 0; i < all.size(); ++i) numbers.push_back(i);
   }
-  Json report{{"command", ""},        {"commit", ""},   {"date", ""},     {"processor", ""},
-              {"minutes", 0.0},       {"seconds", 0.0}, {"right", false}, {"devices", Json::array()},
+  Json report{{"verdict", ""},        {"command", ""},   {"commit", ""},
+              {"date", ""},           {"processor", ""}, {"minutes", 0.0},
+              {"seconds", 0.0},       {"right", false},  {"devices", Json::array()},
               {"together", newPart()}};
   std::vector<std::string> reasons;
   for (const uint32_t number : numbers) {
@@ -112,30 +139,6 @@ Json lookAtDevices(const std::vector<uint32_t>& asked) {
   return report;
 }
 
-void conclude(Json& report) {
-  const auto hasEnded = [](const Json& part) { return part["state"] != "not begun" && part["state"] != "running"; };
-  bool allRight = hasEnded(report["together"]) && report["together"]["state"] != "failed";
-  for (Json& device : report["devices"]) {
-    uint64_t checked = 0, wrong = 0;
-    size_t ended = 0;
-    bool failed = false;
-    for (const Json& part : device["parts"]) {
-      failed = failed || part["state"] == "failed";
-      ended += hasEnded(part);
-      for (const Json& row : part["rows"]) {
-        checked += row.value("queries", uint64_t{0}) + row.value("batch", uint64_t{0});
-        wrong += row.value("wrong", uint64_t{0}) + row.value("differ", uint64_t{0});
-      }
-    }
-    device["answers_checked"] = checked;
-    device["answers_wrong"] = wrong;
-    device["parts_ended"] = ended;
-    device["right"] = wrong == 0 && !failed && (ended == device["parts"].size() || !device["usable"]);
-    allRight = allRight && device["right"];
-  }
-  report["right"] = allRight;
-}
-
 void runSelftest(Json& report, double minutes, const std::function<void()>& onChange) {
   report["minutes"] = minutes;
   const bench::Stopwatch stopwatch;
@@ -146,25 +149,34 @@ void runSelftest(Json& report, double minutes, const std::function<void()>& onCh
     onChange();
   };
   tell();
-  std::vector<Json*> usable;
+  std::vector<Test> tests;
   std::vector<uint32_t> numbers;
   for (Json& device : report["devices"]) {
     if (!device["usable"]) continue;
-    usable.push_back(&device);
+    tests.push_back({device});
     numbers.push_back(device["number"]);
   }
-  const double forTogether = usable.size() > 1 ? 0.1 * 60 * minutes : 0;
-  for (size_t i = 0; i < usable.size(); ++i) {
-    testDevice(*usable[i], (end.left() - forTogether) / static_cast<double>(usable.size() - i), tell);
+  // In the end, random queries take all that is left.
+  const double all = 60 * minutes, forRest = 0.25 * all, forTogether = tests.size() > 1 ? 0.1 * all : 0;
+  for (size_t i = 0; i < tests.size(); ++i) {
+    measure(tests[i], (end.left() - forRest - forTogether) / static_cast<double>(tests.size() - i), tell);
   }
   Json& together = report["together"];
-  if (usable.size() < 2) {
+  if (tests.size() > 1) {
+    const Deadline deadline(end.left() - forRest);
+    run(
+        together, [&](Json& rows) { return measureTogether(openDevices(numbers), numbers, deadline, rows); }, tell);
+  } else {
     together["state"] = "impossible";
     together["note"] = "there is one usable device";
-    return tell();
   }
-  run(
-      together, [&](Json& rows) { return measureTogether(openDevices(numbers), numbers, end, rows); }, tell);
+  for (size_t i = 0; i < tests.size(); ++i) {
+    const Deadline deadline(end.left() / static_cast<double>(tests.size() - i));
+    for (const SelftestPart& part : selftestParts()) {
+      if (part.weight == 0) tests[i].run(part, deadline, tell);
+    }
+  }
+  tell();
 }
 
 }  // namespace radar::tools

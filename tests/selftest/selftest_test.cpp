@@ -125,7 +125,7 @@ TEST_CASE("a selftest that was interrupted says so, what was checked, and what i
   report["devices"][0]["parts"]["passes"]["state"] = "not begun";
   conclude(report);
   CHECK(report["right"] == false);
-  CHECK_THAT(selftestText(report), Contains("1065 answers checked, 0 wrong: interrupted when 4 of 6 parts had ended"));
+  CHECK_THAT(selftestText(report), Contains("1065 answers checked, 0 wrong: interrupted when 5 of 7 parts had ended"));
   report["devices"][0]["parts"]["exactness"]["rows"][0]["wrong"] = 1;
   conclude(report);
   CHECK_THAT(selftestText(report), Contains("1065 answers checked, 1 wrong: SOMETHING IS WRONG"));
@@ -165,14 +165,14 @@ TEST_CASE("a selftest can be read whenever it is interrupted, and every part has
     if (other["parts"]["arithmetic"]["state"] == "not begun") {
       CHECK(report["right"] == false);
       for (const char* file : {"report.txt", "index.html"}) {
-        CHECK_THAT(files.at(file), Contains("0 answers checked, 0 wrong: interrupted when 0 of 6 parts had ended"));
+        CHECK_THAT(files.at(file), Contains("0 answers checked, 0 wrong: interrupted when 0 of 7 parts had ended"));
       }
-      CHECK(device["right"] == (device["parts_ended"] == 6));
+      CHECK(device["right"] == (device["parts_ended"] == 7));
       CHECK_THAT(
           files.at("report.txt"),
           Contains(device["right"] ? device["answers_checked"].dump() + " answers checked, 0 wrong: nothing is wrong"
                                    : device["answers_checked"].dump() + " answers checked, 0 wrong: interrupted when " +
-                                         device["parts_ended"].dump() + " of 6 parts"));
+                                         device["parts_ended"].dump() + " of 7 parts"));
     }
     for (const auto& [name, part] : device["parts"].items()) {
       if (!isUnderWay(part)) continue;
@@ -195,7 +195,8 @@ TEST_CASE("a selftest can be read whenever it is interrupted, and every part has
   }
   CHECK(begun == parts);
   CHECK(device["right"] == true);
-  CHECK(device["parts"]["arithmetic"]["rows"].size() == 20);
+  CHECK(device["parts"]["arithmetic"]["rows"].size() == 28);
+  CHECK(device["parts"]["answers"]["rows"].size() == 7);
   CHECK(device["parts"]["lanes"]["rows"].size() == 2);
   CHECK(device["answers_checked"] > 64);
   CHECK(report["right"] == true);

@@ -74,6 +74,7 @@ struct Section {
 
 constexpr Section kSections[] = {
     {"arithmetic", "Arithmetic, on which the bounds rest", {}},
+    {"answers", "Known queries of every kind, those of a renderer's frames among them", {}},
     {"exactness", "Random queries of every family, compared with the CPU's answers", {}},
     {"throughput", "Throughput of the device, and of all cores of the CPU, in queries per second", "_per_second"},
     {"stages", "Stages of mode contact, batches of 16,384", "us_per_query"},
@@ -182,7 +183,7 @@ std::string selftestText(const Json& report) {
 std::map<std::string, std::string> selftestFiles(const Json& report) {
   std::map<std::string, Json> tables;
   for (const Json& device : report["devices"]) {
-    for (const char* part : {"arithmetic", "exactness", "throughput"}) addRows(tables[part], device, part);
+    for (const char* part : {"arithmetic", "answers", "exactness", "throughput"}) addRows(tables[part], device, part);
     addRows(tables["stages"], device, "stages", {{"mode", "contact"}});
     addRows(tables["stages"], device, "passes", {{"mode", "sampled"}});
   }

@@ -1,10 +1,9 @@
 // Embree, in two ways: a ray per pixel from the sensor's front into the scene, like the paper's pictures; or a ray from
 // each vertex, of the sensor into the scene and of the scene back onto the sensor.
-#include <embree3/rtcore.h>
-
 #include <stdexcept>
 
 #include "baselines/rigid.h"
+#include "baselines/rtcore.h"
 
 namespace radar::tools {
 
@@ -40,20 +39,54 @@ struct Inverse {
   Vec3 at;
 };
 
-// Leaves out the instances that the query excludes.
-struct Context : RTCIntersectContext {
-  explicit Context(const Query& asked) : query(asked) {
+// Asks rays. `query`: leaves out the instances that it excludes; null: none.
+class Rays : RTCRayQueryContext {
+ public:
+  Rays(const Query* query, RTCRayQueryFlags flags) : query_(query) {
+    const RTCFilterFunctionN filter = query == nullptr || query->exclude.empty() ? nullptr : leaveOut;
+#if RTC_VERSION_MAJOR < 4
     rtcInitIntersectContext(this);
-    flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    if (query.exclude.empty()) return;
-    filter = [](const RTCFilterFunctionNArguments* arguments) {
-      const auto& self = *static_cast<const Context*>(arguments->context);
-      for (uint32_t i = 0; i < arguments->N; ++i) {
-        if (isExcluded(self.query, RTCHitN_instID(arguments->hit, arguments->N, i, 0))) arguments->valid[i] = 0;
-      }
-    };
+    this->flags = flags;
+    this->filter = filter;
+#else
+    rtcInitRayQueryContext(this);
+    rtcInitIntersectArguments(&arguments_);
+    arguments_.context = this;
+    arguments_.flags = filter == nullptr ? flags : RTCRayQueryFlags(flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+    arguments_.filter = filter;
+#endif
   }
-  const Query& query;
+  Rays(const Rays&) = delete;
+  Rays& operator=(const Rays&) = delete;
+
+#if RTC_VERSION_MAJOR < 4
+  void ask(RTCScene scene, RTCRayHit& ray) {
+    rtcIntersect1(scene, this, &ray);
+  }
+  void ask(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    rtcIntersect8(valid, scene, this, &rays);
+  }
+#else
+  void ask(RTCScene scene, RTCRayHit& ray) {
+    rtcIntersect1(scene, &ray, &arguments_);
+  }
+  void ask(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    rtcIntersect8(valid, scene, &rays, &arguments_);
+  }
+#endif
+
+ private:
+  static void leaveOut(const RTCFilterFunctionNArguments* arguments) {
+    const auto& self = *static_cast<const Rays*>(arguments->context);
+    for (uint32_t i = 0; i < arguments->N; ++i) {
+      if (isExcluded(*self.query_, RTCHitN_instID(arguments->hit, arguments->N, i, 0))) arguments->valid[i] = 0;
+    }
+  }
+
+  const Query* query_;
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments_;
+#endif
 };
 
 // One ray per lane; lanes without a ray are off.
@@ -92,7 +125,7 @@ class Embree : public SceneBaseline {
   SceneHandle newScene() {
     SceneHandle scene(rtcNewScene(device_.get()), rtcReleaseScene);
     rtcSetSceneFlags(scene.get(),
-                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS));
     return scene;
   }
 
@@ -161,8 +194,7 @@ class PixelRays : public Embree {
     const Inverse meshFromWorld(query.worldFromMesh);
     const double ahead = high[2] + pixel, depth = high[2] - low[2] + 2 * pixel;
     const Vec3 back = turned(meshFromWorld.linear, -1 * w);
-    Context own(query), scene(query);
-    own.filter = nullptr;
+    Rays own(nullptr, RTC_RAY_QUERY_FLAG_COHERENT), scene(&query, RTC_RAY_QUERY_FLAG_COHERENT);
     double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
     bool found = false;
     for (double y = low[1] + 0.5 * pixel; y < high[1]; y += pixel) {
@@ -173,11 +205,11 @@ class PixelRays : public Embree {
           starts[lane] = (x + lane * pixel) * u + y * v + ahead * w;
           onto.set(lane, meshFromWorld.placed(starts[lane]), back, depth);
         }
-        rtcIntersect8(onto.valid, meshes_[query.mesh].get(), &own, &onto.rays);
+        own.ask(meshes_[query.mesh].get(), onto.valid, onto.rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
           if (onto.hit(lane)) into.set(lane, starts[lane] - double{onto.rays.ray.tfar[lane]} * w, w, best);
         }
-        rtcIntersect8(into.valid, top_.get(), &scene, &into.rays);
+        scene.ask(top_.get(), into.valid, into.rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
           if (!into.hit(lane)) continue;
           best = std::min(best, double{into.rays.ray.tfar[lane]});
@@ -199,19 +231,17 @@ class VertexRays : public Embree {
   std::optional<double> cast(const Query& query) override {
     const Vec3 w = unitDirection(query);
     const MeshData& mesh = workload_.meshes[query.mesh];
-    Context own(query), scene(query);
-    own.filter = nullptr;
-    own.flags = scene.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    Rays own(nullptr, RTC_RAY_QUERY_FLAG_INCOHERENT), scene(&query, RTC_RAY_QUERY_FLAG_INCOHERENT);
     double best = std::nextafter(static_cast<float>(query.distance), INFINITY);
     bool found = false;
-    const auto shoot = [&](RTCScene target, Context& context, const Vec3& origin, const Vec3& direction) {
+    const auto shoot = [&](RTCScene target, Rays& rays, const Vec3& origin, const Vec3& direction) {
       RTCRayHit ray{};
       ray.ray.org_x = float(origin[0]), ray.ray.org_y = float(origin[1]), ray.ray.org_z = float(origin[2]);
       ray.ray.dir_x = float(direction[0]), ray.ray.dir_y = float(direction[1]), ray.ray.dir_z = float(direction[2]);
       ray.ray.tfar = float(best);
       ray.ray.mask = ~0u;
       ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(target, &context, &ray);
+      rays.ask(target, ray);
       if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
       best = std::min(best, double{ray.ray.tfar});
       found = true;

@@ -8,7 +8,7 @@
 #include "workloads/random.h"
 #include "workloads/shapes.h"
 #ifdef RADAR_EMBREE
-#include <embree3/rtcore.h>
+#include "baselines/rtcore.h"
 #endif
 
 namespace radar::bench {

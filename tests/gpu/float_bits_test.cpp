@@ -34,7 +34,7 @@ std::vector<uint32_t> pairsOfFloats(uint32_t count) {
     const uint32_t kind = random() % 5;
     if (kind == 1) y = (y & 0x807fffffu) | ((x & 0x7f800000u) + (random() % 60 << 23));
     if (kind == 2) x &= 0x80ffffffu;
-    if (kind == 3) y = (y & 0x80000000u) | (254u << 23) - (x & 0x7f800000u) + (y & 0x7fffffu);
+    if (kind == 3) y = (y & 0x80000000u) | ((254u << 23) - (x & 0x7f800000u) + (y & 0x7fffffu));
     // Few digits, so that sums and products are exact or end in a half.
     if (kind == 4) {
       x &= 0xfffff000u;

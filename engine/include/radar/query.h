@@ -57,9 +57,9 @@ struct Query {
   std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
-  /// rounding leaves the answer undecided, or lowers lo. `point` is of the touched surface, and `normal` may point
-  /// along the motion if they are in contact at the start. With `ignoreLeaving`, pairs that do not block take no part,
-  /// however near they come.
+  /// rounding leaves the answer undecided, or lowers lo. (Slivers that are 10^11 times as long as the clearance are
+  /// decided, in double-doubles.) `normal` may point along the motion if they are in contact at the start. With
+  /// `ignoreLeaving`, pairs that do not block take no part, however near they come.
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
   /// sensor's box.

@@ -44,7 +44,8 @@ bool ClearanceContact::Near::precedes(const Near& other) const {
 
 std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pair) const {
   const Motion& motion = *motion_;
-  auto found = approach(pair.a, pair.b, motion.unit, query_.clearance, motion.wayUntil(motion.distance), tolerance_);
+  auto found = approach(pair.a, pair.b, motion.direction, motion.unit, query_.clearance,
+                        motion.wayUntil(motion.distance), tolerance_);
   if (!found || !motion.isStep) return found;
   const auto timeOf = [&](double way, double rounding) {
     return way > 0 && motion.speed > 0 ? rounding * (way / motion.speed) : 0;

@@ -77,7 +77,8 @@ void FirstContact::limit(const exact::EarliestContact& contact) {
 void FirstContact::endObject() {
   if (query_.hits == 1 || !earliest_.found()) return;
   const auto isBefore = [](const auto& p, const auto& q) { return p.precedes(q); };
-  nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), earliest_, isBefore), earliest_);
+  const auto place = std::upper_bound(nearest_.begin(), nearest_.end(), earliest_, isBefore);
+  nearest_.insert(place, std::move(earliest_));
   if (nearest_.size() > query_.hits) nearest_.pop_back();
   latest_ = sensorMotion_.distance;
   if (nearest_.size() == query_.hits) limit(nearest_.back());

@@ -4,6 +4,7 @@
 
 #include "exact/bounded.h"
 #include "exact/determinant.h"
+#include "exact/three.h"
 
 namespace radar::exact {
 
@@ -39,32 +40,6 @@ Dyadic abs(const Dyadic& x) {
 
 Dyadic max(const Dyadic& p, const Dyadic& q) {
   return (p - q).sign() < 0 ? q : p;
-}
-
-Dyadic minor(const Dyadic& p, const Dyadic& q, const Dyadic& r, const Dyadic& s) {
-  return p * q - r * s;
-}
-
-template <class Number>
-using Three = std::array<Number, 3>;
-
-template <class Number>
-Three<Number> numbers(const Vector& v) {
-  return {Number(v[0]), Number(v[1]), Number(v[2])};
-}
-
-template <class Number>
-Three<Number> minus(const Three<Number>& p, const Three<Number>& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
-Dyadic inner(const Three<Dyadic>& p, const Three<Dyadic>& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
-template <class Number>
-Three<Number> crossProduct(const Three<Number>& p, const Three<Number>& q) {
-  return {minor(p[1], q[2], p[2], q[1]), minor(p[2], q[0], p[0], q[2]), minor(p[0], q[1], p[1], q[0])};
 }
 
 /// How far two triangles reach past each other along a normal n.

@@ -15,12 +15,9 @@ constexpr int next(int i) {
   return i == 2 ? 0 : i + 1;
 }
 
-/// The corners of two triangles that span a point of contact: bit i is set if corner i has a positive weight.
-struct Span {
-  unsigned a = 0, b = 0;
-  Span operator|(const Span& other) const { return {a | other.a, b | other.b}; }
-  Features features() const { return {static_cast<Feature>(std::popcount(a)), static_cast<Feature>(std::popcount(b))}; }
-};
+Span operator|(const Span& p, const Span& q) {
+  return {p.a | q.a, p.b | q.b};
+}
 
 /// The ends of an edge, less the one that has no weight because the other is at the point.
 unsigned edgeSpan(int from, int sideOfFrom, int sideOfTo) {
@@ -34,6 +31,7 @@ class Ends {
   void add(const Event& event, const Span& span) {
     const int own = count_++;
     events_[own] = event;
+    spans_[own] = span;
     hasRatio_[own] = false;
     between_ = between_ | span;
     if (own == 0) {
@@ -51,7 +49,9 @@ class Ends {
     if (count_ == 0) return std::nullopt;
     // The points of contact at any parameter are a polytope, with the events at its corners. Those at a parameter
     // between the ends include points inside it, which all corners span.
-    return Interval{events_[first_], events_[last_], atFirst_.features(), atLast_.features(), between_.features()};
+    const Span& own = spans_[first_];
+    const bool isSharp = own.a == atFirst_.a && own.b == atFirst_.b && std::popcount(own.a) + std::popcount(own.b) == 4;
+    return Interval{events_[first_], events_[last_], atFirst_, atLast_, between_, isSharp};
   }
 
  private:
@@ -70,6 +70,7 @@ class Ends {
   bool isPoint_ = true;  // all events so far have the same parameter
   Span atFirst_, atLast_, between_;
   std::array<Event, kMost> events_;
+  std::array<Span, kMost> spans_;
   std::array<bool, kMost> hasRatio_;
   std::array<Ratio, kMost> ratios_;  // large, rarely touched
 };
@@ -201,6 +202,10 @@ std::optional<Interval> contact(const Triangle& a, const Triangle& b, const Vect
     }
   }
   return ends.interval();
+}
+
+Features Span::features() const {
+  return {static_cast<Feature>(std::popcount(a)), static_cast<Feature>(std::popcount(b))};
 }
 
 Features featuresOf(const Event& event) {

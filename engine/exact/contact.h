@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <optional>
 
@@ -18,6 +19,19 @@
 namespace radar::exact {
 
 using Triangle = std::array<Vector, 3>;
+
+/// Names a pair of triangles. Of pairs that meet at the same time the least name wins.
+struct PairName {
+  ObjectId object = kNone;
+  uint32_t triB = kNone, triA = kNone;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero compared with for a pointer
+  friend auto operator<=>(const PairName&, const PairName&) = default;
+};
+
+/// The sensor's triangle and the scene's, placed.
+struct PlacedPair {
+  Triangle a, b;
+};
 
 /// Replaces -0 by 0, so that device and CPU give the same bits: Vulkan does not define the sign of 0.
 inline Vector withoutZeroSigns(Vector v) {
@@ -46,9 +60,17 @@ struct Features {
   Feature a = Feature::none, b = Feature::none;
 };
 
+/// The corners of two triangles that span every point at which they touch: bit i is set if corner i does.
+struct Span {
+  unsigned a = 0, b = 0;
+  Features features() const;
+};
+
 struct Interval {
   Event first, last;
-  Features atFirst, atLast, between;  ///< `between` first and last, at any parameter
+  Span atFirst, atLast, between;  ///< `between` first and last, at any parameter
+  /// Whether contact begins at one point, inside both features of `first`: then there is one normal.
+  bool isSharp;
 };
 
 /// The interval of contact; none if the triangles do not meet for any s. `direction` is not zero.

@@ -4,10 +4,14 @@
 // arithmetic", 2017, with u = 2^-53: sum 3u^2 + O(u^3), product less than 7u^2 (their AccurateDWPlusDW, DWTimesDW1).
 #pragma once
 
+#include <cmath>
+#include <compare>
+
 namespace radar::exact {
 
 struct DoubleDouble {
   double high = 0, low = 0;
+  friend auto operator<=>(const DoubleDouble&, const DoubleDouble&) = default;
 };
 
 /// high + low = p + q exactly, |p| >= |q| or p = 0.
@@ -52,6 +56,22 @@ inline DoubleDouble operator-(const DoubleDouble& p, const DoubleDouble& q) {
 inline DoubleDouble operator*(const DoubleDouble& p, const DoubleDouble& q) {
   const DoubleDouble r = product(p.high, q.high);
   return quickSum(r.high, r.low + (p.high * q.low + p.low * q.high));
+}
+
+/// p / q, off by less than 16u^2 of itself.
+inline DoubleDouble operator/(const DoubleDouble& p, const DoubleDouble& q) {
+  const double first = p.high / q.high;
+  const DoubleDouble rest = p - DoubleDouble{first} * q;
+  const double second = rest.high / q.high;
+  const DoubleDouble last = rest - DoubleDouble{second} * q;
+  return quickSum(first, second) + DoubleDouble{last.high / q.high};
+}
+
+/// The square root of x >= 0, off by less than 16u^2 of itself.
+inline DoubleDouble root(const DoubleDouble& x) {
+  if (!(x.high > 0)) return {};
+  const double first = std::sqrt(x.high);
+  return quickSum(first, (x - product(first, first)).high / (2 * first));
 }
 
 }  // namespace radar::exact

@@ -1,6 +1,7 @@
 #include "exact/earliest_contact.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "exact/common_point.h"
@@ -15,16 +16,16 @@ std::optional<EarliestContact::Beginning> EarliestContact::beginningOf(const Pla
   const int last = sign(interval->last);
   if (last < 0) return std::nullopt;
   const int first = sign(interval->first);
-  const Features features = first >= 0 ? interval->atFirst : last == 0 ? interval->atLast : interval->between;
-  return Beginning{interval->first, first <= 0, features};
+  const Span& span = first >= 0 ? interval->atFirst : last == 0 ? interval->atLast : interval->between;
+  return Beginning{interval->first, first <= 0, span.features(), span, interval->isSharp};
 }
 
 bool EarliestContact::considerPressed(const PairName& name, const PlacedPair& pair) {
   // Any event before the start will do.
   const Vector& d = motion_->direction;
-  Beginning beginning = beginningOf(pair).value_or(Beginning{vertexVertex(d, d, kOrigin), true, {}});
+  Beginning beginning = beginningOf(pair).value_or(Beginning{vertexVertex(d, d, kOrigin), true, {}, {}, false});
   beginning.features = {Feature::face, Feature::face};
-  return precedes(name, beginning) && keep(name, pair, beginning);
+  return offer(name, pair, beginning, [] { return true; });
 }
 
 // -1, 0 or 1: the event comes before, at or after the end of the motion.
@@ -44,14 +45,21 @@ bool EarliestContact::precedes(const EarliestContact& other) const {
   return order < 0 || (order == 0 && name_ < other.name_);
 }
 
-bool EarliestContact::precedes(const PairName& name, const Beginning& beginning) const {
-  if (!beginning.overlap && compareToEnd(beginning.first, *motion_) > 0) return false;
-  if (!found_) return true;
+int EarliestContact::orderOf(const PairName& name, const Beginning& beginning) const {
+  if (!beginning.overlap && compareToEnd(beginning.first, *motion_) > 0) return 1;
+  if (!found_) return -1;
   const int order = compareTimes(beginning.overlap, beginning.first, *this);
-  return order < 0 || (order == 0 && !(name_ < name));
+  return order == 0 && overlap_ && name_ < name ? 1 : order;
 }
 
-bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning) {
+bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order) {
+  if (order < 0) {
+    touching_.clear();
+  } else if (!overlap_) {
+    const bool isFirst = name < name_;
+    touching_.push_back(isFirst ? TouchingPair{name_, pair_} : TouchingPair{name, pair});
+    if (!isFirst) return false;
+  }
   found_ = true;
   overlap_ = beginning.overlap;
   name_ = name;
@@ -59,6 +67,8 @@ bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const B
   event_ = beginning.first;
   kept_ = *motion_;
   features_ = beginning.features;
+  span_ = beginning.span;
+  isSharp_ = beginning.isSharp;
   return true;
 }
 
@@ -84,18 +94,38 @@ void EarliestContact::describe(Result& result) const {
   result.featureB = features_.b;
   result.featureA = features_.a;
   const double s = overlap_ ? 0 : parameter(event_);
-  if (!overlap_ || sign(event_) == 0) {
-    result.point = point(event_, s);
-    if (kept_.isStep) result.point = withoutZeroSigns(along(result.point, s, kept_.drift));
-    result.normal = normal(event_);
-  } else {
-    result.point = commonPoint(pair_.a, pair_.b);
-  }
+  const bool begins = !overlap_ || sign(event_) == 0;
+  result.point = pointAt(s, begins);
+  if (begins) result.normal = normalOf();
   if (overlap_) {
     result.t = result.lo = result.hi = result.fraction = 0;
   } else {
     setBracket(result, s * kept_.length);
   }
+}
+
+Vector EarliestContact::pointAt(double s, bool begins) const {
+  // A corner that touches is the point, exactly.
+  const bool isNamed = !isSharp_ || !begins;
+  Vector at;
+  if (isNamed && features_.b == Feature::vertex) {
+    at = withoutZeroSigns(pair_.b[std::countr_zero(span_.b)]);
+  } else if (isNamed && features_.a == Feature::vertex) {
+    at = withoutZeroSigns(along(pair_.a[std::countr_zero(span_.a)], s, event_.direction));
+  } else {
+    at = begins ? point(event_, s) : commonPoint(pair_.a, pair_.b);
+  }
+  return kept_.isStep ? withoutZeroSigns(along(at, s, kept_.drift)) : at;
+}
+
+Vector EarliestContact::normalOf() const {
+  if (isSharp_) return normal(event_);
+  const TouchingPair own{name_, pair_};
+  std::vector<const TouchingPair*> pairs{&own};
+  for (const TouchingPair& pair : touching_) {
+    if (pair.name.object == name_.object) pairs.push_back(&pair);
+  }
+  return contactNormal(event_, span_, pairs);
 }
 
 void EarliestContact::setBracket(Result& result, double t) const {

@@ -1,26 +1,13 @@
 // The earliest contact among pairs of triangles, and the answer it makes.
 #pragma once
 
-#include <compare>
 #include <optional>
+#include <vector>
 
-#include "exact/contact.h"
+#include "exact/contact_normal.h"
 #include "exact/motion.h"
 
 namespace radar::exact {
-
-/// Names a pair of triangles. Of pairs that meet at the same time the least name wins.
-struct PairName {
-  ObjectId object = kNone;
-  uint32_t triB = kNone, triA = kNone;
-  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero compared with for a pointer
-  friend auto operator<=>(const PairName&, const PairName&) = default;
-};
-
-/// The sensor's triangle and the scene's, placed.
-struct PlacedPair {
-  Triangle a, b;
-};
 
 class EarliestContact {
  public:
@@ -35,13 +22,13 @@ class EarliestContact {
   template <class Counts>
   bool consider(const PairName& name, const PlacedPair& pair, const Counts& counts) {
     const std::optional<Beginning> beginning = beginningOf(pair);
-    return beginning && precedes(name, *beginning) && counts() && keep(name, pair, *beginning);
+    return beginning && offer(name, pair, *beginning, counts);
   }
   /// The same for a contact that is known to begin at `first`, not before the start.
   template <class Counts>
   bool considerKnown(const PairName& name, const PlacedPair& pair, const Event& first, const Counts& counts) {
-    const Beginning beginning{first, false, featuresOf(first)};
-    return precedes(name, beginning) && counts() && keep(name, pair, beginning);
+    const Beginning beginning{first, false, featuresOf(first), {}, true};
+    return offer(name, pair, beginning, counts);
   }
   /// The same for a pair that counts.
   bool consider(const PairName& name, const PlacedPair& pair) {
@@ -68,13 +55,25 @@ class EarliestContact {
     Event first;
     bool overlap;  ///< at the start
     Features features;
+    Span span;     ///< of all points at which they touch then; not set if `isSharp`
+    bool isSharp;  ///< as of an Interval
   };
   std::optional<Beginning> beginningOf(const PlacedPair& pair) const;
-  bool precedes(const PairName& name, const Beginning& beginning) const;
-  bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning);
+  template <class Counts>
+  bool offer(const PairName& name, const PlacedPair& pair, const Beginning& beginning, const Counts& counts) {
+    const int order = orderOf(name, beginning);
+    return order <= 0 && counts() && keep(name, pair, beginning, order);
+  }
+  /// -1, 0 or 1: it comes before the earliest so far; with it; later, or too late. At the start only the least name
+  /// counts.
+  int orderOf(const PairName& name, const Beginning& beginning) const;
+  bool keep(const PairName& name, const PlacedPair& pair, const Beginning& beginning, int order);
   static int compareTimes(bool overlap, const Event& event, const EarliestContact& other);
   static int compareToEnd(const Event& event, const Motion& motion);
   void describe(Result& result) const;
+  /// After moving by `s`. `begins`: contact does then, else it has begun before the start.
+  Vector pointAt(double s, bool begins) const;
+  Vector normalOf() const;
   void setBracket(Result& result, double t) const;
 
   const Motion* motion_;
@@ -85,6 +84,9 @@ class EarliestContact {
   PlacedPair pair_{};
   Event event_{};
   Features features_;
+  Span span_;
+  bool isSharp_ = false;
+  std::vector<TouchingPair> touching_;  ///< others that meet then, of any objects; none if that is at the start
 };
 
 }  // namespace radar::exact

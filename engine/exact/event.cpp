@@ -15,6 +15,8 @@ namespace {
 constexpr double kUnit = 0x1p-53;
 // Covers underflow, with a margin; subnormal numbers would be slow.
 constexpr double kLeast = 0x1p-1000;
+// Products that cancel by more than this cost a normal in double-doubles too many bits (double_double.glsl).
+constexpr double kMostCancelled = 0x1p40;
 
 Determinant numerator(const Event& e) {
   return {{e.from, e.to}, {e.x0, e.x1}, {e.y0, e.y1}};
@@ -242,10 +244,17 @@ Vector point(const Event& e, double s) {
   // The orientations of the resting edge's ends, y0 and y1, give the share of the edge at which the moving edge
   // crosses.
   const Difference d{kOrigin, e.direction};
-  const DoubleDouble p = fineEstimate({d, {e.y0, e.x0}, {e.y0, e.x1}}).value;
-  const DoubleDouble q = fineEstimate({d, {e.y1, e.x0}, {e.y1, e.x1}}).value;
-  const double share = p.high / (p - q).high;
-  return withoutZeroSigns(along(e.y0, std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0, rounded({e.y0, e.y1})));
+  const Determinant at0{d, {e.y0, e.x0}, {e.y0, e.x1}}, at1{d, {e.y1, e.x0}, {e.y1, e.x1}};
+  const FineEstimate p = fineEstimate(at0), q = fineEstimate(at1);
+  const double both = (p.value - q.value).high;
+  double share = p.value.high / both;
+  // Not where a device is certain of the signs of both (double_double.glsl).
+  if (!(p.error + q.error <= 0x1p-45 * std::abs(both))) {
+    countExactDecision();
+    const Dyadic above = exactly(at0);
+    share = quotient(above, above - exactly(at1));
+  }
+  return withoutZeroSigns(along(e.y0, std::clamp(share, 0.0, 1.0), rounded({e.y0, e.y1})));
 }
 
 namespace {
@@ -270,23 +279,25 @@ double rootOf(double x) {
   return root;
 }
 
-/// x cross y, divided by the size of its largest component. Zero if it is zero.
-Vector exactCross(const Difference& x, const Difference& y) {
-  std::array<Dyadic, 3> c;
-  size_t most = 0;
-  for (size_t k = 0; k < 3; ++k) {
-    const Vector axis = unit(static_cast<int>(k));
-    c[k] = exactly({{kOrigin, axis}, x, y});
-    if (c[k].sign() != 0 && (c[most].sign() == 0 || std::abs(quotient(c[k], c[most])) > 1)) most = k;
-  }
-  Vector n{};
-  for (size_t k = 0; k < 3; ++k) {
-    if (c[k].sign() != 0) n[k] = c[most].sign() * quotient(c[k], c[most]);
-  }
-  return n;
+Vector unitOf(Vector n, double turn) {
+  const Scale scale(n);
+  for (double& c : n) c = scale(c);
+  const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
+  for (double& c : n) c = turn * c / root;
+  return withoutZeroSigns(n);
 }
 
 }  // namespace
+
+Vector unitOf(const Three<Dyadic>& v) {
+  size_t most = 0;
+  for (size_t k = 1; k < 3; ++k) {
+    if (v[k].sign() != 0 && (v[most].sign() == 0 || std::abs(quotient(v[k], v[most])) > 1)) most = k;
+  }
+  Vector n;
+  for (size_t k = 0; k < 3; ++k) n[k] = v[most].sign() * quotient(v[k], v[most]);
+  return unitOf(n, 1);
+}
 
 Vector normal(const Event& e) {
   if (e.kind > Kind::edgeEdge) return {NAN, NAN, NAN};
@@ -301,21 +312,22 @@ Vector normal(const Event& e) {
     for (int k = 0; k < 3; ++k) v[k] = {scale(v[k].high), scale(v[k].low)};
   }
   Vector n;
-  bool isNoise = true;
+  double largest = 0, products = 0;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     const DoubleDouble p = x[i] * y[j], q = x[j] * y[i];
     n[k] = (p - q).high;
-    isNoise = isNoise && std::abs(n[k]) <= 0x1p-100 * (std::abs(p.high) + std::abs(q.high));
+    largest = std::max(largest, std::abs(n[k]));
+    products = std::max(products, std::abs(p.high) + std::abs(q.high));
   }
-  // Then devices leave the pair to the CPU: the sign of n . direction is less certain than n (fineEstimate).
-  if (isNoise) n = exactCross({e.x0, e.x1}, {e.y0, e.y1});
-  const Scale scale(n);
-  for (double& c : n) c = scale(c);
-  const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
-  const double turn = sign(denominator(e)) > 0 ? -1 : 1;
-  for (double& c : n) c = turn * c / root;
-  return withoutZeroSigns(n);
+  const int side = sign(denominator(e));
+  // The components are off by 2^-99 of the products. Devices then leave the pair to the CPU.
+  if (!(products < kMostCancelled * largest)) {
+    Three<Dyadic> exact;
+    for (int k = 0; k < 3; ++k) exact[k] = Dyadic(-side) * exactly({{kOrigin, unit(k)}, {e.x0, e.x1}, {e.y0, e.y1}});
+    return unitOf(exact);
+  }
+  return unitOf(n, -side);
 }
 
 }  // namespace radar::exact

@@ -4,6 +4,7 @@
 
 #include "exact/contact.h"
 #include "exact/dyadic.h"
+#include "exact/three.h"
 
 namespace radar::exact {
 
@@ -17,6 +18,9 @@ Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b);
 
 /// p + s d, rounded.
 Vector along(const Vector& p, double s, const Vector& d);
+
+/// The unit vector along v, which is not zero; every component is off by a few roundings of itself.
+Vector unitOf(const Three<Dyadic>& v);
 
 /// An event's parameter as an exact fraction.
 struct Ratio {

@@ -209,6 +209,10 @@ bool ContactTier::keep(size_t query, const Result& found) {
   if (asked.clearance > 0 && found.status == Status::overlap && found.object == kNone) return false;
   // What is certain on the device may have kept the search from other pairs.
   if (asked.clearance > 0 && found.status == Status::undecided) return false;
+  // In a bracket that rounding keeps wide, other pairs may begin than those that the CPU's search comes across.
+  const Mesh& sensor = scene_.impl().meshes[asked.mesh];
+  const bool isWide = asked.clearance > 0 && !(found.hi - found.lo <= cpu::toleranceOf(asked, sensor));
+  if (isWide && found.status == Status::hit && !asked.anyHit) return false;
   // What meets at the start may cross, and then takes no part.
   const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
   if (asked.skipOverlapping && mayCross) return false;

@@ -127,19 +127,23 @@ double rootOf(double x) {
   return root;
 }
 
+// Returns false if only the CPU finds it.
 bool normalOf(Event e, double turn, out dvec3 normal) {
   DoubleDoubleVector x = sum(e.x1, -e.x0), y = sum(e.y1, -e.y0);
   const int sizeX = exponentOf(mostOf(x.high.x, x.high.y, x.high.z)), sizeY = exponentOf(mostOf(y.high.x, y.high.y, y.high.z));
   const double scaleX = powerOfTwo(clamp(-sizeX, -1000, 1000)), scaleY = powerOfTwo(clamp(-sizeY, -1000, 1000));
   x = DoubleDoubleVector(x.high * scaleX, x.low * scaleX);
   y = DoubleDoubleVector(y.high * scaleY, y.low * scaleY);
-  dvec3 n = minus(times(yzx(x), zxy(y)), times(zxy(x), yzx(y))).high;
+  const DoubleDoubleVector over = times(yzx(x), zxy(y)), under = times(zxy(x), yzx(y));
+  dvec3 n = minus(over, under).high;
+  const dvec3 products = abs(over.high) + abs(under.high);
+  const bool isPrecise = mostOf(products.x, products.y, products.z) < 1099511627776.0LF * mostOf(n.x, n.y, n.z);  // 2^40
   const int size = exponentOf(mostOf(n.x, n.y, n.z));
   n *= powerOfTwo(clamp(-size, -1000, 1000));
   precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
   const double root = rootOf(square);
   normal = dvec3(soundQuotient(turn * n.x, root), soundQuotient(turn * n.y, root), soundQuotient(turn * n.z, root));
-  return max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
+  return isPrecise && max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
 }
 
 // Finds a common point of two triangles, as engine/exact/common_point.cpp does in plain doubles. `inside`: least barycentric coordinate of the

@@ -3,7 +3,8 @@
 #ifndef RADAR_TWO_FLOATS_GLSL
 #define RADAR_TWO_FLOATS_GLSL
 
-// Adds q to high + low; only the sum of the low parts may be rounded.
+// Adds q to high + low. To nearest, only the sum of the low parts is rounded; in other directions, the rest may be off, too, by
+// up to 2^-45 of the sum: docs/method.md allows 2^-40.
 void addExactly(inout float high, inout float low, float q) {
   precise float s = high + q;
   precise float part = s - high;

@@ -155,9 +155,10 @@ class Margins {
     }
     c.doubt = 0x1p-50L * (spanA + spanB + c.contact);
     c.clearance = size * magnitude(random_, 10);
+    const Motion motion(c.query);
     c.nearing = cpu::approach(placedTriangle(a, c.query.worldFromMesh, c.triangleA),
-                              placedTriangle(b, object.worldFromMesh, c.triangleB), Motion(c.query).unit, c.clearance,
-                              c.query.distance, 0);
+                              placedTriangle(b, object.worldFromMesh, c.triangleB), motion.direction, motion.unit,
+                              c.clearance, c.query.distance, 0);
     cases_.push_back(c);
   }
 

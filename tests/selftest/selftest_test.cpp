@@ -214,11 +214,12 @@ TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
   CHECK_THAT(folder.read("report/report.txt"), test::StartsWith(told) && test::StartsWith("RIGHT ("));
   CHECK_THAT(told, Contains("exactness: ") && !Contains("interlocking"));
   CHECK(nlohmann::json::parse(folder.read("report/report.json"))["right"] == true);
-  for (const char* file : {"index.html", "arithmetic.csv", "exactness.csv", "throughput.csv", "stages.csv"}) {
+  for (const char* file :
+       {"index.html", "arithmetic.csv", "answers.csv", "exactness.csv", "throughput.csv", "stages.csv"}) {
     CAPTURE(file);
     CHECK_FALSE(folder.read(std::string("report/") + file).empty());
   }
-  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "report"), {}) == 7);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "report"), {}) == 8);
   std::istringstream text(folder.read("report/report.txt"));
   for (std::string line; std::getline(text, line);) CHECK(line.size() <= 120);
 

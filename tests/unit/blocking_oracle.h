@@ -31,9 +31,9 @@ inline void clip(std::vector<PolygonCorner>& polygon, const IntVec& f) {
 }
 
 /// Whether some n with a largest component of 1 or -1 has n . c >= -slack for all c of `differences` and n . d >= 0 for
-/// all d of `directions`.
+/// all d of `directions`, and n . d > 0 for `strictly`, if that is given.
 inline bool hasNormal(const std::vector<IntVec>& differences, const std::vector<IntVec>& directions,
-                      const Integer& slack) {
+                      const Integer& slack, const IntVec* strictly = nullptr) {
   for (int face = 0; face < 6; ++face) {
     const int k = face / 2, x = (k + 1) % 3, y = (k + 2) % 3;
     const int side = face % 2 == 0 ? 1 : -1;
@@ -41,7 +41,11 @@ inline bool hasNormal(const std::vector<IntVec>& differences, const std::vector<
         {{-1, -1, 1}, {0, 1, 1}}, {{1, -1, 1}, {-1, 0, 1}}, {{1, 1, 1}, {0, -1, 1}}, {{-1, 1, 1}, {1, 0, 1}}};
     for (const IntVec& d : directions) clip(normals, {d[x], d[y], side * d[k]});
     for (const IntVec& c : differences) clip(normals, {c[x], c[y], side * c[k] + slack});
-    if (!normals.empty()) return true;
+    const auto suits = [&](const PolygonCorner& n) {
+      const IntVec& d = *strictly;
+      return dot(IntVec{d[x], d[y], side * d[k]}, n.xyw) > 0;
+    };
+    if (strictly == nullptr ? !normals.empty() : std::any_of(normals.begin(), normals.end(), suits)) return true;
   }
   return false;
 }

@@ -59,6 +59,83 @@ std::vector<Boxed> boxed(const std::vector<Corners>& triangles, bool isMirrored,
   return out;
 }
 
+IntVec times(const Integer& factor, const IntVec& v) {
+  return {Integer(factor * v[0]), Integer(factor * v[1]), Integer(factor * v[2])};
+}
+
+IntVec plus(const IntVec& p, const IntVec& q) {
+  return {Integer(p[0] + q[0]), Integer(p[1] + q[1]), Integer(p[2] + q[2])};
+}
+
+/// The point at / w, w > 0.
+struct Place {
+  IntVec at;
+  Integer w = 1;
+};
+
+/// From the point to a corner, times w.
+IntVec from(const Place& point, const IntVec& corner) {
+  return minus(times(point.w, corner), point.at);
+}
+
+bool contains(const IntTriangle& t, const Place& point) {
+  const std::array<IntVec, 3> to{from(point, t[0]), from(point, t[1]), from(point, t[2])};
+  const std::array<IntVec, 3> sides{cross(to[0], to[1]), cross(to[1], to[2]), cross(to[2], to[0])};
+  if (std::all_of(sides.begin(), sides.end(), isZero)) {  // on one line with the triangle
+    return dot(to[0], to[1]) <= 0 || dot(to[1], to[2]) <= 0 || dot(to[2], to[0]) <= 0;
+  }
+  return dot(to[0], sides[1]) == 0 && dot(sides[0], sides[1]) >= 0 && dot(sides[1], sides[2]) >= 0 &&
+         dot(sides[2], sides[0]) >= 0;
+}
+
+/// The corners of what two triangles have in common.
+std::vector<Place> commonCorners(const IntTriangle& a, const IntTriangle& b) {
+  std::vector<Place> out;
+  for (size_t i = 0; i < 3; ++i) {
+    if (contains(b, {a[i]})) out.push_back({a[i]});
+    if (contains(a, {b[i]})) out.push_back({b[i]});
+    for (size_t k = 0; k < 3; ++k) {
+      const IntVec u = minus(a[(i + 1) % 3], a[i]), v = minus(b[(k + 1) % 3], b[k]), gap = minus(b[k], a[i]);
+      const IntVec n = cross(u, v);
+      if (isZero(n) || dot(n, gap) != 0) continue;
+      const Integer square = dot(n, n), onA = dot(cross(gap, v), n), onB = dot(cross(gap, u), n);
+      if (onA < 0 || onA > square || onB < 0 || onB > square) continue;
+      out.push_back({plus(times(square, a[i]), times(onA, u)), square});
+    }
+  }
+  return out;
+}
+
+/// A normal as given, off by its rounding.
+struct RoundedNormal {
+  IntVec n;  ///< times 2^bits
+  int bits;
+
+  explicit RoundedNormal(const Corner& given) : bits(-leastExponent(given.data(), 3)) { n = scaled(given, -bits); }
+
+  /// Whether n . c >= 0 for all c, to rounding.
+  bool keeps(const std::vector<IntVec>& differences) const {
+    return std::all_of(differences.begin(), differences.end(), [&](const IntVec& c) {
+      const Integer size = abs(c[0]) + abs(c[1]) + abs(c[2]);
+      return (dot(n, c) << 50) + (size << bits) >= 0;
+    });
+  }
+  bool isUnit() const {
+    const Integer one = Integer(1) << 2 * bits;
+    return (abs(dot(n, n) - one) << 49) <= one;
+  }
+};
+
+/// The normals of the faces of the difference of two triangles.
+std::vector<IntVec> ownNormals(const IntTriangle& a, const IntTriangle& b) {
+  std::vector<IntVec> out;
+  const auto edge = [](const IntTriangle& t, size_t i) { return minus(t[(i + 1) % 3], t[i]); };
+  out.push_back(cross(edge(a, 0), edge(a, 1)));
+  out.push_back(cross(edge(b, 0), edge(b, 1)));
+  for (size_t i = 0; i < 9; ++i) out.push_back(cross(edge(a, i / 3), edge(b, i % 3)));
+  return out;
+}
+
 bool isStep(const radar::Scene& scene, const radar::Query& query) {
   if (query.motion) return true;
   for (radar::ObjectId id = 0; id < scene.objectLimit(); ++id) {
@@ -122,7 +199,107 @@ class Meeting {
     return best;
   }
 
+  /// oracle::faultOfNormal.
+  std::string faultOfNormal(const radar::Result& hit) const {
+    const std::optional<Interval> interval = contact(a_[hit.triA].faced.corners, b_[hit.triB].faced.corners, course_);
+    if (!interval) return "its triangles do not meet";
+    const bool exists = !std::isnan(hit.normal[0]);
+    if (hit.status == radar::Status::overlap && interval->first.sign() != 0)
+      return exists ? "a start has a normal" : "";
+    if (!exists) return "null";
+    const RoundedNormal normal(hit.normal);
+    if (!normal.isUnit()) return "not a unit vector";
+    const IntVec back = times(-1, course_);
+    if (!normal.keeps({back})) return "along the motion";
+    const Moment moment(*this, interval->first);
+    const IntTriangle &a = moment.a[hit.triA], &b = moment.b[hit.triB];
+    if (!normal.keeps(differencesOf(a, b))) return "does not keep the triangles apart";
+    if (hit.status == radar::Status::overlap) return "";
+    const std::vector<IntVec> around = moment.around(nearest(commonCorners(a, b), hit.point, interval->first.den));
+    if (detail::hasNormal(around, {}, 0, &back) && !normal.keeps(around)) return "does not keep the surfaces apart";
+    if (moment.someNormalKeepsAllApart(back) && !normal.keeps(moment.all)) return "does not keep all contacts apart";
+    return "";
+  }
+
  private:
+  static std::vector<IntVec> differencesOf(const IntTriangle& a, const IntTriangle& b) {
+    std::vector<IntVec> out;
+    for (const IntVec& p : a) {
+      for (const IntVec& q : b) out.push_back(minus(p, q));
+    }
+    return out;
+  }
+
+  /// Both shapes when contact begins, on a common scale, and what touches then.
+  struct Moment {
+    std::vector<IntTriangle> a, b;
+    std::vector<std::pair<size_t, size_t>> touching;
+    std::vector<IntVec> all;  ///< a - b for all corners of what touches
+
+    Moment(const Meeting& m, const Fraction& s) {
+      for (const Boxed& t : m.a_) a.push_back(t.faced.corners);
+      for (const Boxed& t : m.b_) b.push_back(t.faced.corners);
+      for (IntTriangle& t : a) {
+        for (IntVec& p : t) p = plus(times(s.den, p), times(s.num, m.course_));
+      }
+      for (IntTriangle& t : b) {
+        for (IntVec& p : t) p = times(s.den, p);
+      }
+      for (size_t i = 0; i < a.size(); ++i) {
+        for (size_t k = 0; k < b.size(); ++k) {
+          const auto met = m.boxesMeet(m.a_[i], m.b_[k], nullptr)
+                               ? contact(m.a_[i].faced.corners, m.b_[k].faced.corners, m.course_)
+                               : std::nullopt;
+          if (!met || compare(met->first, s) > 0 || compare(met->last, s) < 0) continue;
+          if (m.query_.ignoreLeaving && !blocks(m.a_[i].faced, m.b_[k].faced, m.direction_, m.slack_)) continue;
+          touching.emplace_back(i, k);
+          const std::vector<IntVec> own = differencesOf(a[i], b[k]);
+          all.insert(all.end(), own.begin(), own.end());
+        }
+      }
+    }
+
+    /// a - point and point - b, for all corners of what touches at a point.
+    std::vector<IntVec> around(const Place& point) const {
+      std::vector<IntVec> out;
+      for (const auto& [i, k] : touching) {
+        if (!contains(a[i], point) || !contains(b[k], point)) continue;
+        for (const IntVec& p : a[i]) out.push_back(from(point, p));
+        for (const IntVec& p : b[k]) out.push_back(times(-1, from(point, p)));
+      }
+      return out;
+    }
+
+    bool someNormalKeepsAllApart(const IntVec& back) const {
+      for (const auto& [i, k] : touching) {
+        for (IntVec n : ownNormals(a[i], b[k])) {
+          const int side = dot(n, back).sign();
+          if (side == 0) continue;
+          const auto keeps = [&](const IntVec& c) { return side * dot(n, c) >= 0; };
+          if (std::all_of(all.begin(), all.end(), keeps)) return true;
+        }
+      }
+      return false;
+    }
+  };
+
+  /// The place nearest to a point that was rounded.
+  Place nearest(const std::vector<Place>& places, const Corner& point, const Integer& den) const {
+    Place best = places.at(0);
+    double least = INFINITY;
+    for (const Place& place : places) {
+      double far = 0;
+      for (size_t k = 0; k < 3; ++k) {
+        const double at = std::ldexp(Rational(place.at[k], place.w * den).convert_to<double>(), scale_);
+        far = std::max(far, std::abs(at - point[k]));
+      }
+      if (far >= least) continue;
+      least = far;
+      best = place;
+    }
+    return best;
+  }
+
   /// When contact of two triangles begins, if it counts, is before `limit` and within D.
   std::optional<Fraction> startOf(const Boxed& a, const Boxed& b, const Fraction* limit) const {
     const auto isPressed = [&] { return query_.ignoreLeaving && arePressed(a.faced, b.faced, direction_, slack_); };
@@ -216,6 +393,10 @@ std::string faultOf(const Contact* contact, const radar::Query& query, const rad
   const bool isBetween =
       compareToTime(*contact, query, result.lo) >= 0 && compareToTime(*contact, query, result.hi) <= 0;
   return isBetween ? "" : but("t* is not within the bounds");
+}
+
+std::string faultOfNormal(const radar::Scene& scene, const radar::Query& query, const radar::Result& hit) {
+  return Meeting(scene, query, hit.object, isStep(scene, query)).faultOfNormal(hit);
 }
 
 std::string faultOf(const Truth& truth, const radar::Query& query, const radar::Result& result,

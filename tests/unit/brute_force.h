@@ -34,4 +34,10 @@ std::string faultOf(const Contact* contact, const radar::Query& query, const rad
 std::string faultOf(const Truth& truth, const radar::Query& query, const radar::Result& result,
                     std::span<const radar::Result> hits, std::span<const radar::ObjectId> overlapping);
 
+/// What is wrong with the normal of a hit, or of an overlap that has one, in words; empty if nothing is. In exact
+/// arithmetic but for the rounding of the normal itself: whether it is a unit vector, does not point along the motion,
+/// and keeps apart, at the moment of contact, the triangles of the answer; all triangles around the point of contact,
+/// if some normal against the motion does; and all that touch then, if one of a touching pair of triangles does.
+std::string faultOfNormal(const radar::Scene& scene, const radar::Query& query, const radar::Result& hit);
+
 }  // namespace oracle

@@ -1,5 +1,9 @@
 // Queries with a clearance: compares the CPU's answers with distances in long double, by brute force.
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
 #include "cpu/approach.h"
+#include "distances.h"
+#include "exact/motion.h"
 #include "radar/cpu_sweeper.h"
 #include "soups.h"
 
@@ -9,66 +13,8 @@ using soups::Random;
 namespace {
 
 using Real = long double;
-using Point = std::array<Real, 3>;
-using Points = std::array<Point, 3>;
-
-Point operator-(const Point& p, const Point& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-Point operator+(const Point& p, const Point& q) {
-  return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
-}
-Point operator*(Real f, const Point& p) {
-  return {f * p[0], f * p[1], f * p[2]};
-}
-Real dot(const Point& p, const Point& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
-Point crossProduct(const Point& p, const Point& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// Distance of a point and a segment; of two segments that are nearest at inner points; of a point and a face above it.
-Real fromSegment(const Point& p, const Point& from, const Point& to) {
-  const Point way = to - from;
-  const Real square = dot(way, way), at = square > 0 ? std::clamp<Real>(dot(p - from, way) / square, 0, 1) : 0;
-  const Point gap = p - (from + at * way);
-  return std::sqrt(dot(gap, gap));
-}
-Real acrossLines(const Point& a0, const Point& a1, const Point& b0, const Point& b1) {
-  const Point x = a1 - a0, y = b1 - b0, r = b0 - a0, n = crossProduct(x, y);
-  const Real nn = dot(n, n);
-  if (nn == 0) return INFINITY;
-  const Real s = dot(crossProduct(r, y), n) / nn, t = dot(crossProduct(r, x), n) / nn;
-  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? std::abs(dot(r, n)) / std::sqrt(nn) : INFINITY;
-}
-Real aboveFace(const Point& p, const Points& face) {
-  const Point x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = crossProduct(x, y);
-  const Real nn = dot(n, n);
-  if (nn == 0) return INFINITY;
-  const Real v = dot(crossProduct(r, y), n) / nn, w = dot(crossProduct(x, r), n) / nn;
-  return v >= 0 && w >= 0 && v + w <= 1 ? std::abs(dot(r, n)) / std::sqrt(nn) : INFINITY;
-}
-bool crosses(const Point& p, const Point& q, const Points& face) {
-  const Point n = crossProduct(face[1] - face[0], face[2] - face[0]);
-  const Real before = dot(n, p - face[0]), after = dot(n, q - face[0]);
-  return before * after < 0 && aboveFace(p + before / (before - after) * (q - p), face) < INFINITY;
-}
-
-Real distance(const Points& a, const Points& b) {
-  Real least = INFINITY;
-  for (size_t i = 0; i < 3; ++i) {
-    const Point &a0 = a[i], &a1 = a[(i + 1) % 3], &b0 = b[i], &b1 = b[(i + 1) % 3];
-    if (crosses(a0, a1, b) || crosses(b0, b1, a)) return 0;
-    least = std::min({least, aboveFace(a0, b), aboveFace(b0, a)});
-    for (size_t k = 0; k < 3; ++k) {
-      least = std::min({least, fromSegment(a0, b[k], b[(k + 1) % 3]), fromSegment(b0, a[k], a[(k + 1) % 3]),
-                        acrossLines(a0, a1, b[k], b[(k + 1) % 3])});
-    }
-  }
-  return least;
-}
+using Point = distances::Point<Real>;
+using Points = distances::Points<Real>;
 
 struct Pair {
   Points a, b;
@@ -100,23 +46,11 @@ std::vector<Pair> pairsOf(const Scene& scene, const Query& query) {
 }
 
 Real distanceAt(const Pair& pair, const Point& unit, Real t) {
-  Points moved;
-  for (size_t i = 0; i < 3; ++i) moved[i] = pair.a[i] + t * unit;
-  return distance(moved, pair.b);
+  return distances::distanceAt(pair.a, pair.b, unit, t);
 }
 
-/// The least distance for 0 <= t <= end: it is convex in t.
 Real leastDistance(const Pair& pair, const Point& unit, Real end) {
-  Real from = 0, to = end;
-  for (int i = 0; i < 80; ++i) {
-    const Real p = from + 0.382L * (to - from), q = from + 0.618L * (to - from);
-    if (distanceAt(pair, unit, p) < distanceAt(pair, unit, q)) {
-      to = q;
-    } else {
-      from = p;
-    }
-  }
-  return distanceAt(pair, unit, 0.5L * (from + to));
+  return distances::leastDistance(pair.a, pair.b, unit, end, 80);
 }
 
 struct Counts {
@@ -269,7 +203,7 @@ TEST_CASE("needles that pass by a hair are not certified as within a smaller cle
                            {0x1.3c51124454f07p-1, 0x1.2d32801c4f815p-1, -0x1.0b25d7eda9225p-1},
                            {0x1.182d76eb6f728p-1, 0x1.0ac91a8e403e8p-1, -0x1.d940a4fe60dcap-2}}};
   for (const double clearance : {1e-9, 1e-11, 2e-14}) {
-    const auto found = cpu::approach(a, b, {1, 0, 0}, clearance, 0, 0);
+    const auto found = cpu::approach(a, b, {1, 0, 0}, {1, 0, 0}, clearance, 0, 0);
     CHECK((!found || std::isinf(found->hi)));
   }
 }
@@ -282,7 +216,7 @@ TEST_CASE("a point that passes through a triangle a billion times the clearance 
                               {-0x1.301fbc76cda74p+7, -0x1.32f9bb3d7ec4p+6, -0x1.f495f2b0b3acp+5}}};
   const Vector unit{0x1.5cd94169c7b7bp-1, 0x1.bc15da9e3993dp-6, -0x1.7681f9714dbb4p-1};
   const auto found =
-      cpu::approach({point, point, point}, face, unit, 0x1.57c6b1946ff6ep-22, 11.4, 0x1.018c861aa4df8p-18);
+      cpu::approach({point, point, point}, face, unit, unit, 0x1.57c6b1946ff6ep-22, 11.4, 0x1.018c861aa4df8p-18);
   REQUIRE(found);
   // By exact arithmetic, it is that near from 7.30117290387 to 7.3011735...
   CHECK((7.301172 < found->lo && found->lo < 7.30117290388));
@@ -294,7 +228,7 @@ TEST_CASE("a clearance works at every scale") {
     const exact::Triangle a{{{0, 0, 0}, {0, scale, 0}, {0, 0, scale}}};
     exact::Triangle b = a;
     for (Vector& corner : b) corner[0] = 4 * scale;
-    const auto found = cpu::approach(a, b, {1, 0, 0}, scale, 10 * scale, 1e-6 * scale);
+    const auto found = cpu::approach(a, b, {1, 0, 0}, {1, 0, 0}, scale, 10 * scale, 1e-6 * scale);
     REQUIRE(found);
     CHECK(found->lo / scale == Approx(3).epsilon(1e-5));
     CHECK(found->hi / scale == Approx(3).epsilon(1e-5));
@@ -326,5 +260,65 @@ TEST_CASE("an object that passes at the clearance, to rounding, widens the brack
     REQUIRE(listed.size() == 3);
     CHECK((listed[0].object == beside && listed[0].status == Status::undecided && listed[0].hi == INFINITY));
     CHECK((listed[1].object == 0 && listed[2].object == 1));
+  }
+}
+
+namespace {
+
+using Quad = boost::multiprecision::cpp_bin_float_quad;
+
+/// A sliver, 1 to 4 from the origin, `stretch` times as long as wide.
+exact::Triangle sliver(Random& random, double stretch) {
+  const Transform turn = random.pose(1, {0, 0, 0});
+  const auto axis = static_cast<size_t>(random.integer(0, 2));
+  const auto at = random.inBall();
+  exact::Triangle triangle;
+  for (Vector& corner : triangle) {
+    auto p = random.inBall();
+    p[axis] *= stretch;
+    for (size_t k = 0; k < 3; ++k) {
+      corner[k] = turn.m[4 * k] * p[0] + turn.m[4 * k + 1] * p[1] + turn.m[4 * k + 2] * p[2] + 3 * at[k];
+    }
+  }
+  return triangle;
+}
+
+distances::Points<Quad> quad(const exact::Triangle& triangle) {
+  distances::Points<Quad> out;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t k = 0; k < 3; ++k) out[i][k] = triangle[i][k];
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles would leave them open") {
+  for (const double stretch : {1.0, 1e5, 1e7, 1e9, 1e11, 1e13}) {
+    int hits = 0, wide = 0;
+    for (uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      const exact::Triangle a = sliver(random, stretch), b = sliver(random, stretch);
+      Query query{.direction = random.inBall(), .distance = random.chance(0.5) ? 10 : 10 * stretch};
+      const Motion motion(query);
+      const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
+      const auto found = cpu::approach(a, b, motion.direction, motion.unit, clearance, query.distance, tolerance);
+      distances::Point<Quad> unit{motion.direction[0], motion.direction[1], motion.direction[2]};
+      const Quad length = sqrt(distances::dot(unit, unit));
+      for (Quad& c : unit) c /= length;
+      const auto placedA = quad(a), placedB = quad(b);
+      const Quad room = 1e-24 * stretch;
+      CAPTURE(stretch, seed, clearance);
+      const double before = found ? found->lo : query.distance;
+      if (before > 0) CHECK(distances::leastDistance(placedA, placedB, unit, Quad(before), 100) >= clearance - room);
+      if (!found) continue;
+      ++hits;
+      CHECK(found->hi <= 1.01 * query.distance);  // known
+      CHECK(distances::distanceAt(placedA, placedB, unit, Quad(found->hi)) <= clearance + room);
+      wide += found->hi - found->lo > 2 * tolerance + 0x1p-50 * found->hi;
+    }
+    CAPTURE(stretch);
+    CHECK(hits > 2);
+    if (stretch < 1e12) CHECK(wide == 0);
   }
 }

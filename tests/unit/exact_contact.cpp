@@ -118,9 +118,9 @@ void check(const Triangle& a, const Triangle& b, const Vector& direction, bool f
   REQUIRE(parameter(swapped->last) == parameter(ours->last));
   if (!features) return;
   const Rational first = rational(truth->first), last = rational(truth->last);
-  checkFeatures(ours->atFirst, a, b, direction, first);
-  checkFeatures(ours->atLast, a, b, direction, last);
-  if (first < last) checkFeatures(ours->between, a, b, direction, (first + 2 * last) / 3);
+  checkFeatures(ours->atFirst.features(), a, b, direction, first);
+  checkFeatures(ours->atLast.features(), a, b, direction, last);
+  if (first < last) checkFeatures(ours->between.features(), a, b, direction, (first + 2 * last) / 3);
 }
 
 Triangle latticeTriangle(Random& random, int side) {

@@ -57,9 +57,9 @@ struct Query {
   std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t
   /// is lo, and hi - lo at most `tolerance`, if rounding allows: an object that passes at the clearance to within
-  /// rounding leaves the answer undecided, or lowers lo. `point` is of the touched surface, and `normal` may point
-  /// along the motion if they are in contact at the start. With `ignoreLeaving`, pairs that do not block take no part,
-  /// however near they come.
+  /// rounding leaves the answer undecided, or lowers lo. (Slivers that are 10^11 times as long as the clearance are
+  /// decided, in double-doubles.) `normal` may point along the motion if they are in contact at the start. With
+  /// `ignoreLeaving`, pairs that do not block take no part, however near they come.
   double clearance = 0;
   /// With `clearance`, world units, at least 0. Without a value, or with a larger one: 1e-6 of the longest side of the
   /// sensor's box.
@@ -126,9 +126,21 @@ struct RADAR_API Result {
   /// The smallest features of the two triangles that contain every point at which they touch then, exactly; with a
   /// clearance, of the nearest points. Tier sampled: those that were found, none at the start.
   Feature featureB = Feature::none, featureA = Feature::none;
-  std::array<double, 3> point;   ///< world position of the contact at the moment of contact
-  std::array<double, 3> normal;  ///< unit, from the touched surface towards the sensor: normal . direction <= 0
-  double paperMinL;              ///< the paper's literal min(L), for comparison: may be negative, too early or too late
+  /// World position of the contact at the moment of contact. Where featureB is a vertex, it is that corner as placed,
+  /// exactly (in a step, moved with its object); where only featureA is one, that corner moved by t. Where surfaces
+  /// cross at the start, it is a point of the crossing, found in plain doubles, so that needles cost digits; absent if
+  /// both triangles lie in one plane and neither feature is a vertex. With a clearance, it is of the touched surface.
+  std::array<double, 3> point;
+  /// Unit, from the touched surface towards the sensor. Every hit in mode contact has one. To rounding, normal .
+  /// direction <= 0 (in a step: the relative motion), and normal . (a - b) >= 0 for all points a of the sensor's
+  /// triangle and b of the object's, when they touch. If some normal that the motion goes against keeps apart all
+  /// triangles of both meshes around `point`, this one does, so that who slides along it slides; likewise all pairs
+  /// that touch then, if a normal of one of them does (docs/exact.md). Starts that cross have none: at the start it
+  /// exists only if contact of the two triangles begins there, and keeps these two apart. With a clearance, it lies
+  /// along the line between the nearest points, and is absent where they touch. Mode sampled: that of the features
+  /// found, absent if parallel.
+  std::array<double, 3> normal;
+  double paperMinL;  ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
   /// An answer without a contact: clear or undecided, with lo to be set. Others as above.
   explicit Result(Status status);

@@ -68,7 +68,8 @@ class RADAR_API Recorder {
   /// kFlagUnresolved; it stands where its contact may be.
   ///
   /// With a clearance, hits have kFlagUnresolved until read() decides them, except decisions (`anyHit`). If something
-  /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal.
+  /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal. A bracket
+  /// that rounding keeps wider than the tolerance may begin before that of a Sweeper, which then searches on the CPU.
   ///
   /// If anything in the host's buffers leaves its bounds, is not finite or too large for floats, every answer becomes
   /// Status::invalid with kFlagBounds.

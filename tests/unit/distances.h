@@ -1,0 +1,114 @@
+// Distances of triangles, one of them in motion, in numbers of any precision: another method than the engine's.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace distances {
+
+template <class Real>
+using Point = std::array<Real, 3>;
+template <class Real>
+using Points = std::array<Point<Real>, 3>;
+
+template <class Real>
+Point<Real> operator-(const Point<Real>& p, const Point<Real>& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+template <class Real>
+Point<Real> operator+(const Point<Real>& p, const Point<Real>& q) {
+  return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
+}
+template <class Real>
+Point<Real> operator*(const Real& f, const Point<Real>& p) {
+  return {f * p[0], f * p[1], f * p[2]};
+}
+template <class Real>
+Real dot(const Point<Real>& p, const Point<Real>& q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
+template <class Real>
+Point<Real> crossProduct(const Point<Real>& p, const Point<Real>& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// Above every distance.
+template <class Real>
+const Real kFar = Real(1e300);
+
+/// Distance of a point and a segment; of two segments that are nearest at inner points; of a point and a face above it.
+template <class Real>
+Real fromSegment(const Point<Real>& p, const Point<Real>& from, const Point<Real>& to) {
+  using std::sqrt;
+  const Point<Real> way = to - from;
+  const Real square = dot(way, way), share = square > 0 ? Real(dot(p - from, way) / square) : Real(0);
+  const Real at = share < 0 ? Real(0) : share > 1 ? Real(1) : share;
+  const Point<Real> gap = p - (from + at * way);
+  return sqrt(dot(gap, gap));
+}
+template <class Real>
+Real acrossLines(const Point<Real>& a0, const Point<Real>& a1, const Point<Real>& b0, const Point<Real>& b1) {
+  using std::abs;
+  using std::sqrt;
+  const Point<Real> x = a1 - a0, y = b1 - b0, r = b0 - a0, n = crossProduct(x, y);
+  const Real nn = dot(n, n);
+  if (nn == 0) return kFar<Real>;
+  const Real s = dot(crossProduct(r, y), n) / nn, t = dot(crossProduct(r, x), n) / nn;
+  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? Real(abs(dot(r, n)) / sqrt(nn)) : kFar<Real>;
+}
+template <class Real>
+Real aboveFace(const Point<Real>& p, const Points<Real>& face) {
+  using std::abs;
+  using std::sqrt;
+  const Point<Real> x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = crossProduct(x, y);
+  const Real nn = dot(n, n);
+  if (nn == 0) return kFar<Real>;
+  const Real v = dot(crossProduct(r, y), n) / nn, w = dot(crossProduct(x, r), n) / nn;
+  return v >= 0 && w >= 0 && v + w <= 1 ? Real(abs(dot(r, n)) / sqrt(nn)) : kFar<Real>;
+}
+template <class Real>
+bool crosses(const Point<Real>& p, const Point<Real>& q, const Points<Real>& face) {
+  const Point<Real> n = crossProduct(face[1] - face[0], face[2] - face[0]);
+  const Real before = dot(n, p - face[0]), after = dot(n, q - face[0]);
+  return before * after < 0 && aboveFace(p + Real(before / (before - after)) * (q - p), face) < kFar<Real>;
+}
+
+template <class Real>
+Real distance(const Points<Real>& a, const Points<Real>& b) {
+  Real least = kFar<Real>;
+  for (size_t i = 0; i < 3; ++i) {
+    const Point<Real>&a0 = a[i], &a1 = a[(i + 1) % 3], &b0 = b[i], &b1 = b[(i + 1) % 3];
+    if (crosses(a0, a1, b) || crosses(b0, b1, a)) return 0;
+    least = std::min({least, aboveFace(a0, b), aboveFace(b0, a)});
+    for (size_t k = 0; k < 3; ++k) {
+      least = std::min({least, fromSegment(a0, b[k], b[(k + 1) % 3]), fromSegment(b0, a[k], a[(k + 1) % 3]),
+                        acrossLines(a0, a1, b[k], b[(k + 1) % 3])});
+    }
+  }
+  return least;
+}
+
+template <class Real>
+Real distanceAt(const Points<Real>& a, const Points<Real>& b, const Point<Real>& unit, const Real& t) {
+  Points<Real> moved;
+  for (size_t i = 0; i < 3; ++i) moved[i] = a[i] + t * unit;
+  return distance(moved, b);
+}
+
+/// The least distance for 0 <= t <= end: it is convex in t.
+template <class Real>
+Real leastDistance(const Points<Real>& a, const Points<Real>& b, const Point<Real>& unit, const Real& end, int steps) {
+  Real from = 0, to = end;
+  for (int i = 0; i < steps; ++i) {
+    const Real p = from + Real(0.382) * (to - from), q = from + Real(0.618) * (to - from);
+    if (distanceAt(a, b, unit, p) < distanceAt(a, b, unit, q)) {
+      to = q;
+    } else {
+      from = p;
+    }
+  }
+  return distanceAt(a, b, unit, Real(0.5 * (from + to)));
+}
+
+}  // namespace distances

@@ -222,6 +222,11 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
   changedMeshes_.clear();
   std::vector<MeshId> restored;
   addDifference(overwritten_.meshes, next_.meshes, restored);
+  // Shaders need buffers even if there is no mesh.
+  buffers_->vertices.reserve(0);
+  buffers_->triangles.reserve(0);
+  buffers_->meshNodes.reserve(0);
+  buffers_->meshes.reserve(0);
   recordsChanged_ = seenMeshes_ != scene.meshVersion || !restored.empty() || exceedsWriteLimits();
   VkDeviceSize bytes = 0;
   if (recordsChanged_) {

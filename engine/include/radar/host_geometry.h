@@ -67,11 +67,4 @@ struct HostGeometry {
   std::span<const MovedObjects> objects{};
 };
 
-/// Reads the geometry from the host's buffers now and gives it to the scene, as Scene::setPositions and
-/// Scene::setTransforms do: for Sweepers, Pools and the CPU, which do not read these buffers. Nothing needs bounds.
-/// Writes to the buffers have been made available (waiting for a fence suffices). Submits to HostDevice::queue once and
-/// waits. Throws if there is no queue, `geometry` breaks its contract or a Vulkan call fails, and then leaves the scene
-/// as it was; or as those functions do, naming mesh or object, after which some of the geometry may be set.
-RADAR_API void applyGeometry(Scene& scene, const Device& device, const HostGeometry& geometry);
-
 }  // namespace radar

@@ -127,7 +127,7 @@ const std::vector<Expected>& sharedStructs() {
        sizeof(Gathered),
        {MEMBER(Gathered, query), MEMBER(Gathered, first), MEMBER(Gathered, count), MEMBER(Gathered, list),
         MEMBER(Gathered, listed)}},
-      {"TransformLayout", sizeof(TransformLayout), {MEMBER(TransformLayout, parts), MEMBER(TransformLayout, offsets)}},
+      {"TransformLayout", sizeof(TransformLayout), {MEMBER(TransformLayout, row), MEMBER(TransformLayout, column)}},
       {"Moved",
        sizeof(Moved),
        {MEMBER(Moved, object), MEMBER(Moved, mesh), MEMBER(Moved, mask), MEMBER(Moved, firstByte),

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "radar/device.h"
-#include "radar/host_transforms.h"
 
 namespace radar {
 
@@ -47,6 +46,16 @@ struct DeformedMesh {
   MeshId mesh = kNone;
   HostPositions positions{};
 };
+
+/// How a matrix of floats lies in memory: its entry in row i and column k is `i * row + k * column` bytes from its
+/// beginning; column 3 is the position. The last row of a 4x4 matrix is not read.
+struct TransformLayout {
+  uint32_t row = 16;
+  uint32_t column = 4;
+  bool operator==(const TransformLayout&) const = default;
+};
+inline constexpr TransformLayout kRowMajor{16, 4};     ///< VkTransformMatrixKHR, or a 4x4 matrix by rows
+inline constexpr TransformLayout kColumnMajor{4, 16};  ///< a 4x4 matrix by columns, such as GLSL's mat4
 
 /// New transforms of objects, one each, in this order. Coordinates are at most 2^80; the device fits the tree over
 /// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds

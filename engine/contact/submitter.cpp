@@ -76,9 +76,7 @@ SearchAnswers ContactSubmitter::collect(const Scene::Impl& scene, std::vector<St
   return {{results, pass_.sensorCount()},
           pass_.unresolved(all),
           pass_.learn(all),
-          joined(all.nodePairs, all.nodePairsHigh),
-          joined(all.trianglePairs, all.trianglePairsHigh),
-          joined(all.solves, all.solvesHigh)};
+          joined(all.trianglePairs, all.trianglePairsHigh)};
 }
 
 }  // namespace radar

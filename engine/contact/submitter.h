@@ -12,7 +12,7 @@ struct SearchAnswers {
   std::span<const Result> results;  ///< one per sensor
   std::span<const gpu::UnresolvedPair> unresolved;
   bool roomier = false;  ///< this batch had too little room for candidates; the next one has more
-  uint64_t nodePairs = 0, trianglePairs = 0, solves = 0;
+  uint64_t trianglePairs = 0;  ///< tested
 };
 
 class ContactSubmitter {

@@ -32,13 +32,11 @@ std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
     }
   }
   std::vector<Result> results(queries.size());
-  const cpu::SearchStats before = impl_->search.stats();
+  const uint64_t before = impl_->search.pairs();
   std::vector<QueryLists> lists = listsFor(queries);
   impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, results, lists);
   impl_->lists = joined(lists);
-  const cpu::SearchStats after = impl_->search.stats();
-  impl_->stats = {queries.size(), after.nodes - before.nodes, after.pairs - before.pairs,
-                  after.exactPairs - before.exactPairs};
+  impl_->stats.pairs = impl_->search.pairs() - before;
   return results;
 }
 

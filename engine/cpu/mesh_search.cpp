@@ -165,11 +165,11 @@ struct Leaves {
 /// Passes the pairs of triangles of two leaves to `visitor`, earliest first.
 template <class Real>
 void meetLeaves(const MeshPair& pair, Leaves<Real>& leaves, const gpu::MeshNode& a, const gpu::MeshNode& b, float near,
-                PairVisitor& visitor, SearchStats& stats) {
+                PairVisitor& visitor, uint64_t& pairs) {
   // Raised by more than rounding to Real may lower it.
   const auto latest = [&] { return static_cast<Real>((1 + 4 * kRounding<Real>)*pair.motion.timeOf(visitor.latest())); };
   const LeafTimes<Real> found = leaves.test(a, b, near, latest());
-  stats.pairs += trianglesOf(a) * trianglesOf(b);
+  pairs += trianglesOf(a) * trianglesOf(b);
   for (unsigned pending = found.possible; pending != 0 && !visitor.isDecided();) {
     int lane = std::countr_zero(pending);
     for (int i = lane + 1; i < 4; ++i) {
@@ -178,25 +178,23 @@ void meetLeaves(const MeshPair& pair, Leaves<Real>& leaves, const gpu::MeshNode&
     pending &= ~(1u << lane);
     if (found.times.from[lane] > Real(1 + 4 * kRounding<Real>) * (latest() - near)) return;
     const TrianglePlacer::Placed &ofA = leaves.placeA(a, lane & 1), &ofB = leaves.placeB(b, lane >> 1);
-    const uint64_t before = exact::exactDecisions();
     visitor.consider({pair.object, ofB.triangle, ofA.triangle}, {ofA.corners, ofB.corners},
                      static_cast<Axis>(found.axis[lane]));
-    stats.exactPairs += exact::exactDecisions() != before;
   }
 }
 
 }  // namespace
 
-void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats) {
+void MeshSearch::run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs) {
   if (floatsSuffice(pair)) {
-    descend<float>(pair, near, visitor, stats);
+    descend<float>(pair, near, visitor, pairs);
   } else {
-    descend<double>(pair, near, visitor, stats);
+    descend<double>(pair, near, visitor, pairs);
   }
 }
 
 template <class Real>
-void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats) {
+void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs) {
   const MeshTree &treeA = pair.sensor.mesh.tree, &treeB = pair.other.mesh.tree;
   const NodeTest<Real> nodeTimes(pair.fromSensor, pair.fromOther);
   Leaves<Real> leaves(pair);
@@ -213,12 +211,11 @@ void MeshSearch::descend(const MeshPair& pair, double near, PairVisitor& visitor
     if (visitor.isBefore({pair.object, treeB.below[pairNow.b].least, treeA.below[pairNow.a].least})) continue;
     const gpu::MeshNode &a = treeA.nodes[pairNow.a], &b = treeB.nodes[pairNow.b];
     if (isLeaf(a) && isLeaf(b)) {
-      meetLeaves(pair, leaves, a, b, pairNow.near, visitor, stats);
+      meetLeaves(pair, leaves, a, b, pairNow.near, visitor, pairs);
       latest = latestNow();
       continue;
     }
     const Opener::Parts parts = opener.open(pairNow.a, pairNow.b);
-    stats.nodes += parts.count;
     FourNodes nodesA, nodesB;
     for (int i = 0; i < 4; ++i) {
       nodesA[i] = &treeA.nodes[parts.a[i]];

@@ -9,13 +9,6 @@
 
 namespace radar::cpu {
 
-/// Work of the searches since construction.
-struct SearchStats {
-  uint64_t nodes = 0;       ///< node pairs tested
-  uint64_t pairs = 0;       ///< triangle pairs tested
-  uint64_t exactPairs = 0;  ///< triangle pairs that needed exact integers
-};
-
 /// A mesh and its pose.
 struct PlacedMesh {
   const Mesh& mesh;
@@ -34,8 +27,8 @@ struct MeshPair {
 class MeshSearch {
  public:
   /// Passes all pairs of triangles that may matter to `visitor`. There is no contact before `near`, in the
-  /// pair's unit of time.
-  void run(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats);
+  /// pair's unit of time. Adds the pairs of triangles that are tested to `pairs`.
+  void run(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs);
 
  private:
   /// Two nodes that cannot meet before `near`.
@@ -45,7 +38,7 @@ class MeshSearch {
   };
 
   template <class Real>
-  void descend(const MeshPair& pair, double near, PairVisitor& visitor, SearchStats& stats);
+  void descend(const MeshPair& pair, double near, PairVisitor& visitor, uint64_t& pairs);
 
   std::vector<Open> open_;
 };

@@ -198,7 +198,6 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& ru
   if (visitor.isBefore({id, mesh.tree.below[0].least, 0})) return;
 
   const gpu::MeshNode &rootA = task.sensor.tree.nodes[0], &rootB = mesh.tree.nodes[0];
-  ++stats_.nodes;
   const Placement placement(mesh, object.worldFromMesh);
   // Faces that are pressed together may have passed each other by the slack.
   const double room = task.query.ignoreLeaving ? 2 * rule.slack : 0;
@@ -214,7 +213,7 @@ void QuerySearch::searchObject(const Task& task, ObjectId id, const PairRule& ru
   if (times.empty()) return;
   const MeshPair pair{
       {task.sensor, task.query.worldFromMesh}, {mesh, object.worldFromMesh}, id, pairMotion, fromSensor, fromObject};
-  meshes_.run(pair, times.from, visitor, stats_);
+  meshes_.run(pair, times.from, visitor, pairs_);
 }
 
 }  // namespace radar::cpu

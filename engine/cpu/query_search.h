@@ -22,7 +22,7 @@ class QuerySearch {
   Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
   /// The eligible objects whose boxes the sensor may meet before its motion ends.
   std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
-  const SearchStats& stats() const { return stats_; }
+  uint64_t pairs() const { return pairs_; }
 
  private:
   struct Task;
@@ -43,7 +43,7 @@ class QuerySearch {
   std::vector<Open> open_;
   std::optional<Motion> past_;  // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
-  SearchStats stats_;
+  uint64_t pairs_ = 0;
 };
 
 }  // namespace radar::cpu

@@ -58,13 +58,9 @@ void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier 
   if (count > 0) secondsPerQuery_ = used * secondsSince(start) / static_cast<double>(count);
 }
 
-SearchStats Search::stats() const {
-  SearchStats sum;
-  for (const QuerySearch& search : searches_) {
-    sum.nodes += search.stats().nodes;
-    sum.pairs += search.stats().pairs;
-    sum.exactPairs += search.stats().exactPairs;
-  }
+uint64_t Search::pairs() const {
+  uint64_t sum = 0;
+  for (const QuerySearch& search : searches_) sum += search.pairs();
   return sum;
 }
 

@@ -24,8 +24,8 @@ class Search {
   void run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
            std::span<Result> results, std::span<QueryLists> lists);
 
-  /// Totals over all threads since construction.
-  SearchStats stats() const;
+  /// Pairs of triangles that all threads have tested since construction.
+  uint64_t pairs() const;
 
  private:
   std::vector<QuerySearch> searches_;  // one per thread

@@ -56,6 +56,10 @@ VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount) {
   return spanOf(positions.stride, vertexCount, 3 * HostFormat(positions.format).bytes());
 }
 
+uint64_t extentOf(const TransformLayout& layout) {
+  return 2 * uint64_t{layout.row} + 3 * uint64_t{layout.column} + 4;
+}
+
 HostFormat::HostFormat(VkFormat format) : component_(componentOf(format)) {}
 
 float HostFormat::load(const std::byte* vertex, int axis) const {

@@ -22,6 +22,8 @@ std::string validate(const HostPositions& positions);
 /// Bytes from the first of `count` elements to the end of the last; at most 2^62.
 VkDeviceSize spanOf(VkDeviceSize stride, uint64_t count, VkDeviceSize bytes);
 VkDeviceSize spanOf(const HostPositions& positions, uint32_t vertexCount);
+/// Bytes from a transform's beginning to the end of its last float.
+uint64_t extentOf(const TransformLayout& layout);
 
 /// A valid format.
 class HostFormat {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "embed/host_format.h"
-#include "embed/host_transforms.h"
 #include "gpu/barrier.h"
 #include "shaders/contact/interop.h"
 #include "spirv/embed_deform_comp.h"
@@ -67,7 +66,6 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
   if (repeats(std::move(meshes))) return "meshes: expected each at most once";
   for (const MovedObjects& moved : geometry.objects) {
     if (moved.transforms == VK_NULL_HANDLE) return "objects: expected a buffer of transforms";
-    if (std::string wrong = validate(moved.layout); !wrong.empty()) return "objects: layout: " + wrong;
     if (const uint64_t least = extentOf(moved.layout); moved.stride < least) {
       return "objects: stride: expected at least " + std::to_string(least) + " bytes, got " +
              std::to_string(moved.stride);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "embed/host_transforms.h"
 #include "gpu/barrier.h"
 #include "math/rounding.h"
 #include "spirv/embed_fit_comp.h"
@@ -28,10 +27,6 @@ struct MovedObjectsKernels {
 
 std::string nameOf(ObjectId object) {
   return "object " + std::to_string(object);
-}
-
-bool isSame(const gpu::TransformLayout& p, const gpu::TransformLayout& q) {
-  return p.parts == q.parts && std::ranges::equal(p.offsets, q.offsets);
 }
 
 gpu::Moved movedOf(ObjectId id, const Scene::Impl& scene, const ObjectTree& tree) {
@@ -95,8 +90,8 @@ bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<
   }
   for (size_t i = 0; i < groups.size(); ++i) {
     const Group& listed = list_->groups[i];
-    if (listed.firstByte != firstBytes[i] || listed.stride != groups[i].stride ||
-        !isSame(listed.layout, encoded(groups[i].layout)) || !std::ranges::equal(listed.objects, groups[i].objects)) {
+    if (listed.firstByte != firstBytes[i] || listed.stride != groups[i].stride || listed.layout != groups[i].layout ||
+        !std::ranges::equal(listed.objects, groups[i].objects)) {
       return false;
     }
   }
@@ -105,7 +100,7 @@ bool MovedObjectsPass::isListed(std::span<const MovedObjects> groups, std::span<
 
 void MovedObjectsPass::addGroup(List& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
                                 const Scene::Impl& scene) const {
-  list.groups.push_back({firstByte, group.stride, encoded(group.layout), {group.objects.begin(), group.objects.end()}});
+  list.groups.push_back({firstByte, group.stride, group.layout, {group.objects.begin(), group.objects.end()}});
   for (size_t k = 0; k < group.objects.size(); ++k) {
     const ObjectId id = group.objects[k];
     if (id >= scene.objects.size() || !scene.objects[id].used) {
@@ -115,7 +110,7 @@ void MovedObjectsPass::addGroup(List& list, const MovedObjects& group, uint32_t 
     isNamed[id] = true;
     gpu::Moved moved = movedOf(id, scene, scene.objectTree());
     moved.firstByte = static_cast<uint32_t>(firstByte + k * group.stride);
-    moved.format = list.groups.back().layout;
+    moved.format = {group.layout.row, group.layout.column};
     list.moved.push_back(moved);
   }
 }

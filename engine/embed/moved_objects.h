@@ -50,7 +50,7 @@ class MovedObjectsPass {
   struct Group {
     uint32_t firstByte = 0;
     VkDeviceSize stride = 0;
-    gpu::TransformLayout layout{};
+    TransformLayout layout{};
     std::vector<ObjectId> objects{};
   };
   /// What depends on the groups and meshes, which objects there are, the tree's links and the bounds alone.

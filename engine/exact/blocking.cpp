@@ -173,7 +173,6 @@ bool decided(const Triangle& a, const Triangle& b, const Vector* direction, doub
     const Answer rough = decide(Pair<Bounded>(a, b, direction, slack));
     if (rough != Answer::open) return rough == Answer::yes;
   }
-  countExactDecision();
   return decide(Pair<Dyadic>(a, b, direction, slack)) == Answer::yes;
 }
 

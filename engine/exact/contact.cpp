@@ -137,7 +137,6 @@ class Signs {
       fit_ = toScaledInts(corners, corners_, exponent) && toScaledInts(way, way_, exponent) ? Fit::yes : Fit::no;
     }
     if (fit_ == Fit::no) return exactSign({{kOrigin, direction_}, {a_[i], b_[k]}, {a_[j], b_[l]}});
-    countExactDecision();
     return determinant(way_[0], corners_[3 + k] - corners_[i], corners_[3 + l] - corners_[j]).sign();
   }
 

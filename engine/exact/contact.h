@@ -99,7 +99,4 @@ Vector normal(const Event& event);
 /// The features that touch at an event which is the only one of its pair at this time, and inside both features.
 Features featuresOf(const Event& event);
 
-/// Number of decisions on this thread that needed exact integers, because no floating-point filter sufficed.
-uint64_t exactDecisions();
-
 }  // namespace radar::exact

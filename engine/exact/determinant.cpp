@@ -10,17 +10,8 @@ namespace {
 
 // Two DoubleDouble products of 7 u^2 and three sums of 3 u^2 add up to 23 u^2; differences are exact.
 constexpr double kFineRelative = 0x1p-99;
-thread_local uint64_t decisions = 0;
 
 }  // namespace
-
-uint64_t exactDecisions() {
-  return decisions;
-}
-
-void countExactDecision() {
-  ++decisions;
-}
 
 Estimate estimate(const Determinant& d) {
   const Vector w = rounded(d.w);
@@ -73,7 +64,6 @@ Dyadic exactly(const Determinant& d) {
 }
 
 int exactSign(const Determinant& d) {
-  countExactDecision();
   const auto w = scaledVector(d.w), x = scaledVector(d.x), y = scaledVector(d.y);
   return w && x && y ? determinant(w->c, x->c, y->c).sign() : dyadicDeterminant(d).sign();
 }
@@ -87,7 +77,6 @@ int crossSign(const Difference& v, const Difference& w, int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double p = (v.to[i] - v.from[i]) * (w.to[j] - w.from[j]), q = (v.to[j] - v.from[j]) * (w.to[i] - w.from[i]);
   if (std::abs(p - q) > kRelative * (std::abs(p) + std::abs(q)) + kUnderflow) return signOf(p - q);
-  countExactDecision();
   const auto a = scaledVector(v), b = scaledVector(w);
   if (a && b) return determinant({axis == 0, axis == 1, axis == 2}, a->c, b->c).sign();
   return (component(v, i) * component(w, j) - component(v, j) * component(w, i)).sign();

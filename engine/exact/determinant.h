@@ -75,7 +75,4 @@ inline int signOf(double v) {
 /// The origin, to treat a vector as a difference.
 inline constexpr Vector kOrigin{};
 
-/// Call for each decision with exact integers: counts for exactDecisions().
-void countExactDecision();
-
 }  // namespace radar::exact

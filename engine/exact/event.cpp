@@ -134,7 +134,6 @@ Ratio ratio(const Event& e) {
 }
 
 int compare(const Ratio& p, const Ratio& q) {
-  countExactDecision();
   return (p.num * q.den - q.num * p.den).sign() * p.den.sign() * q.den.sign();
 }
 
@@ -162,7 +161,6 @@ int compareToDistance(const Event& e, double distance) {
   const int side = sign(e);
   if (side < 0) return -1;
   if (side == 0) return distance == 0 ? 0 : -1;
-  countExactDecision();
   const Dyadic num = exactly(numerator(e)), den = exactly(denominator(e)), end = Dyadic(distance) * den;
   Dyadic square;
   for (double c : e.direction) square = square + Dyadic(c) * Dyadic(c);
@@ -172,7 +170,6 @@ int compareToDistance(const Event& e, double distance) {
 int compareToParameter(const Event& e, double parameter) {
   const double apart = e.s - parameter;
   if (std::abs(apart) > (1 + 8 * kUnit) * (e.error + 2 * kUnit * std::abs(apart))) return signOf(apart);
-  countExactDecision();
   const Dyadic den = exactly(denominator(e));
   return (exactly(numerator(e)) - Dyadic(parameter) * den).sign() * den.sign();
 }
@@ -180,7 +177,6 @@ int compareToParameter(const Event& e, double parameter) {
 double parameter(const Event& e) {
   const FineParameter fine = fineParameter(e);
   if (fine.error <= 0x1p-60 * std::abs(fine.s.high)) return fine.s.high;
-  countExactDecision();
   return quotient(exactly(numerator(e)), exactly(denominator(e)));
 }
 
@@ -250,7 +246,6 @@ Vector point(const Event& e, double s) {
   double share = p.value.high / both;
   // Not where a device is certain of the signs of both (double_double.glsl).
   if (!(p.error + q.error <= 0x1p-45 * std::abs(both))) {
-    countExactDecision();
     const Dyadic above = exactly(at0);
     share = quotient(above, above - exactly(at1));
   }

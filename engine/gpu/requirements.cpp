@@ -168,42 +168,6 @@ namespace radar {
 
 namespace {
 
-// The structs of single features that a struct of a whole version replaces, and must not be chained with.
-struct Replaced {
-  VkStructureType type;
-  const char* name;
-};
-#define RADAR_REPLACED(type, name) \
-  { VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_##type##_FEATURES, "VkPhysicalDevice" name "Features" }
-constexpr Replaced kReplacedBy12[] = {RADAR_REPLACED(8BIT_STORAGE, "8BitStorage"),
-                                      RADAR_REPLACED(SHADER_ATOMIC_INT64, "ShaderAtomicInt64"),
-                                      RADAR_REPLACED(SHADER_FLOAT16_INT8, "ShaderFloat16Int8"),
-                                      RADAR_REPLACED(DESCRIPTOR_INDEXING, "DescriptorIndexing"),
-                                      RADAR_REPLACED(SCALAR_BLOCK_LAYOUT, "ScalarBlockLayout"),
-                                      RADAR_REPLACED(IMAGELESS_FRAMEBUFFER, "ImagelessFramebuffer"),
-                                      RADAR_REPLACED(UNIFORM_BUFFER_STANDARD_LAYOUT, "UniformBufferStandardLayout"),
-                                      RADAR_REPLACED(SHADER_SUBGROUP_EXTENDED_TYPES, "ShaderSubgroupExtendedTypes"),
-                                      RADAR_REPLACED(SEPARATE_DEPTH_STENCIL_LAYOUTS, "SeparateDepthStencilLayouts"),
-                                      RADAR_REPLACED(HOST_QUERY_RESET, "HostQueryReset"),
-                                      RADAR_REPLACED(TIMELINE_SEMAPHORE, "TimelineSemaphore"),
-                                      RADAR_REPLACED(BUFFER_DEVICE_ADDRESS, "BufferDeviceAddress"),
-                                      RADAR_REPLACED(VULKAN_MEMORY_MODEL, "VulkanMemoryModel")};
-constexpr Replaced kReplacedBy13[] = {
-    RADAR_REPLACED(DYNAMIC_RENDERING, "DynamicRendering"),
-    RADAR_REPLACED(IMAGE_ROBUSTNESS, "ImageRobustness"),
-    RADAR_REPLACED(INLINE_UNIFORM_BLOCK, "InlineUniformBlock"),
-    RADAR_REPLACED(MAINTENANCE_4, "Maintenance4"),
-    RADAR_REPLACED(PIPELINE_CREATION_CACHE_CONTROL, "PipelineCreationCacheControl"),
-    RADAR_REPLACED(PRIVATE_DATA, "PrivateData"),
-    RADAR_REPLACED(SHADER_DEMOTE_TO_HELPER_INVOCATION, "ShaderDemoteToHelperInvocation"),
-    RADAR_REPLACED(SHADER_INTEGER_DOT_PRODUCT, "ShaderIntegerDotProduct"),
-    RADAR_REPLACED(SHADER_TERMINATE_INVOCATION, "ShaderTerminateInvocation"),
-    RADAR_REPLACED(SUBGROUP_SIZE_CONTROL, "SubgroupSizeControl"),
-    RADAR_REPLACED(SYNCHRONIZATION_2, "Synchronization2"),
-    RADAR_REPLACED(TEXTURE_COMPRESSION_ASTC_HDR, "TextureCompressionASTCHDR"),
-    RADAR_REPLACED(ZERO_INITIALIZE_WORKGROUP_MEMORY, "ZeroInitializeWorkgroupMemory")};
-#undef RADAR_REPLACED
-
 // The chain's struct of that type, or null.
 template <class T>
 T* findIn(void* chain, VkStructureType type) {
@@ -211,14 +175,6 @@ T* findIn(void* chain, VkStructureType type) {
     if (at->sType == type) return reinterpret_cast<T*>(at);
   }
   return nullptr;
-}
-
-void refuse(std::span<const Replaced> replaced, void* chain, const char* by) {
-  for (const Replaced& single : replaced) {
-    if (findIn<VkBaseOutStructure>(chain, single.type) == nullptr) continue;
-    throw Error(std::string("Requirements::chain: the host's chain has ") + single.name +
-                ", which Vulkan does not allow beside " + by + ": chain that instead, or copy what is needed");
-  }
 }
 
 // Sets what is set in `from`, from its member `first` to its member `last`, which are all VkBool32.
@@ -234,8 +190,6 @@ const void* Requirements::chain(void* next) {
   auto* const own2 = findIn<VkPhysicalDeviceFeatures2>(next, core.sType);
   auto* const own12 = findIn<VkPhysicalDeviceVulkan12Features>(next, vulkan12.sType);
   auto* const own13 = findIn<VkPhysicalDeviceVulkan13Features>(next, vulkan13.sType);
-  if (own12 == nullptr) refuse(kReplacedBy12, next, "VkPhysicalDeviceVulkan12Features");
-  if (own13 == nullptr) refuse(kReplacedBy13, next, "VkPhysicalDeviceVulkan13Features");
   void* first = next;
   const auto prepend = [&](auto& features) {
     features.pNext = first;

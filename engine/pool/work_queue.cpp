@@ -18,8 +18,6 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   sum.pairs += stats.pairs;
   sum.cpuPairs += stats.cpuPairs;
   sum.cpuQueries += stats.cpuQueries;
-  sum.nodePairs += stats.nodePairs;
-  sum.solves += stats.solves;
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }
 

@@ -235,9 +235,7 @@ void ContactTier::collect() {
     }
     batch_.deviceDone = Clock::now();
     batch_.stats.submissions += submitter_->submissions();
-    batch_.stats.nodePairs += found.nodePairs;
     batch_.stats.pairs += found.trianglePairs;
-    batch_.stats.solves += found.solves;
     decode(found, queries);
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
   });

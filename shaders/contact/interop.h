@@ -129,12 +129,8 @@ struct SearchCounts {
   uint openPairs;        // that may not block
   uint unresolved;       // found; stored up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups
-  uint nodePairs;        // tested; low word
-  uint nodePairsHigh;
-  uint trianglePairs;    // triangle pairs tested
+  uint trianglePairs;    // tested; low word
   uint trianglePairsHigh;
-  uint solves;
-  uint solvesHigh;
   uint queries;          // written by a host's shader, as far as they count
   SearchRound rounds[kMostRounds + 1];
 };

@@ -67,7 +67,7 @@ uvec3 stack[kStack];                 // a, b, gap of a SearchTask; for the tree 
 uint depth, objectDepth;             // entries in use; those of the tree over objects come first
 uvec3 current;                       // the pair to test next; none if x is kNobody
 MeshPair meshes;
-uint nodePairs, trianglePairs, solves;
+uint trianglePairs;
 // Of its sensor.
 SensorBox box;
 float scale, unscale, stopBefore;
@@ -297,7 +297,6 @@ void descend() {
     Approach at0, at1;
     const bool near = tries && uintBitsToFloat(current.z) <= limit && object <= least;
     if (near) {
-      ++nodePairs;
       const bool intoA = isLeaf(current.x);
       const uint child = intoA ? current.x & kLinkItem : current.y, other = intoA ? current.y : current.x;
       const Node child0 = nodeAt(child), child1 = nodeAt(child + 1), stays = nodeAt(other);
@@ -386,7 +385,6 @@ void solvePairs(bool all) {
     float low = 0.0;
     uvec4 pair = uvec4(0);
     if (at < pairTail) {
-      ++solves;
       pair = pairQueue[at % kQueue];
       const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(pair.x).x), vertexAt(triangleAt(pair.y).x));
       const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
@@ -418,12 +416,9 @@ void solvePairs(bool all) {
 
 // ------------------------------------------------------------------------------------------------------------------------
 
-void addCounts() {
-  const uint before0 = atomicAdd(counts.nodePairs, nodePairs), before1 = atomicAdd(counts.trianglePairs, trianglePairs),
-             before2 = atomicAdd(counts.solves, solves);
-  if (before0 + nodePairs < before0) atomicAdd(counts.nodePairsHigh, 1);
-  if (before1 + trianglePairs < before1) atomicAdd(counts.trianglePairsHigh, 1);
-  if (before2 + solves < before2) atomicAdd(counts.solvesHigh, 1);
+void addCount() {
+  const uint before = atomicAdd(counts.trianglePairs, trianglePairs);
+  if (before + trianglePairs < before) atomicAdd(counts.trianglePairsHigh, 1);
 }
 
 void main() {
@@ -442,7 +437,7 @@ void main() {
   current = uvec3(kNobody, 0, 0);
   limit = scale = unscale = stopBefore = 0.0;
   least = kNobody;
-  nodePairs = trianglePairs = solves = 0;
+  trianglePairs = 0;
   bool last = false;
   while (!last) {
     bool idle = false;
@@ -467,5 +462,5 @@ void main() {
     } while (last && (leafTail != leafHead || pairTail != pairHead));
   }
   spill();
-  addCounts();
+  addCount();
 }

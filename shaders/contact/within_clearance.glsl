@@ -11,9 +11,9 @@ const uint kClearanceSteps = 10;
 // Of the product of two unit vectors.
 const float kRateError = 64.0 * kUlp;
 
-// Keeps the shorter of two vectors. A NaN is never kept.
+// Keeps the shorter of two vectors. A NaN is never kept: devices may compare it as they like, but its bits are the greatest.
 void offer(inout vec3 gap, vec3 other) {
-  if (dot(other, other) < dot(gap, gap)) gap = other;
+  if (floatBitsToUint(dot(other, other)) < floatBitsToUint(dot(gap, gap))) gap = other;
 }
 
 float share(float part, float whole) { return whole > 0.0 ? clamp(part / whole, 0.0, 1.0) : 0.0; }

@@ -21,12 +21,11 @@ struct BoundsViolation {
   uint object;
 };
 
-// How a transform lies in memory: radar/host_transforms.h.
+// How a transform lies in memory: bytes from row to row and from column to column.
 struct TransformLayout {
-  uint parts;       // kMatrix, or the number of scales beside a position and a quaternion
-  uint offsets[3];  // bytes: of a matrix from row to row and from column to column; of position, quaternion and scales
+  uint row;
+  uint column;
 };
-INTEROP_CONST kMatrix = 4;
 
 // The bounds of a mesh that a host deforms without having declared any: numbers in the order of the floats that are their
 // least and greatest coordinates, the latter's negated. kNobody: none yet.

@@ -38,7 +38,7 @@ struct HostQuery {
 };
 
 HostQuery queryAt(uint byte) {
-  return HostQuery(transformAt(byte, TransformLayout(kMatrix, uint[3](16, 4, 0))), loadWords(byte + kQueryDirection),
+  return HostQuery(transformAt(byte, TransformLayout(16, 4)), loadWords(byte + kQueryDirection),
                    loadWord(byte + kQueryDistance), loadWord(byte + kQueryMesh), loadWord(byte + kQueryMask),
                    loadWord(byte + kQueryExclude), loadWord(byte + kQueryFlags));
 }

@@ -111,7 +111,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
 
 TEST_CASE(
     "on a device with the least limits a host's moved objects and written queries, lists, clearances and steps get the "
-    "CPU's answers, as do those after applyGeometry") {
+    "CPU's answers") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
   const auto isMoved = [](ObjectId id) { return id % 4 != 0; };
@@ -154,7 +154,7 @@ TEST_CASE(
       if (i % 4 == 3 && queries[i].distance < 1e20) tools::takeStep(queries[i]);
     }
     compare(queries, test::execute(device, recorder, queries, world.geometry()));
-    applyGeometry(world.scene, device, world.geometry());
+    world.tell();
     compare(queries, test::ask(sweeper, queries));
     compare(queries, test::execute(device, recorder, queries));
     asked += 4 * queries.size();
@@ -166,7 +166,7 @@ TEST_CASE(
   for (ObjectId id = 0; id < 40; id += 3) {
     for (Scene* scene : {&world.scene, &world.truth}) scene->setMotion(id, {0.5, -1, 0.25});
   }
-  applyGeometry(world.scene, device, world.geometry());
+  world.tell();
   std::vector<Query> steps = world.queries(24);
   for (Query& query : steps) {
     if (query.distance < 1e20) tools::takeStep(query);

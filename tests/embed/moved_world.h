@@ -104,6 +104,11 @@ class MovedWorld {
       truth.setPositions(mesh, positions);
     }
   }
+  /// The scene learns where the objects and their vertices are.
+  void tell() {
+    for (const ObjectId id : moved) scene.setTransform(id, truth.object(id).worldFromMesh);
+    for (const DeformedMesh& one : deformed_) scene.setPositions(one.mesh, truth.mesh(one.mesh).positions);
+  }
   HostGeometry geometry() const { return {.meshes = deformed_, .objects = {&group_, 1}}; }
 
   /// Sensors near objects, that move towards others, and some at random.

@@ -149,7 +149,6 @@ TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations
   const TrianglesOverhead triangles(level);
   DeviceSearch search(triangles.scene, {.candidates = 100'000});
   const Result result = search.run({&triangles.query, 1})[0];
-  if (level) CHECK(search.stats().solves == kTriangles);
   CHECK(result.status == Status::hit);
   CHECK(result.t == (level ? 4 : 4.5));
   CHECK(result.object == (level ? 0 : kTriangles - 1));

@@ -102,9 +102,8 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
   }
 }
 
-/// The scene learns where the objects and their vertices are.
-void MovedAnswerers::applyAndAsk(const std::vector<Query>& queries) {
-  applyGeometry(world_.scene, *device_, world_.geometry());
+void MovedAnswerers::tellAndAsk(const std::vector<Query>& queries) {
+  world_.tell();
   CpuSweeper cpu(world_.truth, 1);
   const Batch batch{queries, test::ask(cpu, queries)};
   checkBatch(
@@ -126,7 +125,7 @@ void MovedAnswerers::round() {
   const test::OnDevice buffer(test::bytesOf(written), *device_);
   const HostQueries there{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())};
   measured(Who::written, *tally_, [&] { ask(Who::written, there, same); });
-  if (random_->oneIn(8)) measured(Who::sweeper, *tally_, [&] { applyAndAsk(queries); });
+  if (random_->oneIn(8)) measured(Who::sweeper, *tally_, [&] { tellAndAsk(queries); });
 }
 
 }  // namespace radar::soak

@@ -19,7 +19,7 @@ class MovedAnswerers {
   void change();
   template <class Queries>
   void ask(Who who, const Queries& recorded, std::span<const Query> queries);
-  void applyAndAsk(const std::vector<Query>& queries);
+  void tellAndAsk(const std::vector<Query>& queries);
 
   const Device* device_;
   tools::Random* random_;

@@ -141,9 +141,7 @@ TEST_CASE("the CPU answers no query of a batch in which one breaks its contract,
   REQUIRE_THROWS_WITH(sweeper.run(queries), test::Contains("query 1: distance"));
   queries[1].distance = 1;
   REQUIRE(sweeper.run(queries).size() == 3);
-  REQUIRE(sweeper.stats().queries == 3);
   REQUIRE(sweeper.run({}).empty());
-  REQUIRE(sweeper.stats().queries == 0);
 }
 
 TEST_CASE("a scene whose meshes are deformed answers as one that is built anew") {

@@ -196,15 +196,3 @@ TEST_CASE("the requirements are set in the host's own structs, and the other fea
   CHECK(own12.shaderOutputLayer == VK_TRUE);
   CHECK(own12.subgroupBroadcastDynamicId == VK_FALSE);
 }
-
-TEST_CASE("a host's struct of single features that would break the chain is refused by name") {
-  VkPhysicalDeviceVulkan12Features own12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceSynchronization2Features single{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
-                                                  .pNext = &own12};
-  Requirements needed = requirements(Mode::contact, true);
-  CHECK_THROWS_WITH(needed.chain(&single),
-                    test::Contains("VkPhysicalDeviceSynchronization2Features, which Vulkan does not allow beside "
-                                   "VkPhysicalDeviceVulkan13Features"));
-  CHECK(own12.scalarBlockLayout == VK_FALSE);
-  CHECK(needed.vulkan13.pNext == nullptr);
-}

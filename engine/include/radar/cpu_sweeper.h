@@ -8,10 +8,7 @@ namespace radar {
 
 /// Statistics of the last run().
 struct CpuStats {
-  uint64_t queries = 0;
-  uint64_t nodes = 0;       ///< node pairs tested
-  uint64_t pairs = 0;       ///< pairs of triangles that reached the triangle test
-  uint64_t exactPairs = 0;  ///< triangle pairs that doubles could not decide
+  uint64_t pairs = 0;  ///< pairs of triangles that reached the triangle test
 };
 
 /// Answers batches of queries against one scene.

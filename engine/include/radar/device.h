@@ -75,9 +75,9 @@ struct Requirements {
     vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   }
   /// For VkDeviceCreateInfo::pNext: the host's chain `next`, with these features. Sets them in the host's own structs
-  /// of these three types, and puts the ones that it lacks in front. Throws, and changes nothing, if it has a struct of
-  /// single features that Vulkan 1.2 or 1.3 took over, such as VkPhysicalDeviceSynchronization2Features, without the
-  /// struct of that version: Vulkan allows only one of both. Valid until this object moves or ends.
+  /// of these three types, and puts the ones that it lacks in front. The chain has no struct of single features that
+  /// Vulkan 1.2 or 1.3 took over, such as VkPhysicalDeviceSynchronization2Features: Vulkan forbids these beside the
+  /// struct of that version. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
 /// `mode`: sampled needs everything that contact needs, and graphics. `doubles`: includes shaderFloat64, which is

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "radar/device.h"
-#include "radar/host_transforms.h"
 
 namespace radar {
 
@@ -48,6 +47,16 @@ struct DeformedMesh {
   HostPositions positions{};
 };
 
+/// How a matrix of floats lies in memory: its entry in row i and column k is `i * row + k * column` bytes from its
+/// beginning; column 3 is the position. The last row of a 4x4 matrix is not read.
+struct TransformLayout {
+  uint32_t row = 16;
+  uint32_t column = 4;
+  bool operator==(const TransformLayout&) const = default;
+};
+inline constexpr TransformLayout kRowMajor{16, 4};     ///< VkTransformMatrixKHR, or a 4x4 matrix by rows
+inline constexpr TransformLayout kColumnMajor{4, 16};  ///< a 4x4 matrix by columns, such as GLSL's mat4
+
 /// New transforms of objects, one each, in this order. Coordinates are at most 2^80; the device fits the tree over
 /// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds
 /// them by at most a millionth of their largest coordinate. Without Device::doubles(), a mesh whose transformed middle
@@ -66,12 +75,5 @@ struct HostGeometry {
   std::span<const DeformedMesh> meshes{};
   std::span<const MovedObjects> objects{};
 };
-
-/// Reads the geometry from the host's buffers now and gives it to the scene, as Scene::setPositions and
-/// Scene::setTransforms do: for Sweepers, Pools and the CPU, which do not read these buffers. Nothing needs bounds.
-/// Writes to the buffers have been made available (waiting for a fence suffices). Submits to HostDevice::queue once and
-/// waits. Throws if there is no queue, `geometry` breaks its contract or a Vulkan call fails, and then leaves the scene
-/// as it was; or as those functions do, naming mesh or object, after which some of the geometry may be set.
-RADAR_API void applyGeometry(Scene& scene, const Device& device, const HostGeometry& geometry);
 
 }  // namespace radar

@@ -62,8 +62,6 @@ struct SweepStats {
   uint64_t pairs = 0;             ///< proposed pairs of triangles (sampled), pairs of leaves (contact)
   uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
   uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
-  uint64_t nodePairs = 0;         ///< node pairs tested on the device (contact)
-  uint64_t solves = 0;            ///< pairs of triangles solved on the device (contact)
   std::vector<StageTime> stages;  ///< with SweeperOptions::timestamps, CPU stages included; else empty
 };
 

@@ -19,25 +19,18 @@ namespace radar::gpu {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 // The kind of numbers in a trial. Ordinary numbers have both signs and use every bit of the significand.
 enum class Kind {
   wide,       ///< magnitudes far apart
   cancelled,  ///< a sum cancels, which shows whether a product was rounded before, or fused into a multiply-add
   halfway,    ///< doubles: a quotient close to the middle between two doubles
-  subnormal,  ///< x is subnormal
-  overflow    ///< floats: the product overflows
+  subnormal   ///< x is subnormal
 };
 
 Kind kindOf(size_t trial) {
   constexpr Kind kKinds[] = {Kind::wide, Kind::cancelled, Kind::wide,      Kind::halfway,
-                             Kind::wide, Kind::cancelled, Kind::subnormal, Kind::overflow};
+                             Kind::wide, Kind::cancelled, Kind::subnormal, Kind::wide};
   return kKinds[trial % std::size(kKinds)];
-}
-
-bool isOrdinary(size_t trial) {
-  return kindOf(trial) != Kind::subnormal && kindOf(trial) != Kind::overflow;
 }
 
 class Numbers {
@@ -72,10 +65,6 @@ std::vector<FloatTrial> floatTrials() {
       t.y = 0x1p30f;
       t.z = 0;
     }
-    if (kindOf(i) == Kind::overflow) {
-      t.x = std::ldexp(t.x, 80);
-      t.y = std::ldexp(t.y, 80);
-    }
     t.low = static_cast<float>(0x1p-24 * double{t.x} * numbers.wide(0));
     const double precise = numbers.wide(79);
     t.bits[0] = static_cast<uint32_t>(std::bit_cast<uint64_t>(precise));
@@ -98,7 +87,6 @@ std::vector<DoubleTrial> doubleTrials() {
     for (float& coordinate : t.p) coordinate = static_cast<float>(numbers.wide(60));
     switch (kindOf(i)) {
       case Kind::wide:
-      case Kind::overflow:
         break;
       case Kind::cancelled:
         t.y = -t.x * 1.0000001;
@@ -154,6 +142,32 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint
   return outcomes;
 }
 
+// What a trial was given, and what the device made of it.
+template <class Trial, class Outcome>
+struct Case {
+  const Trial& given;
+  const Outcome& found;
+  const Trial& first;  ///< the first trial of all
+};
+using FloatCase = Case<FloatTrial, FloatOutcome>;
+using DoubleCase = Case<DoubleTrial, DoubleOutcome>;
+
+struct Verdict {
+  bool isRight;
+  double ulps = std::numeric_limits<double>::quiet_NaN();  ///< off, if measured
+};
+
+// Which trials a check looks at.
+enum class On { normal, subnormal, all };
+
+template <class Case>
+struct Check {
+  const char* operation;
+  const char* needed;
+  Verdict (*judge)(const Case&);
+  On on = On::normal;
+};
+
 template <class Real>
 bool sameBits(Real p, Real q) {
   using Bits = std::array<std::byte, sizeof(Real)>;
@@ -170,7 +184,7 @@ double ulpOf(double x) {
 
 // An exact result as two doubles: high + low, |low| at most half an ulp of high.
 struct ExactResult {
-  double high, low;
+  double high, low = 0;
 };
 
 ExactResult exactSum(double x, double y) {
@@ -178,343 +192,187 @@ ExactResult exactSum(double x, double y) {
   return {sum, (x - (sum - part)) + (y - part)};
 }
 
-// The rounding direction of a device: one that no result contradicts.
-class Rounding {
- public:
-  void add(ExactResult exact, float result) {
-    const double off = (result - exact.high) - exact.low;
-    if (std::abs(off) > 0.5 * ulpOf(result)) isNearest_ = false;
-    if (off != 0 && (off > 0) == (result > 0)) isTowardsZero_ = false;
-    if (off > 0) isDown_ = false;
-    if (off < 0) isUp_ = false;
-  }
-  const char* words() const {
-    if (isNearest_) return "rounded to nearest";
-    if (isTowardsZero_) return "rounded towards zero";
-    return isDown_ ? "rounded down" : isUp_ ? "rounded up" : "rounded in no fixed direction";
-  }
-
- private:
-  bool isNearest_ = true, isTowardsZero_ = true, isDown_ = true, isUp_ = true;
-};
-
-// Collects the results of the checks, one check after the other.
-class Findings {
- public:
-  explicit Findings(std::vector<ArithmeticCheck>& checks) : checks_(checks) {}
-
-  void begin(const char* operation, const char* needed) {
-    checks_.push_back({.operation = operation, .needed = needed});
-  }
-  void result(bool isRight, double ulps = kNaN) {
-    ArithmeticCheck& check = checks_.back();
-    ++check.tried;
-    check.wrong += isRight ? 0 : 1;
-    check.worst = check.tried == 1 ? ulps : std::max(check.worst, ulps);
-  }
-  uint32_t tried() const { return checks_.back().tried; }
-  /// Returns whether the check passed. Its consequence is `otherwise` if it did, else `consequence`.
-  bool end(const std::string& found, const char* otherwise, const char* consequence) {
-    ArithmeticCheck& check = checks_.back();
-    check.found =
-        check.passed() ? found : std::to_string(check.wrong) + " of " + std::to_string(check.tried) + " wrong";
-    check.consequence = check.passed() ? otherwise : consequence;
-    return check.passed();
-  }
-
- private:
-  std::vector<ArithmeticCheck>& checks_;
-};
-
-constexpr const char* kBoundsHold = "the search's bounds hold";
-constexpr const char* kUnusable = "the search's bounds do not hold: the device is not used";
-constexpr const char* kSolved = "pairs of triangles are solved in doubles";
-constexpr const char* kUnsolved = "doubles are not used: the CPU decides pairs that are too close for floats";
-
-// Checks that a sum or a product is off by less than an ulp, whatever the rounding direction.
-bool checkRounded(Findings& findings, const char* operation, const std::vector<FloatTrial>& trials,
-                  const std::vector<FloatOutcome>& outcomes, ExactResult (*exactOf)(const FloatTrial&),
-                  float FloatOutcome::*member) {
-  findings.begin(operation, "less than 1 ulp off");
-  Rounding rounding;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const ExactResult exact = exactOf(trials[i]);
-    const float result = outcomes[i].*member;
-    const double off = std::abs((result - exact.high) - exact.low), ulp = ulpOf(static_cast<float>(exact.high));
-    // The larger ulp counts: just below a power of two, `exact` has half the ulp of a result that reaches that power.
-    findings.result(off < std::max(ulp, ulpOf(result)), off / ulp);
-    rounding.add(exact, result);
-  }
-  return findings.end(rounding.words(), kBoundsHold, kUnusable);
+// Off by less than an ulp, whatever the rounding direction. The larger ulp counts: just below a power of two, `exact`
+// has half the ulp of a result that reaches that power.
+Verdict rounded(float result, ExactResult exact) {
+  const double off = std::abs((result - exact.high) - exact.low);
+  const double ulps = off / std::max(ulpOf(static_cast<float>(exact.high)), ulpOf(result));
+  return {ulps < 1, ulps};
 }
 
-const char* inWords(size_t kept, size_t flushed) {
-  return flushed == 0 ? "kept" : kept == 0 ? "flushed to 0" : "sometimes kept, sometimes flushed to 0";
+Verdict within(float result, double exact, double mostUlps) {
+  const double ulps = std::abs(result - exact) / ulpOf(static_cast<float>(exact));
+  return {ulps <= mostUlps, ulps};
 }
 
-float leading(float x, uint32_t mask) {
-  return std::bit_cast<float>(std::bit_cast<uint32_t>(x) & mask);
+// The bits that the CPU computes.
+Verdict same(double result, double exact) {
+  return {sameBits(result, exact), std::abs(result - exact) / ulpOf(exact)};
 }
 
-bool checkFloats(Findings& findings, const std::vector<FloatTrial>& trials, const std::vector<FloatOutcome>& outcomes) {
-  bool usable = checkRounded(
-      findings, "float addition", trials, outcomes, [](const FloatTrial& t) { return exactSum(t.x, t.y); },
-      &FloatOutcome::sum);
-  usable &= checkRounded(
-      findings, "float multiplication", trials, outcomes,
-      [](const FloatTrial& t) {
-        return ExactResult{double{t.x} * t.y, 0};
-      },
-      &FloatOutcome::product);
-
-  findings.begin("float division", "at most 2.5 ulp off");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const double exact = double{trials[i].x} / trials[i].y;
-    const double ulps = std::abs(outcomes[i].quotient - exact) / ulpOf(static_cast<float>(exact));
-    findings.result(ulps <= 2.5, ulps);
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("float x * y + z, declared precise", "the product is rounded before the sum");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const ExactResult exact = exactSum(outcomes[i].product, trials[i].z);
-    const double off = std::abs((outcomes[i].chain - exact.high) - exact.low);
-    const double ulp = std::max(ulpOf(static_cast<float>(exact.high)), ulpOf(outcomes[i].chain));
-    findings.result(off < ulp, off / ulp);
-  }
-  usable &= findings.end("not fused", kBoundsHold, kUnusable);
-
-  findings.begin("float sums in two parts, declared precise", "within 2^-40 of the terms");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const FloatTrial& t = trials[i];
-    const double product = double{leading(t.x, 0xffffff00u)} * leading(t.z, 0xffff0000u);
-    const double exact = t.low + (double{t.y} + product);
-    const double terms = 2 * std::abs(t.x) + std::abs(t.low) + std::abs(t.y) + std::abs(product);
-    const double off = std::abs(outcomes[i].addedHigh - exact + outcomes[i].addedLow);
-    findings.result(off <= 0x1p-40 * terms);
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("float differences in two parts, declared precise", "within 2^-23 of each part's and the result's");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const FloatTrial &t = trials[i], &first = trials[0];
-    const auto isNear = [](double high, double low, double result) {
-      const double exact = high + low;
-      return std::abs(result - exact) <= 0x1p-23 * (std::abs(high) + std::abs(low) + std::abs(exact));
-    };
-    findings.result(isNear(double{t.x} - t.y, double{t.low} - t.z, outcomes[i].apart) &&
-                    isNear(double{t.x} - first.x, double{t.low} - first.low, outcomes[i].apartFirst));
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("double to two floats, by bits", "within 2^-46 of itself");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    const double exact = std::bit_cast<double>(uint64_t{trials[i].bits[1]} << 32 | trials[i].bits[0]);
-    const double off = (exact - std::bit_cast<float>(outcomes[i].high)) - outcomes[i].rest;
-    findings.result(std::abs(off) <= 0x1p-46 * std::abs(exact) + 0x1p-126);
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("float box around two corners, declared precise", "contains them");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const double x = trials[i].x, most = x + std::abs(x) * (0.0001 - 0x1p-22);
-    const double centre = outcomes[i].centre, halfExtent = outcomes[i].halfExtent;
-    findings.result(centre - halfExtent <= x && centre + halfExtent >= most && halfExtent <= 0.0001 * std::abs(x));
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("float inverse square root", "at most 2 ulp off");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const double exact = 1 / std::sqrt(std::abs(double{trials[i].y}));
-    const double ulps = std::abs(outcomes[i].inverseRoot - exact) / ulpOf(static_cast<float>(exact));
-    findings.result(ulps <= 2, ulps);
-  }
-  usable &= findings.end("as needed", kBoundsHold, kUnusable);
-
-  findings.begin("float comparison, least and greatest", "exact");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (!isOrdinary(i)) continue;
-    const bool isLess = trials[i].x < trials[i].y;
-    findings.result(outcomes[i].order == (isLess ? 3u : 4u));
-  }
-  usable &= findings.end("exact", kBoundsHold, kUnusable);
-
-  findings.begin("integer to float, below 2^24", "exact");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    findings.result(outcomes[i].ofInteger == static_cast<float>(trials[i].integer));
-  }
-  usable &= findings.end("exact", kBoundsHold, kUnusable);
-
-  findings.begin("loading and storing floats", "the same bits, subnormal numbers included");
-  for (size_t i = 0; i < trials.size(); ++i) findings.result(sameBits(outcomes[i].copied, trials[i].copied));
-  usable &= findings.end("the same bits", "corners reach the CPU unchanged", kUnusable);
-
-  findings.begin("float multiplication of subnormal numbers", "correct, or as if they were 0");
-  size_t kept = 0, flushed = 0;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) != Kind::subnormal) continue;
-    const float product = outcomes[i].product;
-    const bool isKept = product == trials[i].x * trials[i].y;
-    kept += isKept ? 1 : 0;
-    flushed += product == 0 ? 1 : 0;
-    findings.result(isKept || product == 0);
-  }
-  usable &= findings.end(inWords(kept, flushed), "the bounds allow for flushing", kUnusable);
-
-  findings.begin("float multiplication that overflows", "");
-  size_t infinite = 0, largest = 0;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) != Kind::overflow) continue;
-    const float product = std::abs(outcomes[i].product);
-    infinite += std::isinf(product) ? 1 : 0;
-    largest += product == std::numeric_limits<float>::max() ? 1 : 0;
-    findings.result(true);
-  }
-  findings.end(infinite == findings.tried()  ? "infinity"
-               : largest == findings.tried() ? "the largest float"
-                                             : "infinity, the largest float or another number",
-               "irrelevant: no sum or product of the search overflows", "");
-  return usable;
+Verdict ordered(uint32_t found, bool isLess) {
+  return {found == (isLess ? 3u : 4u)};
 }
 
-double distanceInUlps(double result, double exact) {
-  return std::abs(result - exact) / ulpOf(exact);
+Verdict sumsInParts(const FloatCase& c) {
+  const auto leading = [](float x, uint32_t mask) { return std::bit_cast<float>(std::bit_cast<uint32_t>(x) & mask); };
+  const FloatTrial& t = c.given;
+  const double product = double{leading(t.x, 0xffffff00u)} * leading(t.z, 0xffff0000u);
+  const double exact = t.low + (double{t.y} + product);
+  const double terms = 2 * std::abs(t.x) + std::abs(t.low) + std::abs(t.y) + std::abs(product);
+  return {std::abs(c.found.addedHigh - exact + c.found.addedLow) <= 0x1p-40 * terms};
 }
 
-// Checks that results have the same bits as on the CPU.
-bool checkBits(Findings& findings, const char* operation, const std::vector<DoubleTrial>& trials,
-               const std::vector<DoubleOutcome>& outcomes, double (*exactOf)(const DoubleTrial&),
-               double DoubleOutcome::*member, bool subnormals, const char* otherwise = kSolved,
-               const char* consequence = kUnsolved) {
-  findings.begin(operation, "the bits of IEEE 754, rounded to nearest");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal && !subnormals) continue;
-    const double exact = exactOf(trials[i]), result = outcomes[i].*member;
-    findings.result(sameBits(result, exact), distanceInUlps(result, exact));
-  }
-  return findings.end("the same bits as on the CPU", otherwise, consequence);
+Verdict differencesInParts(const FloatCase& c) {
+  const auto isNear = [](double high, double low, double result) {
+    const double exact = high + low;
+    return std::abs(result - exact) <= 0x1p-23 * (std::abs(high) + std::abs(low) + std::abs(exact));
+  };
+  const FloatTrial &t = c.given, &first = c.first;
+  return {isNear(double{t.x} - t.y, double{t.low} - t.z, c.found.apart) &&
+          isNear(double{t.x} - first.x, double{t.low} - first.low, c.found.apartFirst)};
 }
 
-// `restOf`: of a trial, what x + y, the larger plus the smaller, and x * y lost to rounding.
-template <class RestOf>
-void checkRests(Findings& findings, const std::vector<DoubleTrial>& trials, const RestOf& restOf) {
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
-    const double x = trials[i].x, y = trials[i].y, ofSum = exactSum(x, y).low;
-    findings.result(restOf(i, 0) == ofSum && restOf(i, 1) == ofSum && restOf(i, 2) == std::fma(x, y, -(x * y)));
-  }
+Verdict splitByBits(const FloatCase& c) {
+  const double exact = std::bit_cast<double>(uint64_t{c.given.bits[1]} << 32 | c.given.bits[0]);
+  const double off = (exact - std::bit_cast<float>(c.found.high)) - c.found.rest;
+  return {std::abs(off) <= 0x1p-46 * std::abs(exact) + 0x1p-126};
 }
 
-double placedOf(const DoubleTrial& t) {
+Verdict boxed(const FloatCase& c) {
+  const double x = c.given.x, most = x + std::abs(x) * (0.0001 - 0x1p-22);
+  const double centre = c.found.centre, halfExtent = c.found.halfExtent;
+  return {centre - halfExtent <= x && centre + halfExtent >= most && halfExtent <= 0.0001 * std::abs(x)};
+}
+
+// On what the bounds of mode contact rest.
+constexpr Check<FloatCase> kFloatChecks[] = {
+    {"float addition", "less than 1 ulp off",
+     [](const FloatCase& c) { return rounded(c.found.sum, exactSum(c.given.x, c.given.y)); }},
+    {"float multiplication", "less than 1 ulp off",
+     [](const FloatCase& c) { return rounded(c.found.product, {double{c.given.x} * c.given.y}); }},
+    {"float division", "at most 2.5 ulp off",
+     [](const FloatCase& c) { return within(c.found.quotient, double{c.given.x} / c.given.y, 2.5); }},
+    {"float x * y + z, declared precise", "the product is rounded before the sum",
+     [](const FloatCase& c) { return rounded(c.found.chain, exactSum(c.found.product, c.given.z)); }},
+    {"float sums in two parts, declared precise", "within 2^-40 of the terms", sumsInParts},
+    {"float differences in two parts, declared precise", "within 2^-23 of each part's and the result's",
+     differencesInParts},
+    {"double to two floats, by bits", "within 2^-46 of itself", splitByBits, On::all},
+    {"float box around two corners, declared precise", "contains them", boxed},
+    {"float inverse square root", "at most 2 ulp off",
+     [](const FloatCase& c) { return within(c.found.inverseRoot, 1 / std::sqrt(std::abs(double{c.given.y})), 2); }},
+    {"float comparison, least and greatest", "exact",
+     [](const FloatCase& c) { return ordered(c.found.order, c.given.x < c.given.y); }},
+    {"integer to float, below 2^24", "exact",
+     [](const FloatCase& c) { return Verdict{c.found.ofInteger == static_cast<float>(c.given.integer)}; }, On::all},
+    {"loading and storing floats", "the same bits, subnormal numbers included",
+     [](const FloatCase& c) { return Verdict{sameBits(c.found.copied, c.given.copied)}; }, On::all},
+    {"float multiplication of subnormal numbers", "correct, or as if they were 0",
+     [](const FloatCase& c) { return Verdict{c.found.product == c.given.x * c.given.y || c.found.product == 0}; },
+     On::subnormal}};
+
+Verdict placed(const DoubleCase& c) {
   Transform pose;
-  std::copy(std::begin(t.row), std::end(t.row), pose.m.begin());
-  return transformPoint(pose, t.p)[0];
+  std::copy(std::begin(c.given.row), std::end(c.given.row), pose.m.begin());
+  return same(c.found.placed, transformPoint(pose, c.given.p)[0]);
 }
 
-void checkDoubles(Arithmetic& arithmetic, Findings& findings, const std::vector<DoubleTrial>& trials,
-                  const std::vector<DoubleOutcome>& outcomes) {
-  bool usable = checkBits(
-      findings, "double addition", trials, outcomes, [](const DoubleTrial& t) { return t.x + t.y; },
-      &DoubleOutcome::sum, false);
-  usable &= checkBits(
-      findings, "double multiplication", trials, outcomes, [](const DoubleTrial& t) { return t.x * t.y; },
-      &DoubleOutcome::product, false);
-  usable &= checkBits(findings, "double placement of a vertex, declared precise", trials, outcomes, placedOf,
-                      &DoubleOutcome::placed, true);
-  usable &= checkBits(
-      findings, "float to double, by bits", trials, outcomes, [](const DoubleTrial& t) { return double{t.p[0]}; },
-      &DoubleOutcome::ofFloat, true);
-  usable &= checkBits(
-      findings, "double division, composed of the above", trials, outcomes,
-      [](const DoubleTrial& t) { return t.x / t.y; }, &DoubleOutcome::corrected, false,
-      "can replace the device's own division");
-  usable &= checkBits(
-      findings, "loading and storing doubles", trials, outcomes, [](const DoubleTrial& t) { return t.row[0]; },
-      &DoubleOutcome::copied, true);
+// Whether these are what x + y, the larger plus the smaller, and x * y lost to rounding.
+bool areRests(const DoubleTrial& t, double ofSum, double ofOrdered, double ofProduct) {
+  const double exact = exactSum(t.x, t.y).low;
+  return ofSum == exact && ofOrdered == exact && ofProduct == std::fma(t.x, t.y, -(t.x * t.y));
+}
 
-  findings.begin("what double sums and products lose, declared precise", "exact");
-  checkRests(findings, trials, [&](size_t i, int k) { return outcomes[i].rests[k]; });
-  usable &= findings.end("exact", kSolved, kUnsolved);
-  findings.begin("the same, of vectors", "exact");
+Verdict vectorRests(const DoubleCase& c) {
+  const double* rests = c.found.vectorRests;
+  bool areRight = true;
   for (int axis = 0; axis < 3; ++axis) {
-    checkRests(findings, trials, [&](size_t i, int k) { return outcomes[i].vectorRests[3 * k + axis]; });
+    areRight = areRight && areRests(c.given, rests[axis], rests[3 + axis], rests[6 + axis]);
   }
-  usable &= findings.end("exact", kSolved, kUnsolved);
+  return {areRight};
+}
 
-  findings.begin("sums and products of two doubles each, declared precise", "the bits of the CPU");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
-    const exact::DoubleDouble x{trials[i].x, 0}, y{trials[i].y, 0}, xy = exact::product(x.high, y.high);
-    const exact::DoubleDouble chain = (x + xy) * (xy - y);
-    findings.result(outcomes[i].chain[0] == chain.high && outcomes[i].chain[1] == chain.low);
+Verdict chained(const DoubleCase& c) {
+  const exact::DoubleDouble x{c.given.x, 0}, y{c.given.y, 0}, xy = exact::product(x.high, y.high);
+  const exact::DoubleDouble chain = (x + xy) * (xy - y);
+  return {c.found.chain[0] == chain.high && c.found.chain[1] == chain.low};
+}
+
+Verdict split(const DoubleCase& c) {
+  const double off = (c.given.x - c.found.high) - c.found.low;
+  return {std::abs(off) <= 0x1p-46 * std::abs(c.given.x)};
+}
+
+constexpr const char* kBits = "the bits of IEEE 754, rounded to nearest";
+
+// On what the solution of pairs of triangles in doubles rests.
+constexpr Check<DoubleCase> kDoubleChecks[] = {
+    {"double addition", kBits, [](const DoubleCase& c) { return same(c.found.sum, c.given.x + c.given.y); }},
+    {"double multiplication", kBits, [](const DoubleCase& c) { return same(c.found.product, c.given.x * c.given.y); }},
+    {"double placement of a vertex, declared precise", kBits, placed, On::all},
+    {"float to double, by bits", kBits, [](const DoubleCase& c) { return same(c.found.ofFloat, double{c.given.p[0]}); },
+     On::all},
+    {"double division, composed of the above", kBits,
+     [](const DoubleCase& c) { return same(c.found.corrected, c.given.x / c.given.y); }},
+    {"loading and storing doubles", kBits, [](const DoubleCase& c) { return same(c.found.copied, c.given.row[0]); },
+     On::all},
+    {"what double sums and products lose, declared precise", "exact",
+     [](const DoubleCase& c) {
+       return Verdict{areRests(c.given, c.found.rests[0], c.found.rests[1], c.found.rests[2])};
+     }},
+    {"the same, of vectors", "exact", vectorRests},
+    {"sums and products of two doubles each, declared precise", "the bits of the CPU", chained},
+    {"double split into two floats", "within 2^-46 of itself", split},
+    {"double comparison, least and greatest", "exact",
+     [](const DoubleCase& c) { return ordered(c.found.order, c.given.x < c.given.y); }},
+    {"double to float", "less than 1 ulp off",
+     [](const DoubleCase& c) { return rounded(c.found.ofDouble, {c.given.x}); }}};
+
+constexpr Check<DoubleCase> kDivision[] = {
+    {"double division", kBits, [](const DoubleCase& c) { return same(c.found.quotient, c.given.x / c.given.y); }}};
+
+// Appends the results; returns whether all are as needed.
+template <class Trial, class Outcome>
+bool judge(std::span<const Check<Case<Trial, Outcome>>> table, const std::vector<Trial>& trials,
+           const std::vector<Outcome>& outcomes, const char* ifWrong, std::vector<ArithmeticCheck>& checks) {
+  bool passed = true;
+  for (const auto& row : table) {
+    ArithmeticCheck check{.operation = row.operation, .needed = row.needed, .ifWrong = ifWrong};
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (row.on != On::all && (kindOf(i) == Kind::subnormal) != (row.on == On::subnormal)) continue;
+      const Verdict verdict = row.judge({trials[i], outcomes[i], trials[0]});
+      check.worst = check.tried == 0 ? verdict.ulps : std::max(check.worst, verdict.ulps);
+      ++check.tried;
+      check.wrong += verdict.isRight ? 0 : 1;
+    }
+    passed = passed && check.passed();
+    checks.push_back(std::move(check));
   }
-  usable &= findings.end("the same bits", kSolved, kUnsolved);
-
-  findings.begin("double split into two floats", "within 2^-46 of itself");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
-    const double off = (trials[i].x - outcomes[i].high) - outcomes[i].low;
-    findings.result(std::abs(off) <= 0x1p-46 * std::abs(trials[i].x));
-  }
-  usable &= findings.end("as needed", kSolved, kUnsolved);
-
-  findings.begin("double comparison, least and greatest", "exact");
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
-    findings.result(outcomes[i].order == (trials[i].x < trials[i].y ? 3u : 4u));
-  }
-  usable &= findings.end("exact", kSolved, kUnsolved);
-
-  findings.begin("double to float", "less than 1 ulp off");
-  Rounding rounding;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) == Kind::subnormal) continue;
-    const double off = std::abs(outcomes[i].ofDouble - trials[i].x);
-    const double ulp = std::max(ulpOf(static_cast<float>(trials[i].x)), ulpOf(outcomes[i].ofDouble));
-    findings.result(off < ulp, off / ulp);
-    rounding.add({trials[i].x, 0}, outcomes[i].ofDouble);
-  }
-  usable &= findings.end(rounding.words(), kSolved, kUnsolved);
-
-  findings.begin("double multiplication of subnormal numbers", "");
-  size_t kept = 0, flushed = 0;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (kindOf(i) != Kind::subnormal) continue;
-    const double product = outcomes[i].product;
-    kept += product == trials[i].x * trials[i].y ? 1 : 0;
-    flushed += product == 0 ? 1 : 0;
-    findings.result(true);
-  }
-  findings.end(kept + flushed == findings.tried() ? inWords(kept, flushed) : "neither kept nor flushed to 0",
-               "irrelevant: the bounds allow for the loss", "");
-
-  arithmetic.doubles = usable;
-  arithmetic.dividesRight = checkBits(
-      findings, "double division", trials, outcomes, [](const DoubleTrial& t) { return t.x / t.y; },
-      &DoubleOutcome::quotient, false, "used", "not used: divisions are composed of sums and products");
+  return passed;
 }
 
 }  // namespace
 
 Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t falsified) {
   Arithmetic arithmetic;
-  Findings findings(arithmetic.checks);
   const std::vector<FloatTrial> floats = floatTrials();
-  arithmetic.floats = checkFloats(findings, floats,
-                                  outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic",
-                                             std::array{falsified}, floats, kSlotFloatTrials, kSlotFloatOutcomes));
+  const std::vector<FloatOutcome> floatOutcomes =
+      outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic", std::array{falsified}, floats, kSlotFloatTrials,
+                 kSlotFloatOutcomes);
+  arithmetic.floats =
+      judge<FloatTrial, FloatOutcome>(kFloatChecks, floats, floatOutcomes,
+                                      "the search's bounds do not hold: the device is not used", arithmetic.checks);
   if (!hasDoubles) return arithmetic;
   const std::vector<DoubleTrial> doubles = doubleTrials();
-  checkDoubles(arithmetic, findings, doubles,
-               outcomesOf(device, k_arithmetic_doubles_comp, "double arithmetic", std::array{0u, falsified}, doubles,
-                          kSlotDoubleTrials, kSlotDoubleOutcomes));
+  const std::vector<DoubleOutcome> outcomes =
+      outcomesOf(device, k_arithmetic_doubles_comp, "double arithmetic", std::array{0u, falsified}, doubles,
+                 kSlotDoubleTrials, kSlotDoubleOutcomes);
+  arithmetic.doubles = judge<DoubleTrial, DoubleOutcome>(
+      kDoubleChecks, doubles, outcomes, "doubles are not used: the CPU decides pairs that are too close for floats",
+      arithmetic.checks);
+  arithmetic.dividesRight = judge<DoubleTrial, DoubleOutcome>(
+      kDivision, doubles, outcomes, "it is not used: divisions are composed of sums and products", arithmetic.checks);
   return arithmetic;
 }
 

@@ -93,7 +93,9 @@ namespace {
 std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks) {
   std::vector<std::string> lines;
   for (const ArithmeticCheck& check : checks) {
-    if (!check.passed()) lines.push_back(check.operation + ": " + check.found + ", needed: " + check.needed);
+    if (check.passed()) continue;
+    lines.push_back(check.operation + ": " + std::to_string(check.wrong) + " of " + std::to_string(check.tried) +
+                    " wrong, needed: " + check.needed);
   }
   return lines;
 }

@@ -47,13 +47,11 @@ std::vector<std::string> failed(const gpu::Arithmetic& arithmetic) {
 
 TEST_CASE("a device's arithmetic passes every check, and its doubles are used unless they are switched off") {
   const std::vector<ArithmeticCheck> checks = checkArithmetic(test::device());
-  CHECK(checks.size() == (test::wantsDoubles() ? 28 : 14));
+  CHECK(checks.size() == (test::wantsDoubles() ? 26 : 13));
   for (const ArithmeticCheck& check : checks) {
-    CAPTURE(check.operation, check.found);
+    CAPTURE(check.operation);
     CHECK(check.passed());
     CHECK(check.tried >= gpu::kTrials / 8);
-    CHECK_FALSE(check.found.empty());
-    CHECK_FALSE(check.consequence.empty());
   }
   CHECK(test::device().doubles() == test::wantsDoubles());
   CHECK(test::device().impl().dividesRight == test::wantsDoubles());

@@ -184,9 +184,8 @@ bool measureArithmetic(const Device& device, uint32_t, const Deadline&, Json& ro
                     {"tried", check.tried},
                     {"wrong_results", check.wrong},
                     {"worst_ulps", check.worst},
-                    {"found", check.found},
                     {"needed", check.needed},
-                    {"consequence", check.consequence}});
+                    {"if_wrong", check.ifWrong}});
   }
   return true;
 }

@@ -10,12 +10,11 @@ namespace radar {
 /// The check of one operation. Device::open() and Device::adopt() run the same checks and act on the results.
 struct ArithmeticCheck {
   std::string operation;
-  uint32_t tried = 0;       ///< results compared
-  uint32_t wrong = 0;       ///< results that are not as needed
-  double worst = 0;         ///< error of the worst result, in units in the last place; NaN: not measured
-  std::string found;        ///< what the device does
-  std::string needed;       ///< what the engine relies on; empty: nothing, the check is informative
-  std::string consequence;  ///< consequence of the result
+  uint32_t tried = 0;   ///< results compared
+  uint32_t wrong = 0;   ///< results that are not as needed
+  double worst = 0;     ///< error of the worst result, in units in the last place; NaN: not measured
+  std::string needed;   ///< what the engine relies on
+  std::string ifWrong;  ///< what it does if a result is wrong
   bool passed() const { return wrong == 0; }
 };
 

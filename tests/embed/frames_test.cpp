@@ -41,7 +41,7 @@ std::vector<FrameScene> makeFrameScenes(const Device& device, uint32_t queries) 
 
 }  // namespace
 
-TEST_CASE("recording a thousand frames of all families allocates nothing, submits nothing and waits for nothing") {
+TEST_CASE("recording 200 frames of all families allocates nothing, submits nothing and waits for nothing") {
   test::Host host;
   const Device hosts = Device::adopt(host.handles);
   const std::vector<FrameScene> families = makeFrameScenes(hosts, 30);
@@ -52,7 +52,7 @@ TEST_CASE("recording a thousand frames of all families allocates nothing, submit
     const Device device = Device::adopt(host.handles);
     Scene scene;
     constexpr Capacity kRoom{.queries = 30, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 16};
-    constexpr uint32_t kInFlight = 2, kFrames = 1000;
+    constexpr uint32_t kInFlight = 2, kFrames = 200;
     Renderer renderers[kInFlight] = {Renderer(hosts), Renderer(hosts)};
     Recorder recorders[kInFlight] = {Recorder(device, scene, kRoom), Recorder(device, scene, kRoom)};
     const test::Counts before = test::counts();

@@ -11,7 +11,7 @@ namespace radar {
 struct SearchAnswers {
   std::span<const Result> results;  ///< one per sensor
   std::span<const gpu::UnresolvedPair> unresolved;
-  bool roomier = false;  ///< this batch had too little room for candidates; the next one has more
+  bool roomier = false;        ///< this batch had too little room for candidates; the next one has more
   uint64_t trianglePairs = 0;  ///< tested
 };
 

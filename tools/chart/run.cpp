@@ -63,19 +63,22 @@ std::vector<ChartMethod> ownMethods(const std::string& section, Extent extent, u
   return methods;
 }
 
+template <class Values, class Value>
+bool has(const Values& values, const Value& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+std::vector<uint32_t> sizesOf(const BaselineRow& row, const std::string& section, bool full) {
+  if (section != "front") return {has(row.sizes, kGrowthSize) ? kGrowthSize : row.sizes.front()};
+  if (!full && row.sizes.size() > 1) return {16, 64, 256};
+  return row.sizes;
+}
+
 // A full run measures all sizes, on one thread and on all; others three sizes, on all where the library can.
 std::vector<ChartMethod> peerMethods(const BaselineRow& row, const std::string& section, const RunSettings& settings) {
-  const auto has = [](const auto& values, const auto& value) {
-    return std::find(values.begin(), values.end(), value) != values.end();
-  };
   const bool full = settings.extent == Extent::full;
   if (!has(row.sections, section) || (section == "growth" && !full)) return {};
-  std::vector<uint32_t> sizes = row.sizes;
-  if (section != "front") {
-    sizes = {has(sizes, kGrowthSize) ? kGrowthSize : sizes.front()};
-  } else if (!full && sizes.size() > 1) {
-    sizes.assign({16, 64, 256});
-  }
+  std::vector<uint32_t> sizes = sizesOf(row, section, full);
   if (settings.extent == Extent::least) sizes.resize(1);
   std::vector<ChartMethod> methods;
   for (const uint32_t size : sizes) {

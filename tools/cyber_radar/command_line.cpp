@@ -41,14 +41,6 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
   return best == nullptr ? "" : "; did you mean " + *best + "?";
 }
 
-std::vector<std::string> commandsOf(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  return names;
-}
-
 std::vector<std::string> optionsOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -92,6 +84,14 @@ std::string inWords(const CLI::App* app, const CLI::Error& error) {
 }
 
 }  // namespace
+
+std::vector<std::string> commandsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
 
 std::string valueOf(const CLI::Option& option) {
   constexpr size_t kMost = 60;

@@ -39,14 +39,6 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
   return text;
 }
 
-std::vector<std::string> commandsOf(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  return names;
-}
-
 bool takesValue(const CLI::Option& option) {
   return option.get_items_expected_max() > 0;
 }

@@ -144,6 +144,16 @@ KnownScene::KnownScene(uint64_t seed) {
   }
 }
 
+AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<AnswerCheck()>& check) {
+  try {
+    return check();
+  } catch (const Error& error) {
+    if (error.vulkan != VK_ERROR_UNKNOWN) throw;
+    const auto all = static_cast<uint32_t>(asked);
+    return {.kind = kind, .asked = all, .wrong = all, .firstWrong = error.what()};
+  }
+}
+
 AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact) {
   found.resize(exact.size());
   AnswerCheck check{.kind = kind, .asked = static_cast<uint32_t>(exact.size())};
@@ -185,17 +195,19 @@ Found answersOf(const Device::Impl& device, const Scene& scene, std::span<const 
 
 AnswerCheck check(const char* kind, const Device::Impl& device, const KnownScene& known,
                   std::span<const Query> queries) {
-  Found found = answersOf(device, known.scene, queries);
-  CpuSweeper cpu(known.scene);
-  std::vector<Result> exact = cpu.run(queries);
-  exact.insert(exact.end(), cpu.lists().hits.begin(), cpu.lists().hits.end());
-  AnswerCheck check = compared(kind, std::move(found.results), exact);
-  // But for clearances, where the device may well leave queries open.
-  if (found.onCpu > 0 && queries[0].clearance == 0) {
-    check.wrong += static_cast<uint32_t>(found.onCpu);
-    check.firstWrong += " " + std::to_string(found.onCpu) + " queries were left to the CPU";
-  }
-  return check;
+  return orAllWrong(kind, queries.size(), [&] {
+    Found found = answersOf(device, known.scene, queries);
+    CpuSweeper cpu(known.scene);
+    std::vector<Result> exact = cpu.run(queries);
+    exact.insert(exact.end(), cpu.lists().hits.begin(), cpu.lists().hits.end());
+    AnswerCheck check = compared(kind, std::move(found.results), exact);
+    // But for clearances, where the device may well leave queries open.
+    if (found.onCpu > 0 && queries[0].clearance == 0) {
+      check.wrong += static_cast<uint32_t>(found.onCpu);
+      check.firstWrong += " " + std::to_string(found.onCpu) + " queries were left to the CPU";
+    }
+    return check;
+  });
 }
 
 struct SearchProof {

@@ -2,6 +2,8 @@
 // shaders from a stale cache, may compute wrongly what the checks of its arithmetic (gpu/arithmetic.h) find right.
 #pragma once
 
+#include <functional>
+
 #include "gpu/device.h"
 #include "radar/arithmetic.h"
 #include "radar/scene.h"
@@ -20,6 +22,8 @@ struct KnownScene {
 /// The seeds of the scenes by which a device proves itself.
 inline constexpr uint64_t kProofs = 2;
 
+/// What `check` returns. If it throws an error to which only the device's answers can lead, all `asked` are wrong.
+AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<AnswerCheck()>& check);
 /// Compares answers with the CPU's, to the bit.
 AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact);
 /// Mode contact's answers of a Sweeper: first contacts, lists, steps, and with `clearances` those with a clearance.

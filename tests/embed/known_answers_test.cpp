@@ -29,6 +29,11 @@ VKAPI_ATTR VkResult VKAPI_CALL isLost(VkDevice device, uint32_t count, const VkF
   waitForFences(device, count, fences, all, patience);
   return VK_ERROR_DEVICE_LOST;
 }
+VKAPI_ATTR VkResult VKAPI_CALL isUnknown(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
+                                         uint64_t patience) {
+  waitForFences(device, count, fences, all, patience);
+  return VK_ERROR_UNKNOWN;
+}
 VKAPI_ATTR void VKAPI_CALL doesNothing(VkCommandBuffer, uint32_t, uint32_t, uint32_t) {}
 
 Device ownDevice() {
@@ -111,4 +116,15 @@ TEST_CASE("a device that is lost while it proves itself is refused") {
   device.impl().vk.WaitForFences = isLost;
   const Error error = errorOf([&] { const Recorder recorder(device, scene); });
   CHECK(error.vulkan == VK_ERROR_DEVICE_LOST);
+}
+
+TEST_CASE("a device whose answers lead to an error is refused with it") {
+  const Scene scene;
+  const Device device = ownDevice();
+  waitForFences = device.impl().vk.WaitForFences;
+  device.impl().vk.WaitForFences = isUnknown;
+  const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
+  CHECK_THAT(error.what(), test::Contains("wrong answers to known queries"));
+  REQUIRE_FALSE(error.reasons.empty());
+  CHECK_THAT(error.reasons[0], test::StartsWith("first contacts: 24 of 24 answers are wrong; vkWaitForFences"));
 }

@@ -13,12 +13,14 @@ using radar::test::ScratchFolder;
 
 namespace {
 
-// Open MPI wants to be told that root runs it, and that there are more ranks than cores. `limits`: the shell's commands
+// Open MPI wants to be told that root runs it, and that there are more ranks than cores (release 5 by other names than
+// 4). Where a limit leaves no room for shared memory, messages go through the loopback. `limits`: the shell's commands
 // in each rank before the program.
 std::string mpirun(int ranks, const std::string& arguments, const std::string& limits = "true") {
   return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-         "OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none '" RADAR_MPIEXEC
-         "' -n " +
+         "OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none "
+         "PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_hwloc_default_binding_policy=none "
+         "OMPI_MCA_btl_tcp_if_include=lo '" RADAR_MPIEXEC "' -n " +
          std::to_string(ranks) + " sh -c \"" + limits + "; exec '" RADAR_MPI_PROGRAM "' query " + arguments + "\"";
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("the nodes, vertices and triangles of real OBJ, STL, PLY and OFF files
                            "OFF/Wuson.off"}) {
     requireSame(models + name);
   }
-  for (const char* name : {"b9.ply", "colored_tetra.ply", "elephant.off", "cube_quad.off", "bear.off"}) {
+  for (const char* name : {"sphere.ply", "colored_tetra.ply", "elephant.off", "cube_quad.off", "bear.off"}) {
     requireSame(cgal + name);
   }
 }

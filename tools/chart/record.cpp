@@ -102,7 +102,7 @@ Record recordFrom(const std::string& csv, const std::string& file) {
 std::optional<Record> readRecord(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "chart.csv";
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
+  if (!stream || isStream(file)) return std::nullopt;
   return recordFrom({std::istreambuf_iterator<char>(stream), {}}, file.string());
 }
 

@@ -1,5 +1,5 @@
-// Puts together the answers of a recording's searches past one object each: on the device, and again on the CPU once
-// open ones are decided.
+// Merges the answers of a recording's searches past one object each on the device. On the CPU, once open ones are
+// decided, query/hits.h does.
 #pragma once
 
 #include <span>
@@ -11,10 +11,6 @@
 #include "shaders/embed/interop.h"
 
 namespace radar {
-
-/// The answer to a query from those of its searches, which ascend by object. `list`: receives the contacts, nearest
-/// first, at most `hits`, and what may be one.
-Result gather(std::span<const Result> searches, uint32_t hits, std::vector<Result>& list);
 
 class GatherPass {
  public:

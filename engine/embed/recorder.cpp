@@ -15,6 +15,9 @@
 #include "embed/known_recordings.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
+#include "query/hits.h"
+#include "query/route.h"
+#include "query/swept.h"
 #include "scene/query_lists.h"
 #include "scene/scene_copy.h"
 
@@ -45,8 +48,10 @@ SearchRoom roomFor(const Capacity& capacity) {
 
 // Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
 bool isForCpu(const Query& query, const Scene::Impl& scene) {
-  const bool isDirected = isStep(query, scene) && !query.motion;
-  return query.skipOverlapping || isDirected || combinesClearance(query, scene);
+  return routeOf(query, scene, false) == Route::cpu;
+}
+bool searchesEach(const Query& query, const Scene::Impl& scene) {
+  return routeOf(query, scene, false) == Route::searchEach;
 }
 
 Result outOfRange() {
@@ -116,7 +121,7 @@ struct Recorder::Impl {
   SensorBatch sensors;
   std::vector<gpu::DeformedSensor> deformedSensors;
   std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
-  cpu::QuerySearch reach;     ///< what is in reach, and answers
+  cpu::QuerySearch answers;   ///< of the queries that the CPU answers
 };
 
 void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeometry) const {
@@ -146,7 +151,7 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
 size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
   Answered& answered = onCpu[number];
   answered.first =
-      reach.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
+      this->answers.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
   answered.first.tier = Tier::contact;
   if (query.hits == 1) answered.lists.hits.clear();
   for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
@@ -156,12 +161,8 @@ size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
 // Adds the objects that may be in reach, wherever the host moves them, and sorts all: every object if only the device
 // knows how large the sensor is.
 void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& objects) const {
-  std::vector<ObjectId> exclude = query.exclude;
-  std::sort(exclude.begin(), exclude.end());
   const auto add = [&](ObjectId id) {
-    const Scene::Impl::ObjectSlot& slot = scene.impl().objects[id];
-    const bool takesPart = slot.used && (slot.object.mask & query.mask) != 0;
-    if (takesPart && !std::binary_search(exclude.begin(), exclude.end(), id)) objects.push_back(id);
+    if (scene.impl().objects[id].used && takesPart(query, scene.impl(), id)) objects.push_back(id);
   };
   if (geometry.isUnbounded(query.mesh)) {
     for (ObjectId id = 0; id < scene.impl().objects.size(); ++id) add(id);
@@ -183,7 +184,7 @@ std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<cons
       continue;
     }
     if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
-    objects[i] = reach.inReach(queries[i], scene.impl(), tree);
+    objects[i] = inReach(queries[i], scene.impl(), tree);
     addUnbounded(queries[i], objects[i]);
     searches += objects[i].size();
     if (objects[i].size() <= kMostSearches) continue;
@@ -293,7 +294,9 @@ std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lis
   std::vector<QueryLists> own(answers.size());
   for (const auto& [query, answered] : onCpu) own[query] = answered.lists;
   for (const gpu::Gathered& several : gathered) {
-    answers[several.query] = gather(all.subspan(several.first, several.count), several.listed, own[several.query].hits);
+    Merged found = merged(all.subspan(several.first, several.count), several.listed);
+    answers[several.query] = found.first;
+    own[several.query].hits = std::move(found.hits);
   }
   if (lists != nullptr && std::any_of(recordedQueries.begin(), recordedQueries.end(), hasLists)) *lists = joined(own);
   return answers;

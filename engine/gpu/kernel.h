@@ -100,7 +100,7 @@ class KernelArguments {
 
   /// Binds the pipeline and the set, pushes constants and dispatches; the caller records the barriers. Records nothing
   /// if `groups` is 0. More than 65535 workgroups are laid out in rows, and a few more than `groups` may run: shaders
-  /// compare workgroupIndex() (shaders/workgroup.glsl) with their number of items. Throws Error if `set` has not been
+  /// compare workgroupIndex() (shared/workgroup.glsl) with their number of items. Throws Error if `set` has not been
   /// called, or if sizeof(Push) differs from the size of the shader's push constants.
   void dispatch(const Commands& commands, uint32_t groups) const { record(commands, groups, {}); }
   template <class Push>

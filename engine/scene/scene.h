@@ -123,6 +123,8 @@ inline bool isStep(const Query& query, const Scene::Impl& scene) {
   return query.motion.has_value() || scene.moving > 0;
 }
 
+/// Components of displacements up to this are valid: their sums and lengths do not overflow.
+inline constexpr double kMostMotion = 0x1p1000;
 /// Empty, or what is wrong with a displacement during a step.
 std::string validateMotion(const std::array<double, 3>& motion);
 

@@ -5,6 +5,8 @@
 
 #include "cpu/clearance.h"
 #include "gpu/limit_error.h"
+#include "query/route.h"
+#include "query/swept.h"
 #include "scene/parallel.h"
 #include "sweep/known_answers.h"
 
@@ -83,12 +85,16 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
 
 void ContactTier::leaveToCpu(std::vector<size_t> queries) {
   std::erase_if(queries, [&](size_t query) {
-    if (!searchesEach(batch_.asked[query], scene_.impl())) return false;
+    if (!searchesEach(query)) return false;
     lists_.giveUp(query);  // other searches of it may still be under way
     return true;
   });
   std::sort(queries.begin(), queries.end());
   answerOnCpu(queries);
+}
+
+bool ContactTier::searchesEach(size_t query) const {
+  return routeOf(batch_.asked[query], scene_.impl(), true) == Route::searchEach;
 }
 
 bool ContactTier::isOnCpu() const {
@@ -120,15 +126,16 @@ void ContactTier::run(std::span<const size_t> which) {
 bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   const Query& asked = batch_.asked[query];
   const Scene::Impl& scene = scene_.impl();
-  if (combinesClearance(asked, scene)) return false;
-  if (!searchesEach(asked, scene)) {
+  const Route route = routeOf(asked, scene, true);
+  if (route == Route::cpu) return false;
+  if (route == Route::oneSearch) {
     const Planned planned = planOne(query, kNone, tree);
     if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
     return planned != Planned::outOfRange;
   }
   if (!tree.inRange()) return false;
   lists_.begin(query);
-  for (const ObjectId object : reach_.inReach(asked, scene, tree)) {
+  for (const ObjectId object : inReach(asked, scene, tree)) {
     if (planOne(query, object, tree) == Planned::outOfRange) {
       lists_.giveUp(query);
       break;
@@ -216,7 +223,7 @@ bool ContactTier::keep(size_t query, const Result& found) {
   // What meets at the start may cross, and then takes no part.
   const bool mayCross = found.status == Status::overlap || (asked.anyHit && found.status == Status::hit);
   if (asked.skipOverlapping && mayCross) return false;
-  if (searchesEach(asked, scene_.impl())) {
+  if (searchesEach(query)) {
     lists_.add(query, found);
   } else {
     batch_.answers[query] = found;
@@ -254,7 +261,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
       throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
     } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
-    } else if (found.roomier && result.flags == kFlagCandidates && !searchesEach(batch_.asked[queries[i]], scene)) {
+    } else if (found.roomier && result.flags == kFlagCandidates && !searchesEach(queries[i])) {
       cramped_.push_back(queries[i]);
     } else {
       left.push_back(queries[i]);

@@ -27,6 +27,8 @@ class ContactTier {
   void finish();
 
  private:
+  /// Whether a query takes one search for each object in reach.
+  bool searchesEach(size_t query) const;
   /// Adds the searches of a query; returns false if the device cannot answer it. `tree`: the scene's, up to date.
   bool plan(size_t query, const ObjectTree& tree);
   Planned planOne(size_t query, ObjectId object, const ObjectTree& tree);
@@ -52,7 +54,6 @@ class ContactTier {
   cpu::Search cpu_;
   SensorBatch sensors_;
   std::vector<size_t> planned_;  ///< the queries in `sensors_`: some once for each object in reach
-  cpu::QuerySearch reach_;
   HitLists lists_;
   Clock::time_point encoding_;  ///< since when the next submission is being planned
   PendingQueries pending_;

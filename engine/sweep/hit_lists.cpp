@@ -1,28 +1,24 @@
 #include "sweep/hit_lists.h"
 
 #include <algorithm>
-#include <tuple>
+
+#include "query/hits.h"
 
 namespace radar {
 
 void HitLists::add(size_t query, const Result& answer) {
-  if (answer.status != Status::clear) lists_[query].hits.push_back(answer);
+  if (answer.status != Status::clear) lists_[query].searches.push_back(answer);
 }
 
 std::optional<std::vector<Result>> HitLists::nearestOf(List list, const Query& query) {
-  std::vector<Result>& hits = list.hits;
-  if (query.anyHit && !hits.empty()) return std::vector{hits.front()};  // all are alike
+  if (query.anyHit && !list.searches.empty()) return std::vector{list.searches.front()};  // all are alike
   if (!list.isComplete) return std::nullopt;
-  const uint32_t most = query.hits;
-  std::sort(hits.begin(), hits.end(),
-            [](const Result& p, const Result& q) { return std::tie(p.t, p.object) < std::tie(q.t, q.object); });
-  // Brackets that meet leave the order open, unless both times are exact: at the start or at D.
-  for (size_t i = 0; i + 1 < hits.size() && i < most; ++i) {
-    const Result &p = hits[i], &q = hits[i + 1];
-    if (p.hi >= q.lo && !(p.lo == p.hi && q.lo == q.hi)) return std::nullopt;
-  }
-  if (hits.size() > most) hits.resize(most);
-  return hits;
+  if (list.searches.empty()) return std::vector<Result>();
+  std::sort(list.searches.begin(), list.searches.end(),
+            [](const Result& p, const Result& q) { return p.object < q.object; });
+  Merged found = merged(list.searches, query.hits);
+  if (!found.isCertain) return std::nullopt;
+  return std::move(found.hits);
 }
 
 }  // namespace radar

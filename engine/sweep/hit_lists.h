@@ -35,7 +35,7 @@ class HitLists {
 
  private:
   struct List {
-    std::vector<Result> hits;
+    std::vector<Result> searches;
     bool isComplete = true;
   };
   static std::optional<std::vector<Result>> nearestOf(List list, const Query& query);

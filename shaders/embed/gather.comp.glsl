@@ -16,7 +16,7 @@ layout(scalar, binding = kSlotGathered) readonly restrict buffer GatheredSearche
 
 layout(push_constant) uniform PushConstants { GatherPush push; };
 
-// What orders the answers of a query, as engine/embed/gather.cpp does: a decision; then those that are missing, which may
+// What orders the answers of a query, as engine/query/hits.cpp does: a decision; then those that are missing, which may
 // hide an earlier contact; then t or, if that is open, lo. Non-negative doubles compare as their bits do.
 uvec3 keyOf(uint i) {
   const uint status = results[i].status;

@@ -15,7 +15,6 @@
 #include "embed/known_recordings.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
-#include "scene/query_lists.h"
 #include "scene/scene_copy.h"
 
 // pass                                            reads           writes   barrier after it
@@ -52,7 +51,7 @@ bool isForCpu(const Query& query, const Scene::Impl& scene) {
 Result outOfRange() {
   Result result;
   result.tier = Tier::contact;
-  result.flags = kFlagRange;
+  result.flags = Flag::range;
   return result;
 }
 
@@ -85,7 +84,7 @@ struct Recorder::Impl {
   void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
   void learnBoxes();
   void decide(std::span<Result> results) const;
-  std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
+  Answers putTogether(std::span<const Result> all) const;
   std::vector<Result> readHost() const;
   std::vector<Result> copyResults(size_t count) const;
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
@@ -106,7 +105,7 @@ struct Recorder::Impl {
   std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
   struct Answered {
     Result first;
-    QueryLists lists;
+    Listed lists;
   };
   std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
@@ -278,7 +277,7 @@ void Recorder::Impl::decide(std::span<Result> results) const {
     const bool isOneOfSeveral = sweep.result >= hitOffsets.back();
     const uint32_t number = isOneOfSeveral ? next->query : sweep.result;
     const auto pairs = unresolved.of(i);
-    if (results[sweep.result].flags != kFlagUnresolved || pairs.empty()) continue;
+    if (results[sweep.result].flags != Flag::unresolved || pairs.empty()) continue;
     const Query& query = recordedQueries[number];
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
     results[sweep.result] =
@@ -288,14 +287,17 @@ void Recorder::Impl::decide(std::span<Result> results) const {
 }
 
 // Returns the answers to the queries, from all that the device wrote.
-std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lists* lists) const {
-  std::vector<Result> answers(all.begin(), all.begin() + static_cast<ptrdiff_t>(recordedQueries.size()));
-  std::vector<QueryLists> own(answers.size());
-  for (const auto& [query, answered] : onCpu) own[query] = answered.lists;
-  for (const gpu::Gathered& several : gathered) {
-    answers[several.query] = gather(all.subspan(several.first, several.count), several.listed, own[several.query].hits);
+Answers Recorder::Impl::putTogether(std::span<const Result> all) const {
+  Answers answers = unanswered(recordedQueries);
+  std::copy_n(all.begin(), answers.results.size(), answers.results.begin());
+  for (const auto& [query, answered] : onCpu) {
+    if (!answers.lists.empty()) answers.lists[query] = answered.lists;
   }
-  if (lists != nullptr && std::any_of(recordedQueries.begin(), recordedQueries.end(), hasLists)) *lists = joined(own);
+  for (const gpu::Gathered& several : gathered) {
+    std::vector<Result> hits;
+    answers.results[several.query] = gather(all.subspan(several.first, several.count), several.listed, hits);
+    if (!answers.lists.empty()) answers.lists[several.query].hits = std::move(hits);
+  }
   return answers;
 }
 
@@ -430,7 +432,7 @@ std::vector<Result> Recorder::Impl::readHost() const {
   std::vector<Result> results = copyResults(std::min(counts().queries, mostWritten));
   for (uint32_t i = 0; i < results.size(); ++i) {
     const auto pairs = unresolved.of(i);
-    if (results[i].flags != kFlagUnresolved || pairs.empty()) continue;
+    if (results[i].flags != Flag::unresolved || pairs.empty()) continue;
     const Query query = queryOf(sweeps[i]);
     results[i] = decideUnresolved(results[i], pairs, query, Motion(query), 0, *farthest);
   }
@@ -441,16 +443,15 @@ std::span<const uint32_t> Recorder::hitOffsets() const {
   return impl_->hitOffsets;
 }
 
-std::vector<Result> Recorder::read(Lists* lists) {
+Answers Recorder::read() {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  if (lists != nullptr) *lists = {};
   if (self.mostWritten == 0 && self.recordedQueries.empty()) return {};
   self.learnBoxes();
-  if (self.mostWritten != 0) return self.readHost();
+  if (self.mostWritten != 0) return {.results = self.readHost()};
   std::vector<Result> results = self.copyResults(self.known.size());
   self.decide(results);
-  return self.putTogether(results, lists);
+  return self.putTogether(results);
 }
 
 Capacity Recorder::needed() const {

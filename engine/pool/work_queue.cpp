@@ -33,8 +33,7 @@ std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, siz
   job->took.resize(workers);
   job->passed.resize(workers);
   job->stop = std::move(stop);
-  job->answers.results.resize(queries.size());
-  job->lists = listsFor(queries);
+  static_cast<Answers&>(job->answers) = unanswered(queries);
   job->place.resize(queries.size());
   std::iota(job->place.begin(), job->place.end(), 0u);
   std::stable_sort(job->place.begin(), job->place.end(),
@@ -189,7 +188,7 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
   }
 }
 
-void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs) {
+void WorkQueue::deliver(const Chunk& chunk, Answers found, ChunkTrace trace, double deviceMs) {
   const Lock lock(mutex_);
   giveBack(1);
   PoolDevice& device = devices_[trace.device];
@@ -198,10 +197,12 @@ void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace,
   share_.finished(trace.device, chunk.count, deviceMs);
   Job& job = *chunk.job;
   orEnd(chunk.job, [&] {
-    for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = batch.answers[i];
-    for (size_t i = 0; i < batch.lists.size(); ++i) job.lists[job.place[chunk.first + i]] = std::move(batch.lists[i]);
-    for (const auto& [i, reason] : batch.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
-    addStats(job.answers.stats, batch.stats);
+    for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = found.results[i];
+    for (size_t i = 0; i < found.lists.size(); ++i) {
+      job.answers.lists[job.place[chunk.first + i]] = std::move(found.lists[i]);
+    }
+    for (const auto& [i, reason] : found.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
+    addStats(job.answers.stats, found.stats);
     job.answers.chunks.push_back(std::move(trace));
   });
   settle(chunk.job, chunk.count);
@@ -270,7 +271,6 @@ void WorkQueue::settle(const std::shared_ptr<Job>& job, size_t count) {
   if (job->answered < job->queries.size()) return;
   orEnd(job, [&] {
     job->answers.answered = now();
-    job->answers.lists = joined(job->lists);
     end(job, nullptr);
   });
 }

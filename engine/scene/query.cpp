@@ -5,7 +5,6 @@
 
 #include "math/float_environment.h"
 #include "math/frame.h"
-#include "scene/query_lists.h"
 #include "scene/scene.h"
 
 namespace radar {
@@ -129,33 +128,9 @@ std::string validate(const Query& query, const Scene& scene) {
   return {};
 }
 
-std::vector<QueryLists> listsFor(std::span<const Query> queries) {
-  return std::vector<QueryLists>(std::any_of(queries.begin(), queries.end(), hasLists) ? queries.size() : 0);
-}
-
-Lists joined(std::span<const QueryLists> lists) {
-  Lists all;
-  if (lists.empty()) return all;
-  all.hitOffsets.push_back(0);
-  all.overlappingOffsets.push_back(0);
-  for (const QueryLists& one : lists) {
-    all.hits.insert(all.hits.end(), one.hits.begin(), one.hits.end());
-    all.overlapping.insert(all.overlapping.end(), one.overlapping.begin(), one.overlapping.end());
-    all.hitOffsets.push_back(all.hits.size());
-    all.overlappingOffsets.push_back(all.overlapping.size());
-  }
-  return all;
-}
-
-std::span<const Result> Lists::hitsOf(size_t query) const {
-  if (hitOffsets.empty()) return {};
-  return std::span(hits).subspan(hitOffsets[query], hitOffsets[query + 1] - hitOffsets[query]);
-}
-
-std::span<const ObjectId> Lists::overlappingOf(size_t query) const {
-  if (overlappingOffsets.empty()) return {};
-  return std::span(overlapping)
-      .subspan(overlappingOffsets[query], overlappingOffsets[query + 1] - overlappingOffsets[query]);
+Answers unanswered(std::span<const Query> queries) {
+  const bool someList = std::any_of(queries.begin(), queries.end(), hasLists);
+  return {.results = std::vector<Result>(queries.size()), .lists = std::vector<Listed>(someList ? queries.size() : 0)};
 }
 
 Result::Result() {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/box.h"
+#include "radar/answers.h"
 #include "radar/query.h"
 #include "scene/changed_pages.h"
 #include "scene/mesh_tree.h"
@@ -122,6 +123,14 @@ Box boxOfLocal(const Mesh& mesh, const std::array<double, 12>& parentFromLocal);
 inline bool isStep(const Query& query, const Scene::Impl& scene) {
   return query.motion.has_value() || scene.moving > 0;
 }
+
+/// Whether a query lists more than its first contact.
+inline bool hasLists(const Query& query) {
+  return query.hits > 1 || query.skipOverlapping;
+}
+
+/// Invalid answers to all queries, with room for their lists.
+Answers unanswered(std::span<const Query> queries);
 
 /// Empty, or what is wrong with a displacement during a step.
 std::string validateMotion(const std::array<double, 3>& motion);

@@ -1,8 +1,6 @@
 // A query travels: begin -> its tier plans it and submits it ... finish -> the tier decodes it.
 #include "sweep/sweeper.h"
 
-#include <cassert>
-
 #include "gpu/check.h"
 #include "gpu/limit_error.h"
 #include "math/float_environment.h"
@@ -67,19 +65,14 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
-void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {
-  assert(queries.size() == results.size());
+void Sweeper::Impl::begin(std::span<const Query> queries) {
   copy->willOverwrite({});
   asked = queries;
-  answers = results;
-  lists = listsFor(queries);
-  stats = {};
-  reasons.clear();
+  answers = unanswered(queries);
   failure.reset();
   contactTier.begin();
   std::vector<size_t> ofSampled, ofContact;
   for (size_t i = 0; i < queries.size(); ++i) {
-    answers[i] = Result();
     (queries[i].mode == Mode::sampled ? ofSampled : ofContact).push_back(i);
   }
   deviceDone = Clock::now();  // in case nothing goes there
@@ -118,37 +111,20 @@ void Sweeper::sync() {
   impl_->sync();
 }
 
-std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+Answers Sweeper::run(std::span<const Query> queries) {
   const FloatEnvironment floats;
   impl_->validateAll(queries);
-  std::vector<Result> results(queries.size());
-  impl_->begin(queries, results);
+  impl_->begin(queries);
   impl_->finish();
-  impl_->joinedLists = joined(impl_->lists);
-  return results;
+  return std::move(impl_->answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
   impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
-  impl_->stats = {};
   impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
-}
-
-const Lists& Sweeper::lists() const {
-  return impl_->joinedLists;
-}
-
-const SweepStats& Sweeper::stats() const {
-  return impl_->stats;
-}
-
-const std::string& Sweeper::reason(size_t i) const {
-  static const std::string kNothing;
-  const auto found = impl_->reasons.find(i);
-  return found == impl_->reasons.end() ? kNothing : found->second;
 }
 
 }  // namespace radar

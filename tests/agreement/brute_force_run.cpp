@@ -5,6 +5,7 @@
 
 #include "commit/commit.h"
 #include "radar/cpu_sweeper.h"
+#include "support/answer.h"
 #include "unit/brute_force.h"
 #include "workloads/hard_cases.h"
 
@@ -59,9 +60,9 @@ class Asker {
     }
     for (const uint32_t hits : {1u, kAllHits}) {
       query.hits = hits;
-      const Result result = sweeper_ ? sweeper_->run({&query, 1})[0] : cpu_.run({&query, 1})[0];
-      const Lists& lists = sweeper_ ? sweeper_->lists() : cpu_.lists();
-      std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+      const Answers found = sweeper_ ? sweeper_->run({&query, 1}) : cpu_.run({&query, 1});
+      const Listed& listed = test::listedBy(found, 0);
+      std::string fault = oracle::faultOf(truth, query, found.results[0], listed.hits, listed.overlapping);
       if (!fault.empty()) return fault;
     }
     return "";

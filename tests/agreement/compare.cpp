@@ -49,7 +49,7 @@ void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const s
                   Compared& compared) {
   std::vector<Query> whole = queries;
   for (Query& query : whole) query.anyHit = false;
-  const std::vector<Result> results = sweeper.run(queries), exact = cpu.run(whole);
+  const std::vector<Result> results = sweeper.run(queries).results, exact = cpu.run(whole).results;
   REQUIRE(results.size() == queries.size());
   for (size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];

@@ -18,7 +18,7 @@ std::vector<Query> withDistances(const Scene& scene, const tools::Workload& work
   CpuSweeper cpu(scene);
   std::vector<Query> first, queries;
   for (const tools::QuerySpec& spec : workload.queries) first.push_back(tools::toQuery(spec, Mode::contact));
-  const std::vector<Result> exact = cpu.run(first);
+  const std::vector<Result> exact = cpu.run(first).results;
   for (size_t i = 0; i < first.size(); ++i) {
     queries.push_back(first[i]);
     if (exact[i].status != Status::hit) continue;

@@ -26,7 +26,7 @@ struct Boxes {
   }
   Result sweep(const Device& device, Mode mode) {
     query.mode = mode;
-    return Sweeper(device, scene, kOnDevice).run({&query, 1})[0];
+    return Sweeper(device, scene, kOnDevice).run({&query, 1}).results[0];
   }
   Scene scene;
   Query query{.direction = {0, 0, 1}, .distance = 10};
@@ -99,7 +99,7 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
       Boxes boxes;
       const Device device = Device::adopt(host.handles);
       Sweeper sweeper(device, boxes.scene, kOnDevice);
-      for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1})[0].t;
+      for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1}).results[0].t;
     });
   }
   threads.clear();
@@ -117,11 +117,11 @@ TEST_CASE("two sweepers on one device follow the same scene") {
   for (const Mode mode : kModes) {
     const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = mode};
     scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
-    CHECK(first.run({&query, 1})[0].t == Approx(3));
-    CHECK(second.run({&query, 1})[0].t == Approx(3));
+    CHECK(first.run({&query, 1}).results[0].t == Approx(3));
+    CHECK(second.run({&query, 1}).results[0].t == Approx(3));
     scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
-    CHECK(second.run({&query, 1})[0].t == Approx(5));
-    CHECK(first.run({&query, 1})[0].t == Approx(5));
+    CHECK(second.run({&query, 1}).results[0].t == Approx(5));
+    CHECK(first.run({&query, 1}).results[0].t == Approx(5));
   }
 }
 

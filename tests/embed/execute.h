@@ -13,9 +13,7 @@ Answers execute(const Device& device, Recorder& recorder, const Queries& queries
   gpu::Submission submission(device.impl(), false);
   recorder.record(submission.begin(), queries, geometry);
   submission.submitAndWait();
-  Answers answers;
-  answers.results = recorder.read(&answers.lists);
-  return answers;
+  return recorder.read();
 }
 
 }  // namespace radar::test

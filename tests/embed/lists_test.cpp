@@ -18,9 +18,7 @@ using test::sameBits;
 constexpr Capacity kRoom{
     .queries = 24, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 17, .searches = 1u << 12};
 
-struct Recorded {
-  std::vector<Result> answers;
-  Lists lists;
+struct Recorded : Answers {
   std::vector<Result> onDevice;  ///< answers and lists, before anything is decided
 };
 
@@ -36,8 +34,7 @@ Recorded execute(Recorder& recorder, const std::vector<Query>& queries, const Ho
   commands->CmdCopyBuffer(commands, recorder.results(), readback.get(), 1, &region);
   gpu::copyToHost(commands);
   submission.submitAndWait();
-  Recorded recorded;
-  recorded.answers = recorder.read(&recorded.lists);
+  Recorded recorded{recorder.read(), {}};
   const auto* results = reinterpret_cast<const Result*>(readback.mapped());
   recorded.onDevice.assign(results, results + count);
   return recorded;
@@ -54,14 +51,14 @@ void checkOnDevice(const Recorder& recorder, const Recorded& recorded, uint32_t 
   const std::span<const uint32_t> offsets = recorder.hitOffsets();
   const auto list = std::span(recorded.onDevice).subspan(offsets[query], offsets[query + 1] - offsets[query]);
   const Result& answer = recorded.onDevice[query];
-  const auto isOpen = [](const Result& result) { return result.flags == kFlagUnresolved; };
+  const auto isOpen = [](const Result& result) { return result.flags == Flag::unresolved; };
   if (isOpen(answer)) {
-    CHECK_FALSE(answer.lo > recorded.answers[query].t);  // a decision has no t
+    CHECK_FALSE(answer.lo > recorded.results[query].t);  // a decision has no t
   } else {
-    CHECK(sameBits(answer, recorded.answers[query]));
+    CHECK(sameBits(answer, recorded.results[query]));
   }
   if (std::any_of(list.begin(), list.end(), isOpen)) return;
-  const std::span<const Result> read = recorded.lists.hitsOf(query);
+  const std::span<const Result> read = test::listedBy(recorded, query).hits;
   REQUIRE(list.size() >= read.size());
   for (size_t k = 0; k < list.size(); ++k) {
     if (k < read.size()) CHECK(sameBits(list[k], read[k]));
@@ -89,12 +86,12 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
       if (moves || i % 2 == 0) tools::takeStep(queries[i]);
     }
     const Recorded recorded = execute(recorder, queries);
-    std::vector<Result> expected = sweeper.run(queries);
+    Answers expected = sweeper.run(queries);
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(family.name, i, moves, queries[i].hits);
-      expected[i].tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], expected[i]));
-      const auto found = recorded.lists.hitsOf(i), wanted = sweeper.lists().hitsOf(i);
+      expected.results[i].tier = Tier::contact;
+      CHECK(agree(recorded.results[i], expected.results[i]));
+      const std::vector<Result>&found = recorded.lists[i].hits, &wanted = expected.lists[i].hits;
       REQUIRE(found.size() == wanted.size());
       for (size_t k = 0; k < found.size(); ++k) {
         Result hit = wanted[k];
@@ -103,7 +100,7 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
       }
       checkOnDevice(recorder, recorded, i);
       listed += found.size();
-      steps += moves && (recorded.answers[i].status == Status::hit);
+      steps += moves && (recorded.results[i].status == Status::hit);
     }
   }
   CHECK(listed > 900);
@@ -138,7 +135,7 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
       queries[i].hits = i % 2 == 0 ? kAllHits : 1;
     }
     CpuSweeper sweeper(scene);
-    const std::vector<Result> expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries);
     // The scene's own poses are others; that the host's are within these bounds is all that it knows.
     for (const ObjectId id : objects) {
       Transform pose = scene.object(id).worldFromMesh;
@@ -154,10 +151,10 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
     REQUIRE(recorder.boundsViolation().empty());
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(round, i);
-      Result answer = expected[i];
+      Result answer = expected.results[i];
       answer.tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], answer));
-      CHECK(recorded.lists.hitsOf(i).size() == sweeper.lists().hitsOf(i).size());
+      CHECK(agree(recorded.results[i], answer));
+      CHECK(recorded.lists[i].hits.size() == expected.lists[i].hits.size());
       checkOnDevice(recorder, recorded, i);
       hits += answer.status == Status::hit;
     }
@@ -187,19 +184,19 @@ TEST_CASE("what the device's search does not offer is answered by the CPU while 
       if (moves && i % 3 == 0) tools::takeStep(queries[i]);
     }
     const Recorded recorded = execute(recorder, queries);
-    const std::vector<Result> expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries);
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(name, i, moves);
-      Result answer = expected[i];
+      Result answer = expected.results[i];
       answer.tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], answer));
-      const auto found = recorded.lists.hitsOf(i), wanted = sweeper.lists().hitsOf(i);
+      CHECK(agree(recorded.results[i], answer));
+      const std::vector<Result>&found = recorded.lists[i].hits, &wanted = expected.lists[i].hits;
       REQUIRE(found.size() == wanted.size());
       for (size_t k = 0; k < found.size(); ++k) CHECK(found[k].object == wanted[k].object);
-      CHECK(std::ranges::equal(recorded.lists.overlappingOf(i), sweeper.lists().overlappingOf(i)));
+      CHECK(recorded.lists[i].overlapping == expected.lists[i].overlapping);
       checkOnDevice(recorder, recorded, i);
       listed += found.size();
-      skipped += recorded.lists.overlappingOf(i).size();
+      skipped += recorded.lists[i].overlapping.size();
       steps += moves && answer.status == Status::hit;
     }
   }
@@ -225,7 +222,12 @@ TEST_CASE("needed() has room for the hits that the CPU lists while it records") 
   Capacity capacity = kRoom;
   capacity.searches = recorder.needed().searches;
   Recorder exact(test::device(), scene, capacity);
-  CHECK(execute(exact, queries).lists.hits.size() == recorded.lists.hits.size());
+  const auto count = [](const Recorded& all) {
+    size_t hits = 0;
+    for (const Listed& listed : all.lists) hits += listed.hits.size();
+    return hits;
+  };
+  CHECK(count(execute(exact, queries)) == count(recorded));
   --capacity.searches;
   Recorder less(test::device(), scene, capacity);
   CHECK_THROWS_WITH(execute(less, queries), test::Contains("Capacity::searches"));
@@ -257,10 +259,10 @@ TEST_CASE("a list whose searches lack room is invalid and says why, and its neig
   small.candidates = 4;
   Recorder recorder(test::device(), scene, small);
   const Recorded recorded = execute(recorder, queries);
-  CHECK(recorded.answers[0].status == Status::invalid);
-  CHECK(recorded.answers[0].flags == kFlagCandidates);
-  CHECK(sameBits(recorded.onDevice[0], recorded.answers[0]));
-  const bool answersOthers = std::any_of(recorded.answers.begin(), recorded.answers.end(),
+  CHECK(recorded.results[0].status == Status::invalid);
+  CHECK(recorded.results[0].flags == Flag::candidates);
+  CHECK(sameBits(recorded.onDevice[0], recorded.results[0]));
+  const bool answersOthers = std::any_of(recorded.results.begin(), recorded.results.end(),
                                          [](const Result& result) { return result.status != Status::invalid; });
   CHECK(answersOthers);
 }

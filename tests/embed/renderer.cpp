@@ -36,7 +36,7 @@ void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool w
 }
 
 bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expected) {
-  if (found.flags == kFlagUnresolved) {
+  if (found.flags == Flag::unresolved) {
     CHECK(found.status == static_cast<uint32_t>(Status::undecided));
     CHECK(std::isinf(found.t));
     return true;

@@ -16,10 +16,9 @@
 namespace {
 
 using namespace radar;
-using test::Answers;
-using test::ask;
 using test::Contains;
 using test::sameBits;
+using test::sameContacts;
 using test::VulkanFault;
 
 VkResult shortage(int64_t n) {
@@ -44,17 +43,16 @@ std::vector<Query> queriesOfBothModes() {
 }
 
 // Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
-size_t checkAnswers(const Sweeper& sweeper, const std::vector<Result>& found, const std::vector<Result>& expected,
-                    VkResult result) {
-  REQUIRE(found.size() == expected.size());
+size_t checkAnswers(const Answers& found, const Answers& expected, VkResult result) {
+  REQUIRE(found.results.size() == expected.results.size());
   size_t invalid = 0;
-  for (size_t i = 0; i < found.size(); ++i) {
+  for (size_t i = 0; i < found.results.size(); ++i) {
     CAPTURE(i);
-    if (found[i].status == Status::invalid) {
+    if (found.results[i].status == Status::invalid) {
       ++invalid;
-      CHECK_THAT(sweeper.reason(i), Contains(gpu::resultName(result)));
+      CHECK_THAT(test::reasonFor(found, i), Contains(gpu::resultName(result)));
     } else {
-      CHECK(sameBits(found[i], expected[i]));
+      CHECK(sameBits(found.results[i], expected.results[i]));
     }
   }
   return invalid;
@@ -90,7 +88,7 @@ TEST_CASE(
     Growing grown;
     grown.grow(hasNewMesh);
     Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-    const Answers expected = ask(sweeper, queries);
+    const Answers expected = sweeper.run(queries);
     const int64_t failed = failEach([&](int64_t n) {
       Growing growing;
       Sweeper other(device, growing.scene, {.timestamps = true, .cpuBatch = 0});
@@ -99,12 +97,12 @@ TEST_CASE(
       bool happened = false;
       {
         const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-        const std::vector<Result> found = other.run(queries);
+        const Answers found = other.run(queries);
         happened = fault.happened();
         CAPTURE(hasNewMesh, fault.failed());
-        checkAnswers(other, found, expected.results, shortage(n));
+        checkAnswers(found, expected, shortage(n));
       }
-      CHECK(sameBits(ask(other, queries), expected));
+      CHECK(sameBits(other.run(queries), expected));
       return happened;
     });
     CHECK(failed > 30);
@@ -119,7 +117,7 @@ TEST_CASE(
   Growing grown;
   grown.grow(false);
   Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-  const Answers expected = ask(sweeper, queries);
+  const Answers expected = sweeper.run(queries);
   gpu::Submission submission(device.impl(), false);
   const int64_t failed = failEach([&](int64_t n) {
     Growing growing;
@@ -145,8 +143,7 @@ TEST_CASE(
       recorder.record(submission.begin(), queries);
     }
     submission.submitAndWait();
-    Answers found;
-    found.results = recorder.read(&found.lists);
+    const Answers found = recorder.read();
     CHECK(sameContacts(found, expected));
     return happened;
   });
@@ -194,11 +191,10 @@ TEST_CASE(
       recorder.record(submission.begin(), queries, geometry);
     }
     submission.submitAndWait();
-    Answers found;
-    found.results = recorder.read(&found.lists);
+    const Answers found = recorder.read();
     CHECK(recorder.boundsViolation().empty());
     CpuSweeper cpu(world.truth, 1);
-    fuzz::checkRecorded(queries, found, ask(cpu, queries));
+    fuzz::checkRecorded(queries, found, cpu.run(queries));
     return failed;
   };
   CHECK(failEach([&](int64_t n) {
@@ -268,7 +264,7 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
   for (const bool drawn : {false, true}) {
     const std::vector<Query> queries = drawn ? test::sampledQueries() : test::contactQueries();
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
-    const std::vector<Result> expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries);
     size_t invalid = 0;
     const int64_t failed = failEach([&](int64_t n) {
       Sweeper other(device, scene, {.timestamps = true, .cpuBatch = 0});
@@ -277,13 +273,13 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
         const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost);
         for (int round = 0; round < 2; ++round) {
           CAPTURE(drawn, round, fault.failed());
-          invalid += checkAnswers(other, other.run(queries), expected, VK_ERROR_DEVICE_LOST);
+          invalid += checkAnswers(other.run(queries), expected, VK_ERROR_DEVICE_LOST);
         }
         happened = fault.happened();
         if (happened) CHECK_THROWS_WITH(Device::adopt(device.handles()), Contains("VK_ERROR_DEVICE_LOST"));
       }
       Sweeper later(device, scene, {.cpuBatch = 0});
-      CHECK(sameBits(Answers{later.run(queries), {}}, Answers{expected, {}}));
+      CHECK(sameBits(later.run(queries), expected));
       return happened;
     });
     CHECK(failed > 2);

@@ -7,12 +7,12 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
 #include "support/catch.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
-using test::Answers;
 using test::Contains;
 using test::FaultyHost;
 using test::sameBits;
@@ -26,7 +26,7 @@ struct TwoDevices {
     const std::vector<Query> drawn = test::sampledQueries(12);
     queries.insert(queries.end(), drawn.begin(), drawn.end());
     Sweeper sweeper(devices[0], scene, kOptions);
-    expected = test::ask(sweeper, queries);
+    expected = sweeper.run(queries);
   }
   static constexpr SweeperOptions kOptions{.cpuBatch = 0};
   FaultyHost first{0}, second{1};
@@ -38,10 +38,6 @@ struct TwoDevices {
 
 TwoDevices& twoDevices() {
   return test::onceInRun([] { return TwoDevices(); });
-}
-
-Answers of(const PoolAnswers& answers) {
-  return {answers.results, answers.lists};
 }
 
 }  // namespace
@@ -58,7 +54,7 @@ TEST_CASE("if one device of a pool is lost at any submission, the other answers 
       for (int round = 0; round < 2; ++round) {
         const PoolAnswers answers = pool.submit(two.queries).get();
         CHECK(answers.reasons.empty());
-        CHECK(sameBits(of(answers), two.expected));
+        CHECK(sameBits(answers, two.expected));
       }
       happened = fault.happened();
       const std::vector<PoolDevice> devices = pool.devices();
@@ -82,7 +78,7 @@ TEST_CASE("if both devices of a pool are lost at any submission, each answer is 
         if (answers.results[i].status == Status::invalid) {
           CHECK_THAT(answers.reasons.at(i), Contains("VK_ERROR_DEVICE_LOST"));
         } else {
-          CHECK(sameBits({{answers.results[i]}, {}}, {{two.expected.results[i]}, {}}));
+          CHECK(sameBits(answers.results[i], two.expected.results[i]));
         }
       }
     }
@@ -116,8 +112,8 @@ TEST_CASE("whichever request of a pool's threads for memory fails, it throws or 
     const test::OthersWork notCounting;
     CAPTURE(n);
     for (const PoolDevice& device : pool.devices()) CHECK(device.retired.empty());
-    if (!threw) CHECK(sameBits(of(answers), two.expected));
-    if (n % 8 == 0) CHECK(sameBits(of(pool.submit(two.queries).get()), two.expected));
+    if (!threw) CHECK(sameBits(answers, two.expected));
+    if (n % 8 == 0) CHECK(sameBits(pool.submit(two.queries).get(), two.expected));
   }
   CHECK(thrown > 50);
 }

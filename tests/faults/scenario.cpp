@@ -39,9 +39,10 @@ bool sameAll(std::span<const Result> p, std::span<const Result> q, bool areOfOne
 }
 
 bool same(const Answers& p, const Answers& q, bool areOfOneTier) {
-  return sameAll(p.results, q.results, areOfOneTier) && sameAll(p.lists.hits, q.lists.hits, areOfOneTier) &&
-         p.lists.hitOffsets == q.lists.hitOffsets && p.lists.overlapping == q.lists.overlapping &&
-         p.lists.overlappingOffsets == q.lists.overlappingOffsets;
+  const auto sameLists = [&](const Listed& a, const Listed& b) {
+    return sameAll(a.hits, b.hits, areOfOneTier) && a.overlapping == b.overlapping;
+  };
+  return sameAll(p.results, q.results, areOfOneTier) && std::ranges::equal(p.lists, q.lists, sameLists);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/radar.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 
 namespace radar::fuzz {
@@ -22,15 +23,14 @@ void ask(SceneCalls& calls, Sweeper& sweeper) {
       std::erase_if(queries, isInvalid);
     }
   }
-  const std::vector<Result> found = sweeper.run(queries);
-  CpuSweeper cpu(calls.scene(), 1);
-  std::vector<Result> expected = cpu.run(queries);
+  const Answers found = sweeper.run(queries);
+  Answers expected = CpuSweeper(calls.scene(), 1).run(queries);
   for (size_t i = 0; i < queries.size(); ++i) {
     if (queries[i].mode != Mode::sampled) continue;
-    checkSampled(found[i], expected[i], sweeper.reason(i));
-    expected[i] = found[i];
+    checkSampled(found.results[i], expected.results[i], test::reasonFor(found, i));
+    expected.results[i] = found.results[i];
   }
-  requireSame(found, sweeper.lists(), expected, cpu.lists());
+  requireSame(found, expected);
 }
 
 void run(std::string_view input) {

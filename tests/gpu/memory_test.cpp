@@ -57,7 +57,7 @@ struct Teapots {
       const Mode own = mode.value_or(queries.size() % 2 == 0 ? Mode::contact : Mode::sampled);
       queries.push_back(tools::toQuery(spec, own, own == Mode::sampled ? 128 : 0));
     }
-    answers = Sweeper(test::device(), player.scene(), kOnDevice).run(queries);
+    answers = Sweeper(test::device(), player.scene(), kOnDevice).run(queries).results;
   }
   tools::Workload workload;
   tools::ScenePlayer player;
@@ -81,27 +81,31 @@ TEST_CASE("queries of mode contact that do not fit the device's memory are answe
     const ScarceMemory scarce;
     ScarceMemory::most = 1u << 16;
     CHECK_NOTHROW(sweeper.sync());
-    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
-    CHECK(sweeper.stats().cpuQueries == teapots.queries.size());
-    for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
+    const Answers answers = sweeper.run(teapots.queries);
+    CHECK(differences(answers.results, teapots.answers) == 0);
+    CHECK(answers.stats.cpuQueries == teapots.queries.size());
+    CHECK(answers.reasons.empty());
   }
-  CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
-  CHECK(sweeper.stats().submissions > 0);
-  CHECK(sweeper.stats().cpuQueries == 0);
+  const Answers answers = sweeper.run(teapots.queries);
+  CHECK(differences(answers.results, teapots.answers) == 0);
+  CHECK(answers.stats.submissions > 0);
+  CHECK(answers.stats.cpuQueries == 0);
 }
 
 TEST_CASE("lists of hits do not change if the device runs out of memory") {
   Teapots teapots(64, Mode::contact);
   for (size_t i = 0; i < teapots.queries.size(); i += 3) teapots.queries[i].hits = 4;
   Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
-  const std::vector<Result> expected = sweeper.run(teapots.queries);
-  const Lists lists = sweeper.lists();
+  const Answers expected = sweeper.run(teapots.queries);
   Sweeper poor(test::device(), teapots.player.scene(), kOnDevice);
   const ScarceMemory scarce;
   ScarceMemory::most = 1u << 16;
-  CHECK(differences(poor.run(teapots.queries), expected) == 0);
-  CHECK(poor.lists().hitOffsets == lists.hitOffsets);
-  CHECK(differences(poor.lists().hits, lists.hits) == 0);
+  const Answers found = poor.run(teapots.queries);
+  CHECK(differences(found.results, expected.results) == 0);
+  REQUIRE(found.lists.size() == expected.lists.size());
+  for (size_t i = 0; i < found.lists.size(); ++i) {
+    CHECK(differences(found.lists[i].hits, expected.lists[i].hits) == 0);
+  }
 }
 
 TEST_CASE("a batch of mode sampled whose pictures do not fit the device's memory is split") {
@@ -110,9 +114,10 @@ TEST_CASE("a batch of mode sampled whose pictures do not fit the device's memory
   sweeper.run(std::span(teapots.queries).first(1));  // uploads the scene
   const ScarceMemory scarce;
   ScarceMemory::most = 20 * 128 * 128 * sizeof(float);
-  CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
-  CHECK(sweeper.stats().submissions >= 4);
-  for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
+  const Answers answers = sweeper.run(teapots.queries);
+  CHECK(differences(answers.results, teapots.answers) == 0);
+  CHECK(answers.stats.submissions >= 4);
+  CHECK(answers.reasons.empty());
 }
 
 TEST_CASE("a query of mode sampled whose own picture does not fit the device's memory is invalid, and no other is") {
@@ -125,17 +130,17 @@ TEST_CASE("a query of mode sampled whose own picture does not fit the device's m
   sweeper.run(std::span(teapots.queries).first(1));
   const ScarceMemory scarce;
   ScarceMemory::most = 26 * 128 * 128 * sizeof(float) / 2;
-  const std::vector<Result> found = sweeper.run(teapots.queries);
-  for (size_t i = 0; i < found.size(); ++i) {
+  const Answers found = sweeper.run(teapots.queries);
+  for (size_t i = 0; i < found.results.size(); ++i) {
     CAPTURE(i);
     if (i == large) {
-      CHECK(found[i].status == Status::invalid);
-      CHECK_THAT(sweeper.reason(i), test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+      CHECK(found.results[i].status == Status::invalid);
+      CHECK_THAT(found.reasons.at(i), test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
     } else {
-      CHECK(test::sameBits(found[i], teapots.answers[i]));
-      CHECK(sweeper.reason(i).empty());
+      CHECK(test::sameBits(found.results[i], teapots.answers[i]));
     }
   }
+  CHECK(found.reasons.size() == 1);
 }
 
 TEST_CASE("whichever allocation or submission fails for lack of memory, every query has its answer") {
@@ -148,9 +153,10 @@ TEST_CASE("whichever allocation or submission fails for lack of memory, every qu
     sweeper.run(first);  // makes both modes ready
     const ScarceMemory scarce;
     ScarceMemory::failing = failing;
-    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
-    for (size_t i = 0; i < teapots.queries.size(); ++i) CHECK(sweeper.reason(i).empty());
-    CHECK(differences(sweeper.run(teapots.queries), teapots.answers) == 0);
+    const Answers answers = sweeper.run(teapots.queries);
+    CHECK(differences(answers.results, teapots.answers) == 0);
+    CHECK(answers.reasons.empty());
+    CHECK(differences(sweeper.run(teapots.queries).results, teapots.answers) == 0);
     if (ScarceMemory::calls <= failing) break;
     ++failed;
   }

@@ -268,7 +268,7 @@ TEST_CASE("an object that covers no pixel centre is not detected, and the answer
   scene.addObject({speck, at(0.3, 0.3, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
   const Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 16};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Result result = sweeper.run({&query, 1}).results[0];
   CHECK(result.detected == Detected::no);
   CHECK(result.status == Status::undecided);
   CHECK(result.tier == Tier::sampled);
@@ -284,7 +284,7 @@ TEST_CASE("an object beside the sensor but inside its window is detected and has
   scene.addObject({small, at(0.7, 0.7, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
   const Query query{.mesh = half, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Result result = sweeper.run({&query, 1}).results[0];
   CHECK(result.detected == Detected::yes);
   CHECK(result.status == Status::undecided);
   CHECK(std::isnan(result.paperMinL));
@@ -305,7 +305,7 @@ TEST_CASE("a negative L counts for the paper's minimum but never as a contact") 
   scene.addObject({plate, at(0.05, 0.05, 9), ~0u});
   Sweeper sweeper(test::device(), scene);
   const Query query{.mesh = frame, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Result result = sweeper.run({&query, 1}).results[0];
   CHECK(result.paperMinL == Approx(-2).margin(1e-4));
   CHECK(result.status == Status::hit);
   CHECK(result.object == 1);
@@ -318,11 +318,11 @@ TEST_CASE("the clipping planes keep contact at the start and at exactly D") {
   scene.addObject({small, at(0.1, 0.05, 3), ~0u});
   Sweeper sweeper(test::device(), scene);
   Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 3.5, .mode = Mode::sampled, .resolution = 64};
-  CHECK(sweeper.run({&query, 1})[0].t == Approx(3));
+  CHECK(sweeper.run({&query, 1}).results[0].t == Approx(3));
   query.distance = 3;
-  CHECK(sweeper.run({&query, 1})[0].detected == Detected::yes);
+  CHECK(sweeper.run({&query, 1}).results[0].detected == Detected::yes);
   query.distance = 2.9;
-  CHECK(sweeper.run({&query, 1})[0].status == Status::clear);
+  CHECK(sweeper.run({&query, 1}).results[0].status == Status::clear);
   query.worldFromMesh = at(0, 0, 3);
-  CHECK(sweeper.run({&query, 1})[0].detected == Detected::yes);
+  CHECK(sweeper.run({&query, 1}).results[0].detected == Detected::yes);
 }

@@ -120,7 +120,7 @@ Boxes::Boxes(uint32_t sensors, uint32_t boxes)
 
 std::vector<Result> Boxes::answers() const {
   Sweeper sweeper(twoDevices()[0], player.scene(), kOnDevice);
-  return sweeper.run(queries);
+  return sweeper.run(queries).results;
 }
 
 size_t differences(std::span<const Result> a, std::span<const Result> b) {

@@ -16,10 +16,6 @@ using fuzz::require;
 constexpr uint32_t kMostQueries = 64, kMostSampled = 12, kFewQueries = 3;
 constexpr uint32_t kMostSearches = 1u << 15, kMostCandidates = 1u << 20;
 
-std::string none(size_t) {
-  return "";
-}
-
 Capacity anyCapacity(tools::Random& random) {
   return {.queries = random.oneIn(4) ? 1 + random.below(kMostQueries) : kMostQueries,
           .candidates = random.oneIn(4) ? 1 + random.below(2000) : 1u << 15,
@@ -57,7 +53,7 @@ void Answerers::share() {
 
 Batch Answerers::batchOf(std::vector<Query> queries) {
   Batch batch{std::move(queries), {}};
-  batch.exact = test::ask(cpu_, batch.queries);
+  batch.exact = cpu_.run(batch.queries);
   return batch;
 }
 
@@ -80,7 +76,7 @@ void Answerers::checkExact(const Batch& batch) {
   const auto few = static_cast<ptrdiff_t>(std::min<size_t>(kFewQueries, batch.queries.size()));
   const Batch first = batchOf({batch.queries.begin(), batch.queries.begin() + few});
   measured(Who::bruteForce, *tally_, [&] {
-    fuzz::checkAnswers(world_->scene(), first.queries, first.exact.results, first.exact.lists);
+    fuzz::checkAnswers(world_->scene(), first.queries, first.exact);
     tally_->add(Who::bruteForce, first.queries.size());
   });
   if (!random_->oneIn(4)) return;
@@ -89,26 +85,25 @@ void Answerers::checkExact(const Batch& batch) {
     CpuSweeper fresh(anew, 1);
     std::vector<Query> exact, close;
     for (const Query& query : batch.queries) (query.clearance > 0 ? close : exact).push_back(query);
-    checkBatch(batchOf(exact), test::ask(fresh, exact), none, "", Who::cpu, *tally_);
+    checkBatch(batchOf(exact), fresh.run(exact), "", Who::cpu, *tally_);
     // Their brackets depend on the trees over meshes, which are fitted to changes, or built anew.
-    checkBrackets(batchOf(close), fresh.run(close), *tally_);
+    checkBrackets(batchOf(close), fresh.run(close).results, *tally_);
   });
 }
 
 template <class Remake>
 void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
   const FaultPlan plan = chooseFault(*random_, true);
-  const auto reasonOf = [&](size_t i) { return sweeper->reason(i); };
-  test::Answers found;
-  const FaultOutcome outcome = under(plan, *tally_, [&] { found = test::ask(*sweeper, batch.queries); });
-  if (!outcome.threw) checkBatch(batch, found, reasonOf, outcome.happened ? outcome.reason : "", who, *tally_);
+  Answers found;
+  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries); });
+  if (!outcome.threw) checkBatch(batch, found, outcome.happened ? outcome.reason : "", who, *tally_);
   if (!outcome.happened) return;
   if (*plan.fault == Fault::lost) remake();
-  checkBatch(batch, test::ask(*sweeper, batch.queries), reasonOf, "", who, *tally_);
+  checkBatch(batch, sweeper->run(batch.queries), "", who, *tally_);
 }
 
 /// The fault is in the engine's calls; the submission is the host's.
-test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
+Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
   const FaultPlan plan = chooseFault(*random_, false);
   gpu::Submission submission(device_->impl(), false);
   gpu::Commands commands = submission.begin();
@@ -122,9 +117,7 @@ test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queri
     recorder.record(commands, queries);
   }
   submission.submitAndWait();
-  test::Answers found;
-  found.results = recorder.read(&found.lists);
-  return found;
+  return recorder.read();
 }
 
 template <class Make>
@@ -136,7 +129,7 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
           : batchOf({all.queries.begin(), all.queries.begin() + static_cast<ptrdiff_t>(capacity.queries)});
   for (int i = 0; i < 40; ++i) {
     try {
-      const test::Answers found = record(*recorder, batch.queries);
+      const Answers found = record(*recorder, batch.queries);
       fuzz::checkRecorded(batch.queries, found, batch.exact);
       tally_->add(who, batch.queries.size());
       if (!fuzz::isTooSmall(found)) return;
@@ -168,10 +161,7 @@ void Answerers::askPool(const Batch& batch) {
   if (random_->oneIn(8)) cancel(batch);
   PoolAnswers answers;
   const auto ask = [&] { answers = pool_->submit(batch.queries).get(); };
-  const auto check = [&](const std::string& allowed) {
-    const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
-    checkBatch(batch, {answers.results, answers.lists}, reasonOf, allowed, Who::pool, *tally_);
-  };
+  const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
   const FaultOutcome outcome = under(plan, *tally_, ask, device);
   if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
   if (!outcome.happened) return;
@@ -191,8 +181,7 @@ void Answerers::cancel(const Batch& batch) {
   stop.request_stop();
   const PoolAnswers answers = future.get();
   tally_->add(Fault::cancelled);
-  const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
-  checkBatch(batch, {answers.results, answers.lists}, reasonOf, "cancelled", Who::pool, *tally_);
+  checkBatch(batch, answers, "cancelled", Who::pool, *tally_);
 }
 
 void Answerers::round() {

@@ -57,7 +57,7 @@ struct Town {
 
 template <class Searcher>
 void addMethods(std::vector<Method>& methods, const std::string& where, Town& town, Searcher& searcher) {
-  const auto answer = [&searcher](std::span<const Query> queries) { return searcher.run(queries); };
+  const auto answer = [&searcher](std::span<const Query> queries) { return searcher.run(queries).results; };
   const auto add = [&](const char* name, auto change) {
     methods.push_back({where + name, answer, [&town, &searcher, change](uint32_t) {
                          change(town);

@@ -29,9 +29,10 @@ void overhead(const Device& device, const Scene& scene, Batch batch, const char*
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
   Sweeper sweeper(device, scene, options);
   Pool pool({&device, 1}, scene, options);
-  printRows(name,
-            {{"sweeper", [&](auto queries) { return sweeper.run(queries); }}, methodOf("pool of one device", pool)},
-            {&batch, 1}, {.warmUps = 3, .least = 13, .most = 13}, status);
+  printRows(
+      name,
+      {{"sweeper", [&](auto queries) { return sweeper.run(queries).results; }}, methodOf("pool of one device", pool)},
+      {&batch, 1}, {.warmUps = 3, .least = 13, .most = 13}, status);
 }
 
 // One device at a time takes `factor` times as long: what its thread waits, it waits again. These functions stand for

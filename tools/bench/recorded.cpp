@@ -110,7 +110,7 @@ void runAllMoved(const Device& device, uint32_t boxes, int& status) {
     return Method{name,
                   [&](auto) {
                     submission.submitAndWait();
-                    return recorder.read();
+                    return recorder.read().results;
                   },
                   [&, geometry, copies](uint32_t) {
                     const gpu::Commands commands = submission.begin();
@@ -147,7 +147,7 @@ void runFlight(const Device& device, int& status) {
     return Method{name,
                   [&](auto) {
                     submission.submitAndWait();
-                    return recorder.read();
+                    return recorder.read().results;
                   },
                   [&, geometry, throughCpu](uint32_t) {
                     if (throughCpu) flight.show();

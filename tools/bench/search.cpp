@@ -108,7 +108,7 @@ struct Searches {
 
 template <class AnySweeper>
 Method plain(const char* name, AnySweeper& sweeper) {
-  return {name, [&](auto queries) { return sweeper.run(queries); }};
+  return {name, [&](auto queries) { return sweeper.run(queries).results; }};
 }
 
 /// Asks each query changed by `change`, once and for all before the passes that count.
@@ -121,7 +121,7 @@ Method changed(const char* name, AnySweeper& sweeper, const Change& change) {
               asked.assign(queries.begin(), queries.end());
               for (Query& query : asked) change(query);
             }
-            return sweeper.run(asked);
+            return sweeper.run(asked).results;
           }};
 }
 

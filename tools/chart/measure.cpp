@@ -119,7 +119,7 @@ std::vector<Result> search(Cell& cell, const Workload& workload, Mode mode, cons
   show(0);
   cell.prepareMs = 1e3 * stopwatch.lap().wall;
   cell.certified = mode != Mode::sampled;
-  const auto answer = [&](std::span<const Query> queries) { return searcher.run(queries); };
+  const auto answer = [&](std::span<const Query> queries) { return searcher.run(queries).results; };
   return timePasses(cell, {cell.method, answer, show}, batchesOf(workload, mode, cell.size), repetition);
 }
 

@@ -77,17 +77,12 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   std::vector<Answer> answers(queries.size());
   const std::vector<Group> groups = groupsOf(queries);
   const double start = bench::now();
-  const auto keep = [&](const Part& part, const PoolAnswers& found) {
+  const auto keep = [&](const Part& part, Answers found) {
     for (size_t i = 0; i < found.results.size(); ++i) {
-      const auto reason = found.reasons.find(i);
-      const auto hits = found.lists.hitsOf(i);
-      const auto overlapping = found.lists.overlappingOf(i);
-      answers[part.numbers[i]] = {found.results[i],
-                                  part.modes[i],
-                                  reason == found.reasons.end() ? "" : reason->second,
-                                  {hits.begin(), hits.end()},
-                                  {overlapping.begin(), overlapping.end()}};
+      answers[part.numbers[i]] = {.result = found.results[i], .mode = part.modes[i]};
     }
+    for (size_t i = 0; i < found.lists.size(); ++i) answers[part.numbers[i]].listed = std::move(found.lists[i]);
+    for (const auto& [i, reason] : found.reasons) answers[part.numbers[i]].reason = reason;
     for (const Result& result : found.results) {
       ++stats_.statuses[static_cast<size_t>(result.status)];
       if (result.resolution == 0) continue;
@@ -109,24 +104,14 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   return answers;
 }
 
-PoolAnswers Answering::sweep(const std::vector<Query>& queries) {
+Answers Answering::sweep(const std::vector<Query>& queries) {
   if (pool_) return pool_->submit(queries).get();
-  PoolAnswers found;
-  found.results = sweeper_->run(queries);
-  found.lists = sweeper_->lists();
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (found.results[i].status == Status::invalid) found.reasons[i] = sweeper_->reason(i);
-  }
-  found.stats = sweeper_->stats();
-  return found;
+  return sweeper_->run(queries);
 }
 
-PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
+Answers Answering::answerOnCpu(const std::vector<Query>& queries) {
   const double start = bench::now();
-  PoolAnswers found;
-  found.results = cpu_->run(queries);
-  found.lists = cpu_->lists();
-  found.stats.pairs = found.stats.cpuPairs = cpu_->stats().pairs;
+  Answers found = cpu_->run(queries);
   found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
   return found;
 }

@@ -70,8 +70,8 @@ class Answering {
     Part swept, onCpu;
   };
   void show(uint32_t scene);
-  PoolAnswers sweep(const std::vector<Query>& queries);
-  PoolAnswers answerOnCpu(const std::vector<Query>& queries);
+  Answers sweep(const std::vector<Query>& queries);
+  Answers answerOnCpu(const std::vector<Query>& queries);
 
   std::vector<Group> groupsOf(std::span<const QuerySpec> queries) const;
 

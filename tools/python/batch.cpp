@@ -138,10 +138,10 @@ std::string wrongWith(const Query& query, const Scene& scene) {
 }
 
 /// Answers those of the queries that keep their contracts; the others become invalid, with a reason.
-PoolAnswers answerValid(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+Answers answerValid(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
   std::vector<Query> valid;
   std::vector<size_t> numbers;
-  PoolAnswers all;
+  Answers all;
   for (size_t i = 0; i < queries.size(); ++i) {
     if (std::string wrong = wrongWith(queries[i], scene.scene()); !wrong.empty()) {
       all.reasons[i] = std::move(wrong);
@@ -150,28 +150,16 @@ PoolAnswers answerValid(CastingScene& scene, const std::vector<Query>& queries, 
       valid.push_back(queries[i]);
     }
   }
-  const PoolAnswers some = scene.answer(valid, onCpu);
+  Answers some = scene.answer(valid, onCpu);
   all.results.resize(queries.size());
-  size_t done = 0;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const bool isValid = done < numbers.size() && numbers[done] == i;
-    if (isValid) {
-      all.results[i] = some.results[done];
-      if (const auto reason = some.reasons.find(done); reason != some.reasons.end()) all.reasons[i] = reason->second;
-      const auto hits = some.lists.hitsOf(done);
-      all.lists.hits.insert(all.lists.hits.end(), hits.begin(), hits.end());
-      const auto overlapping = some.lists.overlappingOf(done);
-      all.lists.overlapping.insert(all.lists.overlapping.end(), overlapping.begin(), overlapping.end());
-      ++done;
-    }
-    if (i == 0) all.lists.hitOffsets = all.lists.overlappingOffsets = {0};
-    all.lists.hitOffsets.push_back(all.lists.hits.size());
-    all.lists.overlappingOffsets.push_back(all.lists.overlapping.size());
-  }
+  if (!some.lists.empty()) all.lists.resize(queries.size());
+  for (size_t i = 0; i < numbers.size(); ++i) all.results[numbers[i]] = some.results[i];
+  for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
+  for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
   return all;
 }
 
-PoolAnswers answer(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+Answers answer(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
   try {
     return scene.answer(queries, onCpu);
   } catch (const Error&) {
@@ -193,27 +181,21 @@ void toDistances(Result& result, double length) {
   result.hi = result.hi == 0 ? 0 : (1 + kRoom) * scaled(result.hi) + kFloor;
 }
 
-void timesToDistances(const std::vector<Query>& queries, PoolAnswers& answers) {
+void timesToDistances(const std::vector<Query>& queries, Answers& answers) {
   for (size_t i = 0; i < queries.size(); ++i) {
     if (!queries[i].motion) continue;
     const double length = lengthOf(*queries[i].motion);
     toDistances(answers.results[i], length);
-    if (answers.lists.hitOffsets.empty()) continue;
-    for (size_t hit = answers.lists.hitOffsets[i]; hit < answers.lists.hitOffsets[i + 1]; ++hit) {
-      toDistances(answers.lists.hits[hit], length);
-    }
+    if (answers.lists.empty()) continue;
+    for (Result& hit : answers.lists[i].hits) toDistances(hit, length);
   }
 }
 
-void append(Lists& to, const Lists& lists, size_t queries) {
-  for (size_t i = 0; i < queries; ++i) {
-    const auto hits = lists.hitsOf(i);
-    to.hits.insert(to.hits.end(), hits.begin(), hits.end());
-    to.hitOffsets.push_back(to.hits.size());
-    const auto overlapping = lists.overlappingOf(i);
-    to.overlapping.insert(to.overlapping.end(), overlapping.begin(), overlapping.end());
-    to.overlappingOffsets.push_back(to.overlapping.size());
-  }
+void append(BatchLists& to, const Listed& listed) {
+  to.hits.insert(to.hits.end(), listed.hits.begin(), listed.hits.end());
+  to.hitOffsets.push_back(static_cast<int64_t>(to.hits.size()));
+  to.overlapping.insert(to.overlapping.end(), listed.overlapping.begin(), listed.overlapping.end());
+  to.overlappingOffsets.push_back(static_cast<int64_t>(to.overlapping.size()));
 }
 
 }  // namespace
@@ -250,7 +232,6 @@ void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
 BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
                 const std::function<void(size_t)>& afterChunk) {
   BatchLists lists;
-  lists.lists.hitOffsets = lists.lists.overlappingOffsets = {0};
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
   const bool mayRoundUp = input.options.clearance > 0 && !scene.moves();
   const size_t count = input.count();
@@ -264,13 +245,14 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
       Reader reader(input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    PoolAnswers answers = answer(scene, queries, input.onCpu);
+    Answers answers = answer(scene, queries, input.onCpu);
     timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i], input.options.anyHit);
     });
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
-    if (listing) append(lists.lists, answers.lists, queries.size());
+    if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid
+    for (const Listed& listed : answers.lists) append(lists, listed);
     first = end;
     chunk = nextChunk(chunk, std::chrono::duration<double>(Clock::now() - start).count());
     afterChunk(first);

@@ -51,7 +51,9 @@ struct BatchOutput {
 
 /// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.
 struct BatchLists {
-  Lists lists;
+  /// Those of query i are entries hitOffsets[i] to hitOffsets[i + 1] of `hits`; likewise what overlaps.
+  std::vector<Result> hits;
+  std::vector<int64_t> hitOffsets{0}, overlapping, overlappingOffsets{0};
   std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
 };
 

@@ -68,8 +68,9 @@ class Race {
   double measure(
       const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline, Json& rows,
       const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
-    const std::vector<bench::Method> methods{{"device", [&](auto queries) { return sweeper_.run(queries); }, show},
-                                             {"CPU", [&](auto queries) { return cpu_.run(queries); }, show}};
+    const std::vector<bench::Method> methods{
+        {"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
+        {"CPU", [&](auto queries) { return cpu_.run(queries).results; }, show}};
     const std::vector<bench::Series> all =
         bench::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
     const auto us = [](const bench::Series& series) {
@@ -136,10 +137,11 @@ bool addStages(const Device& device, const char* name, const Workload& workload,
   std::map<std::string, std::vector<double>> times;
   std::vector<std::string> order;
   bench::inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
-    const bench::Lap lap = bench::lapOf([&] { sweeper.run(standing.batch.queries); });
+    Answers answers;
+    const bench::Lap lap = bench::lapOf([&] { answers = sweeper.run(standing.batch.queries); });
     if (!counts) return;
     laps.push_back(lap);
-    for (const StageTime& stage : sweeper.stats().stages) {
+    for (const StageTime& stage : answers.stats.stages) {
       if (!times.contains(stage.name)) order.push_back(stage.name);
       times[stage.name].push_back(stage.ms);
     }
@@ -278,7 +280,7 @@ bool measureLanes(const Device& device, uint32_t, const Deadline& deadline, Json
   Pool pool({&device, 1}, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
-    return sweeper.run(queries);
+    return sweeper.run(queries).results;
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
                   standing.batch, deadline, rows);

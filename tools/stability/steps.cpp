@@ -53,7 +53,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
         const Vec3 step = settings.size * sensorSize(scene, query) * random.direction();
         appendSteps(queries, query, step, settings.steps);
       }
-      const std::vector<Result> exact = cpu.run(queries);
+      const std::vector<Result> exact = cpu.run(queries).results;
       for (StepRow& row : own) {
         const uint32_t resolution = row.method == Method::contact ? 0 : settings.resolution;
         const std::vector<Result> results = answersBy({row.method, resolution}, sweeper, queries);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <future>
-#include <map>
 #include <stop_token>
 
 #include "radar/radar.h"
@@ -29,14 +28,9 @@ struct ChunkTrace {
   std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps
 };
 
-/// The answers to a batch.
-struct PoolAnswers {
-  std::vector<Result> results;  ///< in the order of the queries
-  Lists lists;                  ///< of queries with `hits` above 1 or `skipOverlapping`
-  /// Why a result is Status::invalid, by its index. In addition to a Sweeper's reasons: "cancelled", "the pool was
-  /// closed", or that no device is left and why.
-  std::map<size_t, std::string> reasons;
-  SweepStats stats;                    ///< summed over devices
+/// The answers to a batch. Reasons beyond a Sweeper's: "cancelled", "the pool was closed", or that no device is left
+/// and why. Statistics are summed over devices.
+struct PoolAnswers : Answers {
   std::vector<ChunkTrace> chunks;      ///< in order of completion
   std::vector<std::string> retired;    ///< one line per device retired while working on this batch
   double submitted = 0, answered = 0;  ///< as in ChunkTrace

@@ -125,7 +125,6 @@ void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeom
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
     if (wrong.empty() && besideGeometry && isForCpu(queries[i], scene.impl())) {
       wrong =
           "skipOverlapping, a clearance with ignoreLeaving, hits or a step, a direction while objects move: the CPU "

@@ -13,11 +13,10 @@
 
 namespace radar {
 
-/// A batch in progress. Its queries are grouped by mode, so that a chunk is one submission; `place` holds their
-/// original indices.
+/// A batch in progress.
 struct Job {
   std::vector<Query> queries;
-  std::vector<uint32_t> place;
+  Mode mode = Mode::contact;
   std::stop_token stop;
   std::promise<PoolAnswers> promise;
   PoolAnswers answers;
@@ -39,7 +38,7 @@ class WorkQueue {
  public:
   explicit WorkQueue(std::vector<PoolDevice> devices);
 
-  std::future<PoolAnswers> post(std::vector<Query> queries, std::stop_token stop, const Scene& scene);
+  std::future<PoolAnswers> post(std::vector<Query> queries, Mode mode, std::stop_token stop, const Scene& scene);
   void edit(const std::function<void()>& change);
   void drain();
   /// Answers queries not yet taken as invalid, and lets workers end.

@@ -105,7 +105,7 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     isSynced_ = !error;
     if (isSynced_) seenVersion_ = version;
   }
-  lane.sweep->begin(lane.chunk.queries());
+  lane.sweep->begin(lane.chunk.queries(), lane.chunk.job->mode);
   lane.trace.submitted = queue_.now();
 }
 
@@ -125,7 +125,7 @@ void Worker::finish(Lane& lane) {
     if (sweep.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
-  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
+  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.job->mode)];
   const bool usedDevice = sweep.answers.stats.submissions != 0;
   const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = warm || usedDevice;

@@ -97,7 +97,7 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
 
 }  // namespace
 
-std::string validate(const Query& query, const Scene& scene) {
+std::string validate(const Query& query, const Scene& scene, Mode mode) {
   const FloatEnvironment floats;
   if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
@@ -116,10 +116,10 @@ std::string validate(const Query& query, const Scene& scene) {
   }
   if (query.hits == 0) return "hits: expected 1 or more, got 0";
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
-  if (query.mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
+  if (mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
     return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
   }
-  if (query.mode == Mode::sampled && isStep(query, scene.impl())) {
+  if (mode == Mode::sampled && isStep(query, scene.impl())) {
     return "mode: expected contact with a motion, of the query or of objects, got sampled";
   }
   if (query.resolution > kMaxResolution) {

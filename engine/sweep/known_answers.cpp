@@ -183,10 +183,10 @@ std::vector<Result> all(Answers answers) {
   return std::move(answers.results);
 }
 
-Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries) {
+Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries, Mode mode) {
   Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {},
                         ContactTier::kernelsOf(device));
-  sweeper.begin(queries);
+  sweeper.begin(queries, mode);
   sweeper.finish();
   if (sweeper.failure) throw Error(*sweeper.failure);
   return std::move(sweeper.answers);
@@ -195,7 +195,7 @@ Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<cons
 AnswerCheck check(const char* kind, const Device::Impl& device, const KnownScene& known,
                   std::span<const Query> queries) {
   return orAllWrong(kind, queries.size(), [&] {
-    Answers found = answersOf(device, known.scene, queries);
+    Answers found = answersOf(device, known.scene, queries, Mode::contact);
     const uint64_t onCpu = found.stats.cpuQueries;
     AnswerCheck check = compared(kind, all(std::move(found)), all(CpuSweeper(known.scene).run(queries)));
     // But for clearances, where the device may well leave queries open.
@@ -248,8 +248,7 @@ AnswerCheck checkSampled(const Device::Impl& device, uint64_t seed) {
     query.slack.reset();
   }
   const std::vector<Result> exact = CpuSweeper(known.scene).run(queries).results;
-  for (Query& query : queries) query.mode = Mode::sampled;
-  std::vector<Result> found = answersOf(device, known.scene, queries).results;
+  std::vector<Result> found = answersOf(device, known.scene, queries, Mode::sampled).results;
   // Right answers are replaced by the exact ones, with which they are then compared.
   for (size_t i = 0; i < queries.size(); ++i) {
     const bool holds = found[i].flags == 0 && found[i].status != Status::invalid && found[i].lo <= exact[i].hi &&

@@ -123,12 +123,12 @@ void SampledTier::flush(std::vector<Planned>& slice) {
   slice.clear();
 }
 
-void SampledTier::run(std::span<const size_t> which) {
+void SampledTier::run() {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
   std::vector<Planned> slice;
   Load load;
-  for (const size_t i : which) {
+  for (size_t i = 0; i < batch_.asked.size(); ++i) {
     const Clock::time_point start = Clock::now();
     ViewPlan plan = planOf(batch_.asked[i], options_.select ? Drawn::inReach : Drawn::everything);
     batch_.addCpuTime("select", msSince(start));

@@ -1,6 +1,8 @@
 // A query travels: begin -> its tier plans it and submits it ... finish -> the tier decodes it.
 #include "sweep/sweeper.h"
 
+#include <numeric>
+
 #include "gpu/check.h"
 #include "gpu/limit_error.h"
 #include "math/float_environment.h"
@@ -29,22 +31,20 @@ SampledTier& Sweeper::Impl::sampled() {
   return *sampledTier;
 }
 
-void Sweeper::Impl::runSampled(std::span<const size_t> which) {
-  if (which.empty()) return;
+void Sweeper::Impl::runSampled() {
   try {
     sampled();
   } catch (const Error& error) {
-    for (const size_t query : which) fail(query, error);
+    for (size_t query = 0; query < asked.size(); ++query) fail(query, error);
     return;
   }
-  sampledTier->run(which);
+  sampledTier->run();
 }
 
-void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
+void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const {
   for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene);
+    const std::string wrong = validate(queries[i], scene, mode);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-    if (queries[i].mode == Mode::sampled) device.requireSampled("query " + std::to_string(i));
   }
 }
 
@@ -65,21 +65,22 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
-void Sweeper::Impl::begin(std::span<const Query> queries) {
+void Sweeper::Impl::begin(std::span<const Query> queries, Mode mode) {
   copy->willOverwrite({});
   asked = queries;
   answers = unanswered(queries);
   failure.reset();
   contactTier.begin();
-  std::vector<size_t> ofSampled, ofContact;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    (queries[i].mode == Mode::sampled ? ofSampled : ofContact).push_back(i);
-  }
   deviceDone = Clock::now();  // in case nothing goes there
+  if (queries.empty()) return;
   try {
-    runSampled(ofSampled);
-    if (sampledTier && !ofContact.empty()) sampledTier->collect();
-    contactTier.run(ofContact);
+    if (mode == Mode::sampled) {
+      runSampled();
+    } else {
+      std::vector<size_t> all(queries.size());
+      std::iota(all.begin(), all.end(), size_t{0});
+      contactTier.run(all);
+    }
   } catch (...) {
     finish();  // nothing stays with the device behind an exception
     throw;
@@ -111,18 +112,19 @@ void Sweeper::sync() {
   impl_->sync();
 }
 
-Answers Sweeper::run(std::span<const Query> queries) {
+Answers Sweeper::run(std::span<const Query> queries, Mode mode) {
   const FloatEnvironment floats;
-  impl_->validateAll(queries);
-  impl_->begin(queries);
+  if (mode == Mode::sampled) impl_->device.requireSampled("run()");
+  impl_->validateAll(queries, mode);
+  impl_->begin(queries, mode);
   impl_->finish();
   return std::move(impl_->answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
-  impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
+  impl_->validateAll({&query, 1}, Mode::sampled);
   impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
 }

@@ -16,12 +16,12 @@ struct Sweeper::Impl : QueryBatch {
   std::optional<Error> sync();
   /// Encodes and submits valid `queries`; on return the last submission may still be running. `queries` must stay in
   /// place until finish(); call that next. Then `answers` are complete, for the caller to take.
-  void begin(std::span<const Query> queries);
+  void begin(std::span<const Query> queries, Mode mode);
   void finish();
 
-  void validateAll(std::span<const Query> queries) const;
+  void validateAll(std::span<const Query> queries, Mode mode) const;
   SampledTier& sampled();
-  void runSampled(std::span<const size_t> which);
+  void runSampled();
 
   const Device::Impl& device;
   const Scene& scene;

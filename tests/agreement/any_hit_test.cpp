@@ -28,11 +28,11 @@ TEST_CASE("in mode sampled a decision is that of the whole answer") {
   Scene scene;
   tools::replaceBy(workload, 0, scene);
   std::vector<Query> queries;
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled, 64));
+  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 64));
   Sweeper sweeper(test::device(), scene);
-  const std::vector<Result> whole = sweeper.run(queries).results;
+  const std::vector<Result> whole = sweeper.run(queries, Mode::sampled).results;
   queries = deciding(std::move(queries));
-  const std::vector<Result> decided = sweeper.run(queries).results;
+  const std::vector<Result> decided = sweeper.run(queries, Mode::sampled).results;
   for (size_t i = 0; i < queries.size(); ++i) {
     CAPTURE(i);
     CHECK(uint32_t(decided[i].status) == uint32_t(decisionOf(whole[i].status)));

@@ -91,12 +91,9 @@ TEST_CASE("in mode sampled what floats cannot hold is refused with a reason, and
     make(seed, most, made);
     if (seed % 4 == 0) made.queries[0].direction = {1e300, 5e-324, 0};
     const std::vector<Result> exact = CpuSweeper(made.scene, 1).run(made.queries).results;
-    for (Query& query : made.queries) {
-      query.mode = Mode::sampled;
-      query.resolution = 32;
-    }
+    for (Query& query : made.queries) query.resolution = 32;
     Sweeper sweeper(test::device(), made.scene);
-    const Answers answers = sweeper.run(made.queries);
+    const Answers answers = sweeper.run(made.queries, Mode::sampled);
     const std::vector<Result>& found = answers.results;
     for (size_t i = 0; i < exact.size(); ++i) {
       const std::string reason = test::reasonFor(answers, i);

@@ -182,12 +182,10 @@ TEST_CASE("three recorders in flight and a sweeper share one copy of a scene tha
     if (random.oneIn(2)) edit(number);
     if (random.oneIn(3)) continue;  // the next recording uploads the changes
     const bool isSampled = random.oneIn(4);
-    for (Query& query : queries) {
-      query.mode = isSampled ? Mode::sampled : Mode::contact;
-      if (isSampled) query.ignoreLeaving = false;
-    }
-    const std::vector<Result> found = beside.run(queries).results,
-                              alone = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries).results;
+    const Mode mode = isSampled ? Mode::sampled : Mode::contact;
+    for (Query& query : queries) query.ignoreLeaving = query.ignoreLeaving && !isSampled;
+    const std::vector<Result> found = beside.run(queries, mode).results,
+                              alone = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries, mode).results;
     for (size_t i = 0; i < found.size(); ++i) {
       CAPTURE(number, i);
       REQUIRE(sameBits(found[i], alone[i]));

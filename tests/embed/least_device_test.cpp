@@ -100,7 +100,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
     Scene scene;
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries;
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec));
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
     const Answers found = sweeper.run(queries);
     checkSame(found.results, CpuSweeper(scene).run(queries).results);
@@ -271,17 +271,15 @@ TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device l
   const Device device = Device::adopt(least.host.handles);
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
-  Query query{
-      .mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1, .mode = Mode::sampled};
+  const Query query{.mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1};
   Sweeper sweeper(device, scene);
   try {
-    sweeper.run({&query, 1});
+    sweeper.run({&query, 1}, Mode::sampled);
     FAIL("run() did not throw");
   } catch (const Error& error) {
-    CHECK_THAT(error.what(), test::StartsWith("query 0: ") && test::Contains("does not support mode sampled"));
+    CHECK_THAT(error.what(), test::StartsWith("run(): ") && test::Contains("does not support mode sampled"));
     CHECK(error.reasons == reasons);
   }
-  query.mode = Mode::contact;
   CHECK_THROWS_WITH(sweeper.scopes(query),
                     test::StartsWith("scopes(): ") && test::Contains("does not support mode sampled"));
   least.host.handles.sampled = false;

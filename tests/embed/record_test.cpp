@@ -132,9 +132,6 @@ TEST_CASE("record throws for a query that it cannot record, names its number and
   const auto refused = [&](const char* why) {
     CHECK_THROWS_WITH(recorder.record(commands, row.queries), test::Contains(why));
   };
-  row.queries[1].mode = Mode::sampled;
-  refused("record: query 1: mode: expected contact");
-  row.queries[1].mode = Mode::contact;
   row.queries[0].direction = {};
   refused("record: query 0: direction");
   row.queries[0].direction = {0, 0, 1};

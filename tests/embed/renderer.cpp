@@ -67,7 +67,7 @@ Row::Row(uint32_t sensors) {
 
 std::vector<Query> queriesOf(const tools::Workload& workload) {
   std::vector<Query> queries;
-  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
+  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, 0));
   return queries;
 }
 

@@ -36,12 +36,6 @@ int64_t failEach(const TryAt& tryAt) {
   return n - 1;
 }
 
-std::vector<Query> queriesOfBothModes() {
-  std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
-  queries.insert(queries.end(), drawn.begin(), drawn.end());
-  return queries;
-}
-
 // Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
 size_t checkAnswers(const Answers& found, const Answers& expected, VkResult result) {
   REQUIRE(found.results.size() == expected.results.size());
@@ -83,26 +77,26 @@ class Growing {
 TEST_CASE(
     "whichever call of the device fails while a scene grows, answers are right or invalid, and later ones right") {
   const Device& device = test::adopted().device;
-  const std::vector<Query> queries = queriesOfBothModes();
+  const test::BothModes queries;
   for (const bool hasNewMesh : {false, true}) {
     Growing grown;
     grown.grow(hasNewMesh);
     Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-    const Answers expected = sweeper.run(queries);
+    const Answers expected = queries.answersBy(sweeper);
     const int64_t failed = failEach([&](int64_t n) {
       Growing growing;
       Sweeper other(device, growing.scene, {.timestamps = true, .cpuBatch = 0});
-      other.run(queries);
+      queries.answersBy(other);
       growing.grow(hasNewMesh);
       bool happened = false;
       {
         const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-        const Answers found = other.run(queries);
+        const Answers found = queries.answersBy(other);
         happened = fault.happened();
         CAPTURE(hasNewMesh, fault.failed());
         checkAnswers(found, expected, shortage(n));
       }
-      CHECK(sameBits(other.run(queries), expected));
+      CHECK(sameBits(queries.answersBy(other), expected));
       return happened;
     });
     CHECK(failed > 30);
@@ -262,9 +256,10 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
   Scene scene;
   test::SceneEdits().make(scene);
   for (const bool drawn : {false, true}) {
+    const Mode mode = drawn ? Mode::sampled : Mode::contact;
     const std::vector<Query> queries = drawn ? test::sampledQueries() : test::contactQueries();
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
-    const Answers expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries, mode);
     size_t invalid = 0;
     const int64_t failed = failEach([&](int64_t n) {
       Sweeper other(device, scene, {.timestamps = true, .cpuBatch = 0});
@@ -273,13 +268,13 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
         const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost);
         for (int round = 0; round < 2; ++round) {
           CAPTURE(drawn, round, fault.failed());
-          invalid += checkAnswers(other.run(queries), expected, VK_ERROR_DEVICE_LOST);
+          invalid += checkAnswers(other.run(queries, mode), expected, VK_ERROR_DEVICE_LOST);
         }
         happened = fault.happened();
         if (happened) CHECK_THROWS_WITH(Device::adopt(device.handles()), Contains("VK_ERROR_DEVICE_LOST"));
       }
       Sweeper later(device, scene, {.cpuBatch = 0});
-      CHECK(sameBits(later.run(queries), expected));
+      CHECK(sameBits(later.run(queries, mode), expected));
       return happened;
     });
     CHECK(failed > 2);

@@ -129,7 +129,7 @@ AllAnswers answersIn(const InEnvironment& in) {
   Sweeper sweeper = in([&] { return Sweeper(device, scene, {.cpuBatch = 0}); });
   answers.contact = in([&] { return sweeper.run(queries); });
   CHECK(answers.contact.stats.submissions > 0);
-  answers.sampled = in([&] { return sweeper.run(drawn).results; });
+  answers.sampled = in([&] { return sweeper.run(drawn, Mode::sampled).results; });
   Recorder recorder = in([&] { return Recorder(device, scene, test::kScenarioRoom); });
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();

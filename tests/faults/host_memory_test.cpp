@@ -184,21 +184,19 @@ TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper
   Changing changing;
   const Device& device = test::adopted().device;
   Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
-  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
-  std::vector<Query> mixed = queries;
-  mixed.insert(mixed.end(), drawn.begin(), drawn.end());
+  const test::BothModes queries;
   std::array<Answers, 2> expected;
   for (int i = 0; i < 2; ++i) {
     changing.change();
     Sweeper fresh(device, changing.scene, {.cpuBatch = 0});
-    expected.at(changing.isChanged) = fresh.run(mixed);
+    expected.at(changing.isChanged) = queries.answersBy(fresh);
   }
-  sweeper.run(mixed);
+  queries.answersBy(sweeper);
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
-    const Attempt made = attempt(n, [&] { found = sweeper.run(mixed); });
-    if (made.threw) found = sweeper.run(mixed);
+    const Attempt made = attempt(n, [&] { found = queries.answersBy(sweeper); });
+    if (made.threw) found = queries.answersBy(sweeper);
     CHECK(sameBits(found, expected.at(changing.isChanged)));
     return made;
   });

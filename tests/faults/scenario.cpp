@@ -15,8 +15,8 @@ tools::Workload soups(uint32_t sensors) {
 }
 
 // Aims a query at one object after the other, so that most meet something.
-Query aimed(const tools::Workload& workload, size_t i, Mode mode) {
-  Query query = tools::toQuery(workload.queries[i], mode, mode == Mode::sampled ? 16 : 0);
+Query aimed(const tools::Workload& workload, size_t i) {
+  Query query = tools::toQuery(workload.queries[i], 16);
   const std::vector<tools::Instance>& objects = workload.scenes[0].instances;
   const Transform& target = objects[i % objects.size()].worldFromMesh;
   double squares = 0;
@@ -73,7 +73,7 @@ std::vector<Query> contactQueries(uint32_t count) {
   const tools::Workload workload = soups(count);
   std::vector<Query> queries;
   for (size_t i = 0; i < count; ++i) {
-    Query query = aimed(workload, i, Mode::contact);
+    Query query = aimed(workload, i);
     switch (queries.size() % 12) {
       case 1:
         query.anyHit = true;
@@ -118,7 +118,7 @@ std::vector<Query> contactQueries(uint32_t count) {
 std::vector<Query> sampledQueries(uint32_t count) {
   const tools::Workload workload = soups(count);
   std::vector<Query> queries;
-  for (size_t i = 0; i < count; ++i) queries.push_back(aimed(workload, i, Mode::sampled));
+  for (size_t i = 0; i < count; ++i) queries.push_back(aimed(workload, i));
   return queries;
 }
 

@@ -27,9 +27,9 @@ void checkBatch(const tools::Workload& workload) {
     std::vector<Query> queries;
     for (const uint32_t number : batch.queries) {
       const QuerySpec& spec = workload.queries[number];
-      const bool isSampled = spec.mode == AnswerMode::sampled;
-      queries.push_back(toQuery(spec, isSampled ? Mode::sampled : Mode::contact));
-      const std::string wrong = validate(queries.back(), player.scene());
+      const Mode mode = spec.mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+      queries.push_back(toQuery(spec));
+      const std::string wrong = validate(queries.back(), player.scene(), mode);
       require(wrong.empty(), "a query that breaks its contract: " + wrong);
     }
     const Answers answers = sweeper.run(queries);

@@ -41,7 +41,7 @@ class DeviceSearch {
                  kernelsOf(shape)) {}
 
   Answers run(std::span<const Query> queries) {
-    sweeper_.begin(queries);
+    sweeper_.begin(queries, Mode::contact);
     sweeper_.finish();
     return std::move(sweeper_.answers);
   }
@@ -69,7 +69,7 @@ struct FamilyQueries {
       : workload(tools::hardScene(tools::hardFamily(family), seed, 0, count, company)), player(workload) {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries) {
-      queries.push_back(tools::toQuery(spec, Mode::contact));
+      queries.push_back(tools::toQuery(spec));
       queries.back().anyHit = queries.size() % 4 == 0;
     }
   }

@@ -51,25 +51,25 @@ void Answerers::share() {
   sharedRecorder_.emplace(*copy_, sharedRoom_);
 }
 
-Batch Answerers::batchOf(std::vector<Query> queries) {
-  Batch batch{std::move(queries), {}};
+Batch Answerers::batchOf(std::vector<Query> queries, Mode mode) {
+  Batch batch{.queries = std::move(queries), .mode = mode};
   batch.exact = cpu_.run(batch.queries);
   return batch;
 }
 
-std::vector<Query> Answerers::choose() {
+Batch Answerers::choose() {
   std::vector<Query> queries = world_->queries(kMostQueries);
-  if (!random_->oneIn(4) || !device_->supports(Mode::sampled)) return queries;
-  uint32_t drawn = 0;
+  if (!random_->oneIn(4) || !device_->supports(Mode::sampled)) return batchOf(std::move(queries));
+  std::vector<Query> drawn;
   for (Query query : queries) {
-    query.mode = Mode::sampled;
     query.resolution = 8u << random_->below(4);
     query.clearance = 0;
     query.hits = 1;
     query.ignoreLeaving = query.skipOverlapping = false;
-    if (validate(query, world_->scene()).empty() && drawn < kMostSampled) queries[drawn++] = query;
+    const bool isValid = validate(query, world_->scene(), Mode::sampled).empty();
+    if (isValid && drawn.size() < kMostSampled) drawn.push_back(query);
   }
-  return queries;
+  return batchOf(std::move(drawn), Mode::sampled);
 }
 
 void Answerers::checkExact(const Batch& batch) {
@@ -95,11 +95,11 @@ template <class Remake>
 void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
   const FaultPlan plan = chooseFault(*random_, true);
   Answers found;
-  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries); });
+  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
   if (!outcome.threw) checkBatch(batch, found, outcome.happened ? outcome.reason : "", who, *tally_);
   if (!outcome.happened) return;
   if (*plan.fault == Fault::lost) remake();
-  checkBatch(batch, sweeper->run(batch.queries), "", who, *tally_);
+  checkBatch(batch, sweeper->run(batch.queries, batch.mode), "", who, *tally_);
 }
 
 /// The fault is in the engine's calls; the submission is the host's.
@@ -160,7 +160,7 @@ void Answerers::askPool(const Batch& batch) {
   const HostDevice device = random_->oneIn(2) ? failing.handles() : HostDevice{};
   if (random_->oneIn(8)) cancel(batch);
   PoolAnswers answers;
-  const auto ask = [&] { answers = pool_->submit(batch.queries).get(); };
+  const auto ask = [&] { answers = pool_->submit(batch.queries, batch.mode).get(); };
   const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
   const FaultOutcome outcome = under(plan, *tally_, ask, device);
   if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
@@ -177,7 +177,7 @@ void Answerers::askPool(const Batch& batch) {
 
 void Answerers::cancel(const Batch& batch) {
   std::stop_source stop;
-  std::future<PoolAnswers> future = pool_->submit(batch.queries, stop.get_token());
+  std::future<PoolAnswers> future = pool_->submit(batch.queries, batch.mode, stop.get_token());
   stop.request_stop();
   const PoolAnswers answers = future.get();
   tally_->add(Fault::cancelled);
@@ -186,15 +186,14 @@ void Answerers::cancel(const Batch& batch) {
 
 void Answerers::round() {
   pool_->edit([&] { world_->edit(); });
-  const Batch batch = batchOf(choose());
+  const Batch batch = choose();
   checkExact(batch);
   measured(Who::sweeper, *tally_, [&] {
     askSweeper(Who::sweeper, sweeper_, batch, [&] { sweeper_.emplace(*device_, world_->scene(), options_); });
   });
   measured(Who::sharing, *tally_, [&] { askSweeper(Who::sharing, sharing_, batch, [&] { share(); }); });
   measured(Who::pool, *tally_, [&] { askPool(batch); });
-  const auto isSampled = [](const Query& query) { return query.mode == Mode::sampled; };
-  if (std::ranges::any_of(batch.queries, isSampled)) return;
+  if (batch.mode == Mode::sampled) return;
   measured(Who::recorder, *tally_, [&] {
     askRecorder(Who::recorder, recorder_, ownRoom_, batch,
                 [&] { recorder_.emplace(*device_, world_->scene(), ownRoom_); });

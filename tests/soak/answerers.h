@@ -21,8 +21,8 @@ class Answerers {
   void round();
 
  private:
-  Batch batchOf(std::vector<Query> queries);
-  std::vector<Query> choose();
+  Batch batchOf(std::vector<Query> queries, Mode mode = Mode::contact);
+  Batch choose();
   /// Holds the CPU's answers against brute force, and against those about a scene made anew.
   void checkExact(const Batch& batch);
   template <class Remake>

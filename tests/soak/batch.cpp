@@ -52,7 +52,7 @@ void checkBatch(const Batch& batch, const Answers& found, const std::string& all
       require(false, "query " + std::to_string(i) + ": " + what + ": found" + fuzz::inWords(query, result) +
                          "; expected" + fuzz::inWords(query, exact));
     };
-    if (query.mode == Mode::sampled) {
+    if (batch.mode == Mode::sampled) {
       fuzz::checkSampled(result, exact, test::reasonFor(found, i));
       tally.add(Who::sampled, 1);
       continue;

@@ -11,7 +11,8 @@ namespace radar::soak {
 
 struct Batch {
   std::vector<Query> queries;
-  Answers exact;
+  Mode mode = Mode::contact;
+  Answers exact{};
 };
 
 /// Throws std::logic_error unless each answer has the bits of the exact one, or, in mode sampled, says nothing wrong.

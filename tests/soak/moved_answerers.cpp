@@ -103,7 +103,7 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
 
 void MovedAnswerers::tellAndAsk(const std::vector<Query>& queries) {
   world_.tell();
-  const Batch batch{queries, CpuSweeper(world_.truth, 1).run(queries)};
+  const Batch batch{.queries = queries, .exact = CpuSweeper(world_.truth, 1).run(queries)};
   checkBatch(batch, sweeper_.run(queries), "", Who::sweeper, *tally_);
 }
 

@@ -211,8 +211,7 @@ TEST_CASE("queries and objects that break the contract of a step are refused by 
   query.distance = 1;
   CHECK_THAT(validate(query, scene), test::Contains("no distance"));
   query.distance = 0;
-  query.mode = Mode::sampled;
-  CHECK_THAT(validate(query, scene), test::StartsWith("mode: expected contact with a motion"));
+  CHECK_THAT(validate(query, scene, Mode::sampled), test::StartsWith("mode: expected contact with a motion"));
   CHECK_THROWS_WITH(scene.setMotion(object, {INFINITY, 0, 0}), test::StartsWith("setMotion: expected 3 finite"));
   CHECK_THROWS_WITH(scene.setMotion(7, {}), test::Contains("object 7 does not exist"));
   CHECK_THROWS_WITH(scene.addObject({.mesh = box, .motion = {0, 1e305, 0}}), test::StartsWith("addObject: motion"));

@@ -144,7 +144,7 @@ void run(const Device& device, const Case& one, const Settings& settings, std::v
          int& status) {
   const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
   const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
-  const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
+  const std::vector<Batch> batches = batchesOf(workload);
   tools::ScenePlayer player(workload);
   const auto show = [&](uint32_t scene) { player.show(scene); };
   show(batches[0].scene);

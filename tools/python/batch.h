@@ -28,7 +28,8 @@ struct BatchInput {
   PerQuery masks;             ///< uint32_t
   PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;
-  Query options;       ///< for the members that all queries share
+  Query options;  ///< for the members that all queries share
+  Mode mode = Mode::contact;
   bool onCpu = false;  ///< mode reference
 
   size_t count() const;

@@ -66,7 +66,7 @@ void CastingScene::edit(const std::function<void(Scene&)>& change) {
   }
 }
 
-Answers CastingScene::answer(const std::vector<Query>& queries, bool onCpu) {
+Answers CastingScene::answer(const std::vector<Query>& queries, Mode mode, bool onCpu) {
   Answerers& by = answerers();
   if (onCpu) {
     if (!by.cpu) by.cpu.emplace(scene_, choice_.threads);
@@ -76,13 +76,13 @@ Answers CastingScene::answer(const std::vector<Query>& queries, bool onCpu) {
   if (choice_.pool) {
     if (by.devices.empty()) by.devices = openDevices(*choice_.pool, onValidation);
     if (!by.pool) by.pool.emplace(by.devices, scene_, options);
-    return by.pool->submit(queries).get();
+    return by.pool->submit(queries, mode).get();
   }
   if (by.devices.empty()) {
     by.devices.push_back(Device::open({.index = choice_.device, .onValidation = onValidation}));
   }
   if (!by.sweeper) by.sweeper.emplace(by.devices[0], scene_, options);
-  return by.sweeper->run(queries);
+  return by.sweeper->run(queries, mode);
 }
 
 std::span<const Device> CastingScene::devices() const {

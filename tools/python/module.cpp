@@ -213,7 +213,6 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
 
 Query optionsFrom(const py::dict& options) {
   Query query;
-  query.mode = options["sampled"].cast<bool>() ? Mode::sampled : Mode::contact;
   query.anyHit = options["any_hit"].cast<bool>();
   query.ignoreLeaving = options["ignore_leaving"].cast<bool>();
   query.skipOverlapping = options["skip_overlapping"].cast<bool>();
@@ -260,6 +259,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
     input.distances = perQuery<double>(distances, shape, 1, "distances");
   }
   input.options = optionsFrom(options);
+  input.mode = options["sampled"].cast<bool>() ? Mode::sampled : Mode::contact;
   input.onCpu = options["on_cpu"].cast<bool>();
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;

@@ -31,8 +31,7 @@ Workload heavyWorkload() {
 
 // A scene that stands, and a batch of queries in it.
 struct Standing {
-  explicit Standing(const Workload& workload, Mode mode = Mode::contact)
-      : player(workload), batch(bench::batchesOf(workload, mode).front()) {
+  explicit Standing(const Workload& workload) : player(workload), batch(bench::batchesOf(workload).front()) {
     player.show(batch.scene);
   }
   // So many queries: the first ones, over and over where there are fewer.
@@ -118,7 +117,7 @@ bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
     // The more there are, the more each meets: three times as many cost each up to three times as much.
     if (!fits(rows, us, uint64_t{3} * kSteps * teapots, deadline)) return false;
     const Workload workload = makeWorkload(Figure7{.teapots = teapots, .boxes = 10'000, .steps = kSteps});
-    const std::vector<bench::Batch> batches = bench::batchesOf(workload, Mode::contact);
+    const std::vector<bench::Batch> batches = bench::batchesOf(workload);
     ScenePlayer player(workload);
     player.show(batches[0].scene);
     us = Race(device, player.scene(), batches[0].queries)
@@ -130,7 +129,7 @@ bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
 // Medians of each stage over some runs, and of what the calling thread saw.
 bool addStages(const Device& device, const char* name, const Workload& workload, Mode mode, const Deadline& deadline,
                Json& rows) {
-  const Standing standing(workload, mode);
+  const Standing standing(workload);
   const uint64_t queries = standing.batch.queries.size();
   Sweeper sweeper(device, standing.scene(), {.timestamps = true, .cpuBatch = 0});
   std::vector<bench::Lap> laps;
@@ -138,7 +137,7 @@ bool addStages(const Device& device, const char* name, const Workload& workload,
   std::vector<std::string> order;
   bench::inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
     Answers answers;
-    const bench::Lap lap = bench::lapOf([&] { answers = sweeper.run(standing.batch.queries); });
+    const bench::Lap lap = bench::lapOf([&] { answers = sweeper.run(standing.batch.queries, mode); });
     if (!counts) return;
     laps.push_back(lap);
     for (const StageTime& stage : answers.stats.stages) {

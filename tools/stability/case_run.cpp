@@ -22,7 +22,7 @@ uint32_t strideOf(uint32_t resolution) {
 }
 
 Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
-  if (method != Method::paper) return judge(scene, query, result, exact);
+  if (method != Method::paper) return judge(scene, query, modeOf(method), result, exact);
   return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
 }
 
@@ -50,16 +50,17 @@ bool canAnswer(Method method, const HardFamily& family) {
   return method == Method::contact || !(family.ignoresLeaving || family.skipsOverlapping);
 }
 
+Mode modeOf(Method method) {
+  return method == Method::contact ? Mode::contact : Mode::sampled;
+}
+
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
-  for (Query& query : queries) {
-    query.mode = asked.method == Method::contact ? Mode::contact : Mode::sampled;
-    query.resolution = asked.resolution;
-  }
+  for (Query& query : queries) query.resolution = asked.resolution;
   return queries;
 }
 
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
-  std::vector<Result> results = sweeper.run(queriesFor(asked, queries)).results;
+  std::vector<Result> results = sweeper.run(queriesFor(asked, queries), modeOf(asked.method)).results;
   if (asked.method != Method::paper) return results;
   for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
   return results;
@@ -131,7 +132,7 @@ struct CaseRun::Stage {
     cpu.sync();
     const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
     std::vector<Query> queries;
-    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size], Mode::contact));
+    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size]));
     for (Query& query : queries) {
       if (range.ignoreLeaving) query.ignoreLeaving = true;
       if (range.allHits) query.hits = kAllHits;
@@ -166,7 +167,7 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       const std::vector<Query> put = queriesFor(asked[a], queries);
       // The paper's min(L) stands beside mode sampled's own answer.
       if (a == 0 || asked[a].resolution != asked[a - 1].resolution) {
-        seconds = bench::lapOf([&] { found = stage_->sweeper.run(put); }).wall;
+        seconds = bench::lapOf([&] { found = stage_->sweeper.run(put, modeOf(asked[a].method)); }).wall;
       }
       Tally& tally = tallies[a];
       tally.deviceSeconds += seconds;

@@ -49,7 +49,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       Random random(settings.seed * 7'919 + next);
       std::vector<Query> queries;
       for (const QuerySpec& spec : workload.queries) {
-        const Query query = toQuery(spec, Mode::contact);
+        const Query query = toQuery(spec);
         const Vec3 step = settings.size * sensorSize(scene, query) * random.direction();
         appendSteps(queries, query, step, settings.steps);
       }

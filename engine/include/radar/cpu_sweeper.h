@@ -23,7 +23,7 @@ class RADAR_API CpuSweeper {
   /// Updates the tree over the scene's objects. run() does this too; a separate call only moves the cost.
   void sync();
 
-  /// Answers any number of queries, in the order given. `mode` and `resolution` are ignored: every answer is exact.
+  /// Answers any number of queries, all exactly.
   /// Status is hit, clear or overlap (for a query with `anyHit`: hit or clear); `tier` is Tier::reference. t is t* to a
   /// few roundings, which also separate `lo` and `hi`, its bounds. The pair is the least (object, triB, triA) of those
   /// that attain t*; `point` and `normal` belong to it. There is no normal if the two triangles already meet at the

@@ -18,7 +18,7 @@
 
 namespace radar {
 
-/// Which method answers a query.
+/// Which method answers a batch.
 enum class Mode : uint32_t {
   sampled,  ///< select, then the paper's method: `hi` is certain, `lo` is 0, a contact may be missed
   contact   ///< the exact search, on the device or on the CPU: never undecided, unless Query::clearance is above 0
@@ -30,10 +30,9 @@ struct Query {
   Transform worldFromMesh{};          ///< invertible
   std::array<double, 3> direction{};  ///< finite, not zero; no longer than 2^1023 beside a component below 2^-1020
   double distance = 0;                ///< D >= 0, finite, world units
-  Mode mode = Mode::contact;
-  bool anyHit = false;              ///< asks only whether there is contact within D: see Result. Cheaper if there is
-  std::vector<ObjectId> exclude{};  ///< objects to ignore, such as the sensor's own; at most a handful
-  uint32_t mask = ~0u;              ///< an object takes part if its mask shares a bit
+  bool anyHit = false;                ///< asks only whether there is contact within D: see Result. Cheaper if there is
+  std::vector<ObjectId> exclude{};    ///< objects to ignore, such as the sensor's own; at most a handful
+  uint32_t mask = ~0u;                ///< an object takes part if its mask shares a bit
 
   /// Mode contact, instead of `direction` and `distance`, which stay 0: how far the sensor moves during a step, world
   /// units, at constant velocity; may be zero. Objects move by Object::motion meanwhile. First contact is that of the
@@ -75,7 +74,8 @@ struct Query {
 inline constexpr uint32_t kMaxResolution = 2048;
 inline constexpr uint32_t kAllHits = 0xffffffffu;
 
-/// Checks the contract of a query. Returns an empty string, or what is wrong and what was expected.
-RADAR_API std::string validate(const Query& query, const Scene& scene);
+/// Checks the contract of a query in a batch of that mode. Returns an empty string, or what is wrong and what was
+/// expected.
+RADAR_API std::string validate(const Query& query, const Scene& scene, Mode mode = Mode::contact);
 
 }  // namespace radar

@@ -82,12 +82,12 @@ class RADAR_API Sweeper {
   /// too; a separate call only moves the cost.
   void sync();
 
-  /// Answers any number of queries, each in its mode, in the order given. Queries that go to the device take one
-  /// upload, one command buffer and one readback per mode; batches of more than 16,384, or too large for the device's
-  /// layers or memory, take several; the CPU answers those of mode contact for which memory does not suffice. The
-  /// answer to a query does not depend on its batch. Before anything is submitted, throws, naming the query, if one
-  /// breaks its contract or has a mode that the device does not support. Blocks until done.
-  Answers run(std::span<const Query> queries);
+  /// Answers any number of queries. Those that go to the device take one upload, one command buffer and one readback;
+  /// batches of more than 16,384, or too large for the device's layers or memory, take several; in mode contact the CPU
+  /// answers those for which memory does not suffice. The answer to a query does not depend on its batch. Before
+  /// anything is submitted, throws if the device does not support the mode, or, naming the query, if one breaks its
+  /// contract. Blocks until done.
+  Answers run(std::span<const Query> queries, Mode mode = Mode::contact);
 
   /// The pictures from which mode sampled answers `query`, at the query's resolution. Throws Error if they do not fit
   /// the device, or it does not support the mode.

@@ -92,7 +92,7 @@ class RADAR_API Recorder {
   /// While recording, the CPU answers queries that ask for skipOverlapping or for a clearance with ignoreLeaving, hits
   /// or a step, and those that have a direction although objects move. Their hits count as searches.
   ///
-  /// Throws before recording anything if a query breaks its contract, is not of mode contact, or is one for the CPU
+  /// Throws before recording anything if a query breaks its contract, or is one for the CPU
   /// although there is a `geometry`; if there are more queries or searches than Capacity says, a query has more than
   /// 2^15 objects in reach, `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});

@@ -42,10 +42,12 @@ SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }
 
-// Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
-bool isForCpu(const Query& query, const Scene::Impl& scene) {
-  const bool isDirected = isStep(query, scene) && !query.motion;
-  return query.skipOverlapping || isDirected || combinesClearance(query, scene);
+// Empty, or what only the CPU combines.
+std::string onlyForCpu(const Query& query, const Scene::Impl& scene) {
+  if (query.skipOverlapping) return "skipOverlapping";
+  if (isStep(query, scene) && !query.motion) return "a direction while objects move";
+  if (combinesClearance(query, scene)) return "a clearance with ignoreLeaving, hits or a step";
+  return {};
 }
 
 Result outOfRange() {
@@ -73,11 +75,10 @@ struct Recorder::Impl {
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  void validateAll(std::span<const Query> queries, bool besideGeometry) const;
+  void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
   void addUnbounded(const Query& query, std::vector<ObjectId>& objects) const;
-  size_t answerOnCpu(const Query& query, uint32_t number);
   void plan(std::span<const Query> queries);
   Planned plan(const Query& query, uint32_t result, ObjectId object);
   void planSearches(const Query& query, std::span<const ObjectId> objects);
@@ -101,34 +102,28 @@ struct Recorder::Impl {
   uint32_t mostWritten = 0;  ///< HostQueries::count of the last record(); 0 if it failed, or had others
   ContactPass pass;
   GatherPass gathers;
-  gpu::Buffer readback;                ///< counts, then results; then sweeps, if a host's shader wrote the queries
-  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
-  struct Answered {
-    Result first;
-    Listed lists;
-  };
-  std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
+  gpu::Buffer readback;                 ///< counts, then results; then sweeps, if a host's shader wrote the queries
+  std::vector<Query> recordedQueries;   ///< in the last record(); none if it failed
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
-  size_t searches = 0;                  ///< past one object each, and hits that the CPU listed instead
+  size_t searches = 0;                  ///< past one object each
   std::vector<uint32_t> hitOffsets;
   std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
   std::vector<gpu::DeformedSensor> deformedSensors;
   std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
-  cpu::QuerySearch reach;     ///< what is in reach, and answers
+  cpu::QuerySearch reach;
 };
 
-void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeometry) const {
+void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty() && besideGeometry && isForCpu(queries[i], scene.impl())) {
-      wrong =
-          "skipOverlapping, a clearance with ignoreLeaving, hits or a step, a direction while objects move: the CPU "
-          "answers these, and cannot beside a HostGeometry";
+    if (wrong.empty()) {
+      wrong = onlyForCpu(queries[i], scene.impl());
+      if (!wrong.empty()) wrong = "only the CPU combines " + wrong + ": ask a Sweeper";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -138,17 +133,6 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
   if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
   if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-}
-
-// Returns the number of hits.
-size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
-  Answered& answered = onCpu[number];
-  answered.first =
-      reach.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
-  answered.first.tier = Tier::contact;
-  if (query.hits == 1) answered.lists.hits.clear();
-  for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
-  return answered.lists.hits.size();
 }
 
 // Adds the objects that may be in reach, wherever the host moves them, and sorts all: every object if only the device
@@ -170,16 +154,12 @@ void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& obj
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
 }
 
-// Of the queries that take several searches; ascending. Answers those that are for the CPU.
+// Of the queries that take several searches; ascending.
 std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
   std::vector<std::vector<ObjectId>> objects(queries.size());
   searches = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (isForCpu(queries[i], scene.impl())) {
-      searches += answerOnCpu(queries[i], static_cast<uint32_t>(i));
-      continue;
-    }
     if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
     objects[i] = reach.inReach(queries[i], scene.impl(), tree);
     addUnbounded(queries[i], objects[i]);
@@ -206,7 +186,6 @@ Planned Recorder::Impl::plan(const Query& query, uint32_t result, ObjectId objec
 
 void Recorder::Impl::plan(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
-  onCpu.clear();
   const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
   sensors.clear();
   deformedSensors.clear();
@@ -217,21 +196,14 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
   for (uint32_t i = 0; i < queries.size(); ++i) {
     hitOffsets.push_back(end);
     const auto count = static_cast<uint32_t>(objects[i].size());
-    const auto answered = onCpu.find(i);
-    if (answered != onCpu.end()) end += static_cast<uint32_t>(answered->second.lists.hits.size());
     const uint32_t listed = queries[i].hits > 1 ? std::min(queries[i].hits, count) : 0;
     if (count > 0) gathered.push_back({.query = i, .first = 0, .count = count, .list = end, .listed = listed});
     end += listed;
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());
-  for (const auto& [query, answered] : onCpu) {
-    known[query] = answered.first;
-    std::copy(answered.lists.hits.begin(), answered.lists.hits.end(), known.begin() + hitOffsets[query]);
-  }
   auto next = gathered.begin();
   for (uint32_t i = 0; i < queries.size(); ++i) {
-    if (onCpu.contains(i)) continue;
     if (objects[i].empty()) {
       if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
       if (plan(queries[i], i, kNone) == Planned::outOfRange) known[i] = outOfRange();
@@ -289,9 +261,6 @@ void Recorder::Impl::decide(std::span<Result> results) const {
 Answers Recorder::Impl::putTogether(std::span<const Result> all) const {
   Answers answers = unanswered(recordedQueries);
   std::copy_n(all.begin(), answers.results.size(), answers.results.begin());
-  for (const auto& [query, answered] : onCpu) {
-    if (!answers.lists.empty()) answers.lists[query] = answered.lists;
-  }
   for (const gpu::Gathered& several : gathered) {
     std::vector<Result> hits;
     answers.results[several.query] = gather(all.subspan(several.first, several.count), several.listed, hits);
@@ -367,7 +336,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
+  self.validateAll(queries);
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.mostWritten = 0;
@@ -399,7 +368,6 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.gathers.clear();
   self.gathered.clear();
   self.searches = 0;
-  self.onCpu.clear();
   self.hitOffsets.assign(queries.count + 1, queries.count);
   self.copy->willOverwrite(self.geometry.overwritten());
   self.usedBuffers.reset();

@@ -163,89 +163,41 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what the device's search does not offer is answered by the CPU while it is recorded, lists included") {
-  Scene scene;
-  Recorder recorder(test::device(), scene, kRoom);
-  CpuSweeper sweeper(scene);
-  tools::Random random(5);
-  size_t listed = 0, skipped = 0, steps = 0;
-  for (const char* name : {"convex", "touching", "assembly", "crossing", "sunk"}) {
-    const tools::Workload workload =
-        tools::hardScene(tools::hardFamily(name), 13, 0, kRoom.queries, tools::Company::mixed);
-    tools::replaceBy(workload, 0, scene);
-    std::vector<Query> queries = queriesOf(workload);
-    const bool moves = random.oneIn(2);
-    if (moves) tools::setMotions(workload, random, scene);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      queries[i].skipOverlapping = i % 4 == 0;
-      queries[i].clearance = i % 4 == 1 || i % 4 == 2 ? 0.02 * tools::sensorSize(scene, queries[i]) : 0;
-      queries[i].ignoreLeaving = i % 4 == 1;
-      queries[i].hits = i % 4 == 2 || i % 8 == 0 ? kAllHits : 1;
-      if (moves && i % 3 == 0) tools::takeStep(queries[i]);
-    }
-    const Recorded recorded = execute(recorder, queries);
-    const Answers expected = sweeper.run(queries);
-    for (uint32_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(name, i, moves);
-      Result answer = expected.results[i];
-      answer.tier = Tier::contact;
-      CHECK(agree(recorded.results[i], answer));
-      const std::vector<Result>&found = recorded.lists[i].hits, &wanted = expected.lists[i].hits;
-      REQUIRE(found.size() == wanted.size());
-      for (size_t k = 0; k < found.size(); ++k) CHECK(found[k].object == wanted[k].object);
-      CHECK(recorded.lists[i].overlapping == expected.lists[i].overlapping);
-      checkOnDevice(recorder, recorded, i);
-      listed += found.size();
-      skipped += recorded.lists[i].overlapping.size();
-      steps += moves && answer.status == Status::hit;
-    }
-  }
-  CHECK(listed > 50);
-  CHECK(skipped > 10);
-  CHECK(steps > 5);
-  CHECK(test::takeValidationMessages().empty());
-}
-
-TEST_CASE("needed() has room for the hits that the CPU lists while it records") {
-  // It counted only the searches on the device, and the same queries were then refused.
-  const tools::Workload workload =
-      tools::hardScene(tools::hardFamily("convex"), 13, 0, kRoom.queries, tools::Company::mixed);
-  Scene scene;
-  tools::replaceBy(workload, 0, scene);
-  std::vector<Query> queries = queriesOf(workload);
-  for (size_t i = 0; i < queries.size(); ++i) {
-    queries[i].skipOverlapping = i % 2 == 0;
-    queries[i].hits = kAllHits;
-  }
-  Recorder recorder(test::device(), scene, kRoom);
-  const Recorded recorded = execute(recorder, queries);
-  Capacity capacity = kRoom;
-  capacity.searches = recorder.needed().searches;
-  Recorder exact(test::device(), scene, capacity);
-  const auto count = [](const Recorded& all) {
-    size_t hits = 0;
-    for (const Listed& listed : all.lists) hits += listed.hits.size();
-    return hits;
-  };
-  CHECK(count(execute(exact, queries)) == count(recorded));
-  --capacity.searches;
-  Recorder less(test::device(), scene, capacity);
-  CHECK_THROWS_WITH(execute(less, queries), test::Contains("Capacity::searches"));
-}
-
-TEST_CASE("queries for the CPU are refused beside a host's geometry") {
+TEST_CASE("what only the CPU combines is refused and named, and nothing is recorded") {
   test::Row row(2);
-  row.scene.setBounds(3, {{-9, -9, -9}, {9, 9, 9}});
-  std::vector<std::byte> bytes;
-  for (int i = 0; i < 12; ++i) test::append(bytes, {i % 5 == 0 ? 1.0f : 0.0f});
-  const OnDevice transforms(bytes);
-  const ObjectId moved = 3;
-  const MovedObjects objects{.transforms = transforms.get(), .objects = {&moved, 1}};
   Recorder recorder(test::device(), row.scene, kRoom);
-  row.queries[1].skipOverlapping = true;
   gpu::Submission submission(test::device().impl(), false);
-  CHECK_THROWS_WITH(recorder.record(submission.begin(), row.queries, {.objects = {&objects, 1}}),
-                    test::Contains("record: query 1: skipOverlapping") && test::Contains("beside a HostGeometry"));
+  const gpu::Commands commands = submission.begin();
+  const auto refused = [&](const Query& query, const char* what) {
+    CHECK_FALSE(test::isRecordable(query, row.scene));
+    const std::vector<Query> queries{row.queries[0], query};
+    CHECK_THROWS_WITH(
+        recorder.record(commands, queries),
+        test::Contains(std::string("record: query 1: only the CPU combines ") + what + ": ask a Sweeper"));
+  };
+  const Query plain = row.queries[1];
+  Query query = plain;
+  query.skipOverlapping = true;
+  refused(query, "skipOverlapping");
+  query = plain;
+  query.clearance = 0.5;
+  CHECK(test::isRecordable(query, row.scene));
+  query.hits = 2;
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  query.hits = 1;
+  query.ignoreLeaving = true;
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  query.ignoreLeaving = false;
+  tools::takeStep(query);
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  recorder.record(commands, row.queries);
+  submission.submitAndWait();
+  CHECK(recorder.read().results.size() == row.queries.size());
+  row.scene.setMotion(0, {0, 0, 1});
+  CHECK_THROWS_WITH(recorder.record(submission.begin(), {&plain, 1}),
+                    test::Contains("record: query 0: only the CPU combines a direction while objects move: ask a "
+                                   "Sweeper"));
+  CHECK_FALSE(test::isRecordable(plain, row.scene));
 }
 
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {

@@ -107,7 +107,7 @@ TEST_CASE(
     "whichever call of the device fails while a recorder records, it is named, and the same recorder then records "
     "right answers") {
   const Device& device = test::adopted().device;
-  const std::vector<Query> queries = test::contactQueries();
+  const std::vector<Query> queries = test::recordableQueries();
   Growing grown;
   grown.grow(false);
   Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});

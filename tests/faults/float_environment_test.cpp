@@ -133,7 +133,7 @@ AllAnswers answersIn(const InEnvironment& in) {
   Recorder recorder = in([&] { return Recorder(device, scene, test::kScenarioRoom); });
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
-  in([&] { recorder.record(commands, queries); });
+  in([&] { recorder.record(commands, test::recordableQueries()); });
   submission.submitAndWait();
   answers.recorded = in([&] { return recorder.read(); });
   std::vector<Device> devices;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "embed/execute.h"
 #include "support/same_bits.h"
 #include "workloads/generate.h"
 
@@ -112,6 +113,12 @@ std::vector<Query> contactQueries(uint32_t count) {
     }
     queries.push_back(query);
   }
+  return queries;
+}
+
+std::vector<Query> recordableQueries() {
+  std::vector<Query> queries = contactQueries();
+  std::erase_if(queries, [atRest = Scene()](const Query& query) { return !isRecordable(query, atRest); });
   return queries;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "radar/radar.h"
 #include "radar/recorder.h"
 #include "support/answer.h"
 #include "workloads/workload.h"
@@ -23,6 +24,8 @@ class SceneEdits {
 };
 /// Queries of mode contact: steps, lists, clearances, decisions, what leaves or overlaps, exclusions and masks.
 std::vector<Query> contactQueries(uint32_t count = 24);
+/// Those of them that a Recorder takes, with a scene at rest.
+std::vector<Query> recordableQueries();
 /// Queries of mode sampled, which need a scene at rest.
 std::vector<Query> sampledQueries(uint32_t count = 4);
 
@@ -49,7 +52,7 @@ bool sameBits(const Answers& p, const Answers& q);
 /// Whether all bits but the tier, and whether something was detected, are equal: what the CPU alone does not tell.
 bool sameContacts(const Answers& p, const Answers& q);
 
-/// Room for contactQueries().
+/// Room for recordableQueries().
 inline constexpr Capacity kScenarioRoom{
     .queries = 48, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 12, .searches = 1u << 10};
 

@@ -123,10 +123,10 @@ Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
 template <class Make>
 void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity& capacity, const Batch& all,
                             const Make& make) {
-  const Batch& batch =
-      all.queries.size() <= capacity.queries
-          ? all
-          : batchOf({all.queries.begin(), all.queries.begin() + static_cast<ptrdiff_t>(capacity.queries)});
+  std::vector<Query> queries = all.queries;
+  std::erase_if(queries, [&](const Query& query) { return !test::isRecordable(query, world_->scene()); });
+  if (queries.size() > capacity.queries) queries.resize(capacity.queries);
+  const Batch batch = batchOf(std::move(queries));
   for (int i = 0; i < 40; ++i) {
     try {
       const Answers found = record(*recorder, batch.queries);

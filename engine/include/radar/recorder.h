@@ -89,11 +89,9 @@ class RADAR_API Recorder {
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
-  /// While recording, the CPU answers queries that ask for skipOverlapping or for a clearance with ignoreLeaving, hits
-  /// or a step, and those that have a direction although objects move. Their hits count as searches.
-  ///
-  /// Throws before recording anything if a query breaks its contract, or is one for the CPU
-  /// although there is a `geometry`; if there are more queries or searches than Capacity says, a query has more than
+  /// Throws before recording anything if a query breaks its contract, or asks for what only the CPU combines, and so a
+  /// Sweeper answers: skipOverlapping; a direction while objects move; a clearance with ignoreLeaving, hits or a step.
+  /// Likewise if there are more queries or searches than Capacity says, a query has more than
   /// 2^15 objects in reach, `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that

@@ -91,8 +91,8 @@ class RADAR_API Recorder {
   ///
   /// Throws before recording anything if a query breaks its contract, or asks for what only the CPU combines, and so a
   /// Sweeper answers: skipOverlapping; a direction while objects move; a clearance with ignoreLeaving, hits or a step.
-  /// Likewise if there are more queries or searches than Capacity says, a query has more than
-  /// 2^15 objects in reach, `geometry` breaks its contract, or something does not fit the device.
+  /// Likewise if there are more queries or searches than Capacity says, a query has more than 2^15 objects in reach,
+  /// `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
   /// shaders read has Flag::unresolved as above; read() decides it. Answers beyond the number of queries, up to

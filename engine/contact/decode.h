@@ -5,6 +5,7 @@
 
 #include "exact/motion.h"
 #include "math/vector.h"
+#include "radar/answers.h"
 #include "radar/query.h"
 #include "shaders/contact/interop.h"
 
@@ -22,7 +23,7 @@ class UnresolvedPairs {
   std::vector<const gpu::UnresolvedPair*> ordered_;
 };
 
-/// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
+/// The answer to a query whose device answer `found` has the flag Flag::unresolved; `pairs` are all that may be first.
 /// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
 /// clearance (cpu/clearance.h).
 /// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `farthest`:

@@ -71,7 +71,7 @@ struct QuerySearch::Task {
   }
 };
 
-Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists) {
+Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists) {
   std::vector<ObjectId> skipped;
   if (query.skipOverlapping) skipped = overlapping(query, scene, tree);
   const Task task(query, scene);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "cpu/mesh_search.h"
-#include "scene/query_lists.h"
 
 namespace radar::cpu {
 
@@ -19,7 +18,7 @@ class QuerySearch {
  public:
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
   /// the query asks for none.
-  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
+  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists);
   uint64_t pairs() const { return pairs_; }
 
  private:

@@ -7,7 +7,7 @@
 #include "gpu/array.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "radar/query.h"
+#include "radar/answers.h"
 #include "shaders/embed/interop.h"
 
 namespace radar {

@@ -18,7 +18,6 @@
 #include "query/hits.h"
 #include "query/route.h"
 #include "query/swept.h"
-#include "scene/query_lists.h"
 #include "scene/scene_copy.h"
 
 // pass                                            reads           writes   barrier after it
@@ -46,10 +45,6 @@ SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }
 
-// Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
-bool isForCpu(const Query& query, const Scene::Impl& scene) {
-  return routeOf(query, scene, false) == Route::cpu;
-}
 bool searchesEach(const Query& query, const Scene::Impl& scene) {
   return routeOf(query, scene, false) == Route::searchEach;
 }
@@ -57,7 +52,7 @@ bool searchesEach(const Query& query, const Scene::Impl& scene) {
 Result outOfRange() {
   Result result;
   result.tier = Tier::contact;
-  result.flags = kFlagRange;
+  result.flags = Flag::range;
   return result;
 }
 
@@ -79,18 +74,17 @@ struct Recorder::Impl {
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  void validateAll(std::span<const Query> queries, bool besideGeometry) const;
+  void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
   void addUnbounded(const Query& query, std::vector<ObjectId>& objects) const;
-  size_t answerOnCpu(const Query& query, uint32_t number);
   void plan(std::span<const Query> queries);
   Planned plan(const Query& query, uint32_t result, ObjectId object);
   void planSearches(const Query& query, std::span<const ObjectId> objects);
   void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
   void learnBoxes();
   void decide(std::span<Result> results) const;
-  std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
+  Answers putTogether(std::span<const Result> all) const;
   std::vector<Result> readHost() const;
   std::vector<Result> copyResults(size_t count) const;
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
@@ -107,35 +101,26 @@ struct Recorder::Impl {
   uint32_t mostWritten = 0;  ///< HostQueries::count of the last record(); 0 if it failed, or had others
   ContactPass pass;
   GatherPass gathers;
-  gpu::Buffer readback;                ///< counts, then results; then sweeps, if a host's shader wrote the queries
-  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
-  struct Answered {
-    Result first;
-    QueryLists lists;
-  };
-  std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
+  gpu::Buffer readback;                 ///< counts, then results; then sweeps, if a host's shader wrote the queries
+  std::vector<Query> recordedQueries;   ///< in the last record(); none if it failed
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
-  size_t searches = 0;                  ///< past one object each, and hits that the CPU listed instead
+  size_t searches = 0;                  ///< past one object each
   std::vector<uint32_t> hitOffsets;
   std::vector<double> tolerances;  ///< of their clearances
   SensorBatch sensors;
   std::vector<gpu::DeformedSensor> deformedSensors;
   std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
-  cpu::QuerySearch answers;   ///< of the queries that the CPU answers
 };
 
-void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeometry) const {
+void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    if (wrong.empty() && besideGeometry && isForCpu(queries[i], scene.impl())) {
-      wrong =
-          "skipOverlapping, a clearance with ignoreLeaving, hits or a step, a direction while objects move: the CPU "
-          "answers these, and cannot beside a HostGeometry";
+    if (const char* what = wrong.empty() ? onlyForCpu(queries[i], scene.impl(), false) : nullptr) {
+      wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -145,17 +130,6 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
   if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
   if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-}
-
-// Returns the number of hits.
-size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
-  Answered& answered = onCpu[number];
-  answered.first =
-      this->answers.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
-  answered.first.tier = Tier::contact;
-  if (query.hits == 1) answered.lists.hits.clear();
-  for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
-  return answered.lists.hits.size();
 }
 
 // Adds the objects that may be in reach, wherever the host moves them, and sorts all: every object if only the device
@@ -173,16 +147,12 @@ void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& obj
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
 }
 
-// Of the queries that take several searches; ascending. Answers those that are for the CPU.
+// Of the queries that take several searches; ascending.
 std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
   std::vector<std::vector<ObjectId>> objects(queries.size());
   searches = 0;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (isForCpu(queries[i], scene.impl())) {
-      searches += answerOnCpu(queries[i], static_cast<uint32_t>(i));
-      continue;
-    }
     if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
     objects[i] = inReach(queries[i], scene.impl(), tree);
     addUnbounded(queries[i], objects[i]);
@@ -209,7 +179,6 @@ Planned Recorder::Impl::plan(const Query& query, uint32_t result, ObjectId objec
 
 void Recorder::Impl::plan(std::span<const Query> queries) {
   const ObjectTree& tree = scene.impl().objectTree();
-  onCpu.clear();
   const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
   sensors.clear();
   deformedSensors.clear();
@@ -220,21 +189,14 @@ void Recorder::Impl::plan(std::span<const Query> queries) {
   for (uint32_t i = 0; i < queries.size(); ++i) {
     hitOffsets.push_back(end);
     const auto count = static_cast<uint32_t>(objects[i].size());
-    const auto answered = onCpu.find(i);
-    if (answered != onCpu.end()) end += static_cast<uint32_t>(answered->second.lists.hits.size());
     const uint32_t listed = queries[i].hits > 1 ? std::min(queries[i].hits, count) : 0;
     if (count > 0) gathered.push_back({.query = i, .first = 0, .count = count, .list = end, .listed = listed});
     end += listed;
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());
-  for (const auto& [query, answered] : onCpu) {
-    known[query] = answered.first;
-    std::copy(answered.lists.hits.begin(), answered.lists.hits.end(), known.begin() + hitOffsets[query]);
-  }
   auto next = gathered.begin();
   for (uint32_t i = 0; i < queries.size(); ++i) {
-    if (onCpu.contains(i)) continue;
     if (objects[i].empty()) {
       if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
       if (plan(queries[i], i, kNone) == Planned::outOfRange) known[i] = outOfRange();
@@ -279,7 +241,7 @@ void Recorder::Impl::decide(std::span<Result> results) const {
     const bool isOneOfSeveral = sweep.result >= hitOffsets.back();
     const uint32_t number = isOneOfSeveral ? next->query : sweep.result;
     const auto pairs = unresolved.of(i);
-    if (results[sweep.result].flags != kFlagUnresolved || pairs.empty()) continue;
+    if (results[sweep.result].flags != Flag::unresolved || pairs.empty()) continue;
     const Query& query = recordedQueries[number];
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
     results[sweep.result] =
@@ -289,16 +251,14 @@ void Recorder::Impl::decide(std::span<Result> results) const {
 }
 
 // Returns the answers to the queries, from all that the device wrote.
-std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lists* lists) const {
-  std::vector<Result> answers(all.begin(), all.begin() + static_cast<ptrdiff_t>(recordedQueries.size()));
-  std::vector<QueryLists> own(answers.size());
-  for (const auto& [query, answered] : onCpu) own[query] = answered.lists;
+Answers Recorder::Impl::putTogether(std::span<const Result> all) const {
+  Answers answers = unanswered(recordedQueries);
+  std::copy_n(all.begin(), answers.results.size(), answers.results.begin());
   for (const gpu::Gathered& several : gathered) {
     Merged found = merged(all.subspan(several.first, several.count), several.listed);
-    answers[several.query] = found.first;
-    own[several.query].hits = std::move(found.hits);
+    answers.results[several.query] = found.first;
+    if (!answers.lists.empty()) answers.lists[several.query].hits = std::move(found.hits);
   }
-  if (lists != nullptr && std::any_of(recordedQueries.begin(), recordedQueries.end(), hasLists)) *lists = joined(own);
   return answers;
 }
 
@@ -369,7 +329,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
+  self.validateAll(queries);
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
   self.recordedQueries.clear();  // if recording fails, read() has nothing to return
   self.mostWritten = 0;
@@ -401,7 +361,6 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.gathers.clear();
   self.gathered.clear();
   self.searches = 0;
-  self.onCpu.clear();
   self.hitOffsets.assign(queries.count + 1, queries.count);
   self.copy->willOverwrite(self.geometry.overwritten());
   self.usedBuffers.reset();
@@ -433,7 +392,7 @@ std::vector<Result> Recorder::Impl::readHost() const {
   std::vector<Result> results = copyResults(std::min(counts().queries, mostWritten));
   for (uint32_t i = 0; i < results.size(); ++i) {
     const auto pairs = unresolved.of(i);
-    if (results[i].flags != kFlagUnresolved || pairs.empty()) continue;
+    if (results[i].flags != Flag::unresolved || pairs.empty()) continue;
     const Query query = queryOf(sweeps[i]);
     results[i] = decideUnresolved(results[i], pairs, query, Motion(query), 0, *farthest);
   }
@@ -444,16 +403,15 @@ std::span<const uint32_t> Recorder::hitOffsets() const {
   return impl_->hitOffsets;
 }
 
-std::vector<Result> Recorder::read(Lists* lists) {
+Answers Recorder::read() {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  if (lists != nullptr) *lists = {};
   if (self.mostWritten == 0 && self.recordedQueries.empty()) return {};
   self.learnBoxes();
-  if (self.mostWritten != 0) return self.readHost();
+  if (self.mostWritten != 0) return {.results = self.readHost()};
   std::vector<Result> results = self.copyResults(self.known.size());
   self.decide(results);
-  return self.putTogether(results, lists);
+  return self.putTogether(results);
 }
 
 Capacity Recorder::needed() const {

@@ -96,7 +96,6 @@ void Worker::begin(Lane& lane, Chunk chunk) {
   lane.chunk = std::move(chunk);
   ++inFlight_;
   lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
-  lane.results.assign(lane.chunk.count, Result());
   if (!copy_) copy_ = std::make_shared<GpuScene>(device_.impl());
   if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
   // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
@@ -106,7 +105,7 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     isSynced_ = !error;
     if (isSynced_) seenVersion_ = version;
   }
-  lane.sweep->begin(lane.chunk.queries(), lane.results);
+  lane.sweep->begin(lane.chunk.queries(), lane.chunk.job->mode);
   lane.trace.submitted = queue_.now();
 }
 
@@ -116,7 +115,7 @@ void Worker::finish(Lane& lane) {
   sweep.finish();
   lane.trace.done = std::max(lane.trace.submitted, queue_.at(sweep.deviceDone));
   lane.trace.decoded = queue_.now();
-  lane.trace.stages = sweep.stats.stages;
+  lane.trace.stages = sweep.answers.stats.stages;
   // A lost device retires the worker; so does a lack of memory, unless it is the last worker or the chunk has run out
   // of memory on another device, too. Any other failure makes the chunk's queries invalid.
   if (sweep.failure) {
@@ -126,14 +125,14 @@ void Worker::finish(Lane& lane) {
     if (sweep.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
   }
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
-  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
-  const bool usedDevice = sweep.stats.submissions != 0;
+  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.job->mode)];
+  const bool usedDevice = sweep.answers.stats.submissions != 0;
   const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = warm || usedDevice;
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;
-  queue_.deliver(std::exchange(lane.chunk, {}), sweep, std::move(lane.trace), deviceMs);
+  queue_.deliver(std::exchange(lane.chunk, {}), std::move(sweep.answers), std::move(lane.trace), deviceMs);
 }
 
 }  // namespace radar

@@ -24,7 +24,6 @@ class Worker {
     std::unique_ptr<Sweeper::Impl> sweep;  // made on first use, since pipelines take time
     Chunk chunk;
     ChunkTrace trace;
-    std::vector<Result> results;
     std::array<bool, 2> warm{};  // by mode: whether its pipelines have run
   };
 

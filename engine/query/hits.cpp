@@ -23,6 +23,11 @@ bool isOrdered(const Result& p, const Result& q) {
 
 }  // namespace
 
+Answers unanswered(std::span<const Query> queries) {
+  const bool someList = std::any_of(queries.begin(), queries.end(), hasLists);
+  return {.results = std::vector<Result>(queries.size()), .lists = std::vector<Listed>(someList ? queries.size() : 0)};
+}
+
 Merged merged(std::span<const Result> searches, uint32_t most) {
   std::vector<size_t> order(searches.size());
   std::iota(order.begin(), order.end(), size_t{0});

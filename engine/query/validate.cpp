@@ -5,7 +5,7 @@
 
 #include "math/float_environment.h"
 #include "math/frame.h"
-#include "scene/query_lists.h"
+#include "query/hits.h"
 #include "scene/scene.h"
 
 namespace radar {
@@ -44,7 +44,7 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
 
 }  // namespace
 
-std::string validate(const Query& query, const Scene& scene) {
+std::string validate(const Query& query, const Scene& scene, Mode mode) {
   const FloatEnvironment floats;
   if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
@@ -63,45 +63,16 @@ std::string validate(const Query& query, const Scene& scene) {
   }
   if (query.hits == 0) return "hits: expected 1 or more, got 0";
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
-  if (query.mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
+  if (mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
     return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
   }
-  if (query.mode == Mode::sampled && isStep(query, scene.impl())) {
+  if (mode == Mode::sampled && isStep(query, scene.impl())) {
     return "mode: expected contact with a motion, of the query or of objects, got sampled";
   }
   if (query.resolution > kMaxResolution) {
     return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);
   }
   return {};
-}
-
-std::vector<QueryLists> listsFor(std::span<const Query> queries) {
-  return std::vector<QueryLists>(std::any_of(queries.begin(), queries.end(), hasLists) ? queries.size() : 0);
-}
-
-Lists joined(std::span<const QueryLists> lists) {
-  Lists all;
-  if (lists.empty()) return all;
-  all.hitOffsets.push_back(0);
-  all.overlappingOffsets.push_back(0);
-  for (const QueryLists& one : lists) {
-    all.hits.insert(all.hits.end(), one.hits.begin(), one.hits.end());
-    all.overlapping.insert(all.overlapping.end(), one.overlapping.begin(), one.overlapping.end());
-    all.hitOffsets.push_back(all.hits.size());
-    all.overlappingOffsets.push_back(all.overlapping.size());
-  }
-  return all;
-}
-
-std::span<const Result> Lists::hitsOf(size_t query) const {
-  if (hitOffsets.empty()) return {};
-  return std::span(hits).subspan(hitOffsets[query], hitOffsets[query + 1] - hitOffsets[query]);
-}
-
-std::span<const ObjectId> Lists::overlappingOf(size_t query) const {
-  if (overlappingOffsets.empty()) return {};
-  return std::span(overlapping)
-      .subspan(overlappingOffsets[query], overlappingOffsets[query + 1] - overlappingOffsets[query]);
 }
 
 Result::Result() {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/box.h"
+#include "radar/answers.h"
 #include "radar/query.h"
 #include "scene/changed_pages.h"
 #include "scene/mesh_tree.h"

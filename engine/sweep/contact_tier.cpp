@@ -66,20 +66,20 @@ void ContactTier::answerOnCpu(std::span<const size_t> which) {
   const Scene::Impl& scene = scene_.impl();
   const size_t first = which.front(), count = which.size();
   if (which.back() - first + 1 == count) {  // ascending, and so without gaps
-    cpu_.run(batch_.asked.subspan(first, count), scene, Tier::contact, options_.cpuThreads,
-             batch_.answers.subspan(first, count),
-             batch_.lists.empty() ? std::span<QueryLists>() : std::span(batch_.lists).subspan(first, count));
+    cpu_.run(
+        batch_.asked.subspan(first, count), scene, Tier::contact, options_.cpuThreads,
+        std::span(batch_.answers.results).subspan(first, count),
+        batch_.answers.lists.empty() ? std::span<Listed>() : std::span(batch_.answers.lists).subspan(first, count));
   } else {
     std::vector<Query> queries;
     queries.reserve(count);
     for (const size_t i : which) queries.push_back(batch_.asked[i]);
-    std::vector<Result> results(count);
-    std::vector<QueryLists> lists = listsFor(queries);
-    cpu_.run(queries, scene, Tier::contact, options_.cpuThreads, results, lists);
-    for (size_t k = 0; k < count; ++k) batch_.answers[which[k]] = results[k];
-    for (size_t k = 0; k < lists.size(); ++k) batch_.lists[which[k]] = std::move(lists[k]);
+    Answers found = unanswered(queries);
+    cpu_.run(queries, scene, Tier::contact, options_.cpuThreads, found.results, found.lists);
+    for (size_t k = 0; k < count; ++k) batch_.answers.results[which[k]] = found.results[k];
+    for (size_t k = 0; k < found.lists.size(); ++k) batch_.answers.lists[which[k]] = std::move(found.lists[k]);
   }
-  batch_.stats.cpuQueries += count;
+  batch_.answers.stats.cpuQueries += count;
   batch_.addCpuTime("cpu", msSince(start));
 }
 
@@ -130,7 +130,7 @@ bool ContactTier::plan(size_t query, const ObjectTree& tree) {
   if (route == Route::cpu) return false;
   if (route == Route::oneSearch) {
     const Planned planned = planOne(query, kNone, tree);
-    if (planned == Planned::clear) batch_.answers[query] = clearAnswer();
+    if (planned == Planned::clear) batch_.answers.results[query] = clearAnswer();
     return planned != Planned::outOfRange;
   }
   if (!tree.inRange()) return false;
@@ -185,7 +185,7 @@ void ContactTier::finish() {
     }
   } catch (...) {
     // Nothing stays with the device behind an exception.
-    pending_.collect([&](auto) { submitter_->collect(scene_.impl(), batch_.stats.stages); });
+    pending_.collect([&](auto) { submitter_->collect(scene_.impl(), batch_.answers.stats.stages); });
     throw;
   }
   finishLists();
@@ -196,16 +196,16 @@ void ContactTier::finishLists() {
   lists_.finish(
       batch_.asked,
       [&](size_t query, std::vector<Result> hits) {
-        if (batch_.reasons.contains(query)) return;
+        if (batch_.answers.reasons.contains(query)) return;
         const Query& asked = batch_.asked[query];
         if (isStep(asked, scene_.impl()) && !asked.motion) {
           for (Result& hit : hits) cpu::toDistances(hit, asked.distance);
         }
-        batch_.answers[query] = hits.empty() ? clearAnswer() : hits.front();
-        if (asked.hits > 1) batch_.lists[query].hits = std::move(hits);
+        batch_.answers.results[query] = hits.empty() ? clearAnswer() : hits.front();
+        if (asked.hits > 1) batch_.answers.lists[query].hits = std::move(hits);
       },
       [&](size_t query) {
-        if (!batch_.reasons.contains(query)) onlyCpu.push_back(query);
+        if (!batch_.answers.reasons.contains(query)) onlyCpu.push_back(query);
       });
   answerOnCpu(onlyCpu);
 }
@@ -226,7 +226,7 @@ bool ContactTier::keep(size_t query, const Result& found) {
   if (searchesEach(query)) {
     lists_.add(query, found);
   } else {
-    batch_.answers[query] = found;
+    batch_.answers.results[query] = found;
   }
   return true;
 }
@@ -235,14 +235,14 @@ void ContactTier::collect() {
   pending_.collect([&](std::span<const size_t> queries) {
     SearchAnswers found;
     try {
-      found = submitter_->collect(scene_.impl(), batch_.stats.stages);
+      found = submitter_->collect(scene_.impl(), batch_.answers.stats.stages);
     } catch (const Error& error) {
       if (!batch_.survives(error)) throw;
       return leaveToCpu({queries.begin(), queries.end()});
     }
     batch_.deviceDone = Clock::now();
-    batch_.stats.submissions += submitter_->submissions();
-    batch_.stats.pairs += found.trianglePairs;
+    batch_.answers.stats.submissions += submitter_->submissions();
+    batch_.answers.stats.pairs += found.trianglePairs;
     decode(found, queries);
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
   });
@@ -259,9 +259,9 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
       if (!keep(queries[i], result)) left.push_back(queries[i]);
     } else if (result.flags == 0) {
       throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
-    } else if (result.flags == kFlagUnresolved && isDecidable(unresolved.of(i))) {
+    } else if (result.flags == Flag::unresolved && isDecidable(unresolved.of(i))) {
       open.push_back(i);
-    } else if (found.roomier && result.flags == kFlagCandidates && !searchesEach(queries[i])) {
+    } else if (found.roomier && result.flags == Flag::candidates && !searchesEach(queries[i])) {
       cramped_.push_back(queries[i]);
     } else {
       left.push_back(queries[i]);
@@ -279,7 +279,7 @@ void ContactTier::decode(const SearchAnswers& found, std::span<const size_t> que
     }
   });
   for (size_t k = 0; k < open.size(); ++k) {
-    batch_.stats.cpuPairs += unresolved.of(open[k]).size();
+    batch_.answers.stats.cpuPairs += unresolved.of(open[k]).size();
     if (!keep(queries[open[k]], decided[k])) left.push_back(queries[open[k]]);
   }
   leaveToCpu(std::move(left));

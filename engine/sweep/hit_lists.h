@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "radar/answers.h"
 #include "radar/query.h"
 
 namespace radar {

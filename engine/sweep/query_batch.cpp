@@ -8,8 +8,8 @@ namespace radar {
 void QueryBatch::fail(size_t query, const Error& error) {
   if (error.vulkan == VK_SUCCESS) throw error;
   if (!failure) failure = error;
-  answers[query] = Result();
-  reasons[query] = error.what();
+  answers.results[query] = Result();
+  answers.reasons[query] = error.what();
 }
 
 bool QueryBatch::survives(const Error& error) {
@@ -19,7 +19,7 @@ bool QueryBatch::survives(const Error& error) {
 }
 
 void QueryBatch::addCpuTime(const char* name, double ms) {
-  if (timestamps) gpu::addStageTime(stats.stages, name, ms);
+  if (timestamps) gpu::addStageTime(answers.stats.stages, name, ms);
 }
 
 }  // namespace radar

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "radar/radar.h"
-#include "scene/query_lists.h"
+#include "scene/scene.h"
 
 namespace radar {
 
@@ -21,11 +20,8 @@ inline double msSince(Clock::time_point start) {
 
 struct QueryBatch {
   std::span<const Query> asked;
-  std::span<Result> answers;      ///< one for each query
-  std::vector<QueryLists> lists;  ///< one for each query, or none if no query has lists
-  SweepStats stats;
-  std::map<size_t, std::string> reasons;  ///< why an answer is invalid, by its index
-  std::optional<Error> failure;           ///< the first Vulkan call that failed, also if all queries were answered
+  Answers answers;
+  std::optional<Error> failure;  ///< the first Vulkan call that failed, also if all queries were answered
   Clock::time_point deviceDone;
   bool timestamps = false;
 

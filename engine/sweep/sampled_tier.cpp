@@ -68,9 +68,9 @@ bool SampledTier::trySubmit(std::span<Planned> part, bool isLast) {
       fits = false;
       return false;
     }
-    ++batch_.stats.submissions;
-    batch_.stats.drawnObjects += drawn_.objects;
-    batch_.stats.drawnTriangles += drawn_.triangles;
+    ++batch_.answers.stats.submissions;
+    batch_.answers.stats.drawnObjects += drawn_.objects;
+    batch_.answers.stats.drawnTriangles += drawn_.triangles;
     return true;
   });
   return fits;
@@ -90,13 +90,13 @@ void SampledTier::submit(std::span<Planned> part) {
 
 void SampledTier::collect() {
   pending_.collect([&](std::span<const size_t> queries) {
-    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages);
+    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.answers.stats.stages);
     batch_.deviceDone = Clock::now();
     for (size_t i = 0; i < queries.size(); ++i) {
-      batch_.answers[queries[i]] = decodeSampled(
+      batch_.answers.results[queries[i]] = decodeSampled(
           found.answers[i], found.unresolvedPairs.subspan(i * gpu::kUnresolvedPerView, gpu::kUnresolvedPerView),
-          batch_.asked[queries[i]], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
-      batch_.stats.pairs += found.answers[i].pairs;
+          batch_.asked[queries[i]], scene_.impl(), drawn_.views[i].resolution, batch_.answers.stats.cpuPairs);
+      batch_.answers.stats.pairs += found.answers[i].pairs;
     }
     batch_.addCpuTime("decode", msSince(batch_.deviceDone));
   });
@@ -123,21 +123,21 @@ void SampledTier::flush(std::vector<Planned>& slice) {
   slice.clear();
 }
 
-void SampledTier::run(std::span<const size_t> which) {
+void SampledTier::run() {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
   std::vector<Planned> slice;
   Load load;
-  for (const size_t i : which) {
+  for (size_t i = 0; i < batch_.asked.size(); ++i) {
     const Clock::time_point start = Clock::now();
     ViewPlan plan = planOf(batch_.asked[i], options_.select ? Drawn::inReach : Drawn::everything);
     batch_.addCpuTime("select", msSince(start));
     if (plan.inReach.empty() && plan.outOfRange.empty()) {
-      batch_.answers[i] = decodeClear();
+      batch_.answers.results[i] = decodeClear();
       continue;
     }
     if (std::string reason = reasonAgainst(plan); !reason.empty()) {
-      batch_.reasons[i] = std::move(reason);
+      batch_.answers.reasons[i] = std::move(reason);
       continue;
     }
     load.add(plan);
@@ -157,12 +157,12 @@ Scopes SampledTier::scopes(const Query& query) {
   packBatch(drawn_, plans);
   StoredScopes stored;
   submitter_.submit(drawn_, scene_.impl(), true);
-  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
+  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.answers.stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()
                                     : decodeSampled(found.answers[0], found.unresolvedPairs, query, scene_.impl(),
-                                                    plan.view.resolution, batch_.stats.cpuPairs);
+                                                    plan.view.resolution, batch_.answers.stats.cpuPairs);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

@@ -12,8 +12,8 @@ class SampledTier {
   SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
               QueryBatch& batch);
 
-  /// Plans and submits these queries; on return the last submission may still be running.
-  void run(std::span<const size_t> which);
+  /// Plans and submits the batch; on return the last submission may still be running.
+  void run();
   /// Waits for the last submission and decodes it.
   void collect();
   /// The pictures from which a valid query is answered. No submission may be running.

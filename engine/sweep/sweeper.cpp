@@ -1,7 +1,7 @@
 // A query travels: begin -> its tier plans it and submits it ... finish -> the tier decodes it.
 #include "sweep/sweeper.h"
 
-#include <cassert>
+#include <numeric>
 
 #include "gpu/check.h"
 #include "gpu/limit_error.h"
@@ -31,22 +31,20 @@ SampledTier& Sweeper::Impl::sampled() {
   return *sampledTier;
 }
 
-void Sweeper::Impl::runSampled(std::span<const size_t> which) {
-  if (which.empty()) return;
+void Sweeper::Impl::runSampled() {
   try {
     sampled();
   } catch (const Error& error) {
-    for (const size_t query : which) fail(query, error);
+    for (size_t query = 0; query < asked.size(); ++query) fail(query, error);
     return;
   }
-  sampledTier->run(which);
+  sampledTier->run();
 }
 
-void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
+void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const {
   for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene);
+    const std::string wrong = validate(queries[i], scene, mode);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-    if (queries[i].mode == Mode::sampled) device.requireSampled("query " + std::to_string(i));
   }
 }
 
@@ -67,26 +65,22 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
-void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {
-  assert(queries.size() == results.size());
+void Sweeper::Impl::begin(std::span<const Query> queries, Mode mode) {
   copy->willOverwrite({});
   asked = queries;
-  answers = results;
-  lists = listsFor(queries);
-  stats = {};
-  reasons.clear();
+  answers = unanswered(queries);
   failure.reset();
   contactTier.begin();
-  std::vector<size_t> ofSampled, ofContact;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    answers[i] = Result();
-    (queries[i].mode == Mode::sampled ? ofSampled : ofContact).push_back(i);
-  }
   deviceDone = Clock::now();  // in case nothing goes there
+  if (queries.empty()) return;
   try {
-    runSampled(ofSampled);
-    if (sampledTier && !ofContact.empty()) sampledTier->collect();
-    contactTier.run(ofContact);
+    if (mode == Mode::sampled) {
+      runSampled();
+    } else {
+      std::vector<size_t> all(queries.size());
+      std::iota(all.begin(), all.end(), size_t{0});
+      contactTier.run(all);
+    }
   } catch (...) {
     finish();  // nothing stays with the device behind an exception
     throw;
@@ -118,37 +112,21 @@ void Sweeper::sync() {
   impl_->sync();
 }
 
-std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+Answers Sweeper::run(std::span<const Query> queries, Mode mode) {
   const FloatEnvironment floats;
-  impl_->validateAll(queries);
-  std::vector<Result> results(queries.size());
-  impl_->begin(queries, results);
+  if (mode == Mode::sampled) impl_->device.requireSampled("run()");
+  impl_->validateAll(queries, mode);
+  impl_->begin(queries, mode);
   impl_->finish();
-  impl_->joinedLists = joined(impl_->lists);
-  return results;
+  return std::move(impl_->answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
-  impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
-  impl_->stats = {};
+  impl_->validateAll({&query, 1}, Mode::sampled);
   impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
-}
-
-const Lists& Sweeper::lists() const {
-  return impl_->joinedLists;
-}
-
-const SweepStats& Sweeper::stats() const {
-  return impl_->stats;
-}
-
-const std::string& Sweeper::reason(size_t i) const {
-  static const std::string kNothing;
-  const auto found = impl_->reasons.find(i);
-  return found == impl_->reasons.end() ? kNothing : found->second;
 }
 
 }  // namespace radar

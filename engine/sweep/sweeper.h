@@ -14,14 +14,14 @@ struct Sweeper::Impl : QueryBatch {
 
   /// Returns the error if memory does not suffice: then each batch tries again, and answers as run() says.
   std::optional<Error> sync();
-  /// Encodes and submits valid `queries`; on return the last submission may still be running. `queries` and `results`,
-  /// of the same length, must stay in place until finish(); call that next.
-  void begin(std::span<const Query> queries, std::span<Result> results);
+  /// Encodes and submits valid `queries`; on return the last submission may still be running. `queries` must stay in
+  /// place until finish(); call that next. Then `answers` are complete, for the caller to take.
+  void begin(std::span<const Query> queries, Mode mode);
   void finish();
 
-  void validateAll(std::span<const Query> queries) const;
+  void validateAll(std::span<const Query> queries, Mode mode) const;
   SampledTier& sampled();
-  void runSampled(std::span<const size_t> which);
+  void runSampled();
 
   const Device::Impl& device;
   const Scene& scene;
@@ -29,7 +29,6 @@ struct Sweeper::Impl : QueryBatch {
   std::shared_ptr<GpuScene> copy;
   std::optional<SampledTier> sampledTier;  ///< made when first needed, since pipelines take time
   ContactTier contactTier;
-  Lists joinedLists;  ///< of the last run()
 };
 
 }  // namespace radar

@@ -121,7 +121,6 @@ class Margins {
     const Object& object = impl.objects[c.object].object;
     const Mesh &a = impl.meshes[meshId], &b = impl.meshes[object.mesh];
     c.query.mesh = meshId;
-    c.query.mode = Mode::contact;
     double size = 0;
     for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(object.worldFromMesh.m[k]) * b.unit);
     c.query.worldFromMesh = poseOf(size / a.unit * magnitude(random_, 10), 0);

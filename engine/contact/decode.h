@@ -1,12 +1,15 @@
 // Decides the unresolved pairs of a search exactly: those that are too close for the device's arithmetic.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "exact/motion.h"
 #include "math/vector.h"
+#include "query/hits.h"
 #include "radar/answers.h"
 #include "radar/query.h"
+#include "scene/scene.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {
@@ -33,5 +36,9 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();
+
+/// The answer to a query from those of its searches: one or, by ascending object, several; clear if there is none.
+/// Nothing if only the CPU can tell.
+std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches);
 
 }  // namespace radar

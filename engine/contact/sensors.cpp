@@ -51,6 +51,13 @@ void SensorBatch::clear() {
   excluded.clear();
 }
 
+void SensorBatch::truncate(uint32_t count) {
+  if (count < sensors.size()) excluded.resize(sensors[count].firstExcluded);
+  sensors.resize(count);
+  sweeps.resize(count);
+  starts.resize(count);
+}
+
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
                   const ObjectTree& tree, ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;

@@ -18,6 +18,8 @@ struct SensorBatch {
 
   uint32_t count() const { return static_cast<uint32_t>(sensors.size()); }
   void clear();
+  /// Forgets all but the first `count` queries.
+  void truncate(uint32_t count);
 };
 
 enum class Planned {

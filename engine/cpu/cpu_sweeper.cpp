@@ -2,6 +2,7 @@
 
 #include "cpu/search.h"
 #include "math/float_environment.h"
+#include "query/hits.h"
 
 namespace radar {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "query/hits.h"
 #include "scene/parallel.h"
 
 namespace radar::cpu {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "pool/chunk_scheduler.h"
+#include "query/hits.h"
 #include "radar/pool.h"
 #include "scene/scene.h"
 

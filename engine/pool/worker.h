@@ -23,6 +23,7 @@ class Worker {
   struct Lane {
     std::unique_ptr<Sweeper::Impl> sweep;  // made on first use, since pipelines take time
     Chunk chunk;
+    std::optional<Flight> flight;
     ChunkTrace trace;
     std::array<bool, 2> warm{};  // by mode: whether its pipelines have run
   };

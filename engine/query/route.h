@@ -11,8 +11,8 @@ enum class Route {
   searchEach  ///< one search of the device past each object in reach, since several hits are asked for or objects move
 };
 
-/// Null, or what of a query only the CPU's search combines. `canRevise`: what the device finds is looked at before it is an
-/// answer, as a Sweeper does; a Recorder's device leaves answers behind.
+/// Null, or what of a query only the CPU's search combines. `canRevise`: what the device finds is looked at before it
+/// is an answer, as a Sweeper does; a Recorder's device leaves answers behind.
 const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise);
 
 Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise);

@@ -32,7 +32,8 @@ std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, cons
   const Motion motion = motionPast(query, scene);
   const double way = motion.wayUntil(motion.distance);
   std::vector<ObjectId> found;
-  walk(query, motion, scene, tree, [&](double near) { return near <= way; }, [&](ObjectId id) { found.push_back(id); });
+  walk(
+      query, motion, scene, tree, [&](double near) { return near <= way; }, [&](ObjectId id) { found.push_back(id); });
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -43,10 +43,10 @@ inline void prefetch(const gpu::ObjectNode& node, const gpu::ObjectNode* nodes, 
 
 }  // namespace detail
 
-/// Calls `visit` with each object that takes part in a valid query and is in reach of its sensor, nearest first; all that
-/// take part, in ascending order, if the tree is out of range. `motion`: the sensor's. `wants`: bool(double near): whether
-/// objects still matter that are met after the sensor has moved by `near` world units, at the earliest. `visit` must not
-/// walk itself.
+/// Calls `visit` with each object that takes part in a valid query and is in reach of its sensor, nearest first; all
+/// that take part, in ascending order, if the tree is out of range. `motion`: the sensor's. `wants`: bool(double near):
+/// whether objects still matter that are met after the sensor has moved by `near` world units, at the earliest. `visit`
+/// must not walk itself.
 template <class Wants, class Visit>
 void walk(const Query& query, const Motion& motion, const Scene::Impl& scene, const ObjectTree& tree,
           const Wants& wants, const Visit& visit) {

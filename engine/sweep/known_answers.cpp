@@ -185,11 +185,12 @@ std::vector<Result> all(Answers answers) {
 
 Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries, Mode mode) {
   Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {},
-                        ContactTier::kernelsOf(device));
-  sweeper.begin(queries, mode);
-  sweeper.finish();
-  if (sweeper.failure) throw Error(*sweeper.failure);
-  return std::move(sweeper.answers);
+                        ContactRunner::kernelsOf(device));
+  Flight flight(queries, false);
+  sweeper.begin(flight, mode);
+  sweeper.finish(flight);
+  if (flight.failure) throw Error(*flight.failure);
+  return std::move(flight.answers);
 }
 
 AnswerCheck check(const char* kind, const Device::Impl& device, const KnownScene& known,

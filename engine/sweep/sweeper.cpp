@@ -1,7 +1,5 @@
-// A query travels: begin -> its tier plans it and submits it ... finish -> the tier decodes it.
+// A batch travels: begin() -> its mode's runner plans and submits it ... finish() -> the runner decodes it.
 #include "sweep/sweeper.h"
-
-#include <numeric>
 
 #include "gpu/check.h"
 #include "gpu/limit_error.h"
@@ -17,28 +15,16 @@ Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactTier(device, scene, given, *copy, std::move(kernels), room, *this) {
-  timestamps = given.timestamps;
-}
+      contactRunner(device, scene, given, *copy, std::move(kernels), room) {}
 
-SampledTier& Sweeper::Impl::sampled() {
-  if (!sampledTier) {
+SampledRunner& Sweeper::Impl::sampled() {
+  if (!sampledRunner) {
     // Now, and not in its first submission: others may share the copy.
     copy->needIndices();
     copy->sync(scene.impl());
-    sampledTier.emplace(device, scene, options, *copy, *this);
+    sampledRunner.emplace(device, scene, options, *copy);
   }
-  return *sampledTier;
-}
-
-void Sweeper::Impl::runSampled() {
-  try {
-    sampled();
-  } catch (const Error& error) {
-    for (size_t query = 0; query < asked.size(); ++query) fail(query, error);
-    return;
-  }
-  sampledTier->run();
+  return *sampledRunner;
 }
 
 void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const {
@@ -50,7 +36,7 @@ void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const
 
 std::optional<Error> Sweeper::Impl::sync() {
   copy->willOverwrite({});
-  if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
+  if (contactRunner.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
     return {};
   }
@@ -65,31 +51,37 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
-void Sweeper::Impl::begin(std::span<const Query> queries, Mode mode) {
+void Sweeper::Impl::begin(Flight& flight, Mode mode) {
   copy->willOverwrite({});
-  asked = queries;
-  answers = unanswered(queries);
-  failure.reset();
-  contactTier.begin();
-  deviceDone = Clock::now();  // in case nothing goes there
-  if (queries.empty()) return;
+  if (flight.queries.empty()) return;
   try {
-    if (mode == Mode::sampled) {
-      runSampled();
-    } else {
-      std::vector<size_t> all(queries.size());
-      std::iota(all.begin(), all.end(), size_t{0});
-      contactTier.run(all);
+    if (mode == Mode::contact) return contactRunner.begin(flight);
+    try {
+      sampled();
+    } catch (const Error& error) {
+      for (size_t query = 0; query < flight.queries.size(); ++query) flight.fail(query, error);
+      return;
     }
+    sampledRunner->begin(flight);
   } catch (...) {
-    finish();  // nothing stays with the device behind an exception
+    abandon(flight);
     throw;
   }
 }
 
-void Sweeper::Impl::finish() {
-  if (sampledTier) sampledTier->collect();
-  contactTier.finish();
+void Sweeper::Impl::finish(Flight& flight) {
+  try {
+    if (sampledRunner) sampledRunner->finish(flight);
+    contactRunner.finish(flight);
+  } catch (...) {
+    abandon(flight);
+    throw;
+  }
+}
+
+void Sweeper::Impl::abandon(Flight& flight) noexcept {
+  if (sampledRunner) sampledRunner->abandon(flight);
+  contactRunner.abandon(flight);
 }
 
 Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options) {
@@ -116,9 +108,10 @@ Answers Sweeper::run(std::span<const Query> queries, Mode mode) {
   const FloatEnvironment floats;
   if (mode == Mode::sampled) impl_->device.requireSampled("run()");
   impl_->validateAll(queries, mode);
-  impl_->begin(queries, mode);
-  impl_->finish();
-  return std::move(impl_->answers);
+  Flight flight(queries, impl_->options.timestamps);
+  impl_->begin(flight, mode);
+  impl_->finish(flight);
+  return std::move(flight.answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {

@@ -41,9 +41,10 @@ class DeviceSearch {
                  kernelsOf(shape)) {}
 
   Answers run(std::span<const Query> queries) {
-    sweeper_.begin(queries, Mode::contact);
-    sweeper_.finish();
-    return std::move(sweeper_.answers);
+    Flight flight(queries, false);
+    sweeper_.begin(flight, Mode::contact);
+    sweeper_.finish(flight);
+    return std::move(flight.answers);
   }
 
  private:

@@ -13,7 +13,7 @@ set(contact_may radar math exact gpu scene query cpu shaders spirv)
 set(sampled_may radar math exact gpu scene query contact shaders spirv)
 set(sweep_may radar math gpu scene query contact cpu sampled shaders)
 set(embed_may radar math gpu scene query cpu contact sweep shaders spirv)
-set(pool_may radar math gpu scene sweep)
+set(pool_may radar math gpu scene query sweep)
 
 set(wrong "")
 set(lower radar shaders spirv)

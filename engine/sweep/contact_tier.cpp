@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cpu/clearance.h"
-#include "gpu/limit_error.h"
+#include "gpu/check.h"
 #include "scene/parallel.h"
 #include "sweep/known_answers.h"
 
@@ -37,25 +37,17 @@ uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
 
 }  // namespace
 
-std::shared_ptr<const ContactKernels> ContactTier::kernelsOf(const Device::Impl& device) {
-  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
-}
-
 ContactTier::ContactTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
-                         GpuScene& resident, std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room,
-                         QueryBatch& batch)
+                         GpuScene& resident, const SearchRoom& room, bool needsProof, QueryBatch& batch)
     : device_(device),
       scene_(scene),
       options_(options),
       resident_(resident),
-      kernels_(std::move(kernels)),
       room_(room),
       mostSensors_(mostSensorsOf(device)),
       batch_(batch),
       pending_(batch) {
-  if (kernels_ || isOnCpu()) return;
-  requireProof(device);
-  kernels_ = kernelsOf(device);
+  if (needsProof && !isOnCpu()) requireProof(device);
 }
 
 void ContactTier::answerOnCpu(std::span<const size_t> which) {
@@ -151,7 +143,7 @@ void ContactTier::submit() {
   collect();
   pending_.submit(std::exchange(planned_, {}), [&](std::span<const size_t> queries) {
     try {
-      if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
+      if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, room_);
       submitter_->submit(sensors_, scene_.impl());
       return true;
     } catch (const gpu::LimitError&) {

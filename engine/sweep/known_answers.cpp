@@ -181,8 +181,7 @@ struct Found {
 };
 
 Found answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries) {
-  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {},
-                        ContactTier::kernelsOf(device));
+  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {}, false);
   Found found{std::vector<Result>(queries.size()), 0};
   sweeper.begin(queries, found.results);
   sweeper.finish();

@@ -33,7 +33,7 @@ class GatherPass {
   std::vector<gpu::Gathered> searches_;
   gpu::Upload upload_;
   gpu::Array<gpu::Gathered> buffer_;
-  gpu::KernelArguments gather_;
+  gpu::Passes run_;
 };
 
 }  // namespace radar

@@ -20,17 +20,6 @@
 #include "query/swept.h"
 #include "scene/scene_copy.h"
 
-// pass                                            reads           writes   barrier after it
-// ----------------------------------------------- --------------- -------- ------------------
-// gather.cpp: upload                                                       (contact/pass.cpp's)
-// contact/pass.cpp; host_geometry.cpp and
-//   host_queries.cpp between its upload and
-//   search
-// gather.cpp, host_geometry.cpp: invalidate                                computeWriteToCopy
-// readback                                        counts,         readback writtenToHost
-//                                                 results, sweeps,
-//                                                 extents
-
 namespace radar {
 
 namespace {
@@ -65,7 +54,7 @@ struct Recorder::Impl {
         capacity(completed(given, openDevice)),
         copy(std::move(ownCopy)),
         geometry(openDevice, *copy),
-        pass(openDevice, *copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
+        pass(openDevice, *copy, roomFor(capacity)),
         gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from

@@ -18,8 +18,8 @@ class Array {
   Array(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
       : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
 
-  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew; if so, set the
-  /// KernelArguments that use it again. The device must not be using it.
+  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew. The device must not
+  /// be using it.
   bool reserve(VkDeviceSize count) { return buffer_.reserve(count * sizeof(T)); }
 
   /// In elements.

@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "gpu/check.h"
-#include "gpu/limit_error.h"
 
 namespace radar::gpu {
 
@@ -19,6 +18,11 @@ uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryProper
     }
   }
   throw Error("no memory type has the properties " + std::to_string(needed));
+}
+
+uint64_t newIdentity() {
+  static std::atomic<uint64_t> made = 0;
+  return ++made;
 }
 
 Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
@@ -68,8 +72,7 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   memory_ = std::move(owned);
   mapped_ = static_cast<std::byte*>(mapped);
   capacity_ = size;
-  static std::atomic<uint64_t> made = 0;
-  identity_ = ++made;
+  identity_ = newIdentity();
   return true;
 }
 

@@ -15,6 +15,9 @@ VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
+/// A number that nothing else has: unlike handles, which Vulkan may reuse.
+uint64_t newIdentity();
+
 enum class BufferDomain { device, upload, readback };
 
 class Buffer {
@@ -29,7 +32,7 @@ class Buffer {
   VkBuffer get() const { return buffer_.get(); }
   const char* name() const { return name_; }
   VkDeviceSize capacity() const { return capacity_; }
-  /// Unique, unlike the VkBuffer handle, which Vulkan may reuse.
+  /// A newIdentity() of the VkBuffer.
   uint64_t identity() const { return identity_; }
   /// Host address, unless resident on the device. Coherent.
   std::byte* mapped() const { return mapped_; }

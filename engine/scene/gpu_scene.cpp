@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "gpu/barrier.h"
-#include "gpu/limit_error.h"
+#include "gpu/check.h"
 #include "scene/parallel.h"
 #include "scene/placement.h"
 

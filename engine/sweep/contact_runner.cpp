@@ -7,7 +7,6 @@
 #include "contact/decode.h"
 #include "cpu/clearance.h"
 #include "gpu/check.h"
-#include "gpu/limit_error.h"
 #include "query/route.h"
 #include "query/swept.h"
 #include "scene/parallel.h"
@@ -38,22 +37,15 @@ uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
 
 }  // namespace
 
-std::shared_ptr<const ContactKernels> ContactRunner::kernelsOf(const Device::Impl& device) {
-  return {std::shared_ptr<void>(), &device.shared<ContactKernels>()};
-}
-
 ContactRunner::ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
-                             GpuScene& resident, std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room)
+                             GpuScene& resident, const SearchRoom& room, bool needsProof)
     : device_(device),
       scene_(scene),
       options_(options),
       resident_(resident),
-      kernels_(std::move(kernels)),
       room_(room),
       mostSensors_(mostSensorsOf(device)) {
-  if (kernels_ || isOnCpu()) return;
-  requireProof(device);
-  kernels_ = kernelsOf(device);
+  if (needsProof && !isOnCpu()) requireProof(device);
 }
 
 bool ContactRunner::isOnCpu() const {
@@ -145,7 +137,7 @@ void ContactRunner::submit(Flight& flight) {
   if (planned.groups.empty()) return;
   collect(flight);
   const bool isSubmitted = attempt(flight, planned.groups, [&] {
-    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, kernels_, room_);
+    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, room_);
     try {
       submitter_->submit(planned.sensors, scene_.impl());
     } catch (const Error& error) {

@@ -10,11 +10,9 @@ namespace radar {
 
 class ContactRunner {
  public:
-  /// The device's own kernels, which live as long as it does.
-  static std::shared_ptr<const ContactKernels> kernelsOf(const Device::Impl& device);
-  /// `kernels`: null: the device's, created here and proved (known_answers.h) unless isOnCpu().
+  /// `needsProof`: that of the device (known_answers.h), unless isOnCpu().
   ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
-                std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room);
+                const SearchRoom& room, bool needsProof);
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
   bool isOnCpu() const;
@@ -44,7 +42,6 @@ class ContactRunner {
   const Scene& scene_;
   const SweeperOptions options_;
   GpuScene& resident_;
-  std::shared_ptr<const ContactKernels> kernels_;
   const SearchRoom room_;
   const size_t mostSensors_;                   ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small

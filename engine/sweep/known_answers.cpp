@@ -184,8 +184,7 @@ std::vector<Result> all(Answers answers) {
 }
 
 Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries, Mode mode) {
-  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {},
-                        ContactRunner::kernelsOf(device));
+  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {}, false);
   Flight flight(queries, false);
   sweeper.begin(flight, mode);
   sweeper.finish(flight);

@@ -2,20 +2,18 @@
 #include "sweep/sweeper.h"
 
 #include "gpu/check.h"
-#include "gpu/limit_error.h"
 #include "math/float_environment.h"
 #include "scene/scene_copy.h"
 
 namespace radar {
 
 Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const SweeperOptions& given,
-                    std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room,
-                    std::shared_ptr<const ContactKernels> kernels)
+                    std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room, bool needsProof)
     : device(openDevice),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactRunner(device, scene, given, *copy, std::move(kernels), room) {}
+      contactRunner(device, scene, given, *copy, room, needsProof) {}
 
 SampledRunner& Sweeper::Impl::sampled() {
   if (!sampledRunner) {

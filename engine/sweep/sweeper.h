@@ -8,9 +8,9 @@ namespace radar {
 
 struct Sweeper::Impl {
   /// `copy` may be shared with other instances of the same device, scene and thread; then call sync() after changes of
-  /// the scene, while nothing is running on the device. `kernels`: null: the device's.
+  /// the scene, while nothing is running on the device. `needsProof`: see ContactTier.
   Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
-       const SearchRoom& room = {}, std::shared_ptr<const ContactKernels> kernels = nullptr);
+       const SearchRoom& room = {}, bool needsProof = true);
 
   /// Returns the error if memory does not suffice: then each batch tries again, and answers as run() says.
   std::optional<Error> sync();

@@ -7,7 +7,7 @@
 
 #include "embed/host.h"
 #include "embed/on_device.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "radar/recorder.h"
 #include "spirv/skin_comp.h"
 #include "support/bindings.h"

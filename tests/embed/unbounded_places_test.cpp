@@ -26,7 +26,7 @@ struct OnDevicePlaces {
       : copy(test::device().impl()) {
     const Device::Impl& device = test::device().impl();
     const Scene::Impl& impl = scene.impl();
-    ContactPass search(device, copy, {std::shared_ptr<void>(), &device.shared<ContactKernels>()}, {});
+    ContactPass search(device, copy, {});
     HostGeometryPass geometry(device, copy);
     geometry.stage({.meshes = meshes}, impl);
     SensorBatch batch;

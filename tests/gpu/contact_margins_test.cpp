@@ -9,7 +9,6 @@
 #include "gpu/kernel_fixture.h"
 #include "math/rounding.h"
 #include "scene/gpu_scene.h"
-#include "spirv/contact_margins_comp.h"
 #include "support/catch.h"
 #include "workloads/shapes.h"
 
@@ -266,19 +265,20 @@ void Margins::check() {
   const auto touchBuffer = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
   gpu::Array<PairBounds> answers(test::impl(), "pair bounds", gpu::BufferDomain::readback);
   answers.reserve(touches.size());
-  const gpu::Kernel kernel(test::impl(), k_contact_margins_comp, "margins");
-  gpu::KernelArguments arguments(kernel);
+  gpu::Passes passes(test::impl());
   const GpuScene::Buffers& scene = gpuScene_.buffers();
-  arguments.set({{gpu::kSlotMeshNodes, scene.meshNodes},
-                 {gpu::kSlotObjectNodes, scene.objectNodes},
-                 {gpu::kSlotVertices, scene.vertices},
-                 {gpu::kSlotTriangles, scene.triangles},
-                 {gpu::kSlotPlacements, scene.placements},
-                 {gpu::kSlotSensors, sensors},
-                 {test::kSlotTouches, touchBuffer},
-                 {test::kSlotPairBounds, answers}});
   const auto count = static_cast<uint32_t>(touches.size());
-  test::run([&](const gpu::Commands& commands) { arguments.dispatch(commands, gpu::groupsFor(count, 64), count); });
+  test::run([&](const gpu::Commands& commands) {
+    passes(commands, test::kContactMargins, gpu::groupsFor(count, 64), count,
+           {{gpu::kSlotMeshNodes, scene.meshNodes},
+            {gpu::kSlotObjectNodes, scene.objectNodes},
+            {gpu::kSlotVertices, scene.vertices},
+            {gpu::kSlotTriangles, scene.triangles},
+            {gpu::kSlotPlacements, scene.placements},
+            {gpu::kSlotSensors, sensors},
+            {test::kSlotTouches, touchBuffer},
+            {test::kSlotPairBounds, answers}});
+  });
 
   uint32_t inRange = 0, tight = 0, certainlyNear = 0, tightlyNear = 0;
   Real closest = 0;  // the largest error, as a fraction of its bound

@@ -1,7 +1,7 @@
 // The contact search loses nothing with the smallest lists, in the shortest rounds and over very long lists.
 #include <cstring>
-#include <map>
 #include <ostream>
+#include <tuple>
 
 #include "support/catch.h"
 #include "support/same_bits.h"
@@ -14,7 +14,8 @@ namespace radar {
 
 std::ostream& operator<<(std::ostream& out, const SearchRoom& room) {
   return out << "tasks " << room.tasks << ", candidates " << room.candidates << ", unresolved " << room.unresolved
-             << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width;
+             << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width << ", queue "
+             << room.queue << ", stack " << room.stack;
 }
 
 }  // namespace radar
@@ -23,22 +24,12 @@ namespace {
 
 using namespace radar;
 
-/// Cached for each shape, since compiling takes a second.
-std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
-  const Device& device = test::device();  // outlives the kernels
-  auto& all =
-      test::onceInRun([] { return std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>>(); });
-  auto& kernels = all[{shape.queue, shape.stack}];
-  if (!kernels) kernels = std::make_shared<ContactKernels>(device.impl(), shape);
-  return kernels;
-}
-
 /// Searches on the device, whatever the size of the batch.
 class DeviceSearch {
  public:
-  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
+  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {})
       : sweeper_(test::device().impl(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
-                 kernelsOf(shape)) {}
+                 false) {}
 
   Answers run(std::span<const Query> queries) {
     Flight flight(queries, false);
@@ -89,13 +80,13 @@ TEST_CASE("the answers have the same bits with the smallest lists and in the sho
   const std::string family = GENERATE("interlocking", "lattice", "touching", "floor", "soup");
   const FamilyQueries batch(family.c_str(), tools::kIsolatedCases, 1, tools::Company::isolated);
   const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries).results;
-  const SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
-                                   SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
-                                   SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
-                                   SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
-  const SearchShape shape = GENERATE(SearchShape{}, SearchShape{.queue = 1, .stack = 4}, SearchShape{.stack = 7});
-  CAPTURE(family, room, shape.queue, shape.stack);
-  DeviceSearch narrow(batch.player.scene(), room, shape);
+  SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
+                             SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
+                             SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
+                             SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
+  std::tie(room.queue, room.stack) = GENERATE(std::pair{0u, 0u}, std::pair{1u, 4u}, std::pair{0u, 7u});
+  CAPTURE(family, room);
+  DeviceSearch narrow(batch.player.scene(), room);
   const Answers answers = narrow.run(batch.queries);
   checkSame(answers.results, roomy);
   // Only queries that overflow a list go to the CPU, and in some families those with very many unresolved pairs. Rounds

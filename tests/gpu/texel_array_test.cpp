@@ -12,7 +12,7 @@ using namespace radar::test;
 using gpu::Array;
 using gpu::BufferDomain;
 using gpu::Commands;
-using gpu::KernelArguments;
+using gpu::Passes;
 using gpu::TexelArray;
 
 TexelArray<Node> makeNodes() {
@@ -35,7 +35,7 @@ bool sumsAre(const Array<uint32_t>& sums, uint32_t count, uint32_t first) {
 
 TEST_CASE("texels have the uploaded values, also after the array has grown") {
   TexelArray<Node> nodes = makeNodes();
-  KernelArguments arguments(kernels().sumTexels);
+  Passes passes(impl());
   gpu::Upload upload(impl());
   for (const uint32_t count : {1u, 63u, 64u, 65u, 1234u}) {
     CAPTURE(count);
@@ -44,13 +44,12 @@ TEST_CASE("texels have the uploaded values, also after the array has grown") {
     nodes.reserve(count);
     CHECK(nodes.capacity() >= count);
     const Array<uint32_t> sums = numbers("sums", count);
-    arguments.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
     upload.begin(gpu::Upload::aligned(gpu::bytesOf(uploaded)));
     upload.add(uploaded.data(), gpu::bytesOf(uploaded), nodes);
     run([&](const Commands& commands) {
       upload.record(commands);
       gpu::uploadToRead(commands);
-      arguments.dispatch(commands, count);
+      passes(commands, kSumTexels, count, {{kSlotNodes, nodes}, {kSlotResults, sums}});
     });
     CHECK(sumsAre(sums, count, 1000));
   }
@@ -60,15 +59,19 @@ TEST_CASE("texels have the values that a kernel wrote as storage, and a missing 
   constexpr uint32_t kCount = 100;
   TexelArray<Node> nodes = makeNodes();
   nodes.reserve(kCount);
-  KernelArguments fill(kernels().fillNodes), sum(kernels().sumTexels);
+  Passes passes(impl());
   const Array<uint32_t> sums = numbers("sums", kCount);
-  fill.set({{kSlotNodes, nodes}});
-  sum.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
+  const auto fill = [&](const Commands& commands, uint32_t first) {
+    passes(commands, kFillNodes, kCount, first, {{kSlotNodes, nodes}});
+  };
+  const auto sum = [&](const Commands& commands) {
+    passes(commands, kSumTexels, kCount, {{kSlotNodes, nodes}, {kSlotResults, sums}});
+  };
   run([&](const Commands& commands) {
     for (const uint32_t first : {5u, 17u}) {
-      fill.dispatch(commands, kCount, first);
+      fill(commands, first);
       gpu::computeWriteToComputeReadWrite(commands);
-      sum.dispatch(commands, kCount);
+      sum(commands);
       gpu::computeWriteToComputeReadWrite(commands);
     }
   });
@@ -77,8 +80,8 @@ TEST_CASE("texels have the values that a kernel wrote as storage, and a missing 
   {
     gpu::Submission submission(impl(), false);  // recorded but never submitted
     const Commands commands = submission.begin();
-    fill.dispatch(commands, kCount, 1u);
-    sum.dispatch(commands, kCount);
+    fill(commands, 1);
+    sum(commands);
   }
   const std::vector<std::string> messages = takeValidationMessages();
   REQUIRE_FALSE(messages.empty());

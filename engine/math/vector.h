@@ -1,4 +1,5 @@
-// Vectors and affine maps in double precision.
+// Vectors and affine maps in double precision. Not Eigen's, which choose the order of operations themselves:
+// docs/exact.md.
 #pragma once
 
 #include <array>

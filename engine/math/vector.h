@@ -1,5 +1,5 @@
-// Vectors and affine maps in double precision. Not Eigen's, which choose the order of operations themselves:
-// docs/exact.md.
+// Vectors and affine maps in double precision. Not Eigen's, whose order of operations depends on the
+// compiler's flags: docs/exact.md.
 #pragma once
 
 #include <array>

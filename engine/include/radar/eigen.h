@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iomanip>
 #include <limits>
 #include <locale>
@@ -61,8 +61,8 @@ Transform transformOf(const Eigen::MatrixBase<Matrix>& worldFromMesh) {
   }
   const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor, 4, 4> rows = worldFromMesh.template cast<double>();
   if (rows.rows() == 4 && rows.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    detail::refuse("transformOf: expected the last row 0 0 0 1, got ", rows(3, 0), " ", rows(3, 1), " ", rows(3, 2), " ",
-                   rows(3, 3));
+    detail::refuse("transformOf: expected the last row 0 0 0 1, got ", rows(3, 0), " ", rows(3, 1), " ", rows(3, 2),
+                   " ", rows(3, 3));
   }
   Transform pose;
   std::copy_n(rows.data(), pose.m.size(), pose.m.begin());
@@ -80,11 +80,12 @@ Transform transformOf(const Eigen::Transform<Scalar, 3, Mode, Options>& worldFro
 template <class Matrix>
 std::vector<float> positionsOf(const Eigen::MatrixBase<Matrix>& vertices) {
   using Scalar = typename Matrix::Scalar;
+  using Bits = std::conditional_t<std::is_same_v<Scalar, float>, uint32_t, uint64_t>;
   static_assert(std::is_same_v<Scalar, float> || std::is_same_v<Scalar, double>, "expected floats or doubles");
   const auto exactly = [](Scalar number) {
     const Scalar rounded = static_cast<float>(number);
     // Compares bits: a host's -ffast-math cannot simplify that.
-    const bool isFloat = std::memcmp(&rounded, &number, sizeof number) == 0;
+    const bool isFloat = std::bit_cast<Bits>(rounded) == std::bit_cast<Bits>(number);
     return isFloat ? std::optional(static_cast<float>(number)) : std::nullopt;
   };
   return detail::converted<float>("positionsOf", vertices, "a float (roundedPositionsOf rounds)", exactly);

@@ -1,5 +1,5 @@
 // Vectors and affine maps in double precision. Sums run from left to right, so that answers have the same bits
-// everywhere.
+// everywhere. Not Eigen's, whose order of operations depends on the compiler's flags: docs/exact.md.
 #pragma once
 
 #include <algorithm>

@@ -7,8 +7,6 @@
 
 namespace radar {
 
-namespace {}  // namespace
-
 GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
     : upload_(device),
       buffer_(device, "searches to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
@@ -16,7 +14,9 @@ GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
   buffer_.reserve(searches);
 }
 
-void GatherPass::stage() {
+void GatherPass::stage(std::span<const gpu::Gathered> queries) {
+  searches_.clear();
+  for (const gpu::Gathered& query : queries) searches_.insert(searches_.end(), query.count, query);
   run_.begin();
   upload_.begin(gpu::Upload::aligned(gpu::bytesOf(searches_)));
   upload_.add(searches_.data(), gpu::bytesOf(searches_), buffer_);
@@ -24,8 +24,9 @@ void GatherPass::stage() {
 
 void GatherPass::record(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t first) {
   gpu::computeWriteToComputeReadWrite(commands);
-  run_(commands, shaders::kGather, gpu::groupsFor(searchCount(), gpu::kHostGroup),
-       gpu::GatherPush{searchCount(), first}, {{gpu::kSlotResults, results}, {gpu::kSlotGathered, buffer_}});
+  const auto count = static_cast<uint32_t>(searches_.size());
+  run_(commands, shaders::kGather, gpu::groupsFor(count, gpu::kHostGroup), gpu::GatherPush{count, first},
+       {{gpu::kSlotResults, results}, {gpu::kSlotGathered, buffer_}});
 }
 
 }  // namespace radar

@@ -17,12 +17,9 @@ class GatherPass {
   /// Makes room for this many searches.
   GatherPass(const Device::Impl& device, uint32_t searches);
 
-  void clear() { searches_.clear(); }
   bool empty() const { return searches_.empty(); }
-  uint32_t searchCount() const { return static_cast<uint32_t>(searches_.size()); }
-  /// Adds the searches of a query.
-  void add(const gpu::Gathered& query) { searches_.insert(searches_.end(), query.count, query); }
-  void stage();
+  /// Stages the searches of these queries, in their order.
+  void stage(std::span<const gpu::Gathered> queries);
   /// The caller records the barrier behind it.
   void recordUpload(const gpu::Commands& commands) const { upload_.record(commands); }
   /// Call after recording the searches, which the shader waits for. `first`: index of the first search's answer. The

@@ -305,8 +305,7 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
       const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
       const auto found = cpu::approach(a, b, motion.direction, motion.unit, clearance, query.distance, tolerance);
       distances::Point<Quad> unit{motion.direction[0], motion.direction[1], motion.direction[2]};
-      const Quad length = sqrt(distances::dot(unit, unit));
-      for (Quad& c : unit) c /= length;
+      unit.normalize();
       const auto placedA = quad(a), placedB = quad(b);
       const Quad room = 1e-24 * stretch;
       CAPTURE(stretch, seed, clearance);

@@ -63,42 +63,6 @@ bool hasDoubles(std::span<const uint32_t> spirv) {
   return false;
 }
 
-// Of the bindings by number: the struct of a buffer's elements, or their stride if they are none; "" of an image.
-std::map<uint32_t, std::string> elementsOf(std::span<const uint32_t> spirv) {
-  constexpr uint32_t kOpName = 5, kOpTypeRuntimeArray = 29, kOpTypeStruct = 30, kOpTypePointer = 32, kOpVariable = 59,
-                     kOpDecorate = 71, kArrayStride = 6, kBinding = 33, kDescriptorSet = 34, kStorageBuffer = 12;
-  std::map<uint32_t, std::string> names, elements;
-  std::map<uint32_t, uint32_t> numbers, strides, inner;  // of a pointer, an array, or a struct's last member
-  for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
-    const uint32_t op = spirv[at] & 0xffff, last = spirv[at + (spirv[at] >> 16) - 1];
-    if (op == kOpName) names[spirv[at + 1]] = reinterpret_cast<const char*>(&spirv[at + 2]);
-    if (op == kOpDecorate && spirv[at + 2] == kBinding) numbers[spirv[at + 1]] = last;
-    if (op == kOpDecorate && spirv[at + 2] == kArrayStride) strides[spirv[at + 1]] = last;
-    if (op == kOpDecorate && spirv[at + 2] == kDescriptorSet) CHECK(last == 0);
-    if (op == kOpTypePointer || op == kOpTypeRuntimeArray || op == kOpTypeStruct) inner[spirv[at + 1]] = last;
-    if (op != kOpVariable || numbers.count(spirv[at + 2]) == 0) continue;
-    std::string& element = elements[numbers.at(spirv[at + 2])];
-    if (spirv[at + 3] != kStorageBuffer) continue;
-    const uint32_t member = inner.at(inner.at(spirv[at + 1]));
-    const std::string& name = names[strides.count(member) == 1 ? inner.at(member) : member];
-    element = name.empty() ? std::to_string(strides.at(member)) : name;
-  }
-  return elements;
-}
-
-// The types of a header's slots, by number.
-std::multimap<uint32_t, std::string> slotsIn(const char* header) {
-  std::ifstream stream(std::string(RADAR_SHADERS) + "/" + header);
-  REQUIRE(stream);
-  const std::regex slot("^INTEROP_SLOT\\(\\w+, (\\d+), (\\w+)\\)");
-  std::multimap<uint32_t, std::string> slots;
-  std::smatch match;
-  for (std::string line; std::getline(stream, line);) {
-    if (std::regex_search(line, match, slot)) slots.emplace(std::stoul(match[1]), match[2]);
-  }
-  return slots;
-}
-
 struct Expected {
   std::string structure;
   size_t size;
@@ -281,6 +245,43 @@ std::string strideOf(const std::string& type) {
     if (one.structure == type) return std::to_string(one.size);
   }
   return type == "uint" ? "4" : "";
+}
+
+// Of the bindings by number: the shared struct of a buffer's elements, or their stride; "" of an image.
+std::map<uint32_t, std::string> elementsOf(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kOpName = 5, kOpTypeRuntimeArray = 29, kOpTypeStruct = 30, kOpTypePointer = 32, kOpVariable = 59,
+                     kOpDecorate = 71, kArrayStride = 6, kBinding = 33, kDescriptorSet = 34, kStorageBuffer = 12;
+  std::map<uint32_t, std::string> names, elements;
+  std::map<uint32_t, uint32_t> numbers, strides, inner;  // of a pointer, an array, or a struct's last member
+  for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+    const uint32_t op = spirv[at] & 0xffff, last = spirv[at + (spirv[at] >> 16) - 1];
+    if (op == kOpName) names[spirv[at + 1]] = reinterpret_cast<const char*>(&spirv[at + 2]);
+    if (op == kOpDecorate && spirv[at + 2] == kBinding) numbers[spirv[at + 1]] = last;
+    if (op == kOpDecorate && spirv[at + 2] == kArrayStride) strides[spirv[at + 1]] = last;
+    if (op == kOpDecorate && spirv[at + 2] == kDescriptorSet) CHECK(last == 0);
+    if (op == kOpTypePointer || op == kOpTypeRuntimeArray || op == kOpTypeStruct) inner[spirv[at + 1]] = last;
+    if (op != kOpVariable || numbers.count(spirv[at + 2]) == 0) continue;
+    std::string& element = elements[numbers.at(spirv[at + 2])];
+    if (spirv[at + 3] != kStorageBuffer) continue;
+    const uint32_t member = inner.at(inner.at(spirv[at + 1]));
+    const std::string& name = names[strides.count(member) == 1 ? inner.at(member) : member];
+    const bool isShared = name == "RadarResult" || !strideOf(name).empty();
+    element = isShared ? name : std::to_string(strides.at(member));
+  }
+  return elements;
+}
+
+// The types of a header's slots, by number.
+std::multimap<uint32_t, std::string> slotsIn(const char* header) {
+  std::ifstream stream(std::string(RADAR_SHADERS) + "/" + header);
+  REQUIRE(stream);
+  const std::regex slot("^INTEROP_SLOT\\(\\w+, (\\d+), (\\w+)\\)");
+  std::multimap<uint32_t, std::string> slots;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_search(line, match, slot)) slots.emplace(std::stoul(match[1]), match[2]);
+  }
+  return slots;
 }
 
 // radar/result.glsl declares it for hosts.

@@ -8,6 +8,7 @@
 #include "embed/host_geometry.h"
 #include "embed/on_device.h"
 #include "gpu/barrier.h"
+#include "query/swept.h"
 #include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/exact_placement.h"

@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "radar/query.h"
+#include "radar/answers.h"
 
 namespace radar {
 

@@ -65,7 +65,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
       run_(device, {search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter, shaders::kLink,
                     shaders::kResolve}),
       upload_(device),
-      sensors_(device, "sensors", BufferDomain::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
+      sensors_(device, "sensors", BufferDomain::device, kUploaded | gpu::kAsTexels),
       sweeps_(device, "sweeps", BufferDomain::device, kReadBack),
       states_(device, "search states", BufferDomain::device, kUploaded),
       heads_(device, "refined pair lists", BufferDomain::device, kUploaded),

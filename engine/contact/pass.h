@@ -38,7 +38,7 @@ class ContactPass {
   /// What that shader writes: sensors, sweeps and states, one per result; tasks, whose number it adds to counts(); and
   /// excluded objects, for which there is room for one per sensor.
   struct Encoded {
-    const gpu::TexelArray<gpu::Sensor>& sensors;
+    const gpu::Array<gpu::Sensor>& sensors;
     const gpu::Array<gpu::Sweep>& sweeps;
     const gpu::Array<gpu::SearchState>& states;
     const gpu::Array<gpu::SearchTask>& tasks;
@@ -80,7 +80,7 @@ class ContactPass {
   gpu::Program search_, searchWithClearance_;
   gpu::Passes run_;
   gpu::Upload upload_;
-  gpu::TexelArray<gpu::Sensor> sensors_;
+  gpu::Array<gpu::Sensor> sensors_;
   gpu::Array<gpu::Sweep> sweeps_;
   gpu::Array<gpu::SearchState> states_;
   gpu::Array<uint32_t> heads_, excluded_;

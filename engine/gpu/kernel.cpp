@@ -244,9 +244,11 @@ Passes::Set& Passes::add(const Program& program) {
 void Passes::write(Set& set, const Binding& binding, const Argument& argument) const {
   VkDescriptorBufferInfo buffer{};
   VkDescriptorImageInfo image{};
+  VkBufferView texels = VK_NULL_HANDLE;
   if (argument.buffer_ != nullptr) {
     const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
     buffer = {argument.buffer_->get(), 0, std::min(argument.buffer_->capacity(), limit)};
+    texels = argument.buffer_->view();
   } else {
     image = {argument.sampler_, argument.image_->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   }
@@ -257,7 +259,7 @@ void Passes::write(Set& set, const Binding& binding, const Argument& argument) c
                                    .descriptorType = binding.type,
                                    .pImageInfo = &image,
                                    .pBufferInfo = &buffer,
-                                   .pTexelBufferView = &argument.texels_};
+                                   .pTexelBufferView = &texels};
   device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
 }
 
@@ -288,7 +290,7 @@ const Passes::Set& Passes::setFor(const Program& program, std::initializer_list<
     if (wantsImage != (given[i]->image_ != nullptr)) {
       fail(shader, bindings[i], wantsImage ? "is an image, not a buffer" : "is not an image");
     }
-    if (wantsTexels && given[i]->texels_ == VK_NULL_HANDLE) {
+    if (wantsTexels && given[i]->buffer_->view() == VK_NULL_HANDLE) {
       fail(shader, bindings[i], std::string("reads texels, but \"") + given[i]->buffer_->name() + "\" has none");
     }
   }

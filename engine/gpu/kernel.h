@@ -51,13 +51,9 @@ struct Kernel;
 /// A slot and the resource bound to it. A buffer of another element type does not compile.
 class Argument {
  public:
-  /// Binds a storage buffer, up to the device's maxStorageBufferRange.
+  /// Binds a storage buffer, up to the device's maxStorageBufferRange, or its texels, whichever the shader declares.
   template <class T>
   Argument(Slot<T> slot, const Array<T>& array) : binding_(slot.number), buffer_(&array.buffer()) {}
-  /// Binds a uniform texel buffer or a storage buffer, whichever the shader declares.
-  template <class T>
-  Argument(Slot<T> slot, const TexelArray<T>& array)
-      : binding_(slot.number), buffer_(&array.buffer()), texels_(array.view()) {}
   /// Binds an image in SHADER_READ_ONLY_OPTIMAL layout, with its sampler.
   Argument(Slot<SampledImage> slot, const DepthArray& image, VkSampler sampler)
       : binding_(slot.number), image_(&image), sampler_(sampler) {}
@@ -68,7 +64,6 @@ class Argument {
 
   uint32_t binding_;
   const Buffer* buffer_ = nullptr;
-  VkBufferView texels_ = VK_NULL_HANDLE;
   const DepthArray* image_ = nullptr;
   VkSampler sampler_ = VK_NULL_HANDLE;
 };

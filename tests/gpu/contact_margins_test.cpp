@@ -260,8 +260,7 @@ void Margins::check() {
     return array;
   };
   const auto sensors = upload(
-      batch.sensors,
-      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
+      batch.sensors, gpu::Array<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, gpu::kAsTexels));
   const auto touchBuffer = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
   gpu::Array<PairBounds> answers(test::impl(), "pair bounds", gpu::BufferDomain::readback);
   answers.reserve(touches.size());

@@ -12,12 +12,9 @@ using gpu::BufferDomain;
 using gpu::Commands;
 using gpu::Passes;
 using gpu::Slot;
-using gpu::TexelArray;
 
 static_assert(std::is_constructible_v<Argument, Slot<Node>, const Array<Node>&>);
-static_assert(std::is_constructible_v<Argument, Slot<Node>, const TexelArray<Node>&>);
 static_assert(!std::is_constructible_v<Argument, Slot<Node>, const Array<uint32_t>&>);
-static_assert(!std::is_constructible_v<Argument, Slot<Node>, const TexelArray<Groups>&>);
 static_assert(!std::is_constructible_v<Argument, Slot<Node>, const gpu::Buffer&>);
 static_assert(!std::is_constructible_v<Argument, Slot<Node>, const gpu::DepthArray&, VkSampler>);
 static_assert(!std::is_constructible_v<Argument, uint32_t, const Array<Node>&>);

@@ -129,11 +129,7 @@ bool isSettled(const Query& query, double tolerance, const Result& found) {
   return !(query.skipOverlapping && mayCross);
 }
 
-}  // namespace
-
-std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
-  if (searches.empty()) return Merged{.first = clearAnswer(), .hits = {}};
-  const double tolerance = cpu::toleranceOf(query, scene.meshes[query.mesh]);
+std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::span<const Result> searches) {
   const auto settled = [&](const Result& found) { return isSettled(query, tolerance, found); };
   if (query.anyHit) {
     // One contact settles it, whatever the other searches have found.
@@ -143,11 +139,17 @@ std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene
   }
   if (!std::all_of(searches.begin(), searches.end(), settled)) return std::nullopt;
   Merged answer = merged(searches, query.hits);
-  if (!answer.isCertain) return std::nullopt;
-  if (isStep(query, scene) && !query.motion) {
-    cpu::toDistances(answer.first, query.distance);
-    for (Result& hit : answer.hits) cpu::toDistances(hit, query.distance);
-  }
+  return answer.isCertain ? std::optional(std::move(answer)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
+  if (searches.empty()) return Merged{.first = clearAnswer(), .hits = {}};
+  auto answer = settledAnswer(query, cpu::toleranceOf(query, scene.meshes[query.mesh]), searches);
+  if (!answer || !isStep(query, scene) || query.motion) return answer;
+  cpu::toDistances(answer->first, query.distance);
+  for (Result& hit : answer->hits) cpu::toDistances(hit, query.distance);
   return answer;
 }
 

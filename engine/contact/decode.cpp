@@ -145,7 +145,6 @@ std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::s
 }  // namespace
 
 std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
-  if (searches.empty()) return Merged{.first = clearAnswer(), .hits = {}};
   auto answer = settledAnswer(query, cpu::toleranceOf(query, scene.meshes[query.mesh]), searches);
   if (!answer || !isStep(query, scene) || query.motion) return answer;
   cpu::toDistances(answer->first, query.distance);

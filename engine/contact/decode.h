@@ -37,7 +37,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
 /// The answer to a query with nothing in reach.
 Result clearAnswer();
 
-/// The answer to a query from those of its searches: one or, by ascending object, several; clear if there is none.
+/// The answer to a query from those of its searches: one or, by ascending object, several.
 /// Nothing if only the CPU can tell.
 std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches);
 

@@ -107,7 +107,11 @@ bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tr
     sensors.truncate(first);
     return false;
   }
-  flight.planned.groups.push_back({query, first, sensors.count() - first});
+  if (const uint32_t count = sensors.count() - first; count > 0) {
+    flight.planned.groups.push_back({query, first, count});
+  } else {
+    flight.answers.results[query] = clearAnswer();
+  }
   return true;
 }
 

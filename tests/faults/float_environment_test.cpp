@@ -119,7 +119,8 @@ AllAnswers answersIn(const InEnvironment& in) {
   Scene scene;
   in([&] { edits.make(scene); });
   in([&] { addOddMeshes(scene); });
-  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
+  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries(),
+                           recorded = test::recordableQueries();
   AllAnswers answers;
   CpuSweeper cpu(scene);
   answers.cpu = in([&] { return cpu.run(queries); });
@@ -133,7 +134,7 @@ AllAnswers answersIn(const InEnvironment& in) {
   Recorder recorder = in([&] { return Recorder(device, scene, test::kScenarioRoom); });
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
-  in([&] { recorder.record(commands, test::recordableQueries()); });
+  in([&] { recorder.record(commands, recorded); });
   submission.submitAndWait();
   answers.recorded = in([&] { return recorder.read(); });
   std::vector<Device> devices;

@@ -6,6 +6,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include "cpu/clearance.h"
+#include "cpu/query_search.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"
 
@@ -108,6 +109,47 @@ Result clearAnswer() {
   Result result(Status::clear);
   result.tier = Tier::contact;
   return result;
+}
+
+namespace {
+
+// Whether what a search found is its answer; else only the CPU can tell.
+bool isSettled(const Query& query, double tolerance, const Result& found) {
+  if (found.flags != 0 || found.status == Status::invalid) return false;
+  if (query.clearance > 0) {
+    // The CPU finds the least pair of triangles that are that near at the start.
+    if (found.status == Status::overlap && found.object == kNone) return false;
+    // What is certain on the device may have kept the search from other pairs.
+    if (found.status == Status::undecided) return false;
+    // In a bracket that rounding keeps wide, other pairs may begin than those that the CPU's search comes across.
+    if (found.status == Status::hit && !query.anyHit && !(found.hi - found.lo <= tolerance)) return false;
+  }
+  // What meets at the start may cross, and then takes no part.
+  const bool mayCross = found.status == Status::overlap || (query.anyHit && found.status == Status::hit);
+  return !(query.skipOverlapping && mayCross);
+}
+
+std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::span<const Result> searches) {
+  const auto settled = [&](const Result& found) { return isSettled(query, tolerance, found); };
+  if (query.anyHit) {
+    // One contact settles it, whatever the other searches have found.
+    for (const Result& found : searches) {
+      if (settled(found) && found.status != Status::clear) return Merged{.first = found, .hits = {}};
+    }
+  }
+  if (!std::all_of(searches.begin(), searches.end(), settled)) return std::nullopt;
+  Merged answer = merged(searches, query.hits);
+  return answer.isCertain ? std::optional(std::move(answer)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches) {
+  auto answer = settledAnswer(query, cpu::toleranceOf(query, scene.meshes[query.mesh]), searches);
+  if (!answer || !isStep(query, scene) || query.motion) return answer;
+  cpu::toDistances(answer->first, query.distance);
+  for (Result& hit : answer->hits) cpu::toDistances(hit, query.distance);
+  return answer;
 }
 
 }  // namespace radar

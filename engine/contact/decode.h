@@ -1,11 +1,15 @@
 // Decides the unresolved pairs of a search exactly: those that are too close for the device's arithmetic.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "exact/motion.h"
 #include "math/vector.h"
+#include "query/hits.h"
+#include "radar/answers.h"
 #include "radar/query.h"
+#include "scene/scene.h"
 #include "shaders/contact/interop.h"
 
 namespace radar {
@@ -22,7 +26,7 @@ class UnresolvedPairs {
   std::vector<const gpu::UnresolvedPair*> ordered_;
 };
 
-/// The answer to a query whose device answer `found` has the flag kFlagUnresolved; `pairs` are all that may be first.
+/// The answer to a query whose device answer `found` has the flag Flag::unresolved; `pairs` are all that may be first.
 /// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
 /// clearance (cpu/clearance.h).
 /// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `farthest`:
@@ -32,5 +36,9 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
 
 /// The answer to a query with nothing in reach.
 Result clearAnswer();
+
+/// The answer to a query from those of its searches: one or, by ascending object, several.
+/// Nothing if only the CPU can tell.
+std::optional<Merged> certainAnswer(const Query& query, const Scene::Impl& scene, std::span<const Result> searches);
 
 }  // namespace radar

@@ -5,27 +5,9 @@
 #include <thread>
 
 #include "gpu/barrier.h"
-#include "gpu/limit_error.h"
-
-// pass      reads                                writes                                 barrier after it
-// --------- ------------------------------------ -------------------------------------- ------------------------------
-// upload    staging                              scene, sensors, sweeps, states, tasks, transferToComputeReadWrite
-//                                                counts, excluded, results, heads
-// Rounds of both:
-// search    scene, sensors, excluded, tasks      states, counts, candidates,            computeWriteToComputeReadWrite
-//                                                the other list of tasks
-// collect   tasks                                counts, states,                        computeWriteToComputeReadWrite
-//                                                the other list of tasks
-// After the last round:                                                                 computeWriteToIndirect
-// filter    states, counts, candidates           counts, refined pairs                  computeWriteToComputeReadWrite
-// refine    scene, sweeps                        refined pairs, states, counts          computeWriteToIndirect
-//             (only with doubles)
-// block     scene, sweeps, counts,               refined pairs, states                  computeWriteToComputeReadWrite
-//             refined pairs
-//             (only with doubles, and if a query ignores what does not block)
-// link      states, counts                       refined pairs, heads                   computeWriteToComputeReadWrite
-// resolve   scene, sweeps, states, heads,        counts, results, unresolved            (the caller's)
-//           refined pairs
+#include "gpu/check.h"
+#include "gpu/requirements.h"
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
@@ -58,16 +40,32 @@ void checkExcluded(const Device::Impl& device, uint64_t count) {
                         " bytes, the device allows " + std::to_string(limit));
 }
 
+// The lanes of a workgroup, which is one subgroup; the capacities of its queue and stacks; whether sensors have
+// clearances.
+gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool hasClearances) {
+  const uint32_t lanes = device.subgroupSize;
+  uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
+  while (queue > 6 * lanes &&
+         gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
+    queue -= lanes;
+  }
+  const uint32_t stack = room.stack != 0 ? std::max(room.stack, 4u) : 40;
+  return {shaders::kSearch, {lanes, queue, stack, hasClearances ? 1u : 0u}, gpu::Subgroups::full};
+}
+
 }  // namespace
 
-ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::shared_ptr<const ContactKernels> kernels,
-                         const SearchRoom& room)
+ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room)
     : device_(&device),
       scene_(scene),
-      kernels_(std::move(kernels)),
       room_(room),
+      search_(searchOf(device, room, false)),
+      searchWithClearance_(searchOf(device, room, true)),
+      // Rounds alternate between two lists of tasks.
+      run_(device, {search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter, shaders::kLink,
+                    shaders::kResolve}),
       upload_(device),
-      sensors_(device, "sensors", BufferDomain::device, kUploaded, VK_FORMAT_R32G32B32A32_UINT),
+      sensors_(device, "sensors", BufferDomain::device, kUploaded | gpu::kAsTexels),
       sweeps_(device, "sweeps", BufferDomain::device, kReadBack),
       states_(device, "search states", BufferDomain::device, kUploaded),
       heads_(device, "refined pair lists", BufferDomain::device, kUploaded),
@@ -78,21 +76,13 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, std::share
       refinedPairs_(device, "refined pairs", BufferDomain::device),
       counts_(device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
       results_(device, "results", BufferDomain::device, kReadBack),
-      unresolved_(device, "unresolved pairs", BufferDomain::readback),
-      search_{gpu::KernelArguments(kernels_->search), gpu::KernelArguments(kernels_->search)},
-      collect_{gpu::KernelArguments(kernels_->collect), gpu::KernelArguments(kernels_->collect)},
-      filter_(kernels_->filter),
-      link_(kernels_->link),
-      resolve_(kernels_->resolve) {
+      unresolved_(device, "unresolved pairs", BufferDomain::readback) {
   if (room_.budget == 0) room_.budget = kMostBudget;
   if (room_.width == 0) {
     room_.width =
-        runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * kernels_->lanes : 1u << 15;
+        runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
   }
-  if (!device.doubles) return;
-  refine_.emplace(*kernels_->refine);
-  refineLeaving_.emplace(*kernels_->refineLeaving);
-  block_.emplace(*kernels_->block);
+  if (device.doubles) run_.reserve({shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock});
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
@@ -102,7 +92,7 @@ uint32_t ContactPass::groupsFor(uint32_t sensors) const {
 
 void ContactPass::reserveLists(uint32_t sensors) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
-  const uint64_t all = uint64_t{groupsFor(sensors)} * kernels_->lanes * (kernels_->stack + 1);
+  const uint64_t all = uint64_t{groupsFor(sensors)} * device_->subgroupSize * (search_.constants[2] + 1);
   const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
   const uint64_t candidates =
       room_.candidates != 0 ? room_.candidates : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
@@ -140,9 +130,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
                                 [](const gpu::Sweep& sweep) { return sweep.ignoreLeaving != 0; });
   hasClearances_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
                                [](const gpu::Sweep& sweep) { return sweep.hasClearance != 0; });
-  for (auto& search : searchWithClearance_) {
-    if (hasClearances_ && !search) search.emplace(kernels_->searchWithClearance());
-  }
+  if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
   const VkDeviceSize sceneBytes = scene_.prepare(scene);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
@@ -164,7 +152,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
   upload_.add(known.data(), known.size_bytes(), results_);
   addCounts(sensorCount_);
-  setArguments();
+  run_.begin();
 }
 
 void ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene) {
@@ -175,7 +163,7 @@ void ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene) {
   upload_.begin(sceneBytes + reservedBytes_);
   scene_.upload(scene, upload_);
   addCounts(0);
-  setArguments();
+  run_.begin();
 }
 
 // Uploads the counts of a search that begins with this many tasks.
@@ -197,54 +185,6 @@ void ContactPass::stageMore(const gpu::SearchCounts& before) {
   upload_.add(&counts, sizeof(counts), counts_);
 }
 
-void ContactPass::setArguments() {
-  using namespace gpu;  // the slots
-  const GpuScene::Buffers& scene = scene_.buffers();
-  for (int i = 0; i < 2; ++i) {
-    const Array<SearchTask>&from = i == 0 ? tasks_ : spilled_, &to = i == 0 ? spilled_ : tasks_;
-    search(i).set({{kSlotMeshNodes, scene.meshNodes},
-                   {kSlotObjectNodes, scene.objectNodes},
-                   {kSlotVertices, scene.vertices},
-                   {kSlotTriangles, scene.triangles},
-                   {kSlotPlacements, scene.placements},
-                   {kSlotSensors, sensors_},
-                   {kSlotStates, states_},
-                   {kSlotCounts, counts_},
-                   {kSlotTasks, from},
-                   {kSlotSpilled, to},
-                   {kSlotCandidatePairs, candidates_},
-                   {kSlotExcluded, excluded_}});
-    collect_[i].set({{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
-  }
-  filter_.set({{kSlotStates, states_},
-               {kSlotCounts, counts_},
-               {kSlotCandidatePairs, candidates_},
-               {kSlotRefinedPairs, refinedPairs_}});
-  for (auto* arguments : {&refine_, &refineLeaving_, &block_}) {
-    if (!*arguments) continue;
-    (*arguments)
-        ->set({{kSlotStates, states_},
-               {kSlotCounts, counts_},
-               {kSlotRefinedPairs, refinedPairs_},
-               {kSlotVertices, scene.vertices},
-               {kSlotTriangles, scene.triangles},
-               {kSlotSweeps, sweeps_},
-               {kSlotObjects, scene.objects},
-               {kSlotMeshes, scene.meshes}});
-  }
-  link_.set({{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
-  resolve_.set({{kSlotStates, states_},
-                {kSlotHeads, heads_},
-                {kSlotCounts, counts_},
-                {kSlotRefinedPairs, refinedPairs_},
-                {kSlotVertices, scene.vertices},
-                {kSlotTriangles, scene.triangles},
-                {kSlotSweeps, sweeps_},
-                {kSlotObjects, scene.objects},
-                {kSlotResults, results_},
-                {kSlotUnresolved, unresolved_}});
-}
-
 void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& stage) {
   stage("upload");
   upload_.record(commands);
@@ -252,37 +192,82 @@ void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& s
   gpu::transferToComputeReadWrite(commands);
 }
 
+// `isLast`: searches that this leaves unfinished are abandoned.
+void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, bool isLast) {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = scene_.buffers();
+  const Array<SearchTask>&from = round % 2 == 0 ? tasks_ : spilled_, &to = round % 2 == 0 ? spilled_ : tasks_;
+  run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(sensorCount_),
+       SearchPush{round, taskRoom_, candidateRoom_, room_.budget, room_.width},
+       {{kSlotMeshNodes, scene.meshNodes},
+        {kSlotObjectNodes, scene.objectNodes},
+        {kSlotVertices, scene.vertices},
+        {kSlotTriangles, scene.triangles},
+        {kSlotPlacements, scene.placements},
+        {kSlotSensors, sensors_},
+        {kSlotStates, states_},
+        {kSlotCounts, counts_},
+        {kSlotTasks, from},
+        {kSlotSpilled, to},
+        {kSlotCandidatePairs, candidates_},
+        {kSlotExcluded, excluded_}});
+  computeWriteToComputeReadWrite(commands);
+  run_(commands, shaders::kCollect, kCollectGroups, CollectPush{round, taskRoom_, isLast ? 1u : 0u},
+       {{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
+  computeWriteToComputeReadWrite(commands);
+}
+
 void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast) {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = scene_.buffers();
   rounds_ = rounds;
   if (sensorCount_ == 0) return;
   stage("search");
-  for (uint32_t round = 0; round < rounds; ++round) {
-    const gpu::SearchPush push{round, taskRoom_, candidateRoom_, room_.budget, room_.width};
-    search(static_cast<int>(round % 2)).dispatch(commands, groupsFor(sensorCount_), push);
-    gpu::computeWriteToComputeReadWrite(commands);
-    const bool abandons = isLast && round + 1 == rounds;
-    collect_[round % 2].dispatch(commands, gpu::kCollectGroups, gpu::CollectPush{round, taskRoom_, abandons ? 1u : 0u});
-    gpu::computeWriteToComputeReadWrite(commands);
-  }
+  for (uint32_t round = 0; round < rounds; ++round) recordRound(commands, round, isLast && round + 1 == rounds);
   stage("solve");
-  gpu::computeWriteToIndirect(commands);
-  filter_.dispatchIndirect(commands, counts_, 0, gpu::FilterPush{candidateRoom_});
-  gpu::computeWriteToComputeReadWrite(commands);
-  if (refine_ && !ignoresLeaving_) {
-    refine_->dispatchIndirect(commands, counts_, 0);
-    gpu::computeWriteToComputeReadWrite(commands);
+  computeWriteToIndirect(commands);
+  const Groups perCandidates{counts_, offsetof(SearchCounts, filterGroups)};
+  run_(commands, shaders::kFilter, perCandidates, FilterPush{candidateRoom_},
+       {{kSlotStates, states_},
+        {kSlotCounts, counts_},
+        {kSlotCandidatePairs, candidates_},
+        {kSlotRefinedPairs, refinedPairs_}});
+  computeWriteToComputeReadWrite(commands);
+  if (device_->doubles) {
+    const auto refine = [&](const Program& program, const Groups& groups) {
+      run_(commands, program, groups,
+           {{kSlotStates, states_},
+            {kSlotCounts, counts_},
+            {kSlotRefinedPairs, refinedPairs_},
+            {kSlotVertices, scene.vertices},
+            {kSlotTriangles, scene.triangles},
+            {kSlotSweeps, sweeps_},
+            {kSlotObjects, scene.objects},
+            {kSlotMeshes, scene.meshes}});
+    };
+    refine({shaders::kRefine, {ignoresLeaving_ ? 1u : 0u}}, perCandidates);
+    if (ignoresLeaving_) {
+      computeWriteToIndirect(commands);
+      refine(shaders::kBlock, {counts_, offsetof(SearchCounts, blockGroups)});
+    }
+    computeWriteToComputeReadWrite(commands);
   }
-  if (refine_ && ignoresLeaving_) {
-    refineLeaving_->dispatchIndirect(commands, counts_, 0);
-    gpu::computeWriteToIndirect(commands);
-    block_->dispatchIndirect(commands, counts_, offsetof(gpu::SearchCounts, blockGroups));
-    gpu::computeWriteToComputeReadWrite(commands);
-  }
-  link_.dispatchIndirect(commands, counts_, 0);
-  gpu::computeWriteToComputeReadWrite(commands);
+  run_(commands, shaders::kLink, perCandidates,
+       {{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
+  computeWriteToComputeReadWrite(commands);
   stage("resolve");
-  resolve_.dispatch(commands, gpu::groupsFor(sensorCount_, gpu::kContactGroup),
-                    gpu::ResolvePush{sensorCount_, unresolvedRoom_});
+  run_(commands, shaders::kResolve, gpu::groupsFor(sensorCount_, kContactGroup),
+       ResolvePush{sensorCount_, unresolvedRoom_},
+       {{kSlotStates, states_},
+        {kSlotHeads, heads_},
+        {kSlotCounts, counts_},
+        {kSlotRefinedPairs, refinedPairs_},
+        {kSlotVertices, scene.vertices},
+        {kSlotTriangles, scene.triangles},
+        {kSlotSweeps, sweeps_},
+        {kSlotObjects, scene.objects},
+        {kSlotResults, results_},
+        {kSlotUnresolved, unresolved_}});
 }
 
 std::span<const gpu::UnresolvedPair> ContactPass::unresolved(const gpu::SearchCounts& counts) const {

@@ -2,17 +2,16 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <optional>
 #include <span>
 
-#include "contact/kernels.h"
 #include "contact/sensors.h"
+#include "gpu/kernel.h"
 #include "scene/gpu_scene.h"
 
 namespace radar {
 
-/// Capacities of a search's lists, and its division into dispatches. Zero: chosen for the device and the batch.
+/// Capacities of a search's lists and workgroups, and its division into dispatches. Zero: chosen for the device and the
+/// batch.
 struct SearchRoom {
   uint32_t tasks = 0;       ///< in addition to one per sensor
   uint32_t candidates = 0;  ///< for all sensors together
@@ -20,12 +19,13 @@ struct SearchRoom {
   uint32_t groups = 0;      ///< workgroups per round
   uint32_t budget = 0;      ///< iterations of a workgroup per round
   uint32_t width = 0;       ///< below this number, tasks are split early
+  uint32_t queue = 0;       ///< waiting pairs per workgroup
+  uint32_t stack = 0;       ///< entries per lane
 };
 
 class ContactPass {
  public:
-  ContactPass(const Device::Impl& device, GpuScene& scene, std::shared_ptr<const ContactKernels> kernels,
-              const SearchRoom& room);
+  ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room);
 
   /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size.
   void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
@@ -38,7 +38,7 @@ class ContactPass {
   /// What that shader writes: sensors, sweeps and states, one per result; tasks, whose number it adds to counts(); and
   /// excluded objects, for which there is room for one per sensor.
   struct Encoded {
-    const gpu::TexelArray<gpu::Sensor>& sensors;
+    const gpu::Array<gpu::Sensor>& sensors;
     const gpu::Array<gpu::Sweep>& sweeps;
     const gpu::Array<gpu::SearchState>& states;
     const gpu::Array<gpu::SearchTask>& tasks;
@@ -69,18 +69,18 @@ class ContactPass {
   static constexpr uint32_t kMostBudget = 30'000;
 
  private:
-  gpu::KernelArguments& search(int list) { return hasClearances_ ? *searchWithClearance_[list] : search_[list]; }
   void addCounts(uint32_t tasks);
-  void setArguments();
+  void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
   void reserveLists(uint32_t sensors);
   uint32_t groupsFor(uint32_t sensors) const;
 
   const Device::Impl* device_;
   GpuScene& scene_;
-  std::shared_ptr<const ContactKernels> kernels_;
   SearchRoom room_;
+  gpu::Program search_, searchWithClearance_;
+  gpu::Passes run_;
   gpu::Upload upload_;
-  gpu::TexelArray<gpu::Sensor> sensors_;
+  gpu::Array<gpu::Sensor> sensors_;
   gpu::Array<gpu::Sweep> sweeps_;
   gpu::Array<gpu::SearchState> states_;
   gpu::Array<uint32_t> heads_, excluded_;
@@ -90,9 +90,6 @@ class ContactPass {
   gpu::Array<gpu::SearchCounts> counts_;
   gpu::Array<Result> results_;
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
-  // Rounds alternate between the two lists of tasks.
-  gpu::KernelArguments search_[2], collect_[2], filter_, link_, resolve_;
-  std::optional<gpu::KernelArguments> searchWithClearance_[2], refine_, refineLeaving_, block_;
   std::vector<gpu::SearchState> stateList_;
   std::vector<gpu::SearchTask> taskList_;
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;

@@ -7,6 +7,7 @@
 #include "exact/blocking.h"
 #include "math/frame.h"
 #include "math/rounding.h"
+#include "query/swept.h"
 #include "scene/placement.h"
 
 namespace radar {
@@ -23,10 +24,6 @@ constexpr double kLeastDistance = 0x1p-100;
 // Scaled. Larger clearances are left to the CPU, for node_pair.glsl multiplies such lengths; so are clearances below
 // this share of the scene's extent, which the CPU's doubles may be unable to tell from 0.
 constexpr double kMostClearance = 0x1p29, kLeastClearance = 0x1p-40;
-
-double largestOf(const Vector& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
 
 // Distance from `centre` to the farthest point of the scene, as a sum over the axes.
 double farthestOf(const Box& world, const Vector& centre) {
@@ -47,24 +44,18 @@ void setBox(gpu::Sensor& out, const Box& box, const Vector& anchor, double farth
 
 }  // namespace
 
-Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object) {
-  if (!isStep(query, scene)) return Motion(query);
-  return {displacementOf(query), object == kNone ? Vector{} : scene.objects[object].object.motion};
-}
-
-bool searchesEach(const Query& query, const Scene::Impl& scene) {
-  return query.hits > 1 || scene.moving > 0;
-}
-
-bool combinesClearance(const Query& query, const Scene::Impl& scene) {
-  return query.clearance > 0 && (query.ignoreLeaving || query.hits > 1 || isStep(query, scene));
-}
-
 void SensorBatch::clear() {
   sensors.clear();
   sweeps.clear();
   starts.clear();
   excluded.clear();
+}
+
+void SensorBatch::truncate(uint32_t count) {
+  if (count < sensors.size()) excluded.resize(sensors[count].firstExcluded);
+  sensors.resize(count);
+  sweeps.resize(count);
+  starts.resize(count);
 }
 
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
@@ -73,7 +64,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   if (tree.nodes().empty()) return Planned::clear;
   const Motion motion = motionPast(query, scene, object);
   const Vector direction = scaledDirection(motion.direction);
-  if (std::ilogb(largestOf(direction)) != 0) return Planned::outOfRange;
+  if (std::ilogb(largest(direction)) != 0) return Planned::outOfRange;
   const Mesh& mesh = scene.meshes[query.mesh];
   gpu::Sensor sensor{};
   sensor.placement = placementOf(mesh, query.worldFromMesh);
@@ -136,7 +127,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   sweep.distance = motion.distance;
   sweep.perParameter = sweep.directionLength;
   if (motion.isStep) {
-    sweep.perParameter = largestOf(direction) / largestOf(motion.direction);
+    sweep.perParameter = largest(direction) / largest(motion.direction);
     sweep.stepPerUnit = way > 0 ? roundDown((1 - 0x1p-20) / (way * scale)) : -1.0f;
     std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
   }

@@ -18,6 +18,8 @@ struct SensorBatch {
 
   uint32_t count() const { return static_cast<uint32_t>(sensors.size()); }
   void clear();
+  /// Forgets all but the first `count` queries.
+  void truncate(uint32_t count);
 };
 
 enum class Planned {
@@ -25,15 +27,6 @@ enum class Planned {
   clear,      ///< nothing is in reach
   outOfRange  ///< floats cannot hold the sensor, the scene, the distance or their ratios
 };
-
-/// The sensor's motion relative to an object, or to all if none moves.
-Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object = kNone);
-
-/// Whether each object in reach needs a search of its own: several hits are asked for, or objects move.
-bool searchesEach(const Query& query, const Scene::Impl& scene);
-
-/// Whether a query combines a clearance with what only the CPU's search combines it with.
-bool combinesClearance(const Query& query, const Scene::Impl& scene);
 
 /// Adds a valid query; its answer gets the index `result`. `object`: the only one to search, or kNone: all, if none
 /// moves. Times of a step are fractions.

@@ -2,11 +2,6 @@
 
 #include "gpu/barrier.h"
 
-// pass     reads           writes   barrier behind it
-// -------- --------------- -------- -----------------
-// (contact/pass.cpp)                computeWriteToCopy
-// readback counts, results readback writtenToHost
-
 namespace radar {
 
 namespace {
@@ -22,11 +17,10 @@ uint64_t joined(uint32_t low, uint32_t high) {
 
 }  // namespace
 
-ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps,
-                                   std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room)
+ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room)
     : scene_(scene),
       submission_(device, timestamps),
-      pass_(device, scene, std::move(kernels), room),
+      pass_(device, scene, room),
       readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {

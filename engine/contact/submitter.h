@@ -17,8 +17,7 @@ struct SearchAnswers {
 
 class ContactSubmitter {
  public:
-  ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps,
-                   std::shared_ptr<const ContactKernels> kernels, const SearchRoom& room);
+  ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room);
 
   /// Submits the batch and returns without waiting; call collect() next.
   void submit(SensorBatch& batch, const Scene::Impl& scene);

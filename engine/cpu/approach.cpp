@@ -68,8 +68,7 @@ Vector rounded(const Point<Real>& p) {
 }
 template <class Real>
 double norm1(const Point<Real>& p) {
-  const Vector v = rounded(p);
-  return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+  return radar::norm1(rounded(p));
 }
 template <class Real>
 Point<Real> exactly(const Vector& v) {
@@ -286,7 +285,7 @@ Corners<Real> relative(const exact::Triangle& triangle, const Vector& origin, do
 
 /// A direction of length 1.
 Point<DoubleDouble> normalised(const Vector& direction) {
-  const int exponent = std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])}));
+  const int exponent = std::ilogb(largest(direction));
   Point<DoubleDouble> d;
   for (size_t k = 0; k < 3; ++k) d[k].high = std::ldexp(direction[k], -exponent);
   return (DoubleDouble{1} / exact::root(dot(d, d))) * d;

@@ -10,10 +10,6 @@ namespace radar::cpu {
 
 namespace {
 
-inline Vector minus(const Vector& p, const Vector& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
 /// -1 or 1: the sign of w . (x cross y); 0 if doubles cannot decide it. All three vectors are differences of doubles,
 /// rounded once.
 inline int sureSign(const Vector& w, const Vector& x, const Vector& y) {
@@ -38,7 +34,7 @@ int farthest(const exact::Triangle& triangle, const Vector& x, const Vector& y, 
   return second > 0 && last > 0 ? 2 : -1;
 }
 
-Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA) {
+FeatureNumber acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, bool ofA) {
   const exact::Triangle& face = ofA ? a : b;
   const Vector x = minus(face[1], face[0]), y = minus(face[2], face[0]);
   const int side = sureSign(d, x, y);
@@ -50,7 +46,7 @@ Feature acrossFace(const exact::Triangle& a, const exact::Triangle& b, const Vec
   return ofA ? 3 + corner : corner;
 }
 
-Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k) {
+FeatureNumber acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, int i, int k) {
   const Vector &a0 = a[i], &a1 = a[(i + 1) % 3], &a2 = a[(i + 2) % 3];
   const Vector &b0 = b[k], &b1 = b[(k + 1) % 3], &b2 = b[(k + 2) % 3];
   const Vector x = minus(a1, a0), y = minus(b1, b0);
@@ -65,11 +61,11 @@ Feature acrossEdges(const exact::Triangle& a, const exact::Triangle& b, const Ve
 
 }  // namespace
 
-Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, Axis axis) {
+FeatureNumber certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& d, Axis axis) {
   return axis < 2 ? acrossFace(a, b, d, axis == 0) : acrossEdges(a, b, d, (axis - 2) / 3, (axis - 2) % 3);
 }
 
-exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d) {
+exact::Event eventOf(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d) {
   if (feature < 3) return exact::vertexFace(d, a[feature], b);
   if (feature < 6) return exact::faceVertex(d, a, b[feature - 3]);
   const int i = (feature - 6) / 3, k = (feature - 6) % 3;
@@ -77,10 +73,6 @@ exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Tri
 }
 
 namespace {
-
-double largest(const Vector& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
 
 /// -1 or 1: the side of the plane through the origin with the normal x cross y on which w is, if w is certainly
 /// farther from it than `slack` in the sense of exact/blocking.h; else 0.
@@ -105,7 +97,7 @@ bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double s
   return !leavesPlane(a, b, slack) || !leavesPlane(b, a, slack);
 }
 
-bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
+bool certainlyBlocks(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& d,
                      double slack) {
   if (feature < 6) {
     const bool ofA = feature >= 3;

@@ -8,17 +8,18 @@ namespace radar::cpu {
 
 /// The features by which triangles a and b touch: 0, 1 or 2: that corner of a and the face of b; 3, 4 or 5: corner
 /// (less 3) of b and the face of a; 6 + 3 i + k: edge i of a and edge k of b.
-using Feature = int;
-inline constexpr Feature kNoFeature = -1;
+using FeatureNumber = int;
+inline constexpr FeatureNumber kNoFeature = -1;
 
 /// The features by which contact of triangle a, in motion along `direction`, with triangle b begins, whatever the time,
 /// if double precision can certify them; else kNoFeature. Certified means: these features alone are the farthest of
 /// each triangle towards the other along `axis`, and the motion takes an inner point of one to an inner point of the
 /// other.
-Feature certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
+FeatureNumber certainlyFirst(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction, Axis axis);
 
 /// The contact by features that certainlyFirst certified. It has the bits of exact::contact's `first`.
-exact::Event eventOf(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction);
+exact::Event eventOf(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b,
+                     const Vector& direction);
 
 /// Whether the triangles may be in the plane of either, up to `slack`, in the sense of exact/blocking.h.
 bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double slack);
@@ -26,7 +27,7 @@ bool mayShareAPlane(const exact::Triangle& a, const exact::Triangle& b, double s
 /// Whether a contact by features that certainlyFirst certified certainly blocks: everything within `slack` of the point
 /// of contact, as seen along `direction`, is inside both features. Not for triangles that mayShareAPlane(): those are
 /// judged by another rule.
-bool certainlyBlocks(Feature feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
+bool certainlyBlocks(FeatureNumber feature, const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
                      double slack);
 
 }  // namespace radar::cpu

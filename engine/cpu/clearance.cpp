@@ -55,7 +55,7 @@ std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pa
   if (found->lo > motion.distance) return std::nullopt;
   // Rounding does not tell the end from a time before it.
   if (found->hi > motion.distance) found->hi = std::numeric_limits<double>::infinity();
-  found->point = exact::along(found->point, found->lo, motion.drift);
+  found->point = along(found->point, found->lo, motion.drift);
   return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include "cpu/search.h"
 #include "math/float_environment.h"
+#include "query/hits.h"
 
 namespace radar {
 
@@ -9,12 +10,10 @@ struct CpuSweeper::Impl {
   const Scene& scene;
   unsigned threads;
   cpu::Search search;
-  CpuStats stats;
-  Lists lists;
 };
 
 CpuSweeper::CpuSweeper(const Scene& scene, unsigned threads)
-    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}, {}, {}})) {}
+    : impl_(std::make_unique<Impl>(Impl{scene, threads, {}})) {}
 CpuSweeper::~CpuSweeper() = default;
 CpuSweeper::CpuSweeper(CpuSweeper&&) noexcept = default;
 CpuSweeper& CpuSweeper::operator=(CpuSweeper&&) noexcept = default;
@@ -24,28 +23,19 @@ void CpuSweeper::sync() {
   impl_->scene.impl().objectTree();
 }
 
-std::vector<Result> CpuSweeper::run(std::span<const Query> queries) {
+Answers CpuSweeper::run(std::span<const Query> queries) {
   const FloatEnvironment floats;
   for (size_t i = 0; i < queries.size(); ++i) {
     if (const std::string wrong = validate(queries[i], impl_->scene); !wrong.empty()) {
       throw Error("run: query " + std::to_string(i) + ": " + wrong);
     }
   }
-  std::vector<Result> results(queries.size());
+  Answers answers = unanswered(queries);
   const uint64_t before = impl_->search.pairs();
-  std::vector<QueryLists> lists = listsFor(queries);
-  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, results, lists);
-  impl_->lists = joined(lists);
-  impl_->stats.pairs = impl_->search.pairs() - before;
-  return results;
-}
-
-const Lists& CpuSweeper::lists() const {
-  return impl_->lists;
-}
-
-const CpuStats& CpuSweeper::stats() const {
-  return impl_->stats;
+  impl_->search.run(queries, impl_->scene.impl(), Tier::reference, impl_->threads, answers.results, answers.lists);
+  answers.stats.pairs = answers.stats.cpuPairs = impl_->search.pairs() - before;
+  answers.stats.cpuQueries = queries.size();
+  return answers;
 }
 
 }  // namespace radar

@@ -32,7 +32,7 @@ bool FirstContact::considerExactly(const exact::PairName& name, const exact::Pla
   const auto doesBlock = [&] { return !query_.ignoreLeaving || rule_.blocks(pair, *motion_); };
   const bool mayBePressed = query_.ignoreLeaving && mayShareAPlane(pair.a, pair.b, rule_.slack);
   std::optional<exact::Event> certain;
-  if (const Feature feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
+  if (const FeatureNumber feature = certainlyFirst(pair.a, pair.b, d, axis); feature != kNoFeature) {
     const exact::Event event = eventOf(feature, pair.a, pair.b, d);
     if (event.s > event.error) {
       if (!mayBePressed) {

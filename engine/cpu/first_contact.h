@@ -59,8 +59,7 @@ class FirstContact final : public PairVisitor {
 /// Finds out whether surfaces cross at the start.
 class CrossingTest final : public PairVisitor {
  public:
-  /// `latest`: no object farther than this is looked at.
-  explicit CrossingTest(double latest) : PairVisitor(latest) {}
+  CrossingTest() : PairVisitor(0) {}
 
   /// Call before and after the pairs of one object.
   void beginObject(const PairRule& rule, const Motion&) { rule_ = rule; }

@@ -42,7 +42,7 @@ class LeafTest {
 
   const Mesh &meshA_, &meshB_;
   Side a_, b_;
-  Matrix matrix_;
+  Matrix3 matrix_;
   Vector offset_, travel_;
   Real travelSize_ = 0;     // sum over the axes
   Real clearance_ = 0;      // along any axis

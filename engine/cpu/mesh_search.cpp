@@ -41,7 +41,7 @@ class Opener {
  public:
   explicit Opener(const MeshPair& pair) : nodesA_(pair.sensor.mesh.tree.nodes), nodesB_(pair.other.mesh.tree.nodes) {
     double scale = 0;
-    for (const Vector& row : pair.fromOther.matrix) scale += std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]);
+    for (const Vector& row : pair.fromOther.matrix) scale += norm1(row);
     scale_ = static_cast<float>(std::min(scale / 3, 0x1p100));
   }
 

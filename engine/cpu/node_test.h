@@ -2,8 +2,8 @@
 // their boxes' axes and along their mean normals. docs/method.md derives the error bounds.
 #pragma once
 
-#include "cpu/lanes.h"
 #include "cpu/pair_motion.h"
+#include "math/lanes.h"
 
 namespace radar::cpu {
 

@@ -5,20 +5,7 @@
 
 namespace radar::cpu {
 
-namespace {
-
-double dot(const Vector& p, const Vector& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
-/// Sum of `sizes`, which are not negative, weighted by |p|.
-double sizeAlong(const Vector& p, const Vector& sizes) {
-  return std::abs(p[0]) * sizes[0] + std::abs(p[1]) * sizes[1] + std::abs(p[2]) * sizes[2];
-}
-
-}  // namespace
-
-PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& motion, double c, double latest)
+PairMotion::PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Motion& motion, double c, double latest)
     : clearance(c), span(motion.wayUntil(latest)), speed(motion.speed) {
   const Vector& unit = motion.unit;
   int fastest = 0;
@@ -37,12 +24,13 @@ PairMotion::PairMotion(const Placement& a, const Placement& b, const Motion& mot
   }
 }
 
-RelativePlacement::RelativePlacement(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side) {
+RelativePlacement::RelativePlacement(const MeshAxes& own, const MeshPlacement& other, const PairMotion& motion,
+                                     int side) {
   for (int k = 0; k < 3; ++k) {
     const Vector& n = own.rows[k];
-    offset[k] = side * dot(n, motion.gap);
-    travel[k] = side * dot(n, motion.travel);
-    rounding[k] = sizeAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;
+    offset[k] = side * radar::dot(n, motion.gap);
+    travel[k] = side * radar::dot(n, motion.travel);
+    rounding[k] = reachAlong(n, motion.rounding) + 2 * own.residual[k] + 32 * kUnit;
     slack[k] = rounding[k] + (motion.clearance > 0 ? 1.01 * std::hypot(n[0], n[1], n[2]) * motion.clearance : 0);
     magnitude[k] = 2 + std::abs(offset[k]) + std::abs(travel[k]);
     for (int j = 0; j < 3; ++j) {

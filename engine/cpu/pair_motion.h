@@ -15,7 +15,7 @@ struct PairMotion {
   double speed;      ///< Motion::speed
 
   /// Contacts later than t = `latest` do not matter.
-  PairMotion(const Placement& a, const Placement& b, const Motion& motion, double clearance, double latest);
+  PairMotion(const MeshPlacement& a, const MeshPlacement& b, const Motion& motion, double clearance, double latest);
 
   /// `t` of a motion in units of time, rounded up; 1 at most.
   double timeOf(double t) const { return span > 0 ? std::min((1 + 8 * kUnit) * (speed * t / span), 1.0) : 1.0; }
@@ -24,12 +24,12 @@ struct PairMotion {
 /// One mesh in the other's normalised frame: a vertex p of the former is at matrix p + offset + t travel, with an error
 /// of at most `rounding` along each axis. With the motion's clearance, along each axis, that is `slack`.
 struct RelativePlacement {
-  Matrix matrix;
+  Matrix3 matrix;
   Vector offset, travel, rounding, slack;
   Vector magnitude;  ///< per axis: bound on a vertex of either mesh, and on the terms summed to place it
 
   /// `side`: 1 if the other mesh is the one in motion, else -1.
-  RelativePlacement(const MeshAxes& own, const Placement& other, const PairMotion& motion, int side);
+  RelativePlacement(const MeshAxes& own, const MeshPlacement& other, const PairMotion& motion, int side);
 };
 
 /// A time interval.

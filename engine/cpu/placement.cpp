@@ -15,14 +15,14 @@ double scaleOf(double x) {
 }
 
 /// The inverse, except for rounding; not finite if it is out of range.
-Matrix roughInverse(Matrix m) {
+Matrix3 roughInverse(Matrix3 m) {
   // Columns are scaled to about 1, so that their products neither underflow nor overflow.
   Vector scale;
   for (int k = 0; k < 3; ++k) {
     scale[k] = scaleOf(std::max({std::abs(m[0][k]), std::abs(m[1][k]), std::abs(m[2][k])}));
     for (Vector& row : m) row[k] *= scale[k];
   }
-  Matrix out;
+  Matrix3 out;
   for (int k = 0; k < 3; ++k) {
     const int p = (k + 1) % 3, q = (k + 2) % 3;
     out[k] = {m[1][p] * m[2][q] - m[1][q] * m[2][p], m[2][p] * m[0][q] - m[2][q] * m[0][p],
@@ -37,7 +37,7 @@ Matrix roughInverse(Matrix m) {
 
 }  // namespace
 
-Placement::Placement(const Mesh& mesh, const Transform& worldFromMesh) {
+MeshPlacement::MeshPlacement(const Mesh& mesh, const Transform& worldFromMesh) {
   for (int i = 0; i < 3; ++i) {
     const double* row = &worldFromMesh.m[4 * i];
     double magnitude = std::abs(row[3]);
@@ -52,7 +52,7 @@ Placement::Placement(const Mesh& mesh, const Transform& worldFromMesh) {
   }
 }
 
-MeshAxes::MeshAxes(const Matrix& linear) : rows(roughInverse(linear)) {
+MeshAxes::MeshAxes(const Matrix3& linear) : rows(roughInverse(linear)) {
   for (int k = 0; k < 3; ++k) {
     const Vector& n = rows[k];
     residual[k] = 0;

@@ -6,25 +6,25 @@
 
 namespace radar::cpu {
 
-using Matrix = std::array<Vector, 3>;  ///< rows
+using Matrix3 = std::array<Vector, 3>;  ///< rows
 
 /// Places normalised vertices: world = origin + linear * q. docs/method.md derives the bounds.
-struct Placement {
+struct MeshPlacement {
   Vector origin;
-  Matrix linear;
+  Matrix3 linear;
   Vector extent;  ///< per world axis: bound on |linear * q|
   Vector error;   ///< per world axis: bound on the difference between `transformPoint` and the formula above
 
-  Placement(const Mesh& mesh, const Transform& worldFromMesh);
+  MeshPlacement(const Mesh& mesh, const Transform& worldFromMesh);
 };
 
 /// Covectors along a mesh's normalised axes: the rows of the inverse, except for rounding, which `residual` bounds. Any
 /// covectors would be valid.
 struct MeshAxes {
-  Matrix rows;
+  Matrix3 rows;
   Vector residual;  ///< per row k: the sum over columns j of |rows[k] . linear[.][j] - (j == k)|, as computed
 
-  explicit MeshAxes(const Matrix& linear);
+  explicit MeshAxes(const Matrix3& linear);
 };
 
 }  // namespace radar::cpu

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "cpu/mesh_search.h"
-#include "scene/query_lists.h"
 
 namespace radar::cpu {
 
@@ -19,28 +18,18 @@ class QuerySearch {
  public:
   /// Answers a valid query, without tiers. `tree` is the scene's; neither changes meanwhile. `lists`: may be null if
   /// the query asks for none.
-  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, QueryLists* lists);
-  /// The eligible objects whose boxes the sensor may meet before its motion ends.
-  std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
+  Result answer(const Query& query, const Scene::Impl& scene, const ObjectTree& tree, Listed* lists);
   uint64_t pairs() const { return pairs_; }
 
  private:
   struct Task;
-  struct Open {
-    double near;
-    uint32_t link;
-  };
 
   /// Finds the objects whose surfaces cross the sensor's at the start.
   std::vector<ObjectId> overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
-  /// Calls `search` with each eligible object in reach of the visitor.
-  template <class SearchObject>
-  void forObjects(const Task& task, const ObjectTree& tree, const PairVisitor& visitor, const SearchObject& search);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);
   void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);
 
-  std::vector<Open> open_;
   std::optional<Motion> past_;  // the sensor's motion past the current object, in a step
   MeshSearch meshes_;
   uint64_t pairs_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "query/hits.h"
 #include "scene/parallel.h"
 
 namespace radar::cpu {
@@ -22,14 +23,14 @@ double secondsSince(Clock::time_point start) {
 }  // namespace
 
 void Search::run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-                 std::span<Result> results, std::span<QueryLists> lists) {
+                 std::span<Result> results, std::span<Listed> lists) {
   const ObjectTree& tree = scene.objectTree();
   const size_t count = queries.size();
   size_t workers = std::clamp<size_t>(count, 1, threadCount(threads));
   if (searches_.size() < workers) searches_.resize(workers);
   const auto answer = [&](unsigned worker, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
-      QueryLists* const listed = hasLists(queries[i]) ? &lists[i] : nullptr;
+      Listed* const listed = hasLists(queries[i]) ? &lists[i] : nullptr;
       results[i] = searches_[worker].answer(queries[i], scene, tree, listed);
       results[i].tier = tier;
       if (listed == nullptr) continue;

@@ -22,7 +22,7 @@ class Search {
   /// starting a thread. The answers do not depend on the number of threads. The queries are valid, and the scene does
   /// not change meanwhile.
   void run(std::span<const Query> queries, const Scene::Impl& scene, Tier tier, unsigned threads,
-           std::span<Result> results, std::span<QueryLists> lists);
+           std::span<Result> results, std::span<Listed> lists);
 
   /// Pairs of triangles that all threads have tested since construction.
   uint64_t pairs() const;

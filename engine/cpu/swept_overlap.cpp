@@ -56,7 +56,7 @@ bool outline(const ViewedTriangle& a, const ViewedTriangle& b, double width, Out
 }
 
 /// Bounds on the interval of contact, from all events that are not certainly impossible.
-struct Span {
+struct ContactTimes {
   double first = INFINITY, last = -INFINITY;
 
   void add(double t, double wide) {
@@ -72,7 +72,7 @@ struct Span {
 
 /// Adds the event of a vertex at `height` on a face: t = `turn` * (depth of the face there - height). p, q, r are the
 /// vertex's orientations with the face's edges; they weight the opposite corners, whose depths are zp, zq, zr.
-void addCorner(Span& span, double bound, double error, double turn, double height, double p, double q, double r,
+void addCorner(ContactTimes& span, double bound, double error, double turn, double height, double p, double q, double r,
                double zp, double zq, double zr, double range) {
   if (!((p >= -bound && q >= -bound && r >= -bound) || (p <= bound && q <= bound && r <= bound))) return;
   const double sum = p + q + r, z = (p * zp + q * zq + r * zr) / sum;
@@ -83,8 +83,8 @@ bool sameSide(double p, double q, double bound) {
   return (p > bound && q > bound) || (p < -bound && q < -bound);
 }
 
-Span spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& seen) {
-  Span span;
+ContactTimes spanOf(const ViewedTriangle& a, const ViewedTriangle& b, const Outlines& seen) {
+  ContactTimes span;
   const double bound = seen.bound, error = 2 * (a.error + b.error);
   const double rangeA = a.hi[2] - a.lo[2], rangeB = b.hi[2] - b.lo[2];
   double za[3], zb[3];
@@ -126,7 +126,7 @@ Meeting meetingOf(const ViewedTriangle& a, const ViewedTriangle& b, double lates
   if (below[2] > latest || above[2] < 0) return Meeting::never;
   Outlines seen;
   if (!outline(a, b, width, seen)) return Meeting::never;
-  const Span span = spanOf(a, b, seen);
+  const ContactTimes span = spanOf(a, b, seen);
   if (span.first > latest || span.last < 0) return Meeting::never;
   return span.first > 0 ? Meeting::ahead : Meeting::unknown;
 }

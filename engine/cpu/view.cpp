@@ -27,7 +27,7 @@ View::View(const Vector& sensor, double size, const Vector& w) : origin(sensor),
   u[j] = w[i];
   const double length = std::sqrt(u[i] * u[i] + u[j] * u[j]);
   for (double& c : u) c /= length;
-  axes = {u, Vector{w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]}, w};
+  axes = {u, cross(w, u), w};
 }
 
 ViewedTriangle::ViewedTriangle(const exact::Triangle& world, const View& view) {
@@ -35,11 +35,8 @@ ViewedTriangle::ViewedTriangle(const exact::Triangle& world, const View& view) {
   for (int i = 0; i < 3; ++i) {
     Vector local;
     for (int k = 0; k < 3; ++k) local[k] = view.scale * (world[i][k] - view.origin[k]);
-    for (int k = 0; k < 3; ++k) {
-      const Vector& axis = view.axes[k];
-      corners[i][k] = axis[0] * local[0] + axis[1] * local[1] + axis[2] * local[2];
-    }
-    const double size = std::abs(local[0]) + std::abs(local[1]) + std::abs(local[2]);
+    for (int k = 0; k < 3; ++k) corners[i][k] = dot(view.axes[k], local);
+    const double size = norm1(local);
     farthest = std::max(farthest, size);
     sum += size;
   }

@@ -8,7 +8,7 @@ namespace radar {
 
 namespace {
 
-// Capacity of a list, if the host does not choose it.
+// Capacity of a list, and rounds, if the host does not choose them.
 struct ListRoom {
   uint64_t perQuery;  // what interlocking meshes of some thousand triangles need
   uint64_t most;      // in total, as long as that leaves `least` per query
@@ -16,6 +16,7 @@ struct ListRoom {
 };
 constexpr ListRoom kCandidates{1u << 11, 1u << 20, 64}, kUnresolved{1u << 7, 1u << 15, 4},
     kUnresolvedWithoutDoubles{1u << 10, 1u << 18, 32};  // which leave every contact to the CPU
+constexpr uint32_t kRounds = 16;
 
 uint32_t roomOf(const ListRoom& room, uint64_t queries, uint64_t limit) {
   const uint64_t wanted = std::max(std::min(room.perQuery * queries, room.most), room.least * queries);
@@ -37,9 +38,10 @@ Capacity completed(Capacity capacity, const Device::Impl& device) {
   limitTo("candidates", capacity.candidates, candidates);
   limitTo("rounds", capacity.rounds, gpu::kMostRounds);
   limitTo("unresolvedPairs", capacity.unresolvedPairs, unresolved);
-  if (capacity.rounds == 0 || capacity.rounds % 2 != 0) {
-    throw Error("Capacity::rounds: expected an even number of at least 2, got " + std::to_string(capacity.rounds));
+  if (capacity.rounds % 2 != 0) {
+    throw Error("Capacity::rounds: expected an even number, got " + std::to_string(capacity.rounds));
   }
+  if (capacity.rounds == 0) capacity.rounds = kRounds;
   const uint64_t searches = uint64_t{capacity.queries} + capacity.searches;
   if (capacity.candidates == 0) capacity.candidates = roomOf(kCandidates, searches, candidates);
   if (capacity.unresolvedPairs == 0) {

@@ -1,5 +1,5 @@
-// Puts together the answers of a recording's searches past one object each: on the device, and again on the CPU once
-// open ones are decided.
+// Merges the answers of a recording's searches past one object each on the device. On the CPU, once open ones are
+// decided, query/hits.h does.
 #pragma once
 
 #include <span>
@@ -7,26 +7,19 @@
 #include "gpu/array.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "radar/query.h"
+#include "radar/answers.h"
 #include "shaders/embed/interop.h"
 
 namespace radar {
-
-/// The answer to a query from those of its searches, which ascend by object. `list`: receives the contacts, nearest
-/// first, at most `hits`, and what may be one.
-Result gather(std::span<const Result> searches, uint32_t hits, std::vector<Result>& list);
 
 class GatherPass {
  public:
   /// Makes room for this many searches.
   GatherPass(const Device::Impl& device, uint32_t searches);
 
-  void clear() { searches_.clear(); }
   bool empty() const { return searches_.empty(); }
-  uint32_t searchCount() const { return static_cast<uint32_t>(searches_.size()); }
-  /// Adds the searches of a query.
-  void add(const gpu::Gathered& query) { searches_.insert(searches_.end(), query.count, query); }
-  void stage();
+  /// Stages the searches of these queries, in their order.
+  void stage(std::span<const gpu::Gathered> queries);
   /// The caller records the barrier behind it.
   void recordUpload(const gpu::Commands& commands) const { upload_.record(commands); }
   /// Call after recording the searches, which the shader waits for. `first`: index of the first search's answer. The
@@ -37,7 +30,7 @@ class GatherPass {
   std::vector<gpu::Gathered> searches_;
   gpu::Upload upload_;
   gpu::Array<gpu::Gathered> buffer_;
-  gpu::KernelArguments gather_;
+  gpu::Passes run_;
 };
 
 }  // namespace radar

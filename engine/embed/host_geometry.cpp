@@ -5,47 +5,13 @@
 #include "embed/host_format.h"
 #include "gpu/barrier.h"
 #include "shaders/contact/interop.h"
-#include "spirv/embed_deform_comp.h"
-#include "spirv/embed_invalidate_comp.h"
-#include "spirv/embed_refit_comp.h"
-
-// pass        reads                         writes                         barrier after it
-// ----------- ----------------------------- ------------------------------ -------------------------------
-// copy        staging, the host's buffers   moved, words, refit nodes,     transferToComputeReadWrite
-//                                             numbers, unbounded, extents,
-//                                             deformed sensors, violation
-// deform      words, numbers, meshes        vertices, violation            (none)
-// Without declared bounds, after a computeWriteToComputeReadWrite:
-//   bound     vertices, triangles           extents                        computeWriteToComputeReadWrite
-//   normalise extents, unbounded            meshes                         computeWriteToComputeReadWrite
-// move        words, moved, meshes,         placements, objects, object    computeWriteToComputeReadWrite
-//               objects                       nodes, violation
-// refit       vertices, triangles, meshes,  mesh nodes                     computeWriteToComputeReadWrite
-//   per depth   refit nodes, mesh nodes
-// fit         fit nodes, object nodes       object nodes                   computeWriteToComputeReadWrite
-//   per depth
-// place       meshes, deformed sensors,     sensors, sweeps, states        computeWriteToComputeReadWrite
-//               object nodes
-// reach       object nodes                  sensors, states                computeWriteToComputeReadWrite
-//
-// After the answers and a computeWriteToComputeReadWrite:
-//
-// invalidate  violation                     results                        (the caller's)
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
 using gpu::BufferDomain;
 
 namespace {
-
-// Created once per device.
-struct HostGeometryKernels {
-  explicit HostGeometryKernels(const Device::Impl& device)
-      : deform(device, k_embed_deform_comp, "deform"),
-        refit(device, k_embed_refit_comp, "refit"),
-        invalidate(device, k_embed_invalidate_comp, "invalidate") {}
-  gpu::Kernel deform, refit, invalidate;
-};
 
 bool repeats(std::vector<uint32_t> ids) {
   std::sort(ids.begin(), ids.end());
@@ -77,9 +43,7 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
 HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& resident)
     : device_(&device),
       resident_(resident),
-      deform_(device.shared<HostGeometryKernels>().deform),
-      refit_(device.shared<HostGeometryKernels>().refit),
-      invalidate_(device.shared<HostGeometryKernels>().invalidate),
+      run_(device, {shaders::kDeform, shaders::kRefit, shaders::kInvalidate}),
       upload_(device),
       words_(device, "host words", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       refitNodes_(device, "nodes to refit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
@@ -131,6 +95,7 @@ void HostGeometryPass::listNodes(const Scene::Impl& scene) {
 }
 
 void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& scene) {
+  run_.begin();
   sources_.clear();
   copied_ = 0;
   meshes_.clear();
@@ -177,22 +142,8 @@ GpuScene::Overwritten HostGeometryPass::overwritten() const {
   return overwritten;
 }
 
-void HostGeometryPass::setArguments() {
-  using namespace gpu;  // the slots
-  const GpuScene::Buffers& scene = resident_.buffers();
-  deform_.set({{kSlotVertices, scene.vertices},
-               {kSlotMeshes, scene.meshes},
-               {kSlotBoundsViolation, violation_},
-               {kSlotVertexNumbers, numbers_},
-               {kSlotWords, words_}});
-  refit_.set({{kSlotVertices, scene.vertices},
-              {kSlotTriangles, scene.triangles},
-              {kSlotMeshes, scene.meshes},
-              {kSlotMeshNodes, scene.meshNodes},
-              {kSlotRefitNodes, refitNodes_}});
-}
-
 void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& scene) {
+  const GpuScene::Buffers& buffers = resident_.buffers();
   upload_.record(commands);
   unboundedMeshes_.recordUpload(commands);
   moved_.recordUpload(commands);
@@ -201,16 +152,20 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   }
   commands->CmdFillBuffer(commands, violation_.get(), 0, sizeof(gpu::BoundsViolation), kNone);
   gpu::transferToComputeReadWrite(commands);
-  setArguments();
   for (const Deformed& d : meshes_) {
-    deform_.dispatch(commands, gpu::groupsFor(d.vertices, gpu::kHostGroup),
-                     gpu::DeformPush{.count = d.vertices,
-                                     .mesh = d.mesh,
-                                     .firstByte = d.firstByte,
-                                     .stride = d.stride,
-                                     .format = d.component,
-                                     .numbers = d.numbers,
-                                     .isBounded = d.isBounded ? 1u : 0u});
+    run_(commands, shaders::kDeform, gpu::groupsFor(d.vertices, gpu::kHostGroup),
+         gpu::DeformPush{.count = d.vertices,
+                         .mesh = d.mesh,
+                         .firstByte = d.firstByte,
+                         .stride = d.stride,
+                         .format = d.component,
+                         .numbers = d.numbers,
+                         .isBounded = d.isBounded ? 1u : 0u},
+         {{gpu::kSlotVertices, buffers.vertices},
+          {gpu::kSlotMeshes, buffers.meshes},
+          {gpu::kSlotBoundsViolation, violation_},
+          {gpu::kSlotVertexNumbers, numbers_},
+          {gpu::kSlotWords, words_}});
   }
   if (!unboundedMeshes_.empty()) {
     gpu::computeWriteToComputeReadWrite(commands);
@@ -220,8 +175,13 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   gpu::computeWriteToComputeReadWrite(commands);
   for (size_t depth = meshes_.empty() ? 0 : levels_.size(); depth-- > 0;) {
     for (const Level& level : levels_[depth]) {
-      refit_.dispatch(commands, gpu::groupsFor(level.count, gpu::kHostGroup),
-                      gpu::RefitPush{level.first, level.count, level.mesh});
+      run_(commands, shaders::kRefit, gpu::groupsFor(level.count, gpu::kHostGroup),
+           gpu::RefitPush{level.first, level.count, level.mesh},
+           {{gpu::kSlotVertices, buffers.vertices},
+            {gpu::kSlotTriangles, buffers.triangles},
+            {gpu::kSlotMeshes, buffers.meshes},
+            {gpu::kSlotMeshNodes, buffers.meshNodes},
+            {gpu::kSlotRefitNodes, refitNodes_}});
     }
     gpu::computeWriteToComputeReadWrite(commands);
   }
@@ -231,8 +191,8 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
 void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results,
                                         uint32_t count) {
   gpu::computeWriteToComputeReadWrite(commands);
-  invalidate_.set({{gpu::kSlotResults, results}, {gpu::kSlotBoundsViolation, violation_}});
-  invalidate_.dispatch(commands, gpu::groupsFor(count, gpu::kHostGroup), gpu::InvalidatePush{count});
+  run_(commands, shaders::kInvalidate, gpu::groupsFor(count, gpu::kHostGroup), gpu::InvalidatePush{count},
+       {{gpu::kSlotResults, results}, {gpu::kSlotBoundsViolation, violation_}});
 }
 
 std::string HostGeometryPass::boundsViolation() const {

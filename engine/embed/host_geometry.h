@@ -71,11 +71,10 @@ class HostGeometryPass {
   };
   uint32_t copyFrom(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes);
   void listNodes(const Scene::Impl& scene);
-  void setArguments();
 
   const Device::Impl* device_;
   const GpuScene& resident_;
-  gpu::KernelArguments deform_, refit_, invalidate_;
+  gpu::Passes run_;
   gpu::Upload upload_;
   gpu::Array<uint32_t> words_, refitNodes_, numbers_;
   gpu::Array<gpu::BoundsViolation> violation_;  ///< in host memory: rarely written

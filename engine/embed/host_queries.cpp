@@ -5,14 +5,7 @@
 
 #include "embed/host_format.h"
 #include "gpu/barrier.h"
-#include "spirv/embed_plan_comp.h"
-#include "spirv/embed_plan_comp_RADAR_NO_DOUBLES.h"
-
-// pass        reads                         writes                                   barrier after it
-// ----------- ----------------------------- ---------------------------------------- ------------------------------
-// copy        the host's buffers            words                                    transferToComputeReadWrite
-// plan        words, meshes, object nodes   sensors, sweeps, states, tasks, counts,  computeWriteToComputeReadWrite
-//                                           excluded
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
@@ -22,14 +15,6 @@ static_assert(offsetof(HostQuery, direction) == gpu::kQueryDirection &&
               offsetof(HostQuery, distance) == gpu::kQueryDistance && offsetof(HostQuery, mesh) == gpu::kQueryMesh &&
               offsetof(HostQuery, mask) == gpu::kQueryMask && offsetof(HostQuery, exclude) == gpu::kQueryExclude &&
               offsetof(HostQuery, flags) == gpu::kQueryFlags && HostQuery::kAnyHit == gpu::kQueryAnyHit);
-
-// Created once per device.
-struct HostQueriesKernels {
-  explicit HostQueriesKernels(const Device::Impl& device)
-      : plan(device, device.doubles ? std::span<const uint32_t>(k_embed_plan_comp) : k_embed_plan_comp_RADAR_NO_DOUBLES,
-             "plan", device.divisionConstants()) {}
-  gpu::Kernel plan;
-};
 
 // Sets what the shader needs of the tree over objects.
 void describe(const ObjectTree& tree, gpu::PlanPush& push) {
@@ -54,7 +39,7 @@ std::string validate(const HostQueries& queries, uint32_t most) {
 
 HostQueriesPass::HostQueriesPass(const Device::Impl& device)
     : device_(&device),
-      plan_(device.shared<HostQueriesKernels>().plan),
+      run_(device, {shaders::kPlan}),
       words_(device, "host queries", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void HostQueriesPass::stage(const HostQueries& queries) {
@@ -67,6 +52,7 @@ void HostQueriesPass::stage(const HostQueries& queries) {
                 " bytes of the device's maxStorageBufferRange");
   }
   words_.reserve(bytes / sizeof(uint32_t));
+  run_.begin();
   queries_ = queries;
   span_ = span;
 }
@@ -82,21 +68,21 @@ void HostQueriesPass::record(const gpu::Commands& commands, const ContactPass& s
   }
   gpu::transferToComputeReadWrite(commands);
   const ContactPass::Encoded to = search.encoded();
-  plan_.set({{gpu::kSlotWords, words_},
-             {gpu::kSlotMeshes, resident.buffers().meshes},
-             {gpu::kSlotObjectNodes, resident.buffers().objectNodes},
-             {gpu::kSlotSensors, to.sensors},
-             {gpu::kSlotSweeps, to.sweeps},
-             {gpu::kSlotStates, to.states},
-             {gpu::kSlotTasks, to.tasks},
-             {gpu::kSlotExcluded, to.excluded},
-             {gpu::kSlotCounts, search.counts()}});
   gpu::PlanPush push{.queries = queries_.count,
                      .stride = static_cast<uint32_t>(queries_.stride),
                      .countByte = isCounted ? static_cast<uint32_t>(span_) : gpu::kNobody,
                      .meshes = static_cast<uint32_t>(scene.meshes.size())};
   describe(scene.objectTree(), push);
-  plan_.dispatch(commands, gpu::groupsFor(queries_.count, gpu::kHostGroup), push);
+  run_(commands, shaders::kPlan, gpu::groupsFor(queries_.count, gpu::kHostGroup), push,
+       {{gpu::kSlotWords, words_},
+        {gpu::kSlotMeshes, resident.buffers().meshes},
+        {gpu::kSlotObjectNodes, resident.buffers().objectNodes},
+        {gpu::kSlotSensors, to.sensors},
+        {gpu::kSlotSweeps, to.sweeps},
+        {gpu::kSlotStates, to.states},
+        {gpu::kSlotTasks, to.tasks},
+        {gpu::kSlotExcluded, to.excluded},
+        {gpu::kSlotCounts, search.counts()}});
   gpu::computeWriteToComputeReadWrite(commands);
 }
 

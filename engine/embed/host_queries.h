@@ -29,7 +29,7 @@ class HostQueriesPass {
 
  private:
   const Device::Impl* device_;
-  gpu::KernelArguments plan_;
+  gpu::Passes run_;
   gpu::Array<uint32_t> words_;
   HostQueries queries_;
   VkDeviceSize span_ = 0;  ///< bytes of the queries, and of the padding after them

@@ -4,26 +4,13 @@
 
 #include "gpu/barrier.h"
 #include "math/rounding.h"
-#include "spirv/embed_fit_comp.h"
-#include "spirv/embed_move_comp.h"
-#include "spirv/embed_move_comp_RADAR_NO_DOUBLES.h"
-#include "spirv/embed_reach_comp.h"
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
 using gpu::BufferDomain;
 
 namespace {
-
-// Created once per device.
-struct MovedObjectsKernels {
-  explicit MovedObjectsKernels(const Device::Impl& device)
-      : move(device, device.doubles ? std::span<const uint32_t>(k_embed_move_comp) : k_embed_move_comp_RADAR_NO_DOUBLES,
-             "move"),
-        fit(device, k_embed_fit_comp, "fit"),
-        reach(device, k_embed_reach_comp, "reach") {}
-  gpu::Kernel move, fit, reach;
-};
 
 std::string nameOf(ObjectId object) {
   return "object " + std::to_string(object);
@@ -73,9 +60,7 @@ void listByDepth(const std::vector<bool>& marks, const ObjectTree& tree, std::ve
 
 MovedObjectsPass::MovedObjectsPass(const Device::Impl& device, const GpuScene& resident)
     : resident_(resident),
-      move_(device.shared<MovedObjectsKernels>().move),
-      fit_(device.shared<MovedObjectsKernels>().fit),
-      reach_(device.shared<MovedObjectsKernels>().reach),
+      run_(device, {shaders::kMove, shaders::kFit, shaders::kReach}),
       upload_(device),
       moved_(device, "moved objects", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       fitNodes_(device, "nodes to fit", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
@@ -131,6 +116,7 @@ void MovedObjectsPass::addStanding(List& list, const std::vector<bool>& isNamed,
 
 void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<const uint32_t> firstBytes,
                              std::span<const MeshId> meshes, const Scene::Impl& scene) {
+  run_.begin();
   isActive_ =
       !meshes.empty() || std::ranges::any_of(groups, [](const MovedObjects& group) { return !group.objects.empty(); });
   if (!isActive_) return;
@@ -190,33 +176,33 @@ void MovedObjectsPass::recordMove(const gpu::Commands& commands, const gpu::Arra
                                   const gpu::Array<gpu::BoundsViolation>& violation) {
   if (!isActive_) return;
   const GpuScene::Buffers& scene = resident_.buffers();
-  move_.set({{gpu::kSlotMeshes, scene.meshes},
-             {gpu::kSlotObjects, scene.objects},
-             {gpu::kSlotPlacements, scene.placements},
-             {gpu::kSlotObjectNodes, scene.objectNodes},
-             {gpu::kSlotMoved, moved_},
-             {gpu::kSlotBoundsViolation, violation},
-             {gpu::kSlotWords, words}});
-  move_.dispatch(commands, gpu::groupsFor(push_.count, gpu::kHostGroup), push_);
+  run_(commands, shaders::kMove, gpu::groupsFor(push_.count, gpu::kHostGroup), push_,
+       {{gpu::kSlotMeshes, scene.meshes},
+        {gpu::kSlotObjects, scene.objects},
+        {gpu::kSlotPlacements, scene.placements},
+        {gpu::kSlotObjectNodes, scene.objectNodes},
+        {gpu::kSlotMoved, moved_},
+        {gpu::kSlotBoundsViolation, violation},
+        {gpu::kSlotWords, words}});
 }
 
 void MovedObjectsPass::recordFit(const gpu::Commands& commands) {
   if (!isActive_) return;
-  fit_.set({{gpu::kSlotObjectNodes, resident_.buffers().objectNodes}, {gpu::kSlotFitNodes, fitNodes_}});
   for (size_t depth = list_->ends.size(); depth-- > 0;) {
     const uint32_t first = depth == 0 ? 0 : list_->ends[depth - 1], count = list_->ends[depth] - first;
-    fit_.dispatch(commands, gpu::groupsFor(count, gpu::kHostGroup), gpu::FitPush{first, count});
+    run_(commands, shaders::kFit, gpu::groupsFor(count, gpu::kHostGroup), gpu::FitPush{first, count},
+         {{gpu::kSlotObjectNodes, resident_.buffers().objectNodes}, {gpu::kSlotFitNodes, fitNodes_}});
     gpu::computeWriteToComputeReadWrite(commands);
   }
 }
 
 void MovedObjectsPass::recordReach(const gpu::Commands& commands, const ContactPass& search) {
   if (unbounded().empty() || search.sensorCount() == 0) return;
-  reach_.set({{gpu::kSlotSensors, search.encoded().sensors},
-              {gpu::kSlotStates, search.encoded().states},
-              {gpu::kSlotObjectNodes, resident_.buffers().objectNodes}});
-  reach_.dispatch(commands, gpu::groupsFor(search.sensorCount(), gpu::kHostGroup),
-                  gpu::ReachPush{search.sensorCount()});
+  run_(commands, shaders::kReach, gpu::groupsFor(search.sensorCount(), gpu::kHostGroup),
+       gpu::ReachPush{search.sensorCount()},
+       {{gpu::kSlotSensors, search.encoded().sensors},
+        {gpu::kSlotStates, search.encoded().states},
+        {gpu::kSlotObjectNodes, resident_.buffers().objectNodes}});
   gpu::computeWriteToComputeReadWrite(commands);
 }
 

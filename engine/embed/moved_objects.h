@@ -71,7 +71,7 @@ class MovedObjectsPass {
   void stageUpload(const List& list);
 
   const GpuScene& resident_;
-  gpu::KernelArguments move_, fit_, reach_;
+  gpu::Passes run_;
   gpu::Upload upload_;
   gpu::Array<gpu::Moved> moved_;
   gpu::Array<uint32_t> fitNodes_;

@@ -2,32 +2,18 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
-#include "contact/decode.h"
 #include "contact/pass.h"
-#include "cpu/clearance.h"
-#include "cpu/query_search.h"
 #include "embed/capacity.h"
 #include "embed/gather.h"
 #include "embed/host_geometry.h"
 #include "embed/host_queries.h"
 #include "embed/known_recordings.h"
+#include "embed/recorded.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
-#include "scene/query_lists.h"
+#include "query/route.h"
 #include "scene/scene_copy.h"
-
-// pass                                            reads           writes   barrier after it
-// ----------------------------------------------- --------------- -------- ------------------
-// gather.cpp: upload                                                       (contact/pass.cpp's)
-// contact/pass.cpp; host_geometry.cpp and
-//   host_queries.cpp between its upload and
-//   search
-// gather.cpp, host_geometry.cpp: invalidate                                computeWriteToCopy
-// readback                                        counts,         readback writtenToHost
-//                                                 results, sweeps,
-//                                                 extents
 
 namespace radar {
 
@@ -36,24 +22,8 @@ namespace {
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
-// Of a query past one object each: lavapipe ends longer loops silently.
-constexpr size_t kMostSearches = 1u << 15;
-
 SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
-}
-
-// Whether the CPU answers a query while it is recorded, because the device's search does not offer what it asks for.
-bool isForCpu(const Query& query, const Scene::Impl& scene) {
-  const bool isDirected = isStep(query, scene) && !query.motion;
-  return query.skipOverlapping || isDirected || combinesClearance(query, scene);
-}
-
-Result outOfRange() {
-  Result result;
-  result.tier = Tier::contact;
-  result.flags = kFlagRange;
-  return result;
 }
 
 }  // namespace
@@ -65,7 +35,7 @@ struct Recorder::Impl {
         capacity(completed(given, openDevice)),
         copy(std::move(ownCopy)),
         geometry(openDevice, *copy),
-        pass(openDevice, *copy, {std::shared_ptr<void>(), &openDevice.shared<ContactKernels>()}, roomFor(capacity)),
+        pass(openDevice, *copy, roomFor(capacity)),
         gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
@@ -74,20 +44,10 @@ struct Recorder::Impl {
   }
 
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
-  void validateAll(std::span<const Query> queries, bool besideGeometry) const;
+  void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
-  std::vector<std::vector<ObjectId>> objectsInReach(std::span<const Query> queries);
-  void addUnbounded(const Query& query, std::vector<ObjectId>& objects) const;
-  size_t answerOnCpu(const Query& query, uint32_t number);
-  void plan(std::span<const Query> queries);
-  Planned plan(const Query& query, uint32_t result, ObjectId object);
-  void planSearches(const Query& query, std::span<const ObjectId> objects);
-  void recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten);
-  void learnBoxes();
-  void decide(std::span<Result> results) const;
-  std::vector<Result> putTogether(std::span<const Result> all, Lists* lists) const;
-  std::vector<Result> readHost() const;
-  std::vector<Result> copyResults(size_t count) const;
+  void stage();
+  void recordSearch(VkCommandBuffer commandBuffer);
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
 
   const Device::Impl& device;
@@ -96,41 +56,23 @@ struct Recorder::Impl {
   std::shared_ptr<GpuScene> copy;
   bool isShared = false;                                 ///< with other recorders
   std::shared_ptr<const GpuScene::Buffers> usedBuffers;  ///< by the last recording
-  GpuScene::Farthest farthest;                           ///< of the meshes that it searched
   HostGeometryPass geometry;
   std::optional<HostQueriesPass> hostQueries;  ///< made when first needed
-  uint32_t mostWritten = 0;  ///< HostQueries::count of the last record(); 0 if it failed, or had others
   ContactPass pass;
   GatherPass gathers;
-  gpu::Buffer readback;                ///< counts, then results; then sweeps, if a host's shader wrote the queries
-  std::vector<Query> recordedQueries;  ///< in the last record(); none if it failed
-  struct Answered {
-    Result first;
-    QueryLists lists;
-  };
-  std::map<uint32_t, Answered> onCpu;   ///< queries that the CPU answered while they were recorded
-  std::vector<gpu::Gathered> gathered;  ///< queries that take several searches
-  size_t searches = 0;                  ///< past one object each, and hits that the CPU listed instead
-  std::vector<uint32_t> hitOffsets;
-  std::vector<double> tolerances;  ///< of their clearances
-  SensorBatch sensors;
-  std::vector<gpu::DeformedSensor> deformedSensors;
-  std::vector<Result> known;  ///< of queries, their lists, and searches past one object each
-  cpu::QuerySearch reach;     ///< what is in reach, and answers
+  gpu::Buffer readback;  ///< counts, then results; then sweeps, if a host's shader wrote the queries
+  Recorded recorded;     ///< the last record()
 };
 
-void Recorder::Impl::validateAll(std::span<const Query> queries, bool besideGeometry) const {
+void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
     throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
                 std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
-    if (wrong.empty() && queries[i].mode != Mode::contact) wrong = "mode: expected contact";
-    if (wrong.empty() && besideGeometry && isForCpu(queries[i], scene.impl())) {
-      wrong =
-          "skipOverlapping, a clearance with ignoreLeaving, hits or a step, a direction while objects move: the CPU "
-          "answers these, and cannot beside a HostGeometry";
+    if (const char* what = wrong.empty() ? onlyForCpu(queries[i], scene.impl(), false) : nullptr) {
+      wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
     }
     if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
   }
@@ -140,163 +82,6 @@ void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry
   if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
   if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-}
-
-// Returns the number of hits.
-size_t Recorder::Impl::answerOnCpu(const Query& query, uint32_t number) {
-  Answered& answered = onCpu[number];
-  answered.first =
-      reach.answer(query, scene.impl(), scene.impl().objectTree(), hasLists(query) ? &answered.lists : nullptr);
-  answered.first.tier = Tier::contact;
-  if (query.hits == 1) answered.lists.hits.clear();
-  for (Result& hit : answered.lists.hits) hit.tier = Tier::contact;
-  return answered.lists.hits.size();
-}
-
-// Adds the objects that may be in reach, wherever the host moves them, and sorts all: every object if only the device
-// knows how large the sensor is.
-void Recorder::Impl::addUnbounded(const Query& query, std::vector<ObjectId>& objects) const {
-  std::vector<ObjectId> exclude = query.exclude;
-  std::sort(exclude.begin(), exclude.end());
-  const auto add = [&](ObjectId id) {
-    const Scene::Impl::ObjectSlot& slot = scene.impl().objects[id];
-    const bool takesPart = slot.used && (slot.object.mask & query.mask) != 0;
-    if (takesPart && !std::binary_search(exclude.begin(), exclude.end(), id)) objects.push_back(id);
-  };
-  if (geometry.isUnbounded(query.mesh)) {
-    for (ObjectId id = 0; id < scene.impl().objects.size(); ++id) add(id);
-  } else {
-    for (const ObjectId id : geometry.unbounded()) add(id);
-  }
-  std::sort(objects.begin(), objects.end());
-  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
-}
-
-// Of the queries that take several searches; ascending. Answers those that are for the CPU.
-std::vector<std::vector<ObjectId>> Recorder::Impl::objectsInReach(std::span<const Query> queries) {
-  const ObjectTree& tree = scene.impl().objectTree();
-  std::vector<std::vector<ObjectId>> objects(queries.size());
-  searches = 0;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (isForCpu(queries[i], scene.impl())) {
-      searches += answerOnCpu(queries[i], static_cast<uint32_t>(i));
-      continue;
-    }
-    if (!searchesEach(queries[i], scene.impl()) || !tree.inRange()) continue;
-    objects[i] = reach.inReach(queries[i], scene.impl(), tree);
-    addUnbounded(queries[i], objects[i]);
-    searches += objects[i].size();
-    if (objects[i].size() <= kMostSearches) continue;
-    throw Error("record: query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
-                " objects in reach, got " + std::to_string(objects[i].size()));
-  }
-  if (searches > capacity.searches) {
-    throw Error("record: expected at most " + std::to_string(capacity.searches) +
-                " searches past one object each (Capacity::searches), got " + std::to_string(searches));
-  }
-  return objects;
-}
-
-// As addSensor().
-Planned Recorder::Impl::plan(const Query& query, uint32_t result, ObjectId object) {
-  const Planned planned = addSensor(sensors, query, result, scene.impl(), scene.impl().objectTree(), object);
-  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) {
-    deformedSensors.push_back(deformedSensor(sensors.count() - 1, query, motionPast(query, scene.impl(), object)));
-  }
-  return planned;
-}
-
-void Recorder::Impl::plan(std::span<const Query> queries) {
-  const ObjectTree& tree = scene.impl().objectTree();
-  onCpu.clear();
-  const std::vector<std::vector<ObjectId>> objects = objectsInReach(queries);
-  sensors.clear();
-  deformedSensors.clear();
-  gathered.clear();
-  gathers.clear();
-  hitOffsets.clear();
-  auto end = static_cast<uint32_t>(queries.size());
-  for (uint32_t i = 0; i < queries.size(); ++i) {
-    hitOffsets.push_back(end);
-    const auto count = static_cast<uint32_t>(objects[i].size());
-    const auto answered = onCpu.find(i);
-    if (answered != onCpu.end()) end += static_cast<uint32_t>(answered->second.lists.hits.size());
-    const uint32_t listed = queries[i].hits > 1 ? std::min(queries[i].hits, count) : 0;
-    if (count > 0) gathered.push_back({.query = i, .first = 0, .count = count, .list = end, .listed = listed});
-    end += listed;
-  }
-  hitOffsets.push_back(end);
-  known.assign(end, clearAnswer());
-  for (const auto& [query, answered] : onCpu) {
-    known[query] = answered.first;
-    std::copy(answered.lists.hits.begin(), answered.lists.hits.end(), known.begin() + hitOffsets[query]);
-  }
-  auto next = gathered.begin();
-  for (uint32_t i = 0; i < queries.size(); ++i) {
-    if (onCpu.contains(i)) continue;
-    if (objects[i].empty()) {
-      if (searchesEach(queries[i], scene.impl()) && tree.inRange()) continue;  // nothing is in reach
-      if (plan(queries[i], i, kNone) == Planned::outOfRange) known[i] = outOfRange();
-      continue;
-    }
-    next->first = static_cast<uint32_t>(known.size());
-    gathers.add(*next++);
-    planSearches(queries[i], objects[i]);
-  }
-}
-
-void Recorder::Impl::planSearches(const Query& query, std::span<const ObjectId> objects) {
-  for (const ObjectId object : objects) {
-    const Planned planned = plan(query, static_cast<uint32_t>(known.size()), object);
-    known.push_back(planned == Planned::outOfRange ? outOfRange() : clearAnswer());
-  }
-}
-
-// Of the meshes whose vertices only the device knew: what decide() needs.
-void Recorder::Impl::learnBoxes() {
-  const std::map<MeshId, Box> boxes = geometry.unboundedBoxes();
-  if (boxes.empty()) return;
-  std::vector<Vector> all = *farthest;
-  for (const auto& [mesh, box] : boxes) {
-    Mesh shape;
-    setBox(shape, box);
-    all[mesh] = shape.farthest;
-    for (size_t i = 0; i < tolerances.size(); ++i) {
-      if (recordedQueries[i].mesh == mesh) tolerances[i] = cpu::toleranceOf(recordedQueries[i], shape);
-    }
-  }
-  farthest = std::make_shared<const std::vector<Vector>>(std::move(all));
-}
-
-// Decides the answers of searches that are open.
-void Recorder::Impl::decide(std::span<Result> results) const {
-  const UnresolvedPairs unresolved(pass.unresolved(counts()));
-  auto next = gathered.begin();
-  for (uint32_t i = 0; i < sensors.count(); ++i) {
-    const gpu::Sweep& sweep = sensors.sweeps[i];
-    while (next != gathered.end() && sweep.result >= next->first + next->count) ++next;
-    const bool isOneOfSeveral = sweep.result >= hitOffsets.back();
-    const uint32_t number = isOneOfSeveral ? next->query : sweep.result;
-    const auto pairs = unresolved.of(i);
-    if (results[sweep.result].flags != kFlagUnresolved || pairs.empty()) continue;
-    const Query& query = recordedQueries[number];
-    const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
-    results[sweep.result] =
-        decideUnresolved(results[sweep.result], pairs, query,
-                         query.motion ? Motion(*query.motion, drift) : Motion(query), tolerances[number], *farthest);
-  }
-}
-
-// Returns the answers to the queries, from all that the device wrote.
-std::vector<Result> Recorder::Impl::putTogether(std::span<const Result> all, Lists* lists) const {
-  std::vector<Result> answers(all.begin(), all.begin() + static_cast<ptrdiff_t>(recordedQueries.size()));
-  std::vector<QueryLists> own(answers.size());
-  for (const auto& [query, answered] : onCpu) own[query] = answered.lists;
-  for (const gpu::Gathered& several : gathered) {
-    answers[several.query] = gather(all.subspan(several.first, several.count), several.listed, own[several.query].hits);
-  }
-  if (lists != nullptr && std::any_of(recordedQueries.begin(), recordedQueries.end(), hasLists)) *lists = joined(own);
-  return answers;
 }
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -318,8 +103,18 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-// Records what either kind of record() has staged. `areWritten`: a host's shader has written the queries.
-void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t results, bool areWritten) {
+// Stages what both kinds of record() have planned, but for the search.
+void Recorder::Impl::stage() {
+  geometry.stageSensors(recorded.deformedSensors, scene.impl());
+  gathers.stage(recorded.gathered);
+  copy->willOverwrite(geometry.overwritten());
+  usedBuffers.reset();
+}
+
+// Records what either kind of record() has staged.
+void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer) {
+  const bool areWritten = recorded.isWritten;
+  const uint32_t results = areWritten ? recorded.count : static_cast<uint32_t>(recorded.known.size());
   const gpu::Commands commands{&device.vk, commandBuffer};
   const char* open = nullptr;
   const auto stage = [&](const char* name) {
@@ -342,7 +137,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
   pass.record(commands, stage, capacity.rounds, true);
   if (!gathers.empty()) {
     stage("gather");
-    gathers.record(commands, pass.results(), results - gathers.searchCount());
+    gathers.record(commands, pass.results(), recorded.hitOffsets.back());
   }
   if (!geometry.empty()) geometry.recordInvalidate(commands, pass.results(), results);
   gpu::computeWriteToCopy(commands);
@@ -360,54 +155,36 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, uint32_t result
   copy->confirm(scene.impl());
   geometry.confirm();
   usedBuffers = copy->shareBuffers();
-  farthest = copy->farthest();
+  recorded.farthest = copy->farthest();
+  recorded.isComplete = true;
 }
 
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  self.validateAll(queries, !geometry.meshes.empty() || !geometry.objects.empty());
+  self.validateAll(queries);
   if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-  self.recordedQueries.clear();  // if recording fails, read() has nothing to return
-  self.mostWritten = 0;
+  self.recorded.isComplete = false;  // if recording fails, read() has nothing to return
   self.geometry.stage(geometry, self.scene.impl());
-  self.plan(queries);
-  self.geometry.stageSensors(self.deformedSensors, self.scene.impl());
-  self.copy->willOverwrite(self.geometry.overwritten());
-  self.usedBuffers.reset();
-  self.pass.stage(self.sensors, self.known, self.scene.impl());
-  self.gathers.stage();
-  self.tolerances.clear();
-  for (const Query& query : queries) {
-    self.tolerances.push_back(cpu::toleranceOf(query, self.scene.impl().meshes[query.mesh]));
-  }
-  std::vector<Query> recorded(queries.begin(), queries.end());
-  self.recordSearch(commands, static_cast<uint32_t>(self.known.size()), false);  // from here on nothing throws
-  self.recordedQueries = std::move(recorded);
+  self.recorded.plan(queries, self.scene.impl(), self.geometry, self.capacity.searches);
+  self.stage();
+  self.pass.stage(self.recorded.sensors, self.recorded.known, self.scene.impl());
+  self.recordSearch(commands);  // from here on nothing throws
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   Impl& self = *impl_;
   self.validateHost(queries, geometry);
-  self.recordedQueries.clear();
-  self.mostWritten = 0;
+  self.recorded.isComplete = false;
   self.geometry.stage(geometry, self.scene.impl());
-  self.geometry.stageSensors({}, self.scene.impl());
-  self.tolerances.clear();
-  self.gathers.clear();
-  self.gathered.clear();
-  self.searches = 0;
-  self.onCpu.clear();
-  self.hitOffsets.assign(queries.count + 1, queries.count);
-  self.copy->willOverwrite(self.geometry.overwritten());
-  self.usedBuffers.reset();
+  self.recorded.planWritten(queries.count);
+  self.stage();
   self.pass.stageEncoded(queries.count, self.scene.impl());
   self.readback.reserve(self.firstSweep() + self.capacity.queries * sizeof(gpu::Sweep));
   if (!self.hostQueries) self.hostQueries.emplace(self.device);
   if (queries.count != 0) self.hostQueries->stage(queries);
-  self.recordSearch(commands, queries.count, true);
-  self.mostWritten = queries.count;
+  self.recordSearch(commands);
 }
 
 void Recorder::reset() {
@@ -419,44 +196,31 @@ VkBuffer Recorder::results() const {
   return impl_->pass.results().get();
 }
 
-std::vector<Result> Recorder::Impl::copyResults(size_t count) const {
-  const auto* results = reinterpret_cast<const Result*>(readback.mapped() + kFirstResult);
-  return {results, results + count};
-}
-
-std::vector<Result> Recorder::Impl::readHost() const {
-  const UnresolvedPairs unresolved(pass.unresolved(counts()));
-  const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(readback.mapped() + firstSweep());
-  std::vector<Result> results = copyResults(std::min(counts().queries, mostWritten));
-  for (uint32_t i = 0; i < results.size(); ++i) {
-    const auto pairs = unresolved.of(i);
-    if (results[i].flags != kFlagUnresolved || pairs.empty()) continue;
-    const Query query = queryOf(sweeps[i]);
-    results[i] = decideUnresolved(results[i], pairs, query, Motion(query), 0, *farthest);
-  }
-  return results;
-}
-
 std::span<const uint32_t> Recorder::hitOffsets() const {
-  return impl_->hitOffsets;
+  return impl_->recorded.hitOffsets;
 }
 
-std::vector<Result> Recorder::read(Lists* lists) {
+Answers Recorder::read() {
   const FloatEnvironment floats;
   Impl& self = *impl_;
-  if (lists != nullptr) *lists = {};
-  if (self.mostWritten == 0 && self.recordedQueries.empty()) return {};
-  self.learnBoxes();
-  if (self.mostWritten != 0) return self.readHost();
-  std::vector<Result> results = self.copyResults(self.known.size());
-  self.decide(results);
-  return self.putTogether(results, lists);
+  Recorded& recorded = self.recorded;
+  if (!recorded.isComplete) return {};
+  recorded.learn(self.geometry.unboundedBoxes());
+  const std::byte* const mapped = self.readback.mapped();
+  const uint32_t count = recorded.isWritten ? std::min(self.counts().queries, recorded.count)
+                                            : static_cast<uint32_t>(recorded.known.size());
+  const auto* first = reinterpret_cast<const Result*>(mapped + kFirstResult);
+  std::vector<Result> results(first, first + count);
+  const auto pairs = self.pass.unresolved(self.counts());
+  if (!recorded.isWritten) return recorded.answers(std::move(results), pairs);
+  const auto* sweeps = reinterpret_cast<const gpu::Sweep*>(mapped + self.firstSweep());
+  return recorded.answersToWritten(std::move(results), pairs, sweeps);
 }
 
 Capacity Recorder::needed() const {
   const Impl& self = *impl_;
   Capacity needed = self.capacity;
-  if (self.recordedQueries.empty() && self.mostWritten == 0) return needed;
+  if (!self.recorded.isComplete || self.recorded.count == 0) return needed;
   const gpu::SearchCounts& counts = self.counts();
   const auto of = [](uint32_t count, uint32_t capacity) {
     constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max();
@@ -464,7 +228,7 @@ Capacity Recorder::needed() const {
   };
   needed.candidates = of(counts.candidates, needed.candidates);
   needed.unresolvedPairs = std::max(counts.unresolved, 1u);
-  needed.searches = static_cast<uint32_t>(self.searches);
+  needed.searches = self.recorded.searchCount();
   uint32_t rounds = 0;
   while (rounds <= self.capacity.rounds && counts.rounds[rounds].tasks != 0) ++rounds;
   const bool isUnfinished = rounds > self.capacity.rounds;

@@ -5,10 +5,7 @@
 
 #include "gpu/barrier.h"
 #include "math/rounding.h"
-#include "spirv/embed_bound_comp.h"
-#include "spirv/embed_normalise_comp.h"
-#include "spirv/embed_place_comp.h"
-#include "spirv/embed_place_comp_RADAR_NO_DOUBLES.h"
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
@@ -18,17 +15,6 @@ namespace {
 
 // Longer lengths are out of range anyway.
 constexpr double kLongest = 1e38;
-
-// Created once per device.
-struct UnboundedMeshesKernels {
-  explicit UnboundedMeshesKernels(const Device::Impl& device)
-      : bound(device, k_embed_bound_comp, "bound"),
-        normalise(device, k_embed_normalise_comp, "normalise"),
-        place(device,
-              device.doubles ? std::span<const uint32_t>(k_embed_place_comp) : k_embed_place_comp_RADAR_NO_DOUBLES,
-              "place") {}
-  gpu::Kernel bound, normalise, place;
-};
 
 // The float with this number in the order of floats: see normalise.comp.
 float floatOf(uint32_t inOrder) {
@@ -54,9 +40,7 @@ gpu::DeformedSensor deformedSensor(uint32_t sensor, const Query& query, const Mo
 
 UnboundedMeshesPass::UnboundedMeshesPass(const Device::Impl& device, const GpuScene& resident)
     : resident_(resident),
-      bound_(device.shared<UnboundedMeshesKernels>().bound),
-      normalise_(device.shared<UnboundedMeshesKernels>().normalise),
-      place_(device.shared<UnboundedMeshesKernels>().place),
+      run_(device, {shaders::kBound, shaders::kNormalise, shaders::kPlace}),
       upload_(device),
       unbounded_(device, "unbounded meshes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       extents_(device, "extents", BufferDomain::device,
@@ -65,6 +49,7 @@ UnboundedMeshesPass::UnboundedMeshesPass(const Device::Impl& device, const GpuSc
       sensors_(device, "deformed sensors", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void UnboundedMeshesPass::stage(std::vector<MeshId> meshes) {
+  run_.begin();
   meshes_.clear();
   push_.count = 0;
   unbounded_.reserve(meshes.size());
@@ -93,29 +78,29 @@ void UnboundedMeshesPass::recordBound(const gpu::Commands& commands, const Scene
   if (empty()) return;
   using namespace gpu;  // the slots
   const GpuScene::Buffers& buffers = resident_.buffers();
-  bound_.set({{kSlotVertices, buffers.vertices}, {kSlotTriangles, buffers.triangles}, {kSlotExtents, extents_}});
   for (uint32_t i = 0; i < meshes_.size(); ++i) {
     const uint32_t triangles = scene.meshes[meshes_[i]].triangleCount();
-    bound_.dispatch(commands, groupsFor(triangles, kHostGroup * kBoundRun),
-                    BoundPush{resident_.record(meshes_[i]).firstTriangle, triangles, i});
+    run_(commands, shaders::kBound, groupsFor(triangles, kHostGroup * kBoundRun),
+         BoundPush{resident_.record(meshes_[i]).firstTriangle, triangles, i},
+         {{kSlotVertices, buffers.vertices}, {kSlotTriangles, buffers.triangles}, {kSlotExtents, extents_}});
   }
   computeWriteToComputeReadWrite(commands);
-  normalise_.set({{kSlotMeshes, buffers.meshes}, {kSlotUnbounded, unbounded_}, {kSlotExtents, extents_}});
   const auto count = static_cast<uint32_t>(meshes_.size());
-  normalise_.dispatch(commands, groupsFor(count, kHostGroup), NormalisePush{count});
+  run_(commands, shaders::kNormalise, groupsFor(count, kHostGroup), NormalisePush{count},
+       {{kSlotMeshes, buffers.meshes}, {kSlotUnbounded, unbounded_}, {kSlotExtents, extents_}});
   computeWriteToComputeReadWrite(commands);
 }
 
 void UnboundedMeshesPass::recordPlace(const gpu::Commands& commands, const ContactPass& search) {
   if (empty() || push_.count == 0) return;
   const ContactPass::Encoded to = search.encoded();
-  place_.set({{gpu::kSlotMeshes, resident_.buffers().meshes},
-              {gpu::kSlotObjectNodes, resident_.buffers().objectNodes},
-              {gpu::kSlotSensors, to.sensors},
-              {gpu::kSlotStates, to.states},
-              {gpu::kSlotSweeps, to.sweeps},
-              {gpu::kSlotDeformedSensors, sensors_}});
-  place_.dispatch(commands, gpu::groupsFor(push_.count, gpu::kHostGroup), push_);
+  run_(commands, shaders::kPlace, gpu::groupsFor(push_.count, gpu::kHostGroup), push_,
+       {{gpu::kSlotMeshes, resident_.buffers().meshes},
+        {gpu::kSlotObjectNodes, resident_.buffers().objectNodes},
+        {gpu::kSlotSensors, to.sensors},
+        {gpu::kSlotStates, to.states},
+        {gpu::kSlotSweeps, to.sweeps},
+        {gpu::kSlotDeformedSensors, sensors_}});
   gpu::computeWriteToComputeReadWrite(commands);
 }
 

@@ -43,7 +43,7 @@ class UnboundedMeshesPass {
 
  private:
   const GpuScene& resident_;
-  gpu::KernelArguments bound_, normalise_, place_;
+  gpu::Passes run_;
   gpu::Upload upload_;
   gpu::Array<uint32_t> unbounded_;
   gpu::Array<gpu::Extent> extents_, readback_;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "math/rounding.h"
+
 namespace radar::exact {
 
 /// For sums of products of at most four numbers that hasSafeRange() admits, and their differences: then nothing
@@ -48,7 +50,7 @@ class Bounded {
     return std::abs(p.value_) * q.error_ + p.error_ * (std::abs(q.value_) + q.error_);
   }
 
-  static constexpr double kUnit = 0x1p-53, kMore = 1 + 0x1p-49;
+  static constexpr double kMore = 1 + 0x1p-49;
 
   double value_ = 0, error_ = 0;  // |value_ - exact| <= error_
 };

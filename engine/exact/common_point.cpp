@@ -18,17 +18,7 @@ struct Candidate {
   Vector at;
 };
 
-Vector minus(const Vector& p, const Vector& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
-Vector cross(const Vector& p, const Vector& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-double dot(const Vector& p, const Vector& q) {
-  return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
-}
+using radar::cross, radar::dot;
 
 /// Considers the crossings of the edges of `other` with `face`.
 void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
@@ -41,8 +31,7 @@ void pierce(const Triangle& face, const Triangle& other, Candidate& best) {
     if ((above > 0) == (below > 0) && above != 0 && below != 0) continue;
     if (above == below) continue;
     const double share = above / (above - below);
-    const Vector edge = minus(q, p);
-    const Vector at{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
+    const Vector at = along(p, share, minus(q, p));
     double inside = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
       const Vector &r = face[k], &s = face[(k + 1) % 3];
@@ -68,8 +57,7 @@ std::optional<Vector> exactCrossing(const Triangle& face, const Triangle& other)
     if (least < 0 && greatest > 0) continue;
     const Dyadic height = exactly(above);
     const double share = quotient(height, height - exactly(below));
-    const Vector edge = minus(q, p);
-    return Vector{p[0] + share * edge[0], p[1] + share * edge[1], p[2] + share * edge[2]};
+    return along(p, share, minus(q, p));
   }
   return std::nullopt;
 }

@@ -14,7 +14,8 @@
 #include <optional>
 
 #include "math/vector.h"
-#include "radar/query.h"
+#include "radar/codes.h"
+#include "radar/scene.h"
 
 namespace radar::exact {
 

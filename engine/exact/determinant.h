@@ -61,7 +61,7 @@ inline Estimate estimate(const Vector& w, const Vector& x, const Vector& y, doub
 }
 
 inline double underflowOf(const Vector& w) {
-  return kUnderflow * (1 + (std::abs(w[0]) + std::abs(w[1]) + std::abs(w[2])));
+  return kUnderflow * (1 + norm1(w));
 }
 
 inline Vector rounded(const Difference& d) {

@@ -6,6 +6,7 @@
 
 #include "exact/contact_normal.h"
 #include "exact/motion.h"
+#include "radar/answers.h"
 
 namespace radar::exact {
 

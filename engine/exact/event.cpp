@@ -7,12 +7,12 @@
 
 #include "exact/determinant.h"
 #include "exact/scaled_int.h"
+#include "math/rounding.h"
 
 namespace radar::exact {
 
 namespace {
 
-constexpr double kUnit = 0x1p-53;
 // Covers underflow, with a margin; subnormal numbers would be slow.
 constexpr double kLeast = 0x1p-1000;
 // Products that cancel by more than this cost a normal in double-doubles too many bits (double_double.glsl).
@@ -221,10 +221,6 @@ double length(const Vector& d) {
   return below == above ? below : exactLength(d, root);
 }
 
-Vector along(const Vector& p, double s, const Vector& d) {
-  return {p[0] + s * d[0], p[1] + s * d[1], p[2] + s * d[2]};
-}
-
 Vector point(const Event& e, double s) {
   switch (e.kind) {
     case Kind::vertexFace:
@@ -258,8 +254,7 @@ namespace {
 class Scale {
  public:
   explicit Scale(const Vector& v)
-      : size_(std::ilogb(std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}))),
-        factor_(std::abs(size_) < 1000 ? std::ldexp(1.0, -size_) : 0) {}
+      : size_(std::ilogb(largest(v))), factor_(std::abs(size_) < 1000 ? std::ldexp(1.0, -size_) : 0) {}
   double operator()(double x) const { return factor_ != 0 ? factor_ * x : std::ldexp(x, -size_); }
 
  private:
@@ -277,7 +272,7 @@ double rootOf(double x) {
 Vector unitOf(Vector n, double turn) {
   const Scale scale(n);
   for (double& c : n) c = scale(c);
-  const double root = rootOf((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
+  const double root = rootOf(radar::dot(n, n));
   for (double& c : n) c = turn * c / root;
   return withoutZeroSigns(n);
 }
@@ -307,17 +302,17 @@ Vector normal(const Event& e) {
     for (int k = 0; k < 3; ++k) v[k] = {scale(v[k].high), scale(v[k].low)};
   }
   Vector n;
-  double largest = 0, products = 0;
+  double most = 0, products = 0;
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     const DoubleDouble p = x[i] * y[j], q = x[j] * y[i];
     n[k] = (p - q).high;
-    largest = std::max(largest, std::abs(n[k]));
+    most = std::max(most, std::abs(n[k]));
     products = std::max(products, std::abs(p.high) + std::abs(q.high));
   }
   const int side = sign(denominator(e));
   // The components are off by 2^-99 of the products. Devices then leave the pair to the CPU.
-  if (!(products < kMostCancelled * largest)) {
+  if (!(products < kMostCancelled * most)) {
     Three<Dyadic> exact;
     for (int k = 0; k < 3; ++k) exact[k] = Dyadic(-side) * exactly({{kOrigin, unit(k)}, {e.x0, e.x1}, {e.y0, e.y1}});
     return unitOf(exact);

@@ -16,9 +16,6 @@ Event vertexEdge(const Vector& direction, const Vector& a, const Vector& b0, con
 Event edgeVertex(const Vector& direction, const Vector& a0, const Vector& a1, const Vector& b, int axis);
 Event vertexVertex(const Vector& direction, const Vector& a, const Vector& b);
 
-/// p + s d, rounded.
-Vector along(const Vector& p, double s, const Vector& d);
-
 /// The unit vector along v, which is not zero; every component is off by a few roundings of itself.
 Vector unitOf(const Three<Dyadic>& v);
 

@@ -1,6 +1,5 @@
 #include "exact/motion.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "exact/contact.h"
@@ -13,14 +12,10 @@ namespace {
 // Below this, the relative error of a length or a quotient may exceed its rounding error.
 constexpr double kLeastNormal = 0x1p-900;
 
-Vector minus(const Vector& p, const Vector& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
 Vector normalized(Vector v) {
-  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-  for (double& c : v) c /= largest;
-  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  const double size = largest(v);
+  for (double& c : v) c /= size;
+  const double length = std::sqrt(dot(v, v));
   for (double& c : v) c /= length;
   return v;
 }
@@ -52,7 +47,7 @@ Motion::Motion(const Vector& sensor, const Vector& object)
 Vector displacementOf(const Query& query) {
   if (query.motion) return *query.motion;
   const Motion sweep(query);
-  return {sweep.distance * sweep.unit[0], sweep.distance * sweep.unit[1], sweep.distance * sweep.unit[2]};
+  return scaled(sweep.distance, sweep.unit);
 }
 
 }  // namespace radar

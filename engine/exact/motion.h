@@ -1,13 +1,11 @@
 // The motion of one query, or past one object, in double precision.
 #pragma once
 
+#include "math/rounding.h"
 #include "math/vector.h"
 #include "radar/query.h"
 
 namespace radar {
-
-/// 2^-53: bound on the relative rounding error of an operation in double.
-inline constexpr double kUnit = 0x1p-53;
 
 /// The sensor's motion relative to an object. In a sweep, t is the distance moved; in a step, in which objects may
 /// move, too, the fraction of the step.

@@ -16,11 +16,6 @@ Three<Number> numbers(const Vector& v) {
   return {Number(v[0]), Number(v[1]), Number(v[2])};
 }
 
-template <class Number>
-Three<Number> minus(const Three<Number>& p, const Three<Number>& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
 inline Dyadic inner(const Three<Dyadic>& p, const Three<Dyadic>& q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }

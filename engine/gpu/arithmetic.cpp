@@ -12,8 +12,7 @@
 #include "gpu/kernel.h"
 #include "gpu/submission.h"
 #include "math/float_environment.h"
-#include "spirv/arithmetic_doubles_comp.h"
-#include "spirv/arithmetic_floats_comp.h"
+#include "spirv/radar_shaders.h"
 
 namespace radar::gpu {
 
@@ -110,10 +109,8 @@ std::vector<DoubleTrial> doubleTrials() {
 
 // Runs a shader on the trials and reads its outcomes.
 template <class Outcome, class Trial>
-std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
-                                std::span<const uint32_t> constants, const std::vector<Trial>& trials,
+std::vector<Outcome> outcomesOf(const Device::Impl& device, const Program& program, const std::vector<Trial>& trials,
                                 Slot<Trial> trialSlot, Slot<Outcome> outcomeSlot) {
-  const Kernel kernel(device, spirv, name, constants);
   Upload upload(device);
   Array<Trial> given(device, "trials", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   Array<Outcome> computed(device, "outcomes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
@@ -122,17 +119,16 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, std::span<const uint
   given.reserve(kTrials);
   computed.reserve(kTrials);
   readback.reserve(copy.size);
-  KernelArguments arguments(kernel);
-  arguments.set({{trialSlot, given}, {outcomeSlot, computed}});
   upload.begin(Upload::aligned(bytesOf(trials)));
   upload.add(trials.data(), bytesOf(trials), given);
 
   Submission submission(device, false);
   const Commands commands = submission.begin();
-  submission.stage(name);
+  submission.stage(program.shader->name);
   upload.record(commands);
   transferToComputeReadWrite(commands);
-  arguments.dispatch(commands, kTrials / kTrialGroup);
+  Passes run(device);
+  run(commands, program, kTrials / kTrialGroup, {{trialSlot, given}, {outcomeSlot, computed}});
   computeWriteToCopy(commands);
   commands->CmdCopyBuffer(commands, computed.get(), readback.get(), 1, &copy);
   copyToHost(commands);
@@ -358,16 +354,14 @@ Arithmetic tryArithmetic(const Device::Impl& device, bool hasDoubles, uint32_t f
   Arithmetic arithmetic;
   const std::vector<FloatTrial> floats = floatTrials();
   const std::vector<FloatOutcome> floatOutcomes =
-      outcomesOf(device, k_arithmetic_floats_comp, "float arithmetic", std::array{falsified}, floats, kSlotFloatTrials,
-                 kSlotFloatOutcomes);
+      outcomesOf(device, {shaders::kFloats, {falsified}}, floats, kSlotFloatTrials, kSlotFloatOutcomes);
   arithmetic.floats =
       judge<FloatTrial, FloatOutcome>(kFloatChecks, floats, floatOutcomes,
                                       "the search's bounds do not hold: the device is not used", arithmetic.checks);
   if (!hasDoubles) return arithmetic;
   const std::vector<DoubleTrial> doubles = doubleTrials();
   const std::vector<DoubleOutcome> outcomes =
-      outcomesOf(device, k_arithmetic_doubles_comp, "double arithmetic", std::array{0u, falsified}, doubles,
-                 kSlotDoubleTrials, kSlotDoubleOutcomes);
+      outcomesOf(device, {shaders::kDoubles, {falsified}}, doubles, kSlotDoubleTrials, kSlotDoubleOutcomes);
   arithmetic.doubles = judge<DoubleTrial, DoubleOutcome>(
       kDoubleChecks, doubles, outcomes, "doubles are not used: the CPU decides pairs that are too close for floats",
       arithmetic.checks);

@@ -1,14 +1,14 @@
 // Buffers with an element type, for the typed slots of kernels (gpu/kernel.h).
 #pragma once
 
-#include <string>
 #include <type_traits>
 
 #include "gpu/buffer.h"
 
 namespace radar::gpu {
 
-/// Elements that shaders read and write as a storage buffer.
+/// Elements that shaders read and write as a storage buffer or, with the usage kAsTexels, read as one or more texels
+/// each.
 template <class T>
 class Array {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -18,8 +18,8 @@ class Array {
   Array(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
       : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
 
-  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew; if so, set the
-  /// KernelArguments that use it again. The device must not be using it.
+  /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew. The device must not
+  /// be using it.
   bool reserve(VkDeviceSize count) { return buffer_.reserve(count * sizeof(T)); }
 
   /// In elements.
@@ -30,46 +30,13 @@ class Array {
   /// Host address, unless resident on the device. Coherent.
   T* mapped() const { return reinterpret_cast<T*>(buffer_.mapped()); }
 
+  VkBufferView view() const { return buffer_.view(); }
   const Buffer& buffer() const { return buffer_; }
   /// For uploads, copies and indirect dispatches.
   operator const Buffer&() const { return buffer_; }
 
  private:
   Buffer buffer_;
-};
-
-/// Elements that shaders read as texels (`textureBuffer`, `samplerBuffer`), one or more per element, or access as a
-/// storage buffer.
-template <class T>
-class TexelArray {
-  static_assert(std::is_trivially_copyable_v<T>);
-
- public:
-  /// `usage`: in addition to STORAGE_BUFFER and UNIFORM_TEXEL_BUFFER. `format`: see TexelBuffer. Throws Error if
-  /// sizeof(T) is not a multiple of a texel's size.
-  TexelArray(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
-             VkFormat format)
-      : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, format) {
-    if (sizeof(T) % buffer_.texelBytes() != 0) {
-      throw Error(std::string(name) + ": elements of " + std::to_string(sizeof(T)) + " bytes are not whole texels of " +
-                  std::to_string(buffer_.texelBytes()));
-    }
-  }
-
-  /// As Array::reserve. Throws Error, and changes nothing, if the device's maxTexelBufferElements is too small.
-  bool reserve(VkDeviceSize count) { return buffer_.reserve(count * sizeof(T)); }
-
-  VkDeviceSize capacity() const { return buffer_.capacity() / sizeof(T); }
-  VkDeviceSize bytes() const { return buffer_.capacity(); }
-  VkBuffer get() const { return buffer().get(); }
-  T* mapped() const { return reinterpret_cast<T*>(buffer().mapped()); }
-  VkBufferView view() const { return buffer_.view(); }
-
-  const Buffer& buffer() const { return buffer_.buffer(); }
-  operator const Buffer&() const { return buffer(); }
-
- private:
-  TexelBuffer buffer_;
 };
 
 }  // namespace radar::gpu

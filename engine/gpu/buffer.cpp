@@ -7,7 +7,6 @@
 #include <cstring>
 
 #include "gpu/check.h"
-#include "gpu/limit_error.h"
 
 namespace radar::gpu {
 
@@ -21,11 +20,45 @@ uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryProper
   throw Error("no memory type has the properties " + std::to_string(needed));
 }
 
+namespace {
+
+constexpr VkDeviceSize kTexelBytes = 16;
+
+BufferView viewOf(const Device::Impl& device, VkBuffer buffer, VkDeviceSize bytes, const char* name) {
+  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                    .buffer = buffer,
+                                    .format = VK_FORMAT_R32G32B32A32_UINT,
+                                    .range = bytes};
+  VkBufferView view;
+  check(device.vk.CreateBufferView(device.device(), &info, device.host.allocator, &view),
+        std::string("vkCreateBufferView (") + name + ", " + std::to_string(bytes) + " bytes)");
+  BufferView owned(device, view);
+  device.setName(VK_OBJECT_TYPE_BUFFER_VIEW, view, name);
+  return owned;
+}
+
+}  // namespace
+
+uint64_t newIdentity() {
+  static std::atomic<uint64_t> made = 0;
+  return ++made;
+}
+
 Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
     : device_(&device), name_(name), domain_(domain), usage_(usage) {}
 
 bool Buffer::reserve(VkDeviceSize bytes) {
   if (bytes <= capacity_ && capacity_ != 0) return false;
+  VkDeviceSize most = device_->maxBufferBytes;
+  if ((usage_ & kAsTexels) != 0) {
+    // Shaders index texels by an int.
+    const uint64_t texels = std::min<uint64_t>(device_->properties.limits.maxTexelBufferElements, INT32_MAX);
+    if (bytes > texels * kTexelBytes) {
+      throw LimitError(std::string(name_) + ": " + std::to_string((bytes + kTexelBytes - 1) / kTexelBytes) +
+                       " texels, but the device's maxTexelBufferElements is " + std::to_string(texels));
+    }
+    most = std::min(most / kTexelBytes, texels) * kTexelBytes;
+  }
   if (bytes > device_->maxBufferBytes) {
     throw LimitError(std::string(name_) + ": " + std::to_string(bytes) + " bytes, but the device's maxBufferSize is " +
                      std::to_string(device_->maxBufferBytes));
@@ -35,7 +68,7 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   const auto roundedUp = [](VkDeviceSize n, VkDeviceSize step) { return (n + step - 1) / step * step; };
   const VkDeviceSize wanted = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
                                        roundedUp(capacity_ + capacity_ / 2, 256));
-  const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), device_->maxBufferBytes);
+  const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), most);
   const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   DeviceMemory owned;  // outlives the buffer in it, old or new
@@ -64,74 +97,15 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   if (!onDevice) {
     check(device_->vk.MapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory (" + what + ")");
   }
+  BufferView view;
+  if ((usage_ & kAsTexels) != 0) view = viewOf(*device_, handle, size, name_);
+  view_ = std::move(view);
   buffer_ = std::move(buffer);
   memory_ = std::move(owned);
   mapped_ = static_cast<std::byte*>(mapped);
   capacity_ = size;
-  static std::atomic<uint64_t> made = 0;
-  identity_ = ++made;
+  identity_ = newIdentity();
   return true;
-}
-
-namespace {
-
-// Vulkan requires every device to support these nine formats in uniform texel buffers.
-uint32_t bytesOfTexel(VkFormat format, const char* name) {
-  switch (format) {
-    case VK_FORMAT_R32_UINT:
-    case VK_FORMAT_R32_SINT:
-    case VK_FORMAT_R32_SFLOAT:
-      return 4;
-    case VK_FORMAT_R32G32_UINT:
-    case VK_FORMAT_R32G32_SINT:
-    case VK_FORMAT_R32G32_SFLOAT:
-      return 8;
-    case VK_FORMAT_R32G32B32A32_UINT:
-    case VK_FORMAT_R32G32B32A32_SINT:
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-      return 16;
-    default:
-      throw Error(std::string(name) + ": not every device supports texel buffers of VkFormat " +
-                  std::to_string(format));
-  }
-}
-
-}  // namespace
-
-TexelBuffer::TexelBuffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
-                         VkFormat format)
-    : device_(&device),
-      format_(format),
-      texelBytes_(bytesOfTexel(format, name)),
-      buffer_(device, name, domain, usage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) {}
-
-VkDeviceSize TexelBuffer::maxBytes() const {
-  // Shaders index texels by an int.
-  const uint32_t texels = device_->properties.limits.maxTexelBufferElements;
-  return VkDeviceSize{std::min<uint32_t>(texels, INT32_MAX)} * texelBytes_;
-}
-
-void TexelBuffer::makeView() {
-  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                    .buffer = buffer_.get(),
-                                    .format = format_,
-                                    .range = capacity()};
-  VkBufferView view;
-  check(device_->vk.CreateBufferView(device_->device(), &info, device_->host.allocator, &view),
-        std::string("vkCreateBufferView (") + buffer_.name() + ", " + std::to_string(info.range) + " bytes)");
-  view_ = {*device_, view};
-  device_->setName(VK_OBJECT_TYPE_BUFFER_VIEW, view, buffer_.name());
-}
-
-bool TexelBuffer::reserve(VkDeviceSize bytes) {
-  if (bytes > maxBytes()) {
-    throw LimitError(std::string(buffer_.name()) + ": " + std::to_string((bytes + texelBytes_ - 1) / texelBytes_) +
-                     " texels, but the device's maxTexelBufferElements is " + std::to_string(maxBytes() / texelBytes_));
-  }
-  const bool grew = buffer_.reserve(bytes);
-  if (grew) view_ = {};
-  if (view_.get() == VK_NULL_HANDLE) makeView();  // also if an earlier call failed to create it
-  return grew;
 }
 
 Upload::Upload(const Device::Impl& device)

@@ -1,4 +1,4 @@
-// Growable buffers of bytes or texels, and the staging buffer that uploads a batch.
+// Growable buffers, also as texels, and the staging buffer that uploads a batch.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,14 @@ VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
+/// A number that nothing else has: unlike handles, which Vulkan may reuse.
+uint64_t newIdentity();
+
 enum class BufferDomain { device, upload, readback };
+
+/// A usage: shaders may read the buffer through a view (`utextureBuffer`), as texels of four integers. Not as floats,
+/// since a device may change the bits of subnormal floats and NaNs.
+inline constexpr VkBufferUsageFlags kAsTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 class Buffer {
  public:
@@ -23,13 +30,15 @@ class Buffer {
 
   /// Makes the buffer hold at least `bytes`, and at most half as many more; growing loses the contents. Even if `bytes`
   /// are 0, get() then is a buffer. Returns whether the handle changed. The device must not be using it. Throws Error,
-  /// and changes nothing, if `bytes` exceed the device's maxBufferSize.
+  /// and changes nothing, if `bytes` exceed the device's maxBufferSize or, as texels, maxTexelBufferElements.
   bool reserve(VkDeviceSize bytes);
 
   VkBuffer get() const { return buffer_.get(); }
   const char* name() const { return name_; }
   VkDeviceSize capacity() const { return capacity_; }
-  /// Unique, unlike the VkBuffer handle, which Vulkan may reuse.
+  /// Of all of it; null unless kAsTexels.
+  VkBufferView view() const { return view_.get(); }
+  /// A newIdentity() of the VkBuffer.
   uint64_t identity() const { return identity_; }
   /// Host address, unless resident on the device. Coherent.
   std::byte* mapped() const { return mapped_; }
@@ -41,38 +50,10 @@ class Buffer {
   VkBufferUsageFlags usage_;
   DeviceMemory memory_;
   BufferHandle buffer_;
+  BufferView view_;
   VkDeviceSize capacity_ = 0;
   uint64_t identity_ = 0;
   std::byte* mapped_ = nullptr;
-};
-
-/// A buffer with a view, through which shaders read it as texels.
-class TexelBuffer {
- public:
-  /// `format`: R32, R32G32 or R32G32B32A32, each as UINT, SINT or SFLOAT. Every device supports these as texels; throws
-  /// for any other.
-  TexelBuffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage,
-              VkFormat format);
-
-  /// As Buffer::reserve; a new buffer has a new view. Throws Error, and changes nothing, if `bytes` exceed the device's
-  /// maxTexelBufferElements.
-  bool reserve(VkDeviceSize bytes);
-
-  const Buffer& buffer() const { return buffer_; }
-  VkBufferView view() const { return view_.get(); }
-  /// Bytes that the view covers.
-  VkDeviceSize capacity() const { return std::min(buffer_.capacity(), maxBytes()); }
-  uint32_t texelBytes() const { return texelBytes_; }
-
- private:
-  VkDeviceSize maxBytes() const;
-  void makeView();
-
-  const Device::Impl* device_;
-  VkFormat format_;
-  uint32_t texelBytes_;
-  Buffer buffer_;
-  BufferView view_;
 };
 
 /// Gathers copies of host data into one staging buffer, then records them as one upload.

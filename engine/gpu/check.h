@@ -1,4 +1,4 @@
-// Turns a failed VkResult into a radar::Error that names the call.
+// Errors: a failed VkResult becomes a radar::Error that names the call.
 #pragma once
 
 #include <string>
@@ -8,6 +8,12 @@
 #include "radar/scene.h"
 
 namespace radar::gpu {
+
+/// A scene or a batch is larger than the device's limits allow; no Vulkan call failed, and nothing was submitted.
+class LimitError : public Error {
+ public:
+  using Error::Error;
+};
 
 const char* resultName(VkResult result);
 

@@ -78,7 +78,7 @@ Sampler texelSampler(const Device::Impl& device) {
 
 DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side,
                        uint32_t layers)
-    : device_(&device), renderPass_(renderPass), side_(side), layers_(layers) {
+    : device_(&device), renderPass_(renderPass), side_(side), layers_(layers), identity_(newIdentity()) {
   const std::string what = std::string(name) + ", " + std::to_string(side) + " x " + std::to_string(side) + " x " +
                            std::to_string(layers) + " of D32";
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,

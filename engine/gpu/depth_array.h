@@ -23,6 +23,8 @@ class DepthArray {
 
   /// All layers, for sampling.
   VkImageView view() const { return view_.get(); }
+  /// A newIdentity() of the view.
+  uint64_t identity() const { return identity_; }
   uint32_t layers() const { return layers_; }
 
   /// Call before the passes of a submission, while none is pending. Puts all layers in SHADER_READ_ONLY layout if they
@@ -48,6 +50,7 @@ class DepthArray {
   DeviceMemory memory_;
   ImageHandle image_;
   ImageView view_;
+  uint64_t identity_;
   std::map<std::pair<uint32_t, uint32_t>, Target> targets_;
   bool used_ = false;
 };

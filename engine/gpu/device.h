@@ -1,7 +1,6 @@
 // A logical device with one queue, opened or adopted. Opening creates the handles, then adopts them.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -46,9 +45,6 @@ struct Device::Impl {
   bool doubles = false;              ///< shaders may compute with them
   bool dividesRight =
       false;  ///< quotients of doubles have the CPU's bits; else shaders/shared/divide.glsl corrects them
-
-  /// The specialization constants of shaders that include shaders/shared/divide.glsl.
-  std::array<uint32_t, 1> divisionConstants() const { return {dividesRight ? 1u : 0u}; }
 
   VkDevice device() const { return host.device; }
   /// Throws with the reasons, naming `who`, if the device does not support mode sampled.

@@ -2,219 +2,340 @@
 
 #include <algorithm>
 #include <cassert>
+#include <map>
+#include <mutex>
+#include <string>
 
 #include "gpu/check.h"
-#include "gpu/pipeline.h"
+#include "shaders/shared/interop.h"
 
 namespace radar::gpu {
 
 namespace {
 
 // Every device takes this many workgroups along each axis.
-constexpr uint32_t kMaxGroupsPerAxis = 65535;
+constexpr uint32_t kMostGroupsPerAxis = 65535;
 
-DescriptorSetLayout makeSetLayout(const Device::Impl& device, const std::vector<Descriptor>& descriptors,
-                                  VkShaderStageFlagBits stage, const char* name) {
+DescriptorSetLayout makeSetLayout(const Device::Impl& device, const Shader& shader) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  bindings.reserve(descriptors.size());
-  for (const Descriptor& descriptor : descriptors) {
-    bindings.push_back({.binding = descriptor.binding,
-                        .descriptorType = descriptor.type,
+  for (const Binding& binding : shader.bindings) {
+    bindings.push_back({.binding = binding.number,
+                        .descriptorType = binding.type,
                         .descriptorCount = 1,
-                        .stageFlags = VkShaderStageFlags(stage)});
+                        .stageFlags = VkShaderStageFlags(shader.stage)});
   }
   const VkDescriptorSetLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                              .bindingCount = static_cast<uint32_t>(bindings.size()),
                                              .pBindings = bindings.data()};
   VkDescriptorSetLayout layout;
   check(device.vk.CreateDescriptorSetLayout(device.device(), &info, device.host.allocator, &layout),
-        std::string("vkCreateDescriptorSetLayout ") + name);
+        std::string("vkCreateDescriptorSetLayout ") + shader.name);
   DescriptorSetLayout owned(device, layout);
-  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, name);
+  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, shader.name);
   return owned;
 }
 
-PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLayout setLayout, uint32_t pushBytes,
-                                  VkShaderStageFlagBits stage, const char* name) {
-  const VkPushConstantRange range{VkShaderStageFlags(stage), 0, pushBytes};
+PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLayout setLayout, const Shader& shader) {
+  const VkPushConstantRange range{VkShaderStageFlags(shader.stage), 0, shader.pushBytes};
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &setLayout,
-                                        .pushConstantRangeCount = pushBytes > 0 ? 1u : 0u,
+                                        .pushConstantRangeCount = shader.pushBytes > 0 ? 1u : 0u,
                                         .pPushConstantRanges = &range};
   VkPipelineLayout layout;
   check(device.vk.CreatePipelineLayout(device.device(), &info, device.host.allocator, &layout),
-        std::string("vkCreatePipelineLayout ") + name);
+        std::string("vkCreatePipelineLayout ") + shader.name);
   PipelineLayout owned(device, layout);
-  device.setName(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, name);
+  device.setName(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, shader.name);
   return owned;
 }
 
 // A pool for one set.
-DescriptorPool makePool(const Device::Impl& device, const std::vector<Descriptor>& descriptors, const char* name) {
+DescriptorPool makePool(const Device::Impl& device, const Shader& shader) {
   std::vector<VkDescriptorPoolSize> sizes;
-  sizes.reserve(descriptors.size());
-  for (const Descriptor& descriptor : descriptors) sizes.push_back({descriptor.type, 1});
+  for (const Binding& binding : shader.bindings) sizes.push_back({binding.type, 1});
   const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                         .maxSets = 1,
                                         .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
   VkDescriptorPool pool;
   check(device.vk.CreateDescriptorPool(device.device(), &info, device.host.allocator, &pool),
-        std::string("vkCreateDescriptorPool ") + name);
+        std::string("vkCreateDescriptorPool ") + shader.name);
   DescriptorPool owned(device, pool);
-  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, name);
+  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, shader.name);
+  return owned;
+}
+
+ShaderModule shaderModule(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name) {
+  const VkShaderModuleCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+  VkShaderModule module;
+  check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module),
+        std::string("vkCreateShaderModule ") + name);
+  ShaderModule owned(device, module);
+  device.setName(VK_OBJECT_TYPE_SHADER_MODULE, module, name);
+  return owned;
+}
+
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const ShaderModule& module) {
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+          .stage = stage,
+          .module = module.get(),
+          .pName = "main"};
+}
+
+Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                       const char* name) {
+  const RenderPass renderPass = depthRenderPass(device);  // any that is compatible
+  const ShaderModule module = shaderModule(device, spirv, name);
+  const VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_VERTEX_BIT, module);
+  const VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  const VkVertexInputAttributeDescription attribute{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0};
+  const VkPipelineVertexInputStateCreateInfo vertexInput{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+      .vertexBindingDescriptionCount = 1,
+      .pVertexBindingDescriptions = &binding,
+      .vertexAttributeDescriptionCount = 1,
+      .pVertexAttributeDescriptions = &attribute};
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1.0f};
+  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineDepthStencilStateCreateInfo depth{.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                                                    .depthTestEnable = VK_TRUE,
+                                                    .depthWriteEnable = VK_TRUE,
+                                                    .depthCompareOp = VK_COMPARE_OP_LESS};
+  const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  const VkPipelineDynamicStateCreateInfo dynamic{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 2, .pDynamicStates = states};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .stageCount = 1,
+                                          .pStages = &stage,
+                                          .pVertexInputState = &vertexInput,
+                                          .pInputAssemblyState = &assembly,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &samples,
+                                          .pDepthStencilState = &depth,
+                                          .pDynamicState = &dynamic,
+                                          .layout = layout,
+                                          .renderPass = renderPass.get()};
+  VkPipeline pipeline;
+  check(device.vk.CreateGraphicsPipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
+                                          &pipeline),
+        std::string("vkCreateGraphicsPipelines ") + name);
+  Pipeline owned(device, pipeline);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
   return owned;
 }
 
 }  // namespace
 
-Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
-               VkShaderStageFlagBits stage)
-    : device_(&device), name_(name), stage_(stage), interface_(reflectShader(spirv, name, stage)) {
-  if (interface_.descriptors.empty()) throw Error("kernel \"" + name_ + "\" has no descriptors");
-  if (interface_.pushBytes > kMaxPushBytes) {
-    throw Error("kernel \"" + name_ + "\" has push constants of " + std::to_string(interface_.pushBytes) +
-                " bytes, but only " + std::to_string(kMaxPushBytes) + " are portable");
-  }
-  setLayout_ = makeSetLayout(device, interface_.descriptors, stage, name);
-  layout_ = makePipelineLayout(device, setLayout_.get(), interface_.pushBytes, stage, name);
+Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                         const char* name, std::span<const uint32_t> constants, Subgroups subgroups) {
+  const ShaderModule module = shaderModule(device, spirv, name);
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, sizeof(uint32_t)});
+  const VkSpecializationInfo values{static_cast<uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
+                                    constants.data()};
+  VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
+  if (!constants.empty()) stage.pSpecializationInfo = &values;
+  const VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO,
+      .requiredSubgroupSize = device.subgroupSize};
+  if (subgroups == Subgroups::full) stage.flags |= VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+  if (subgroups == Subgroups::full && device.choosesSubgroupSize) stage.pNext = &size;
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
+  VkPipeline pipeline;
+  check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
+                                         &pipeline),
+        std::string("vkCreateComputePipelines ") + name);
+  Pipeline owned(device, pipeline);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
+  return owned;
 }
 
-Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
-               std::span<const uint32_t> constants, Subgroups subgroups)
-    : Kernel(device, spirv, name, VK_SHADER_STAGE_COMPUTE_BIT) {
-  pipeline_ = computePipeline(device, layout_.get(), spirv, name, constants, subgroups == Subgroups::full);
-}
+struct Kernel {
+  Kernel(const Device::Impl& device, const Program& program);
+  DescriptorSetLayout setLayout;
+  PipelineLayout layout;
+  Pipeline pipeline;
+};
 
-Kernel::Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, const DepthTarget& target)
-    : Kernel(device, spirv, name, VK_SHADER_STAGE_VERTEX_BIT) {
-  pipeline_ = depthPipeline(device, layout_.get(), target.renderPass, spirv, name, target.vertexStride);
-}
-
-std::string Kernel::describe(const Descriptor& descriptor) const {
-  return "kernel \"" + name_ + "\", binding " + std::to_string(descriptor.binding) + " (" + descriptor.name + ")";
-}
-
-KernelArguments::KernelArguments(const Kernel& kernel)
-    : kernel_(&kernel),
-      pool_(makePool(*kernel.device_, kernel.interface_.descriptors, kernel.name_.c_str())),
-      bound_(kernel.interface_.descriptors.size()) {
-  const Device::Impl& device = *kernel.device_;
-  const VkDescriptorSetLayout layout = kernel.setLayout_.get();
-  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                         .descriptorPool = pool_.get(),
-                                         .descriptorSetCount = 1,
-                                         .pSetLayouts = &layout};
-  gpu::check(device.vk.AllocateDescriptorSets(device.device(), &info, &set_),
-             "vkAllocateDescriptorSets " + kernel.name_);
-  device.setName(VK_OBJECT_TYPE_DESCRIPTOR_SET, set_, kernel.name_.c_str());
-}
-
-void KernelArguments::check(const Descriptor& descriptor, const Argument& argument) const {
-  const auto fail = [&](const std::string& what) { throw Error(kernel_->describe(descriptor) + " " + what); };
-  const auto given = [&] { return std::string("\"") + argument.buffer_->name() + "\""; };
-  const bool wantsImage = descriptor.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  if (wantsImage != (argument.buffer_ == nullptr)) fail(wantsImage ? "is an image, not a buffer" : "is not an image");
-  if (wantsImage) return;
-  if (descriptor.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-    if (argument.texels_ == VK_NULL_HANDLE) fail("reads texels, but " + given() + " is not a TexelArray");
+Kernel::Kernel(const Device::Impl& device, const Program& program)
+    : setLayout(makeSetLayout(device, *program.shader)),
+      layout(makePipelineLayout(device, setLayout.get(), *program.shader)) {
+  const Shader& shader = *program.shader;
+  const std::span<const uint32_t> spirv =
+      device.doubles || shader.spirvWithoutDoubles.empty() ? shader.spirv : shader.spirvWithoutDoubles;
+  if (shader.stage == VK_SHADER_STAGE_VERTEX_BIT) {
+    pipeline = depthPipeline(device, layout.get(), spirv, shader.name);
     return;
   }
-  const bool isArray = descriptor.stride != 0;
-  const uint32_t expected = isArray ? descriptor.stride : descriptor.bytes;
-  if (argument.elementBytes_ == expected) return;
-  fail((isArray ? "has elements of " : "is a struct of ") + std::to_string(expected) + " bytes, but " + given() +
-       " has elements of " + std::to_string(argument.elementBytes_));
+  std::array<uint32_t, Program::kMostConstants + 1> constants;
+  std::copy(program.constants.begin(), program.constants.end(), constants.begin());
+  constants.back() = device.dividesRight ? 1 : 0;
+  pipeline = computePipeline(device, layout.get(), spirv, shader.name, constants, program.subgroups);
 }
 
-void KernelArguments::write(const Descriptor& descriptor, const Argument& argument) const {
-  const Device::Impl& device = *kernel_->device_;
-  VkDescriptorBufferInfo buffer{};
-  if (argument.buffer_ != nullptr) {
-    const VkDeviceSize limit = device.properties.limits.maxStorageBufferRange;
-    buffer = {argument.buffer_->get(), 0, std::min(argument.buffer_->capacity(), limit)};
+namespace {
+
+// A device's.
+class Kernels {
+ public:
+  explicit Kernels(const Device::Impl& device) : device_(device) {}
+  const Kernel& of(const Program& program) const {
+    const std::lock_guard lock(mutex_);
+    return made_.try_emplace(program, device_, program).first->second;
   }
-  const VkDescriptorImageInfo image{argument.sampler_, argument.image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+
+ private:
+  const Device::Impl& device_;
+  mutable std::mutex mutex_;
+  mutable std::map<Program, Kernel> made_;
+};
+
+[[noreturn]] void fail(const Shader& shader, const std::string& what) {
+  throw Error(std::string("shader \"") + shader.name + "\"" + what);
+}
+
+[[noreturn]] void fail(const Shader& shader, const Binding& binding, const std::string& what) {
+  fail(shader, ", binding " + std::to_string(binding.number) + " (" + binding.name + ") " + what);
+}
+
+}  // namespace
+
+Passes::Passes(const Device::Impl& device, std::initializer_list<Program> programs) : device_(&device) {
+  reserve(programs);
+}
+
+void Passes::reserve(std::initializer_list<Program> programs) {
+  for (const Program& program : programs) {
+    const auto isSame = [&](const Program& other) { return other == program; };
+    const auto wanted = std::count_if(programs.begin(), programs.end(), isSame);
+    while (std::ranges::count_if(sets_, isSame, &Set::program) < wanted) add(program);
+  }
+}
+
+Passes::Set& Passes::add(const Program& program) {
+  const Shader& shader = *program.shader;
+  Set set{.program = program, .kernel = &device_->shared<Kernels>().of(program), .pool = makePool(*device_, shader)};
+  const VkDescriptorSetLayout layout = set.kernel->setLayout.get();
+  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                         .descriptorPool = set.pool.get(),
+                                         .descriptorSetCount = 1,
+                                         .pSetLayouts = &layout};
+  check(device_->vk.AllocateDescriptorSets(device_->device(), &info, &set.handle),
+        std::string("vkAllocateDescriptorSets ") + shader.name);
+  device_->setName(VK_OBJECT_TYPE_DESCRIPTOR_SET, set.handle, shader.name);
+  sets_.push_back(std::move(set));
+  return sets_.back();
+}
+
+void Passes::write(Set& set, const Binding& binding, const Argument& argument) const {
+  VkDescriptorBufferInfo buffer{};
+  VkDescriptorImageInfo image{};
+  VkBufferView texels = VK_NULL_HANDLE;
+  if (argument.buffer_ != nullptr) {
+    const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
+    buffer = {argument.buffer_->get(), 0, std::min(argument.buffer_->capacity(), limit)};
+    texels = argument.buffer_->view();
+  } else {
+    image = {argument.sampler_, argument.image_->view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  }
   const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                   .dstSet = set_,
-                                   .dstBinding = descriptor.binding,
+                                   .dstSet = set.handle,
+                                   .dstBinding = binding.number,
                                    .descriptorCount = 1,
-                                   .descriptorType = descriptor.type,
+                                   .descriptorType = binding.type,
                                    .pImageInfo = &image,
                                    .pBufferInfo = &buffer,
-                                   .pTexelBufferView = &argument.texels_};
-  device.vk.UpdateDescriptorSets(device.device(), 1, &write, 0, nullptr);
+                                   .pTexelBufferView = &texels};
+  device_->vk.UpdateDescriptorSets(device_->device(), 1, &write, 0, nullptr);
 }
 
-void KernelArguments::set(std::initializer_list<Argument> arguments) {
-  const std::vector<Descriptor>& descriptors = kernel_->interface_.descriptors;
-  std::vector<const Argument*> given(descriptors.size());
-  for (const Argument& argument : arguments) {
-    const auto descriptor = std::find_if(descriptors.begin(), descriptors.end(),
-                                         [&](const Descriptor& d) { return d.binding == argument.binding_; });
-    if (descriptor == descriptors.end()) {
-      throw Error("kernel \"" + kernel_->name_ + "\" has no binding " + std::to_string(argument.binding_));
+const Passes::Set& Passes::setFor(const Program& program, std::initializer_list<Argument> arguments) {
+  const Shader& shader = *program.shader;
+  const std::span<const Binding> bindings = shader.bindings;
+  std::array<const Argument*, kMostBindings> byNumber{}, given{};
+  for (const Argument& argument : arguments) byNumber.at(argument.binding_) = &argument;
+  std::array<uint64_t, kMostBindings> wanted{};
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    given[i] = byNumber.at(bindings[i].number);
+    if (given[i] == nullptr) fail(shader, bindings[i], "is missing");
+    wanted[i] = given[i]->identity();
+  }
+  if (arguments.size() != bindings.size()) fail(shader, " binds something else, or is given something twice");
+  Set* unused = nullptr;
+  for (Set& set : sets_) {
+    if (set.program != program) continue;
+    if (set.bound == wanted) {
+      set.recording = recording_;
+      return set;
     }
-    const Argument*& here = given[static_cast<size_t>(descriptor - descriptors.begin())];
-    if (here != nullptr) throw Error(kernel_->describe(*descriptor) + " is given twice");
-    check(*descriptor, argument);
-    here = &argument;
+    if (set.recording != recording_) unused = &set;
   }
-  for (size_t i = 0; i < given.size(); ++i) {
-    if (given[i] == nullptr) throw Error(kernel_->describe(descriptors[i]) + " is missing");
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    const bool wantsImage = bindings[i].type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    const bool wantsTexels = bindings[i].type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    if (wantsImage != (given[i]->image_ != nullptr)) {
+      fail(shader, bindings[i], wantsImage ? "is an image, not a buffer" : "is not an image");
+    }
+    if (wantsTexels && given[i]->buffer_->view() == VK_NULL_HANDLE) {
+      fail(shader, bindings[i], std::string("reads texels, but \"") + given[i]->buffer_->name() + "\" has none");
+    }
   }
-  for (size_t i = 0; i < given.size(); ++i) {
-    // An image is always written: its view may have the handle of one that was destroyed.
-    const uint64_t identity = given[i]->buffer_ == nullptr ? 0 : given[i]->buffer_->identity();
-    if (identity != 0 && identity == bound_[i]) continue;
-    write(descriptors[i], *given[i]);
-    bound_[i] = identity;
+  Set& set = unused != nullptr ? *unused : add(program);
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    if (set.bound[i] != wanted[i]) write(set, bindings[i], *given[i]);
   }
-  complete_ = true;
+  set.bound = wanted;
+  set.recording = recording_;
+  return set;
 }
 
-void KernelArguments::checkDispatch(PushBytes push) const {
-  if (!complete_) throw Error("kernel \"" + kernel_->name_ + "\" is used before its arguments were set");
-  if (push.size() != kernel_->interface_.pushBytes) {
-    throw Error("kernel \"" + kernel_->name_ + "\" has push constants of " +
-                std::to_string(kernel_->interface_.pushBytes) + " bytes, but was given " + std::to_string(push.size()));
+void Passes::dispatch(const Commands& commands, const Program& program, const Groups& groups, Bytes push,
+                      std::initializer_list<Argument> arguments) {
+  const Shader& shader = *program.shader;
+  assert(shader.stage == VK_SHADER_STAGE_COMPUTE_BIT);
+  if (push.size() != shader.pushBytes) {
+    fail(shader, " has push constants of " + std::to_string(shader.pushBytes) + " bytes, but was given " +
+                     std::to_string(push.size()));
   }
-}
-
-void KernelArguments::bind(const Commands& commands, PushBytes push) const {
-  const VkPipelineLayout layout = kernel_->layout_.get();
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel_->pipeline_.get());
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set_, 0, nullptr);
-  if (push.empty()) return;
-  commands->CmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<uint32_t>(push.size()),
-                             push.data());
-}
-
-void KernelArguments::bindForDraws(const Commands& commands) const {
-  assert(kernel_->stage_ == VK_SHADER_STAGE_VERTEX_BIT);
-  checkDispatch({});
-  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel_->pipeline_.get());
-  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, kernel_->layout_.get(), 0, 1, &set_, 0,
-                                  nullptr);
-}
-
-void KernelArguments::record(const Commands& commands, uint32_t groups, PushBytes push) const {
-  checkDispatch(push);
-  if (groups == 0) return;
-  bind(commands, push);
-  const uint32_t rows = groupsFor(groups, kMaxGroupsPerAxis);
-  assert(rows <= kMaxGroupsPerAxis);
+  const Set& set = setFor(program, arguments);
+  if (groups.commands == nullptr && groups.count == 0) return;
+  const VkPipelineLayout layout = set.kernel->layout.get();
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, set.kernel->pipeline.get());
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set.handle, 0, nullptr);
+  if (!push.empty()) {
+    commands->CmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, shader.pushBytes, push.data());
+  }
+  if (groups.commands != nullptr) {
+    assert(groups.offset % 4 == 0 && groups.offset + sizeof(VkDispatchIndirectCommand) <= groups.commands->capacity());
+    commands->CmdDispatchIndirect(commands, groups.commands->get(), groups.offset);
+    return;
+  }
+  const uint32_t rows = groupsFor(groups.count, kMostGroupsPerAxis);
+  assert(rows <= kMostGroupsPerAxis);
   // Rows of equal length: fewer workgroups than there are rows run in excess.
-  commands->CmdDispatch(commands, groupsFor(groups, rows), rows, 1);
+  commands->CmdDispatch(commands, groupsFor(groups.count, rows), rows, 1);
 }
 
-void KernelArguments::recordIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset,
-                                     PushBytes push) const {
-  checkDispatch(push);
-  assert(offset % 4 == 0 && offset + sizeof(VkDispatchIndirectCommand) <= buffer.capacity());
-  bind(commands, push);
-  commands->CmdDispatchIndirect(commands, buffer.get(), offset);
+void Passes::bindForDraws(const Commands& commands, const Program& program, std::initializer_list<Argument> arguments) {
+  assert(program.shader->stage == VK_SHADER_STAGE_VERTEX_BIT && program.shader->pushBytes == 0);
+  const Set& set = setFor(program, arguments);
+  commands->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, set.kernel->pipeline.get());
+  commands->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, set.kernel->layout.get(), 0, 1,
+                                  &set.handle, 0, nullptr);
 }
 
 }  // namespace radar::gpu

@@ -1,16 +1,18 @@
-// Shaders with checked arguments: a wrong or missing buffer, or a push struct of the wrong size, is an error. Layouts
-// and sizes are read from the shader's SPIR-V.
+// Shaders and what they bind: a dispatch is one statement, which names both. A wrong or missing argument, or a push
+// struct of the wrong size, is an error.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <initializer_list>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "gpu/array.h"
+#include "gpu/depth_array.h"
 #include "gpu/handle.h"
-#include "gpu/spirv.h"
+#include "gpu/shader.h"
 #include "shaders/shared/slot.h"
 
 namespace radar::gpu {
@@ -20,125 +22,118 @@ constexpr uint32_t groupsFor(uint64_t items, uint32_t perGroup) {
   return static_cast<uint32_t>((items + perGroup - 1) / perGroup);
 }
 
+/// Of push constants: supported by every device.
+inline constexpr uint32_t kMostPushBytes = 128;
+
 enum class Subgroups {
   any,  ///< of any size
   full  ///< all of Device::Impl::subgroupSize invocations: a workgroup of that size is one subgroup
 };
 
-/// Where a depth-only pipeline draws, and how far apart its vertices are, bytes.
-struct DepthTarget {
-  VkRenderPass renderPass;
-  uint32_t vertexStride;
+/// A shader, the values of its specialization constants 0, 1, ... (0 unless given), and its subgroups.
+struct Program {
+  /// Those of the shaders; the next is for shaders/shared/divide.glsl.
+  static constexpr size_t kMostConstants = 4;
+
+  constexpr Program(const Shader& its, const std::array<uint32_t, kMostConstants>& values = {},
+                    Subgroups kind = Subgroups::any)
+      : shader(&its), constants(values), subgroups(kind) {}
+  auto operator<=>(const Program&) const = default;
+
+  const Shader* shader;
+  std::array<uint32_t, kMostConstants> constants;
+  Subgroups subgroups;
 };
 
-/// A pipeline, of a compute shader or for depth-only draws, and its layouts. Immutable, so any number of users on any
-/// thread may share it.
-class Kernel {
- public:
-  /// `constants`: values of specialization constants 0, 1, ... Throws Error if reflectShader (gpu/spirv.h)
-  /// does, or if the shader has no descriptors or more than kMaxPushBytes of push constants.
-  Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name,
-         std::span<const uint32_t> constants = {}, Subgroups subgroups = Subgroups::any);
-  /// A depth-only pipeline of a vertex shader (gpu/pipeline.h), for bindForDraws. Throws Error as above.
-  Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, const DepthTarget& target);
-  Kernel(const Kernel&) = delete;
-  Kernel& operator=(const Kernel&) = delete;
-
-  /// Supported by every device.
-  static constexpr uint32_t kMaxPushBytes = 128;
-
- private:
-  friend class KernelArguments;
-  Kernel(const Device::Impl& device, std::span<const uint32_t> spirv, const char* name, VkShaderStageFlagBits stage);
-  std::string describe(const Descriptor& descriptor) const;
-
-  const Device::Impl* device_;
-  std::string name_;
-  VkShaderStageFlagBits stage_;
-  ShaderInterface interface_;
-  DescriptorSetLayout setLayout_;
-  PipelineLayout layout_;
-  Pipeline pipeline_;
-};
+/// A program's pipeline and layouts on one device, made at its first use by any thread, and shared.
+struct Kernel;
 
 /// A slot and the resource bound to it. A buffer of another element type does not compile.
 class Argument {
  public:
-  /// Binds a storage buffer.
+  /// Binds a storage buffer, up to the device's maxStorageBufferRange, or its texels, whichever the shader declares.
   template <class T>
-  Argument(Slot<T> slot, const Array<T>& array)
-      : binding_(slot.number), elementBytes_(sizeof(T)), buffer_(&array.buffer()) {}
-  /// Binds a uniform texel buffer or a storage buffer, whichever the shader declares.
-  template <class T>
-  Argument(Slot<T> slot, const TexelArray<T>& array)
-      : binding_(slot.number), elementBytes_(sizeof(T)), buffer_(&array.buffer()), texels_(array.view()) {}
+  Argument(Slot<T> slot, const Array<T>& array) : binding_(slot.number), buffer_(&array.buffer()) {}
   /// Binds an image in SHADER_READ_ONLY_OPTIMAL layout, with its sampler.
-  Argument(Slot<SampledImage> slot, VkImageView image, VkSampler sampler)
-      : binding_(slot.number), image_(image), sampler_(sampler) {}
+  Argument(Slot<SampledImage> slot, const DepthArray& image, VkSampler sampler)
+      : binding_(slot.number), image_(&image), sampler_(sampler) {}
 
  private:
-  friend class KernelArguments;
+  friend class Passes;
+  uint64_t identity() const { return buffer_ != nullptr ? buffer_->identity() : image_->identity(); }
+
   uint32_t binding_;
-  size_t elementBytes_ = 0;
   const Buffer* buffer_ = nullptr;
-  VkBufferView texels_ = VK_NULL_HANDLE;
-  VkImageView image_ = VK_NULL_HANDLE;
+  const DepthArray* image_ = nullptr;
   VkSampler sampler_ = VK_NULL_HANDLE;
 };
 
-/// One user's descriptor set for a kernel, and the dispatches or draws with it. The kernel outlives it.
-class KernelArguments {
+/// How many workgroups run: more than 65535 are laid out in rows, and a few more than `count` may run: shaders compare
+/// workgroupIndex() (shaders/shared/workgroup.glsl) with their number of items. Or the VkDispatchIndirectCommand at
+/// byte `offset` of a buffer that has the usage INDIRECT_BUFFER.
+struct Groups {
+  Groups(uint32_t number) : count(number) {}
+  Groups(const Buffer& buffer, VkDeviceSize byte) : commands(&buffer), offset(byte) {}
+  uint32_t count = 0;
+  const Buffer* commands = nullptr;
+  VkDeviceSize offset = 0;
+};
+
+/// Records dispatches, for one user. Descriptor sets are kept, and found again by program and buffers.
+class Passes {
  public:
-  explicit KernelArguments(const Kernel& kernel);
+  /// Makes now the pipelines of `programs`, and a set for each time that one is listed: as long as no recording needs
+  /// more, dispatches create nothing.
+  explicit Passes(const Device::Impl& device, std::initializer_list<Program> programs = {});
+  /// The same later.
+  void reserve(std::initializer_list<Program> programs);
 
-  /// Sets every binding of the shader, each once, in any order. Cheap if no buffer has changed since the last call.
-  /// Otherwise, and always with an image, no dispatch with these arguments may be pending. Call it again after a buffer
-  /// has grown. Binds a storage buffer up to the device's maxStorageBufferRange. Throws Error, naming kernel and
-  /// binding, and changes nothing, if a binding is missing, unknown, given twice or of another descriptor type, or if
-  /// sizeof(T) differs from the stride of the shader's runtime array, or from the size of its struct if it has none.
-  void set(std::initializer_list<Argument> arguments);
+  /// Begins a recording: none of the earlier ones is pending or will be, so that their sets may be given other buffers.
+  void begin() { ++recording_; }
 
-  /// Binds the pipeline and the set, pushes constants and dispatches; the caller records the barriers. Records nothing
-  /// if `groups` is 0. More than 65535 workgroups are laid out in rows, and a few more than `groups` may run: shaders
-  /// compare workgroupIndex() (shaders/workgroup.glsl) with their number of items. Throws Error if `set` has not been
-  /// called, or if sizeof(Push) differs from the size of the shader's push constants.
-  void dispatch(const Commands& commands, uint32_t groups) const { record(commands, groups, {}); }
+  /// Binds the program and its arguments, pushes constants and dispatches, unless there are no workgroups; the caller
+  /// records the barriers. `arguments`: every binding of the shader, each once, in any order. Throws Error, naming
+  /// shader and binding, if one is missing, unknown, given twice or of another descriptor type, or if sizeof(Push)
+  /// differs from the size of the shader's push constants.
   template <class Push>
-  void dispatch(const Commands& commands, uint32_t groups, const Push& push) const {
-    record(commands, groups, bytesOfPush(push));
+  void operator()(const Commands& commands, const Program& program, const Groups& groups, const Push& push,
+                  std::initializer_list<Argument> arguments) {
+    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= kMostPushBytes);
+    dispatch(commands, program, groups, std::as_bytes(std::span(&push, 1)), arguments);
   }
-  /// The same with the VkDispatchIndirectCommand at byte `offset` of `buffer`, which has the usage INDIRECT_BUFFER.
-  void dispatchIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset) const {
-    recordIndirect(commands, buffer, offset, {});
+  void operator()(const Commands& commands, const Program& program, const Groups& groups,
+                  std::initializer_list<Argument> arguments) {
+    dispatch(commands, program, groups, {}, arguments);
   }
-  template <class Push>
-  void dispatchIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset, const Push& push) const {
-    recordIndirect(commands, buffer, offset, bytesOfPush(push));
-  }
-
-  /// Binds the pipeline and the set of a depth-only kernel for the draws that follow. Throws Error if `set` has not
-  /// been called.
-  void bindForDraws(const Commands& commands) const;
+  /// Binds a vertex shader's program and its arguments for the depth-only draws that follow: of gpu::Vertex at vertex
+  /// binding 0, in a depthRenderPass(), nothing culled; the depth test is less. Viewport and scissor are dynamic.
+  void bindForDraws(const Commands& commands, const Program& program, std::initializer_list<Argument> arguments);
 
  private:
-  using PushBytes = std::span<const std::byte>;
-  template <class Push>
-  static PushBytes bytesOfPush(const Push& push) {
-    static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= Kernel::kMaxPushBytes);
-    return std::as_bytes(std::span(&push, 1));
-  }
-  void check(const Descriptor& descriptor, const Argument& argument) const;
-  void write(const Descriptor& descriptor, const Argument& argument) const;
-  void checkDispatch(PushBytes push) const;
-  void bind(const Commands& commands, PushBytes push) const;
-  void record(const Commands& commands, uint32_t groups, PushBytes push) const;
-  void recordIndirect(const Commands& commands, const Buffer& buffer, VkDeviceSize offset, PushBytes push) const;
+  static constexpr size_t kMostBindings = 32;
+  struct Set {
+    Program program;
+    const Kernel* kernel;
+    DescriptorPool pool;
+    VkDescriptorSet handle = VK_NULL_HANDLE;
+    std::array<uint64_t, kMostBindings> bound{};  ///< identities, in the order of the shader's bindings; 0: nothing
+    uint64_t recording = 0;                       ///< the last that uses it
+  };
+  using Bytes = std::span<const std::byte>;
+  Set& add(const Program& program);
+  const Set& setFor(const Program& program, std::initializer_list<Argument> arguments);
+  void write(Set& set, const Binding& binding, const Argument& argument) const;
+  void dispatch(const Commands& commands, const Program& program, const Groups& groups, Bytes push,
+                std::initializer_list<Argument> arguments);
 
-  const Kernel* kernel_;
-  DescriptorPool pool_;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
-  std::vector<uint64_t> bound_;  // Buffer::identity() of each descriptor; 0: an image, or nothing yet
-  bool complete_ = false;
+  const Device::Impl* device_;
+  std::vector<Set> sets_;
+  uint64_t recording_ = 1;
 };
+
+/// `constants`: values of specialization constants 0, 1, ..., if the shader has any.
+Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
+                         const char* name, std::span<const uint32_t> constants = {},
+                         Subgroups subgroups = Subgroups::any);
 
 }  // namespace radar::gpu

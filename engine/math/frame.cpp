@@ -1,6 +1,5 @@
 #include "math/frame.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -8,13 +7,9 @@ namespace radar {
 
 namespace {
 
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Vector unit(Vector v) {
-  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-  for (double& x : v) x /= largest;
+  const double size = largest(v);
+  for (double& x : v) x /= size;
   const double length = std::hypot(v[0], v[1], v[2]);
   for (double& x : v) x /= length;
   return v;
@@ -23,8 +18,8 @@ Vector unit(Vector v) {
 }  // namespace
 
 Vector scaledDirection(const Vector& direction) {
-  const double largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
-  const auto scaled = [&](int exponent) -> std::optional<Vector> {
+  const double size = largest(direction);
+  const auto scaledBy = [&](int exponent) -> std::optional<Vector> {
     Vector out;
     for (int k = 0; k < 3; ++k) {
       out[k] = std::scalbn(direction[k], -exponent);
@@ -33,7 +28,7 @@ Vector scaledDirection(const Vector& direction) {
     return out;
   };
   // Otherwise at least so that its length does not overflow.
-  return scaled(std::ilogb(largest)).value_or(largest >= 0x1p1022 ? scaled(2).value_or(direction) : direction);
+  return scaledBy(std::ilogb(size)).value_or(size >= 0x1p1022 ? scaledBy(2).value_or(direction) : direction);
 }
 
 double lengthOf(const Vector& v) {
@@ -63,8 +58,7 @@ Vector transform(const Transform& pose, const Vector& p) {
 
 Affine frameFromLocal(const std::array<Vector, 3>& axes, const Vector& origin, const Transform& pose,
                       const Vector& centre) {
-  Vector offset = transform(pose, centre);
-  for (int k = 0; k < 3; ++k) offset[k] -= origin[k];
+  const Vector offset = minus(transform(pose, centre), origin);
   Affine out;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {

@@ -1,10 +1,13 @@
-// Directed rounding of doubles to floats.
+// Rounding errors, and directed rounding of doubles to floats.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 
 namespace radar {
+
+/// 2^-53: bound on the relative rounding error of an operation in double.
+inline constexpr double kUnit = 0x1p-53;
 
 /// The least float above `x`, which is finite: std::nextafter, inline.
 inline float nextAbove(float x) {

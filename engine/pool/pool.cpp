@@ -68,14 +68,6 @@ struct Pool::Impl {
     return reports;
   }
 
-  /// Throws if a device does not support a query's mode: any device may get any query.
-  void requireModes(std::span<const Query> queries) const {
-    if (withoutSampled == nullptr) return;
-    for (size_t i = 0; i < queries.size(); ++i) {
-      if (queries[i].mode == Mode::sampled) withoutSampled->requireSampled("query " + std::to_string(i));
-    }
-  }
-
   const Scene& scene;
   const Device::Impl* withoutSampled = nullptr;  // a device that does not support mode sampled
   WorkQueue workQueue;
@@ -86,10 +78,11 @@ Pool::Pool(std::span<const Device> devices, const Scene& scene, const SweeperOpt
     : impl_(std::make_unique<Impl>(devices, scene, options)) {}
 Pool::~Pool() = default;
 
-std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, std::stop_token stop) {
+std::future<PoolAnswers> Pool::submit(std::vector<Query> queries, Mode mode, std::stop_token stop) {
   const FloatEnvironment floats;
-  impl_->requireModes(queries);
-  return impl_->workQueue.post(std::move(queries), std::move(stop), impl_->scene);
+  // Any device may get any query.
+  if (mode == Mode::sampled && impl_->withoutSampled != nullptr) impl_->withoutSampled->requireSampled("submit()");
+  return impl_->workQueue.post(std::move(queries), mode, std::move(stop), impl_->scene);
 }
 
 void Pool::edit(const std::function<void()>& change) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <new>
-#include <numeric>
 #include <utility>
 
 #include "gpu/submission.h"
@@ -21,25 +20,21 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }
 
-void validateAll(std::span<const Query> queries, const Scene& scene) {
+void validateAll(std::span<const Query> queries, Mode mode, const Scene& scene) {
   for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene);
+    const std::string wrong = validate(queries[i], scene, mode);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
   }
 }
 
-std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, size_t workers) {
+std::shared_ptr<Job> jobOf(std::vector<Query> queries, Mode mode, std::stop_token stop, size_t workers) {
   auto job = std::make_shared<Job>();
   job->took.resize(workers);
   job->passed.resize(workers);
   job->stop = std::move(stop);
-  job->answers.results.resize(queries.size());
-  job->lists = listsFor(queries);
-  job->place.resize(queries.size());
-  std::iota(job->place.begin(), job->place.end(), 0u);
-  std::stable_sort(job->place.begin(), job->place.end(),
-                   [&](uint32_t a, uint32_t b) { return queries[a].mode < queries[b].mode; });
-  for (const uint32_t i : job->place) job->queries.push_back(std::move(queries[i]));
+  static_cast<Answers&>(job->answers) = unanswered(queries);
+  job->queries = std::move(queries);
+  job->mode = mode;
   return job;
 }
 
@@ -47,17 +42,18 @@ std::shared_ptr<Job> jobOf(std::vector<Query> queries, std::stop_token stop, siz
 
 WorkQueue::WorkQueue(std::vector<PoolDevice> devices) : devices_(std::move(devices)), share_(devices_.size()) {}
 
-std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, std::stop_token stop, const Scene& scene) {
+std::future<PoolAnswers> WorkQueue::post(std::vector<Query> queries, Mode mode, std::stop_token stop,
+                                         const Scene& scene) {
   const double submitted = now();
   Lock lock(mutex_);
   edited_.wait(lock, [&] { return !editing_; });
-  // Workers go on while the batch is checked and sorted, but the scene must not change.
+  // Workers go on while the batch is checked, but the scene must not change.
   ++posting_;
   lock.unlock();
   std::shared_ptr<Job> job;
   try {
-    validateAll(queries, scene);
-    job = jobOf(std::move(queries), std::move(stop), devices_.size());
+    validateAll(queries, mode, scene);
+    job = jobOf(std::move(queries), mode, std::move(stop), devices_.size());
   } catch (...) {
     lock.lock();
     --posting_;
@@ -160,9 +156,7 @@ std::optional<Chunk> WorkQueue::next(uint32_t worker, size_t inFlight) {
   }
   if (jobs_.empty()) return {};
   const std::shared_ptr<Job> job = jobs_.front();
-  const auto first = job->queries.begin() + static_cast<ptrdiff_t>(job->taken);
-  const auto sameMode = std::find_if(first, job->queries.end(), [&](const Query& q) { return q.mode != first->mode; });
-  const auto left = static_cast<size_t>(sameMode - first);
+  const size_t left = job->queries.size() - job->taken;
   const Chunk chunk{job, job->taken, share_.take(worker, left, waiting(), inFlight)};
   if (chunk.count == 0) {
     if (inFlight == 0) job->passed[worker] = true;
@@ -189,7 +183,7 @@ std::optional<Chunk> WorkQueue::take(uint32_t worker, size_t inFlight) {
   }
 }
 
-void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs) {
+void WorkQueue::deliver(const Chunk& chunk, Answers found, ChunkTrace trace, double deviceMs) {
   const Lock lock(mutex_);
   giveBack(1);
   PoolDevice& device = devices_[trace.device];
@@ -198,10 +192,11 @@ void WorkQueue::deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace,
   share_.finished(trace.device, chunk.count, deviceMs);
   Job& job = *chunk.job;
   orEnd(chunk.job, [&] {
-    for (size_t i = 0; i < chunk.count; ++i) job.answers.results[job.place[chunk.first + i]] = batch.answers[i];
-    for (size_t i = 0; i < batch.lists.size(); ++i) job.lists[job.place[chunk.first + i]] = std::move(batch.lists[i]);
-    for (const auto& [i, reason] : batch.reasons) job.answers.reasons[job.place[chunk.first + i]] = reason;
-    addStats(job.answers.stats, batch.stats);
+    const auto first = static_cast<ptrdiff_t>(chunk.first);
+    std::copy(found.results.begin(), found.results.end(), job.answers.results.begin() + first);
+    std::move(found.lists.begin(), found.lists.end(), job.answers.lists.begin() + first);
+    for (const auto& [i, reason] : found.reasons) job.answers.reasons[chunk.first + i] = reason;
+    addStats(job.answers.stats, found.stats);
     job.answers.chunks.push_back(std::move(trace));
   });
   settle(chunk.job, chunk.count);
@@ -259,7 +254,7 @@ void WorkQueue::fail(const std::shared_ptr<Job>& job, size_t first, size_t count
       why += (i == 0 ? ": device " : "; device ") + std::to_string(i) + ", " + devices_[i].name + ": " +
              devices_[i].retired;
     }
-    for (size_t i = first; i < first + count; ++i) job->answers.reasons[job->place[i]] = why;
+    for (size_t i = first; i < first + count; ++i) job->answers.reasons[i] = why;
   });
   settle(job, count);
 }
@@ -270,7 +265,6 @@ void WorkQueue::settle(const std::shared_ptr<Job>& job, size_t count) {
   if (job->answered < job->queries.size()) return;
   orEnd(job, [&] {
     job->answers.answered = now();
-    job->answers.lists = joined(job->lists);
     end(job, nullptr);
   });
 }

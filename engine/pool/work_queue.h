@@ -8,20 +8,19 @@
 #include <optional>
 
 #include "pool/chunk_scheduler.h"
+#include "query/hits.h"
 #include "radar/pool.h"
-#include "sweep/query_batch.h"
+#include "scene/scene.h"
 
 namespace radar {
 
-/// A batch in progress. Its queries are grouped by mode, so that a chunk is one submission; `place` holds their
-/// original indices.
+/// A batch in progress.
 struct Job {
   std::vector<Query> queries;
-  std::vector<uint32_t> place;
+  Mode mode = Mode::contact;
   std::stop_token stop;
   std::promise<PoolAnswers> promise;
   PoolAnswers answers;
-  std::vector<QueryLists> lists;  ///< as in QueryBatch, by original index
   size_t taken = 0, answered = 0;
   bool hasEnded = false;           ///< the future has its answers, or an exception
   std::vector<bool> took, passed;  ///< by worker: has taken a chunk, has deferred to others
@@ -40,7 +39,7 @@ class WorkQueue {
  public:
   explicit WorkQueue(std::vector<PoolDevice> devices);
 
-  std::future<PoolAnswers> post(std::vector<Query> queries, std::stop_token stop, const Scene& scene);
+  std::future<PoolAnswers> post(std::vector<Query> queries, Mode mode, std::stop_token stop, const Scene& scene);
   void edit(const std::function<void()>& change);
   void drain();
   /// Answers queries not yet taken as invalid, and lets workers end.
@@ -54,7 +53,7 @@ class WorkQueue {
   std::optional<Chunk> take(uint32_t worker, size_t inFlight);
   /// Stores a chunk's answers, unless its batch has ended. `deviceMs`: time on the device; 0 if it is no measure of the
   /// device's speed.
-  void deliver(const Chunk& chunk, QueryBatch& batch, ChunkTrace trace, double deviceMs);
+  void deliver(const Chunk& chunk, Answers found, ChunkTrace trace, double deviceMs);
   /// Ends the worker; its chunks go to the others.
   void retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks);
   /// Ends the batch of a chunk: its future gets the exception.

@@ -51,10 +51,7 @@ void Worker::run() {
 // Waits for the device. Before a lane's chunk goes to another worker, the work of the other lane must have ended, too.
 void Worker::endLanes() {
   for (Lane& lane : lanes_) {
-    try {
-      if (lane.sweep) lane.sweep->finish();
-    } catch (const std::exception&) {  // the first error is the one to report
-    }
+    if (lane.flight) lane.sweep->abandon(*lane.flight);
   }
 }
 
@@ -96,7 +93,6 @@ void Worker::begin(Lane& lane, Chunk chunk) {
   lane.chunk = std::move(chunk);
   ++inFlight_;
   lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
-  lane.results.assign(lane.chunk.count, Result());
   if (!copy_) copy_ = std::make_shared<GpuScene>(device_.impl());
   if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
   // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
@@ -106,34 +102,35 @@ void Worker::begin(Lane& lane, Chunk chunk) {
     isSynced_ = !error;
     if (isSynced_) seenVersion_ = version;
   }
-  lane.sweep->begin(lane.chunk.queries(), lane.results);
+  lane.flight.emplace(lane.chunk.queries(), options_.timestamps);
+  lane.sweep->begin(*lane.flight, lane.chunk.job->mode);
   lane.trace.submitted = queue_.now();
 }
 
 void Worker::finish(Lane& lane) {
-  Sweeper::Impl& sweep = *lane.sweep;
+  Flight& flight = *lane.flight;
   lane.trace.awaited = queue_.now();
-  sweep.finish();
-  lane.trace.done = std::max(lane.trace.submitted, queue_.at(sweep.deviceDone));
+  lane.sweep->finish(flight);
+  lane.trace.done = std::max(lane.trace.submitted, queue_.at(flight.deviceDone));
   lane.trace.decoded = queue_.now();
-  lane.trace.stages = sweep.stats.stages;
+  lane.trace.stages = flight.answers.stats.stages;
   // A lost device retires the worker; so does a lack of memory, unless it is the last worker or the chunk has run out
   // of memory on another device, too. Any other failure makes the chunk's queries invalid.
-  if (sweep.failure) {
-    const bool forMemory = gpu::isOutOfMemory(*sweep.failure);
+  if (flight.failure) {
+    const bool forMemory = gpu::isOutOfMemory(*flight.failure);
     const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
-    if (sweep.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*sweep.failure);
+    if (flight.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*flight.failure);
   }
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
-  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.queries()[0].mode)];
-  const bool usedDevice = sweep.stats.submissions != 0;
+  bool& warm = lane.warm[static_cast<size_t>(lane.chunk.job->mode)];
+  const bool usedDevice = flight.answers.stats.submissions != 0;
   const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = warm || usedDevice;
   lastDone_ = lane.trace.done;
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;
-  queue_.deliver(std::exchange(lane.chunk, {}), sweep, std::move(lane.trace), deviceMs);
+  queue_.deliver(std::exchange(lane.chunk, {}), std::move(flight.answers), std::move(lane.trace), deviceMs);
 }
 
 }  // namespace radar

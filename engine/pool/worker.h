@@ -23,8 +23,8 @@ class Worker {
   struct Lane {
     std::unique_ptr<Sweeper::Impl> sweep;  // made on first use, since pipelines take time
     Chunk chunk;
+    std::optional<Flight> flight;
     ChunkTrace trace;
-    std::vector<Result> results;
     std::array<bool, 2> warm{};  // by mode: whether its pipelines have run
   };
 

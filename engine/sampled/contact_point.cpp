@@ -11,17 +11,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Vector minus(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector plus(const Vector& a, const Vector& b, double scale) {
-  return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
-}
-
 // The unit normal of x and y, against the motion; NaN if they are parallel.
 Vector normalOf(const Vector& x, const Vector& y, const Vector& direction) {
-  Vector n{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  Vector n = cross(x, y);
   const double length = lengthOf(n) * (dot(n, direction) > 0 ? -1 : 1);
   if (length == 0) return {kNaN, kNaN, kNaN};
   for (double& c : n) c /= length;
@@ -31,9 +23,8 @@ Vector normalOf(const Vector& x, const Vector& y, const Vector& direction) {
 // The point on the edge from q to q + y at which the sensor's edge from p to p + x crosses it at the contact; computed
 // from areas seen along the motion.
 Vector crossing(const Vector& p, const Vector& x, const Vector& q, const Vector& y, const Vector& direction) {
-  const Vector side{x[1] * direction[2] - x[2] * direction[1], x[2] * direction[0] - x[0] * direction[2],
-                    x[0] * direction[1] - x[1] * direction[0]};
-  return plus(q, y, dot(side, minus(p, q)) / dot(side, y));
+  const Vector side = cross(x, direction);
+  return along(q, dot(side, minus(p, q)) / dot(side, y), y);
 }
 
 }  // namespace
@@ -44,7 +35,7 @@ void describe(Result& result, uint32_t feature, const Corners& a, const Corners&
   if (feature < 3) {
     result.featureA = Feature::vertex;
     result.featureB = Feature::face;
-    result.point = plus(a[feature], unit, result.t);
+    result.point = along(a[feature], result.t, unit);
     result.normal = normalOf(minus(b[1], b[0]), minus(b[2], b[0]), unit);
   } else if (feature < gpu::kFeatureEdges) {
     result.featureA = Feature::face;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/frame.h"
-#include "radar/query.h"
+#include "radar/answers.h"
 
 namespace radar {
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "query/swept.h"
 #include "sampled/cluster_walk.h"
 #include "scene/placement.h"
 
@@ -18,7 +19,7 @@ constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
 // The reason why the scopes cannot be drawn, as far as it is known before the view is set up; else empty.
 std::string outOfRange(const Query& query, const Scene::Impl& scene) {
   const Vector direction = scaledDirection(query.direction);
-  if (std::ilogb(std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])})) != 0) {
+  if (std::ilogb(largest(direction)) != 0) {
     return "range: the direction's components differ too much in size for doubles";
   }
   if (!scene.objectTree().inRange()) return "range: an object has coordinates beyond 2^80";
@@ -169,8 +170,7 @@ void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, con
   for (ObjectId id = 0; id < scene.objects.size(); ++id) {
     if (next != reach.objects.end() && next->object == id) {
       ++next;
-    } else if (const Object& object = scene.objects[id].object;
-               scene.objects[id].used && !isExcluded(query, object, id)) {
+    } else if (const Object& object = scene.objects[id].object; scene.objects[id].used && takesPart(query, scene, id)) {
       const Mesh& mesh = scene.meshes[object.mesh];
       const Affine m = frameFromLocal(plan.axes, origin, object.worldFromMesh, mesh.origin);
       const double error = placementError(mesh, m);

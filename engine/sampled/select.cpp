@@ -25,8 +25,7 @@ bool meets(const Box& b, const Prism& prism, const Box& prismInWorld, double sla
   }
   for (int k = 0; k < 3; ++k) {
     const Vector& axis = prism.axes[k];
-    const double at = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
-    const double reach = std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1] + std::abs(axis[2]) * half[2] + own;
+    const double at = dot(axis, centre), reach = reachAlong(axis, half) + own;
     if (at - reach > prism.box.hi[k] || at + reach < prism.box.lo[k]) return false;
   }
   return true;

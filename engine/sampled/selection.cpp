@@ -4,13 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "query/swept.h"
+
 namespace radar {
 
 namespace {
-
-double largest(const Vector& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
 
 // Bound on the double-precision error of a vertex in the frame, relative to `transformPoint`, world units.
 double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
@@ -71,7 +69,7 @@ std::vector<SelectedObject> collectReached(const Query& query, const Scene::Impl
   std::vector<SelectedObject> reached;
   for (ObjectId id : ids) {
     const Object& object = scene.objects[id].object;
-    if (isExcluded(query, object, id)) continue;
+    if (!takesPart(query, scene, id)) continue;
     const Mesh& mesh = scene.meshes[object.mesh];
     const Affine m = frameFromLocal(prism.axes, prism.origin, object.worldFromMesh, mesh.origin);
     Box box = boxOfLocal(mesh, m);
@@ -119,11 +117,6 @@ double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
 
 double doubleErrorWithin(const Box& box, const Vector& origin) {
   return 0x1p-47 * (std::max(largest(box.lo), largest(box.hi)) + largest(origin));
-}
-
-bool isExcluded(const Query& query, const Object& object, ObjectId id) {
-  return (object.mask & query.mask) == 0 ||
-         std::find(query.exclude.begin(), query.exclude.end(), id) != query.exclude.end();
 }
 
 SensorWindow lookAlong(const Query& query, const Mesh& sensor) {

@@ -44,9 +44,6 @@ Selection selectionOf(const Query& query, const Scene::Impl& scene, const Sensor
 /// Bound on the double-precision error of a point within `box`, placed in the world, relative to `origin`, world units.
 double doubleErrorWithin(const Box& box, const Vector& origin);
 
-/// Whether the query excludes the object, by mask or by id.
-bool isExcluded(const Query& query, const Object& object, ObjectId id);
-
 /// Whether floats hold every entry of the matrix and every vertex that it places.
 bool fitsFloats(const Mesh& mesh, const Affine& frameFromMesh);
 

@@ -4,21 +4,7 @@
 #include <tuple>
 
 #include "gpu/barrier.h"
-#include "spirv/sampled_depth_vert.h"
-#include "spirv/sampled_identify_comp.h"
-#include "spirv/sampled_reduce_comp.h"
-#include "spirv/sampled_solve_comp.h"
-#include "spirv/sampled_solve_comp_RADAR_NO_DOUBLES.h"
-
-// pass       reads                                     writes                     barrier behind it
-// ---------- ----------------------------------------- -------------------------- ------------------------------
-// upload     staging                                   scene, views, draws, items uploadToRead
-// range      draws, positions, indices                 R                          the render pass's own
-// mask       draws, positions, indices                 M                          the render pass's own
-// reduce     views, R, M                               candidates, ranks, answers computeWriteToComputeReadWrite
-// identify   scene, views, draws, items, ranks         candidates                 computeWriteToComputeReadWrite
-// solve      scene, views, draws, items, candidates    answers, unresolved pairs  computeWriteToCopy
-// readback   answers, unresolved pairs (pictures: R, M) readback                  copyToHost
+#include "spirv/radar_shaders.h"
 
 namespace radar {
 
@@ -31,20 +17,6 @@ namespace {
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
-// Made once for a device.
-struct SampledKernels {
-  explicit SampledKernels(const Device::Impl& device)
-      : renderPass(gpu::depthRenderPass(device)),
-        depth(device, k_sampled_depth_vert, "depth", {renderPass.get(), sizeof(gpu::Vertex)}),
-        reduce(device, k_sampled_reduce_comp, "reduce"),
-        identify(device, k_sampled_identify_comp, "identify"),
-        solve(device,
-              device.doubles ? std::span<const uint32_t>(k_sampled_solve_comp) : k_sampled_solve_comp_RADAR_NO_DOUBLES,
-              "solve", device.divisionConstants()) {}
-  gpu::RenderPass renderPass;
-  gpu::Kernel depth, reduce, identify, solve;
-};
-
 }  // namespace
 
 SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
@@ -54,7 +26,8 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       resident_(resident),
       upload_(device),
       submission_(device, timestamps),
-      renderPass_(device.shared<SampledKernels>().renderPass.get()),
+      run_(device, {shaders::kDepth, shaders::kReduce, shaders::kIdentify, shaders::kSolve}),
+      renderPass_(gpu::depthRenderPass(device)),
       sampler_(gpu::texelSampler(device)),
       views_(device, "views", BufferDomain::device, kUploaded),
       draws_(device, "draws", BufferDomain::device, kUploaded),
@@ -63,11 +36,7 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       ranks_(device, "ranks", BufferDomain::device, kComputed),
       answers_(device, "answers", BufferDomain::device, kComputed),
       unresolvedPairs_(device, "unresolved pairs", BufferDomain::device, kComputed),
-      readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      depth_(device.shared<SampledKernels>().depth),
-      reduce_(device.shared<SampledKernels>().reduce),
-      identify_(device.shared<SampledKernels>().identify),
-      solve_(device.shared<SampledKernels>().solve) {}
+      readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& batch) {
   const auto found = pictures_.find(batch.resolution);
@@ -77,8 +46,8 @@ SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& ba
   uint64_t kept = bytes(batch.resolution, batch.layers);
   for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
   if (kept > 2 * pictureBytes_) pictures_.clear();
-  gpu::DepthArray range(*device_, "R", renderPass_, batch.resolution, batch.layers);
-  gpu::DepthArray mask(*device_, "M", renderPass_, batch.resolution, batch.layers);
+  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
   return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
 }
 
@@ -96,37 +65,6 @@ void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene
   upload_.add(batch.views.data(), bytesOf(batch.views), views_);
   upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
   upload_.add(batch.items.data(), bytesOf(batch.items), items_);
-}
-
-void SampledSubmitter::bind(const Pictures& pictures) {
-  using namespace gpu;  // the slots
-  const GpuScene::Buffers& scene = resident_.buffers();
-  depth_.set({{kSlotDraws, draws_}});
-  reduce_.set({{kSlotViews, views_},
-               {kSlotCandidates, candidates_},
-               {kSlotRanks, ranks_},
-               {kSlotAnswers, answers_},
-               {kSlotRange, pictures.range.view(), sampler_.get()},
-               {kSlotMask, pictures.mask.view(), sampler_.get()}});
-  identify_.set({{kSlotVertices, scene.vertices},
-                 {kSlotTriangles, scene.triangles},
-                 {kSlotMeshes, scene.meshes},
-                 {kSlotViews, views_},
-                 {kSlotDraws, draws_},
-                 {kSlotItems, items_},
-                 {kSlotRanks, ranks_},
-                 {kSlotAnswers, answers_},
-                 {kSlotCandidates, candidates_}});
-  solve_.set({{kSlotVertices, scene.vertices},
-              {kSlotTriangles, scene.triangles},
-              {kSlotMeshes, scene.meshes},
-              {kSlotObjects, scene.objects},
-              {kSlotViews, views_},
-              {kSlotDraws, draws_},
-              {kSlotItems, items_},
-              {kSlotCandidates, candidates_},
-              {kSlotAnswers, answers_},
-              {kSlotSampledUnresolved, unresolvedPairs_}});
 }
 
 void SampledSubmitter::drawScopes(const gpu::Commands& commands, const SampledBatch& batch,
@@ -159,11 +97,60 @@ void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scen
   }
 }
 
+// Draws R and M, and solves by them.
+void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch& batch, Pictures& pictures) {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = resident_.buffers();
+  const VkBuffer vertices = scene.vertices.get();
+  const VkDeviceSize zero = 0;
+  run_.bindForDraws(commands, shaders::kDepth, {{kSlotDraws, draws_}});
+  commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
+  commands->CmdBindIndexBuffer(commands, scene.indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  submission_.stage("range");
+  drawScopes(commands, batch, batch.rangePasses, pictures.range);
+  submission_.stage("mask");
+  drawScopes(commands, batch, batch.maskPasses, pictures.mask);
+
+  const auto views = static_cast<uint32_t>(batch.views.size()), items = static_cast<uint32_t>(batch.items.size());
+  submission_.stage("reduce");
+  run_(commands, shaders::kReduce, views,
+       {{kSlotViews, views_},
+        {kSlotCandidates, candidates_},
+        {kSlotRanks, ranks_},
+        {kSlotAnswers, answers_},
+        {kSlotRange, pictures.range, sampler_.get()},
+        {kSlotMask, pictures.mask, sampler_.get()}});
+  computeWriteToComputeReadWrite(commands);
+  submission_.stage("identify");
+  run_(commands, shaders::kIdentify, items, IdentifyPush{items},
+       {{kSlotVertices, scene.vertices},
+        {kSlotTriangles, scene.triangles},
+        {kSlotMeshes, scene.meshes},
+        {kSlotViews, views_},
+        {kSlotDraws, draws_},
+        {kSlotItems, items_},
+        {kSlotRanks, ranks_},
+        {kSlotAnswers, answers_},
+        {kSlotCandidates, candidates_}});
+  computeWriteToComputeReadWrite(commands);
+  submission_.stage("solve");
+  run_(commands, shaders::kSolve, views,
+       {{kSlotVertices, scene.vertices},
+        {kSlotTriangles, scene.triangles},
+        {kSlotMeshes, scene.meshes},
+        {kSlotObjects, scene.objects},
+        {kSlotViews, views_},
+        {kSlotDraws, draws_},
+        {kSlotItems, items_},
+        {kSlotCandidates, candidates_},
+        {kSlotAnswers, answers_},
+        {kSlotSampledUnresolved, unresolvedPairs_}});
+}
+
 void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
-  bind(pictures);
-  const auto views = static_cast<uint32_t>(batch.views.size());
+  run_.begin();
   const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes);
   const VkDeviceSize listBytes = answerBytes + openBytes;
   readback_.reserve(listBytes + 2 * pictureBytes);
@@ -176,25 +163,7 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
   pictures.mask.recordFirstUse(commands);
   gpu::uploadToRead(commands);
 
-  const VkBuffer vertices = resident_.buffers().vertices.get();
-  const VkDeviceSize zero = 0;
-  depth_.bindForDraws(commands);
-  commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
-  commands->CmdBindIndexBuffer(commands, resident_.buffers().indices.get(), 0, VK_INDEX_TYPE_UINT32);
-  submission_.stage("range");
-  drawScopes(commands, batch, batch.rangePasses, pictures.range);
-  submission_.stage("mask");
-  drawScopes(commands, batch, batch.maskPasses, pictures.mask);
-
-  submission_.stage("reduce");
-  reduce_.dispatch(commands, views);
-  gpu::computeWriteToComputeReadWrite(commands);
-  submission_.stage("identify");
-  const auto items = static_cast<uint32_t>(batch.items.size());
-  identify_.dispatch(commands, items, gpu::IdentifyPush{items});
-  gpu::computeWriteToComputeReadWrite(commands);
-  submission_.stage("solve");
-  solve_.dispatch(commands, views);
+  record(commands, batch, pictures);
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");

@@ -48,7 +48,7 @@ class SampledSubmitter {
   void recordAndSubmit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes);
   Pictures& picturesFor(const SampledBatch& batch);
   void stage(const SampledBatch& batch, const Scene::Impl& scene);
-  void bind(const Pictures& pictures);
+  void record(const gpu::Commands& commands, const SampledBatch& batch, Pictures& pictures);
   void drawScopes(const gpu::Commands& commands, const SampledBatch& batch, const std::vector<DepthPass>& passes,
                   gpu::DepthArray& target) const;
 
@@ -57,7 +57,8 @@ class SampledSubmitter {
   GpuScene& resident_;
   gpu::Upload upload_;
   gpu::Submission submission_;
-  VkRenderPass renderPass_;
+  gpu::Passes run_;
+  gpu::RenderPass renderPass_;
   gpu::Sampler sampler_;
   gpu::Array<gpu::View> views_;
   gpu::Array<gpu::Draw> draws_;
@@ -67,7 +68,6 @@ class SampledSubmitter {
   gpu::Array<gpu::Answer> answers_;
   gpu::Array<gpu::SampledUnresolved> unresolvedPairs_;
   gpu::Buffer readback_;
-  gpu::KernelArguments depth_, reduce_, identify_, solve_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side
 };
 

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "gpu/barrier.h"
-#include "gpu/limit_error.h"
+#include "gpu/check.h"
 #include "scene/parallel.h"
 #include "scene/placement.h"
 
@@ -20,10 +20,9 @@ namespace {
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // Objects that a thread encodes at a time.
 constexpr size_t kChunk = 4096;
-// Floats are stored as integers, since a device may change the bits of subnormal floats and NaNs.
-constexpr VkFormat kTexels = VK_FORMAT_R32G32B32A32_UINT;
+constexpr VkBufferUsageFlags kTexels = kUploaded | gpu::kAsTexels;
 
-// maxStorageBufferRange limits storage buffers; texel buffers have a limit of their own (TexelBuffer).
+// maxStorageBufferRange limits storage buffers; texel buffers have a limit of their own (gpu::Buffer).
 template <class T>
 void checkLimit(const Device::Impl& device, const char* what, uint64_t count) {
   const uint64_t bytes = count * sizeof(T), limit = device.properties.limits.maxStorageBufferRange;
@@ -61,13 +60,13 @@ Elements elementsOf(const Scene::Impl& scene) {
 }  // namespace
 
 GpuScene::Buffers::Buffers(const Device::Impl& device)
-    : vertices(device, "vertices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, kTexels),
-      triangles(device, "triangles", BufferDomain::device, kUploaded, kTexels),
-      meshNodes(device, "mesh nodes", BufferDomain::device, kUploaded, kTexels),
+    : vertices(device, "vertices", BufferDomain::device, kTexels | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
+      triangles(device, "triangles", BufferDomain::device, kTexels),
+      meshNodes(device, "mesh nodes", BufferDomain::device, kTexels),
       meshes(device, "meshes", BufferDomain::device, kUploaded),
       objects(device, "objects", BufferDomain::device, kUploaded),
-      placements(device, "placements", BufferDomain::device, kUploaded, kTexels),
-      objectNodes(device, "object nodes", BufferDomain::device, kUploaded, kTexels),
+      placements(device, "placements", BufferDomain::device, kTexels),
+      objectNodes(device, "object nodes", BufferDomain::device, kTexels),
       indices(device, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT) {}
 
 GpuScene::GpuScene(const Device::Impl& device)

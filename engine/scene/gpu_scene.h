@@ -17,13 +17,13 @@ class GpuScene {
 
   struct Buffers {
     explicit Buffers(const Device::Impl& device);
-    gpu::TexelArray<gpu::Vertex> vertices;
-    gpu::TexelArray<gpu::Triangle> triangles;  ///< in the order of the mesh's tree
-    gpu::TexelArray<gpu::MeshNode> meshNodes;
+    gpu::Array<gpu::Vertex> vertices;
+    gpu::Array<gpu::Triangle> triangles;  ///< in the order of the mesh's tree
+    gpu::Array<gpu::MeshNode> meshNodes;
     gpu::Array<gpu::MeshRecord> meshes;
     gpu::Array<gpu::ObjectRecord> objects;
-    gpu::TexelArray<gpu::Placement> placements;
-    gpu::TexelArray<gpu::ObjectNode> objectNodes;
+    gpu::Array<gpu::Placement> placements;
+    gpu::Array<gpu::ObjectNode> objectNodes;
     gpu::Array<uint32_t> indices;  ///< 3 vertices per triangle, for drawing; empty until needIndices()
   };
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/box.h"
+#include "radar/answers.h"
 #include "radar/query.h"
 #include "scene/changed_pages.h"
 #include "scene/mesh_tree.h"
@@ -123,6 +124,8 @@ inline bool isStep(const Query& query, const Scene::Impl& scene) {
   return query.motion.has_value() || scene.moving > 0;
 }
 
+/// Components of displacements up to this are valid: their sums and lengths do not overflow.
+inline constexpr double kMostMotion = 0x1p1000;
 /// Empty, or what is wrong with a displacement during a step.
 std::string validateMotion(const std::array<double, 3>& motion);
 

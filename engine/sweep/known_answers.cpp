@@ -175,36 +175,33 @@ AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<cons
 
 namespace {
 
-struct Found {
-  std::vector<Result> results;  ///< then what is listed
-  uint64_t onCpu;               ///< queries that the device left to the CPU
-};
+// The answers, then what they list.
+std::vector<Result> all(Answers answers) {
+  for (const Listed& listed : answers.lists) {
+    answers.results.insert(answers.results.end(), listed.hits.begin(), listed.hits.end());
+  }
+  return std::move(answers.results);
+}
 
-Found answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries) {
-  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {},
-                        ContactTier::kernelsOf(device));
-  Found found{std::vector<Result>(queries.size()), 0};
-  sweeper.begin(queries, found.results);
-  sweeper.finish();
-  if (sweeper.failure) throw Error(*sweeper.failure);
-  const Lists lists = joined(sweeper.lists);
-  found.results.insert(found.results.end(), lists.hits.begin(), lists.hits.end());
-  found.onCpu = sweeper.stats.cpuQueries;
-  return found;
+Answers answersOf(const Device::Impl& device, const Scene& scene, std::span<const Query> queries, Mode mode) {
+  Sweeper::Impl sweeper(device, scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(device), {}, false);
+  Flight flight(queries, false);
+  sweeper.begin(flight, mode);
+  sweeper.finish(flight);
+  if (flight.failure) throw Error(*flight.failure);
+  return std::move(flight.answers);
 }
 
 AnswerCheck check(const char* kind, const Device::Impl& device, const KnownScene& known,
                   std::span<const Query> queries) {
   return orAllWrong(kind, queries.size(), [&] {
-    Found found = answersOf(device, known.scene, queries);
-    CpuSweeper cpu(known.scene);
-    std::vector<Result> exact = cpu.run(queries);
-    exact.insert(exact.end(), cpu.lists().hits.begin(), cpu.lists().hits.end());
-    AnswerCheck check = compared(kind, std::move(found.results), exact);
+    Answers found = answersOf(device, known.scene, queries, Mode::contact);
+    const uint64_t onCpu = found.stats.cpuQueries;
+    AnswerCheck check = compared(kind, all(std::move(found)), all(CpuSweeper(known.scene).run(queries)));
     // But for clearances, where the device may well leave queries open.
-    if (found.onCpu > 0 && queries[0].clearance == 0) {
-      check.wrong += static_cast<uint32_t>(found.onCpu);
-      check.firstWrong += " " + std::to_string(found.onCpu) + " queries were left to the CPU";
+    if (onCpu > 0 && queries[0].clearance == 0) {
+      check.wrong += static_cast<uint32_t>(onCpu);
+      check.firstWrong += " " + std::to_string(onCpu) + " queries were left to the CPU";
     }
     return check;
   });
@@ -250,9 +247,8 @@ AnswerCheck checkSampled(const Device::Impl& device, uint64_t seed) {
     query.anyHit = query.ignoreLeaving = false;
     query.slack.reset();
   }
-  const std::vector<Result> exact = CpuSweeper(known.scene).run(queries);
-  for (Query& query : queries) query.mode = Mode::sampled;
-  std::vector<Result> found = answersOf(device, known.scene, queries).results;
+  const std::vector<Result> exact = CpuSweeper(known.scene).run(queries).results;
+  std::vector<Result> found = answersOf(device, known.scene, queries, Mode::sampled).results;
   // Right answers are replaced by the exact ones, with which they are then compared.
   for (size_t i = 0; i < queries.size(); ++i) {
     const bool holds = found[i].flags == 0 && found[i].status != Status::invalid && found[i].lo <= exact[i].hi &&

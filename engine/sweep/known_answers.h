@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "gpu/device.h"
+#include "radar/answers.h"
 #include "radar/arithmetic.h"
 #include "radar/scene.h"
 

@@ -1,58 +1,40 @@
-// A query travels: begin -> its tier plans it and submits it ... finish -> the tier decodes it.
+// A batch travels: begin() -> its mode's runner plans and submits it ... finish() -> the runner decodes it.
 #include "sweep/sweeper.h"
 
-#include <cassert>
-
 #include "gpu/check.h"
-#include "gpu/limit_error.h"
 #include "math/float_environment.h"
 #include "scene/scene_copy.h"
 
 namespace radar {
 
 Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const SweeperOptions& given,
-                    std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room,
-                    std::shared_ptr<const ContactKernels> kernels)
+                    std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room, bool needsProof)
     : device(openDevice),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactTier(device, scene, given, *copy, std::move(kernels), room, *this) {
-  timestamps = given.timestamps;
-}
+      contactRunner(device, scene, given, *copy, room, needsProof) {}
 
-SampledTier& Sweeper::Impl::sampled() {
-  if (!sampledTier) {
+SampledRunner& Sweeper::Impl::sampled() {
+  if (!sampledRunner) {
     // Now, and not in its first submission: others may share the copy.
     copy->needIndices();
     copy->sync(scene.impl());
-    sampledTier.emplace(device, scene, options, *copy, *this);
+    sampledRunner.emplace(device, scene, options, *copy);
   }
-  return *sampledTier;
+  return *sampledRunner;
 }
 
-void Sweeper::Impl::runSampled(std::span<const size_t> which) {
-  if (which.empty()) return;
-  try {
-    sampled();
-  } catch (const Error& error) {
-    for (const size_t query : which) fail(query, error);
-    return;
-  }
-  sampledTier->run(which);
-}
-
-void Sweeper::Impl::validateAll(std::span<const Query> queries) const {
+void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const {
   for (size_t i = 0; i < queries.size(); ++i) {
-    const std::string wrong = validate(queries[i], scene);
+    const std::string wrong = validate(queries[i], scene, mode);
     if (!wrong.empty()) throw Error("query " + std::to_string(i) + ": " + wrong);
-    if (queries[i].mode == Mode::sampled) device.requireSampled("query " + std::to_string(i));
   }
 }
 
 std::optional<Error> Sweeper::Impl::sync() {
   copy->willOverwrite({});
-  if (contactTier.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
+  if (contactRunner.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
     return {};
   }
@@ -67,35 +49,37 @@ std::optional<Error> Sweeper::Impl::sync() {
   return {};
 }
 
-void Sweeper::Impl::begin(std::span<const Query> queries, std::span<Result> results) {
-  assert(queries.size() == results.size());
+void Sweeper::Impl::begin(Flight& flight, Mode mode) {
   copy->willOverwrite({});
-  asked = queries;
-  answers = results;
-  lists = listsFor(queries);
-  stats = {};
-  reasons.clear();
-  failure.reset();
-  contactTier.begin();
-  std::vector<size_t> ofSampled, ofContact;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    answers[i] = Result();
-    (queries[i].mode == Mode::sampled ? ofSampled : ofContact).push_back(i);
-  }
-  deviceDone = Clock::now();  // in case nothing goes there
+  if (flight.queries.empty()) return;
   try {
-    runSampled(ofSampled);
-    if (sampledTier && !ofContact.empty()) sampledTier->collect();
-    contactTier.run(ofContact);
+    if (mode == Mode::contact) return contactRunner.begin(flight);
+    try {
+      sampled();
+    } catch (const Error& error) {
+      for (size_t query = 0; query < flight.queries.size(); ++query) flight.fail(query, error);
+      return;
+    }
+    sampledRunner->begin(flight);
   } catch (...) {
-    finish();  // nothing stays with the device behind an exception
+    abandon(flight);
     throw;
   }
 }
 
-void Sweeper::Impl::finish() {
-  if (sampledTier) sampledTier->collect();
-  contactTier.finish();
+void Sweeper::Impl::finish(Flight& flight) {
+  try {
+    if (sampledRunner) sampledRunner->finish(flight);
+    contactRunner.finish(flight);
+  } catch (...) {
+    abandon(flight);
+    throw;
+  }
+}
+
+void Sweeper::Impl::abandon(Flight& flight) noexcept {
+  if (sampledRunner) sampledRunner->abandon(flight);
+  contactRunner.abandon(flight);
 }
 
 Sweeper::Sweeper(const Device& device, const Scene& scene, const SweeperOptions& options) {
@@ -118,37 +102,22 @@ void Sweeper::sync() {
   impl_->sync();
 }
 
-std::vector<Result> Sweeper::run(std::span<const Query> queries) {
+Answers Sweeper::run(std::span<const Query> queries, Mode mode) {
   const FloatEnvironment floats;
-  impl_->validateAll(queries);
-  std::vector<Result> results(queries.size());
-  impl_->begin(queries, results);
-  impl_->finish();
-  impl_->joinedLists = joined(impl_->lists);
-  return results;
+  if (mode == Mode::sampled) impl_->device.requireSampled("run()");
+  impl_->validateAll(queries, mode);
+  Flight flight(queries, impl_->options.timestamps);
+  impl_->begin(flight, mode);
+  impl_->finish(flight);
+  return std::move(flight.answers);
 }
 
 Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
-  impl_->validateAll({&query, 1});
   impl_->device.requireSampled("scopes()");
-  impl_->stats = {};
+  impl_->validateAll({&query, 1}, Mode::sampled);
   impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
-}
-
-const Lists& Sweeper::lists() const {
-  return impl_->joinedLists;
-}
-
-const SweepStats& Sweeper::stats() const {
-  return impl_->stats;
-}
-
-const std::string& Sweeper::reason(size_t i) const {
-  static const std::string kNothing;
-  const auto found = impl_->reasons.find(i);
-  return found == impl_->reasons.end() ? kNothing : found->second;
 }
 
 }  // namespace radar

@@ -8,7 +8,7 @@
 #include "shared/widen.glsl"
 
 layout(local_size_x = kTrialGroup) in;
-layout(constant_id = 1) const uint kFalsified = kNoOperation;
+layout(constant_id = 0) const uint kFalsified = kNoOperation;
 
 layout(scalar, binding = kSlotDoubleTrials) readonly restrict buffer Trials { DoubleTrial trials[]; };
 layout(scalar, binding = kSlotDoubleOutcomes) writeonly restrict buffer Outcomes { DoubleOutcome outcomes[]; };

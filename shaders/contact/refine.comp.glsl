@@ -11,7 +11,7 @@
 
 layout(local_size_x = kContactGroup) in;
 // Whether any query ignores what does not block. Constant, because some devices execute what they skip.
-layout(constant_id = 1) const bool kIgnoresLeaving = false;
+layout(constant_id = 0) const bool kIgnoresLeaving = false;
 
 layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };

@@ -84,24 +84,24 @@ const uvec2 kNoNumber = uvec2(0, 0x7ff80000u);
 // A result without a contact, with `distances` in place of all of them.
 RadarResult nothing(uint status, uvec2 distances) {
   const uvec2 n = kNoNumber;
-  return RadarResult(status, RADAR_TIER_CONTACT, RADAR_NOT_LOOKED, 0, distances, distances, distances, distances, kNobody,
-                     kNobody, kNobody, 0, RADAR_NO_FEATURE, RADAR_NO_FEATURE, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
+  return RadarResult(status, RADAR_TIER_contact, RADAR_DETECTED_notLooked, 0, distances, distances, distances, distances,
+                     kNobody, kNobody, kNobody, 0, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
 }
 RadarResult free(uint status) { return nothing(status, uvec2(0, 0x7ff00000u)); }
 
 RadarResult invalid(uint flags) {
-  RadarResult r = nothing(RADAR_INVALID, kNoNumber);
+  RadarResult r = nothing(RADAR_STATUS_invalid, kNoNumber);
   r.flags = flags;
   return r;
 }
 
 // No pair is left: the answer is clear, unless the search found a certain contact.
-RadarResult noContact(bool met) { return met ? invalid(0) : free(RADAR_CLEAR); }
+RadarResult noContact(bool met) { return met ? invalid(0) : free(RADAR_STATUS_clear); }
 
 // The answer to an `anyHit` query: the same bits, whichever contact was found.
 RadarResult within() {
-  RadarResult r = nothing(RADAR_HIT, kNoNumber);
-  r.detected = RADAR_DETECTED;
+  RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
+  r.detected = RADAR_DETECTED_yes;
   r.lo = uvec2(0);
   r.hi = bitsOf(sweeps[s].distance);
   return r;
@@ -110,17 +110,17 @@ RadarResult within() {
 // Within the clearance at the start. Which pair of triangles is the least of those is not searched for.
 RadarResult withinAtStart() {
   if (sweeps[s].anyHit != 0) return within();
-  RadarResult r = nothing(RADAR_OVERLAP, kNoNumber);
-  r.detected = RADAR_DETECTED;
+  RadarResult r = nothing(RADAR_STATUS_overlap, kNoNumber);
+  r.detected = RADAR_DETECTED_yes;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
   return r;
 }
 
 // `low`: world units. `lowOfStep`: the same, scaled.
 RadarResult undecided(bool met, uvec2 low, float lowOfStep) {
-  RadarResult r = free(RADAR_UNDECIDED);
-  r.flags = RADAR_UNRESOLVED;
-  if (met) r.detected = RADAR_DETECTED;
+  RadarResult r = free(RADAR_STATUS_undecided);
+  r.flags = RADAR_FLAG_unresolved;
+  if (met) r.detected = RADAR_DETECTED_yes;
   const float perUnit = sweeps[s].stepPerUnit;
   if (perUnit != 0.0) low = doubleBits(floatBitsToUint(max(lowOfStep * perUnit, 0.0)));
   const uvec2 distance = bitsOf(sweeps[s].distance);
@@ -136,7 +136,7 @@ RadarResult leaveAll(bool met) {
   for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
     low = min(low, refinedPairs[i].first);
   }
-  if (count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
+  if (count == kMostListed) return invalid(RADAR_FLAG_candidates);
   uint at = reserveUnresolved(count);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
   return undecided(met, unscaled(low, sweeps[s].scale), low);
@@ -179,8 +179,8 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   const double first = min(t, distance);
   precise double below = t - slack, above = t + slack;
   // The pair's only contact then is inside both features: others certainly begin later.
-  r.featureA = feature < 3 ? RADAR_VERTEX : feature < kFeatureEdges ? RADAR_FACE : RADAR_EDGE;
-  r.featureB = feature < 3 ? RADAR_FACE : feature < kFeatureEdges ? RADAR_VERTEX : RADAR_EDGE;
+  r.featureA = feature < 3 ? RADAR_FEATURE_vertex : feature < kFeatureEdges ? RADAR_FEATURE_face : RADAR_FEATURE_edge;
+  r.featureB = feature < 3 ? RADAR_FEATURE_face : feature < kFeatureEdges ? RADAR_FEATURE_vertex : RADAR_FEATURE_edge;
   r.t = bitsOf(first);
   r.lo = bitsOf(min(max(below, 0.0LF), first));
   r.hi = bitsOf(min(above, distance));
@@ -195,9 +195,9 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
 
 // Sets the refined pair's overlap. Returns whether its numbers certainly have the CPU's bits.
 bool setOverlap(Corners corners, inout RadarResult r) {
-  r.status = RADAR_OVERLAP;
+  r.status = RADAR_STATUS_overlap;
   // The contact certainly begins before the start and ends after it.
-  r.featureA = r.featureB = RADAR_FACE;
+  r.featureA = r.featureB = RADAR_FEATURE_face;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
   dvec3 point;
   const bool found = commonPoint(corners.a, corners.b, point);
@@ -255,7 +255,7 @@ bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
     }
   }
   if (!certain) return false;
-  r.detected = RADAR_DETECTED;
+  r.detected = RADAR_DETECTED_yes;
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
@@ -266,8 +266,8 @@ RadarResult decide(SearchState state, bool met) {
   if (sweeps[s].hasClearance != 0) return leaveAll(met);
   const PairSummary pairs = summarise(heads[s], hiOf(state));
   if (pairs.least.w == kNobody) return noContact(met);
-  if (pairs.count == kMostListed) return invalid(RADAR_TOO_MANY_CANDIDATES);
-  RadarResult r = nothing(RADAR_HIT, kNoNumber);
+  if (pairs.count == kMostListed) return invalid(RADAR_FLAG_candidates);
+  RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
   if (setCertainAnswer(heads[s], pairs, r)) return r;
   uint at = reserveUnresolved(pairs.possible);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
@@ -289,10 +289,10 @@ void main() {
   s = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (s >= push.sensors) return;
   const SearchState state = states[s];
-  const uint missing = ((state.flags & kSearchLost) != 0 ? RADAR_TOO_MANY_CANDIDATES : 0) |
-                       ((state.flags & kSearchUnfinished) != 0 ? RADAR_TOO_LONG : 0) |
-                       ((state.flags & kSearchOutOfRange) != 0 ? RADAR_OUT_OF_RANGE : 0) |
-                       ((state.flags & kSearchNoQuery) != 0 ? RADAR_BAD_QUERY : 0);
+  const uint missing = ((state.flags & kSearchLost) != 0 ? RADAR_FLAG_candidates : 0) |
+                       ((state.flags & kSearchUnfinished) != 0 ? RADAR_FLAG_rounds : 0) |
+                       ((state.flags & kSearchOutOfRange) != 0 ? RADAR_FLAG_range : 0) |
+                       ((state.flags & kSearchNoQuery) != 0 ? RADAR_FLAG_query : 0);
   RadarResult r;
   if ((state.flags & kSearchWithin) != 0) {
     r = withinAtStart();

@@ -16,13 +16,13 @@ layout(scalar, binding = kSlotGathered) readonly restrict buffer GatheredSearche
 
 layout(push_constant) uniform PushConstants { GatherPush push; };
 
-// What orders the answers of a query, as engine/embed/gather.cpp does: a decision; then those that are missing, which may
+// What orders the answers of a query, as engine/query/hits.cpp does: a decision; then those that are missing, which may
 // hide an earlier contact; then t or, if that is open, lo. Non-negative doubles compare as their bits do.
 uvec3 keyOf(uint i) {
   const uint status = results[i].status;
-  if (status == RADAR_INVALID) return uvec3(1, 0, 0);
-  if (status == RADAR_UNDECIDED) return uvec3(2, results[i].lo.yx);
-  const bool isDecision = status == RADAR_HIT && results[i].object == RADAR_NONE;
+  if (status == RADAR_STATUS_invalid) return uvec3(1, 0, 0);
+  if (status == RADAR_STATUS_undecided) return uvec3(2, results[i].lo.yx);
+  const bool isDecision = status == RADAR_STATUS_hit && results[i].object == RADAR_NONE;
   return isDecision ? uvec3(0) : uvec3(2, results[i].t.yx);
 }
 bool isLess(uvec3 p, uvec3 q) {
@@ -41,12 +41,12 @@ void main() {
     const uvec3 other = keyOf(i);
     if (isLess(other, key) || (other == key && i < own)) ++rank;
     if (other.x == 1) missing |= results[i].flags;
-    detected = detected || results[i].detected == RADAR_DETECTED;
+    detected = detected || results[i].detected == RADAR_DETECTED_yes;
   }
   RadarResult answer = results[own];
   if (rank < g.listed) results[g.list + rank] = answer;
   if (rank != 0) return;
-  if (answer.status == RADAR_INVALID) answer.flags = missing;
-  if (answer.status == RADAR_UNDECIDED && detected) answer.detected = RADAR_DETECTED;
+  if (answer.status == RADAR_STATUS_invalid) answer.flags = missing;
+  if (answer.status == RADAR_STATUS_undecided && detected) answer.detected = RADAR_DETECTED_yes;
   results[g.query] = answer;
 }

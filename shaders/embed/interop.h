@@ -140,11 +140,11 @@ INTEROP_CONST kHostGroup = 64;
 INTEROP_CONST kBoundRun = 16;
 
 INTEROP_SLOT(kSlotWords, 19, uint);  // words copied from the host's buffers
-INTEROP_SLOT(kSlotMoved, 6, Moved);
-INTEROP_SLOT(kSlotBoundsViolation, 7, BoundsViolation);
-INTEROP_SLOT(kSlotRefitNodes, 8, uint);  // nodes of deformed meshes, deepest first
-INTEROP_SLOT(kSlotGathered, 9, Gathered);
-INTEROP_SLOT(kSlotFitNodes, 10, uint);  // inner nodes of the tree over objects, parents first
+INTEROP_SLOT(kSlotMoved, 24, Moved);
+INTEROP_SLOT(kSlotBoundsViolation, 25, BoundsViolation);
+INTEROP_SLOT(kSlotRefitNodes, 26, uint);  // nodes of deformed meshes, deepest first
+INTEROP_SLOT(kSlotGathered, 27, Gathered);
+INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects, parents first
 INTEROP_SLOT(kSlotVertexNumbers, 20, uint);  // of deformed meshes, in the host's buffers
 INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes
 INTEROP_SLOT(kSlotExtents, 22, Extent);      // of those

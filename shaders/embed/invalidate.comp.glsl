@@ -19,6 +19,7 @@ void main() {
   const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;
   if (i >= push.count || (violation.mesh == kNobody && violation.object == kNobody)) return;
   const uvec2 n = uvec2(0, 0x7ff80000u);
-  results[i] = RadarResult(RADAR_INVALID, RADAR_TIER_SELECT, RADAR_NOT_LOOKED, 0, n, n, n, n, kNobody, kNobody, kNobody,
-                           RADAR_OUT_OF_BOUNDS, RADAR_NO_FEATURE, RADAR_NO_FEATURE, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
+  results[i] = RadarResult(RADAR_STATUS_invalid, RADAR_TIER_select, RADAR_DETECTED_notLooked, 0, n, n, n, n, kNobody, kNobody,
+                           kNobody, RADAR_FLAG_bounds, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n),
+                           uvec2[3](n, n, n), n);
 }

@@ -1,4 +1,4 @@
-// Linear workgroup numbers. Devices need only support 65535 workgroups along an axis, so gpu::KernelArguments arranges more
+// Linear workgroup numbers. Devices need only support 65535 workgroups along an axis, so gpu::Passes arranges more
 // than that in rows.
 #ifndef RADAR_WORKGROUP_GLSL
 #define RADAR_WORKGROUP_GLSL

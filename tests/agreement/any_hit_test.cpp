@@ -28,11 +28,11 @@ TEST_CASE("in mode sampled a decision is that of the whole answer") {
   Scene scene;
   tools::replaceBy(workload, 0, scene);
   std::vector<Query> queries;
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::sampled, 64));
+  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 64));
   Sweeper sweeper(test::device(), scene);
-  const std::vector<Result> whole = sweeper.run(queries);
+  const std::vector<Result> whole = sweeper.run(queries, Mode::sampled).results;
   queries = deciding(std::move(queries));
-  const std::vector<Result> decided = sweeper.run(queries);
+  const std::vector<Result> decided = sweeper.run(queries, Mode::sampled).results;
   for (size_t i = 0; i < queries.size(); ++i) {
     CAPTURE(i);
     CHECK(uint32_t(decided[i].status) == uint32_t(decisionOf(whole[i].status)));
@@ -53,11 +53,11 @@ TEST_CASE("a decision on a deep overlap costs a fraction of the whole answer") {
   const Transform across{{1, 0, 0, 0.3, 0, 0.8, -0.6, 0.2, 0, 0.6, 0.8, 0.1}};
   const Query whole{.mesh = mesh, .worldFromMesh = across, .direction = {1, 0.1, 0.2}, .distance = 20};
   Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
-  CHECK(sweeper.run({&whole, 1})[0].status == Status::overlap);
-  const SweepStats all = sweeper.stats();
+  const Answers all = sweeper.run({&whole, 1});
+  CHECK(all.results[0].status == Status::overlap);
   const Query decide = deciding({whole})[0];
-  const Result result = sweeper.run({&decide, 1})[0];
-  CHECK(result.status == Status::hit);
-  CHECK(sweeper.stats().pairs < all.pairs / 2);
-  CHECK(sweeper.stats().cpuPairs == 0);
+  const Answers decided = sweeper.run({&decide, 1});
+  CHECK(decided.results[0].status == Status::hit);
+  CHECK(decided.stats.pairs < all.stats.pairs / 2);
+  CHECK(decided.stats.cpuPairs == 0);
 }

@@ -39,9 +39,9 @@ TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, an
 
   std::vector<Query> queries = disassembly(scene);
   CpuSweeper cpu(scene);
-  const std::vector<Result> expected = cpu.run(queries);
+  const std::vector<Result> expected = cpu.run(queries).results;
   Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
-  std::vector<Result> results = sweeper.run(queries);
+  std::vector<Result> results = sweeper.run(queries).results;
   for (size_t i = 0; i < queries.size(); ++i) {
     INFO("object " << i / 26 << " direction " << i % 26);
     results[i].tier = expected[i].tier;
@@ -52,15 +52,15 @@ TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, an
     query.skipOverlapping = true;
     query.hits = kAllHits;
   }
-  const std::vector<Result> skipped = cpu.run(queries);
-  const Lists lists = cpu.lists();
+  const Answers skipped = cpu.run(queries);
   size_t crossing = 0, listed = 0;
   std::vector<Query> single;
   std::vector<Result> answers;
   for (size_t i = 0; i < queries.size(); ++i) {
-    crossing += lists.overlappingOf(i).size();
-    listed += lists.hitsOf(i).size();
-    if (!lists.hitsOf(i).empty()) REQUIRE(test::sameBits(skipped[i], lists.hitsOf(i)[0]));
+    const auto& [hits, overlapping] = skipped.lists[i];
+    crossing += overlapping.size();
+    listed += hits.size();
+    if (!hits.empty()) REQUIRE(test::sameBits(skipped.results[i], hits[0]));
     if (i % 23 != 0) continue;
     for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
       Query alone = queries[i];
@@ -69,9 +69,7 @@ TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, an
       for (ObjectId other = 0; other < scene.objectLimit(); ++other) {
         if (other != id) alone.exclude.push_back(other);
       }
-      const auto hits = lists.hitsOf(i);
       const auto found = std::find_if(hits.begin(), hits.end(), [&](const Result& hit) { return hit.object == id; });
-      const auto overlapping = lists.overlappingOf(i);
       if (std::find(overlapping.begin(), overlapping.end(), id) != overlapping.end()) {
         REQUIRE(found == hits.end());
         continue;
@@ -80,7 +78,7 @@ TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, an
       answers.push_back(found == hits.end() ? Result() : *found);
     }
   }
-  const std::vector<Result> alone = cpu.run(single);
+  const std::vector<Result> alone = cpu.run(single).results;
   for (size_t i = 0; i < single.size(); ++i) {
     if (alone[i].status == Status::clear) {
       REQUIRE(answers[i].status == Status::invalid);  // not listed

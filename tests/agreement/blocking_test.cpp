@@ -82,9 +82,9 @@ TEST_CASE("the device's answers to queries that ignore what does not block have 
   size_t free = 0, resting = 0, later = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
     const Batch batch = batchOf(seed);
-    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries).results;
     Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
-    const std::vector<Result> results = sweeper.run(batch.queries);
+    const std::vector<Result> results = sweeper.run(batch.queries).results;
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("seed " << seed << " query " << i);
       expected[i].tier = results[i].tier;
@@ -119,9 +119,9 @@ TEST_CASE("boxes pressed together, though rounding has let them pass each other,
       query.anyHit = i % 5 == 0;
       batch.queries.push_back(query);
     }
-    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+    std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries).results;
     Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
-    const std::vector<Result> results = sweeper.run(batch.queries);
+    const std::vector<Result> results = sweeper.run(batch.queries).results;
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("scene " << scene << " query " << i);
       expected[i].tier = results[i].tier;
@@ -140,20 +140,20 @@ TEST_CASE("lists of the nearest objects, and of those that cross at the start, a
       query.skipOverlapping = i % 2 == 0;
     }
     CpuSweeper cpu(batch.scene, 1);
-    const std::vector<Result> expected = cpu.run(batch.queries);
+    const Answers expected = cpu.run(batch.queries);
     Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
-    const std::vector<Result> results = sweeper.run(batch.queries);
-    onDevice += results.size() - sweeper.stats().cpuQueries;
-    for (size_t i = 0; i < results.size(); ++i) {
+    const Answers found = sweeper.run(batch.queries);
+    onDevice += batch.queries.size() - found.stats.cpuQueries;
+    for (size_t i = 0; i < batch.queries.size(); ++i) {
       INFO("seed " << seed << " query " << i);
-      REQUIRE(test::sameBits(results[i], withTier(expected[i], results[i].tier)));
-      const auto ours = sweeper.lists().hitsOf(i), theirs = cpu.lists().hitsOf(i);
+      REQUIRE(test::sameBits(found.results[i], withTier(expected.results[i], found.results[i].tier)));
+      const std::vector<Result>&ours = found.lists[i].hits, &theirs = expected.lists[i].hits;
       REQUIRE(ours.size() == theirs.size());
       for (size_t k = 0; k < ours.size(); ++k) {
         REQUIRE(test::sameBits(ours[k], withTier(theirs[k], ours[k].tier)));
       }
-      const auto skipped = sweeper.lists().overlappingOf(i);
-      REQUIRE(std::ranges::equal(skipped, cpu.lists().overlappingOf(i)));
+      const std::vector<ObjectId>& skipped = found.lists[i].overlapping;
+      REQUIRE(skipped == expected.lists[i].overlapping);
       listed += ours.size();
       crossing += skipped.size();
     }
@@ -183,9 +183,9 @@ TEST_CASE("boxes that slide along each other but for a rounding, and so never to
       batch.queries.push_back(query);
     }
   }
-  const std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries);
+  const std::vector<Result> expected = CpuSweeper(batch.scene, 1).run(batch.queries).results;
   Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
-  const std::vector<Result> results = sweeper.run(batch.queries);
+  const std::vector<Result> results = sweeper.run(batch.queries).results;
   size_t blocked = 0;
   for (size_t i = 0; i < results.size(); ++i) {
     INFO("query " << i);
@@ -215,9 +215,9 @@ TEST_CASE("faces pressed together that touch a rounding ahead are faces, as on t
     }
   }
   CpuSweeper cpu(batch.scene, 1);
-  const std::vector<Result> expected = cpu.run(batch.queries);
+  const std::vector<Result> expected = cpu.run(batch.queries).results;
   Sweeper sweeper(test::device(), batch.scene, {.cpuBatch = 0});
-  const std::vector<Result> results = sweeper.run(batch.queries);
+  const std::vector<Result> results = sweeper.run(batch.queries).results;
   size_t ahead = 0;
   for (size_t i = 0; i < results.size(); ++i) {
     INFO("query " << i);
@@ -253,7 +253,8 @@ TEST_CASE("a body on a fine floor is answered by the device alone") {
     queries.push_back(query);
   }
   Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
-  for (const Result& result : sweeper.run(queries)) REQUIRE(result.status == Status::clear);
-  REQUIRE(sweeper.stats().cpuQueries == 0);
-  REQUIRE(sweeper.stats().cpuPairs == 0);
+  const Answers answers = sweeper.run(queries);
+  for (const Result& result : answers.results) REQUIRE(result.status == Status::clear);
+  REQUIRE(answers.stats.cpuQueries == 0);
+  REQUIRE(answers.stats.cpuPairs == 0);
 }

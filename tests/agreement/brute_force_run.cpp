@@ -5,6 +5,7 @@
 
 #include "commit/commit.h"
 #include "radar/cpu_sweeper.h"
+#include "support/answer.h"
 #include "unit/brute_force.h"
 #include "workloads/hard_cases.h"
 
@@ -43,7 +44,7 @@ class Asker {
   std::string ask(const HardCase& hard, Count& count) {
     const Workload workload = sceneOf({hard}, Company::isolated);
     replaceBy(workload, 0, scene_);
-    Query query = toQuery(workload.queries[0], Mode::contact);
+    Query query = toQuery(workload.queries[0]);
     const oracle::Truth truth = oracle::truthOf(scene_, query);
     const Status status = truth.contacts.empty()            ? Status::clear
                           : truth.contacts[0].s.sign() == 0 ? Status::overlap
@@ -59,9 +60,9 @@ class Asker {
     }
     for (const uint32_t hits : {1u, kAllHits}) {
       query.hits = hits;
-      const Result result = sweeper_ ? sweeper_->run({&query, 1})[0] : cpu_.run({&query, 1})[0];
-      const Lists& lists = sweeper_ ? sweeper_->lists() : cpu_.lists();
-      std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+      const Answers found = sweeper_ ? sweeper_->run({&query, 1}) : cpu_.run({&query, 1});
+      const Listed& listed = test::listedBy(found, 0);
+      std::string fault = oracle::faultOf(truth, query, found.results[0], listed.hits, listed.overlapping);
       if (!fault.empty()) return fault;
     }
     return "";

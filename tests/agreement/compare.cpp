@@ -45,22 +45,22 @@ void checkPair(const Scene& scene, const Query& query, const Result& result, con
   CHECK(result.hi >= own - rounding);
 }
 
-void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const std::vector<Query>& queries,
+void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const std::vector<Query>& queries, Mode mode,
                   Compared& compared) {
   std::vector<Query> whole = queries;
   for (Query& query : whole) query.anyHit = false;
-  const std::vector<Result> results = sweeper.run(queries), exact = cpu.run(whole);
+  const std::vector<Result> results = sweeper.run(queries, mode).results, exact = cpu.run(whole).results;
   REQUIRE(results.size() == queries.size());
   for (size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
     const Result& result = results[i];
     CAPTURE(i, query.distance, query.anyHit, query.resolution, exact[i].t, exact[i].object, exact[i].triB,
             exact[i].triA);
-    const tools::Verdict verdict = tools::judge(scene, query, result, exact[i]);
+    const tools::Verdict verdict = tools::judge(scene, query, mode, result, exact[i]);
     compared.tally.add(verdict, exact[i]);
     INFO(verdict.words());
     CHECK(verdict.right());
-    const bool sampled = query.mode == Mode::sampled;
+    const bool sampled = mode == Mode::sampled;
     const bool selected = result.tier == Tier::select && result.status == Status::clear;
     CHECK((selected || result.tier == (sampled ? Tier::sampled : Tier::contact)));
     if (!sampled) CHECK(std::abs(verdict.error) <= 1e-12);
@@ -77,7 +77,7 @@ Compared compare(const Scene& scene, const std::vector<Query>& queries) {
   Sweeper sweeper(device(), scene, {.cpuBatch = 0});
   CpuSweeper cpu(scene);
   Compared compared;
-  compareBatch(scene, sweeper, cpu, queries, compared);
+  compareBatch(scene, sweeper, cpu, queries, Mode::contact, compared);
   return compared;
 }
 
@@ -89,8 +89,9 @@ Compared compare(const tools::Workload& workload, const tools::Approach& asked) 
   for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
     player.show(batch.scene);
     std::vector<Query> queries;
-    for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i], Mode::contact));
-    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, std::move(queries)), compared);
+    for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i]));
+    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, std::move(queries)),
+                 tools::modeOf(asked.method), compared);
   }
   return compared;
 }

@@ -52,7 +52,7 @@ TEST_CASE("boxes in one line touch at the start, in flight and at exactly the di
                              ask({-1, 0.5, 0}, 9)};
   compare(scene, queries);
   Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
-  const std::vector<Result> results = sweeper.run(queries);
+  const std::vector<Result> results = sweeper.run(queries).results;
   CHECK((results[0].status == Status::hit && results[0].t == 3 && results[0].hi == 3));
   CHECK(results[0].object == object);
   CHECK(results[1].status == Status::clear);

@@ -54,7 +54,8 @@ TEST_CASE("with a clearance, slivers have the CPU's bits on the device, and are 
       const Slivers slivers(seed, stretch);
       Sweeper onDevice(test::device(), slivers.scene, {.cpuBatch = 0}),
           onCpu(test::device(), slivers.scene, {.cpuBatch = 1000});
-      const std::vector<Result> device = onDevice.run(slivers.queries), cpu = onCpu.run(slivers.queries);
+      const std::vector<Result> device = onDevice.run(slivers.queries).results,
+                                cpu = onCpu.run(slivers.queries).results;
       for (size_t i = 0; i < cpu.size(); ++i) {
         CAPTURE(stretch, seed, i, cpu[i].lo, cpu[i].hi, device[i].lo, device[i].hi);
         CHECK(test::sameBits(device[i], cpu[i]));

@@ -44,11 +44,11 @@ TEST_CASE("contact has the CPU's bits at every scale, far away and in poses that
       CAPTURE(decide);
       for (Query& query : made.queries) query.anyHit = decide;
       Sweeper sweeper(test::device(), made.scene, {.cpuBatch = 0});
-      const std::vector<Result> found = sweeper.run(made.queries), exact = CpuSweeper(made.scene, 1).run(made.queries);
-      onDevice += made.queries.size() - sweeper.stats().cpuQueries;
-      for (size_t i = 0; i < exact.size(); ++i) {
+      const Answers found = sweeper.run(made.queries), exact = CpuSweeper(made.scene, 1).run(made.queries);
+      onDevice += made.queries.size() - found.stats.cpuQueries;
+      for (size_t i = 0; i < exact.results.size(); ++i) {
         CAPTURE(i);
-        checkSame(found[i], exact[i]);
+        checkSame(found.results[i], exact.results[i]);
       }
     }
   }
@@ -73,8 +73,8 @@ TEST_CASE("a distance of any size is heeded, the least that doubles hold too") {
       queries.push_back(query);
     }
   }
-  const std::vector<Result> found = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries),
-                            exact = CpuSweeper(scene, 1).run(queries);
+  const std::vector<Result> found = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries).results,
+                            exact = CpuSweeper(scene, 1).run(queries).results;
   for (size_t i = 0; i < exact.size(); ++i) {
     CAPTURE(i);
     checkSame(found[i], exact[i]);
@@ -90,17 +90,16 @@ TEST_CASE("in mode sampled what floats cannot hold is refused with a reason, and
     wild::Made made;
     make(seed, most, made);
     if (seed % 4 == 0) made.queries[0].direction = {1e300, 5e-324, 0};
-    const std::vector<Result> exact = CpuSweeper(made.scene, 1).run(made.queries);
-    for (Query& query : made.queries) {
-      query.mode = Mode::sampled;
-      query.resolution = 32;
-    }
+    const std::vector<Result> exact = CpuSweeper(made.scene, 1).run(made.queries).results;
+    for (Query& query : made.queries) query.resolution = 32;
     Sweeper sweeper(test::device(), made.scene);
-    const std::vector<Result> found = sweeper.run(made.queries);
+    const Answers answers = sweeper.run(made.queries, Mode::sampled);
+    const std::vector<Result>& found = answers.results;
     for (size_t i = 0; i < exact.size(); ++i) {
-      CAPTURE(i, sweeper.reason(i), exact[i].t, found[i].hi);
+      const std::string reason = test::reasonFor(answers, i);
+      CAPTURE(i, reason, exact[i].t, found[i].hi);
       const bool meets = exact[i].status != Status::clear;
-      CHECK((found[i].status == Status::invalid) == !sweeper.reason(i).empty());
+      CHECK((found[i].status == Status::invalid) == !reason.empty());
       if (found[i].status == Status::clear) CHECK_FALSE(meets);
       if (found[i].status == Status::hit || found[i].status == Status::overlap) {
         CHECK(meets);

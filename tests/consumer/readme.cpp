@@ -11,6 +11,6 @@ int main() {
   const radar::Device device = radar::Device::open();
   radar::Sweeper sweeper(device, scene);
   const radar::Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
-  const radar::Result result = sweeper.run({&query, 1})[0];
+  const radar::Result result = sweeper.run({&query, 1}).results[0];
   if (result.status == radar::Status::hit) std::printf("touches object %u after %g\n", result.object, result.t);
 }

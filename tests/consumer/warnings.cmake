@@ -1,6 +1,6 @@
 # Compiles each public header alone, and the examples of the README and of docs/embedding.md, with the warnings that careful
 # hosts treat as errors, by each of the compilers:
-#   cmake "-DCOMPILERS=g++;clang++" "-DEXAMPLES=a.cpp;b.cpp" -DSOURCE=... -DVULKAN=... -DFOLDER=... -P warnings.cmake
+#   cmake "-DCOMPILERS=g++;clang++" "-DEXAMPLES=a.cpp;b.cpp" -DSOURCE=... -DVULKAN=... -DEIGEN=... -DFOLDER=... -P warnings.cmake
 cmake_minimum_required(VERSION 3.25)
 
 file(MAKE_DIRECTORY ${FOLDER})
@@ -18,7 +18,7 @@ foreach(compiler ${COMPILERS})
   foreach(source ${sources})
     execute_process(
       COMMAND ${compiler} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
-              -I${SOURCE}/engine/include -idirafter ${VULKAN} ${source}
+              -I${SOURCE}/engine/include -idirafter ${VULKAN} -isystem ${EIGEN} ${source}
       RESULT_VARIABLE status ERROR_VARIABLE errors)
     if(NOT status EQUAL 0)
       message(SEND_ERROR "${compiler} ${source}:\n${errors}")

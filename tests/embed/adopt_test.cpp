@@ -24,9 +24,8 @@ struct Boxes {
     query.mesh = scene.addMesh(box.positions, box.indices);
     scene.addObject({query.mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
   }
-  Result sweep(const Device& device, Mode mode) {
-    query.mode = mode;
-    return Sweeper(device, scene, kOnDevice).run({&query, 1})[0];
+  Result sweep(const Device& device, Mode mode) const {
+    return Sweeper(device, scene, kOnDevice).run({&query, 1}, mode).results[0];
   }
   Scene scene;
   Query query{.direction = {0, 0, 1}, .distance = 10};
@@ -99,7 +98,7 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
       Boxes boxes;
       const Device device = Device::adopt(host.handles);
       Sweeper sweeper(device, boxes.scene, kOnDevice);
-      for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1})[0].t;
+      for (int i = 0; i < 20; ++i) answer = sweeper.run({&boxes.query, 1}).results[0].t;
     });
   }
   threads.clear();
@@ -115,13 +114,13 @@ TEST_CASE("two sweepers on one device follow the same scene") {
   const ObjectId object = scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
   Sweeper first(test::device(), scene, kOnDevice), second(test::device(), scene, kOnDevice);
   for (const Mode mode : kModes) {
-    const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10, .mode = mode};
+    const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
     scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
-    CHECK(first.run({&query, 1})[0].t == Approx(3));
-    CHECK(second.run({&query, 1})[0].t == Approx(3));
+    CHECK(first.run({&query, 1}, mode).results[0].t == Approx(3));
+    CHECK(second.run({&query, 1}, mode).results[0].t == Approx(3));
     scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
-    CHECK(second.run({&query, 1})[0].t == Approx(5));
-    CHECK(first.run({&query, 1})[0].t == Approx(5));
+    CHECK(second.run({&query, 1}, mode).results[0].t == Approx(5));
+    CHECK(first.run({&query, 1}, mode).results[0].t == Approx(5));
   }
 }
 

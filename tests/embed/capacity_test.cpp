@@ -16,7 +16,7 @@ using test::sameBits;
 
 // The CPU's answers.
 std::vector<Result> truthOf(const Scene& scene, std::span<const Query> queries) {
-  return Sweeper(test::device(), scene, {.cpuBatch = 100'000}).run(queries);
+  return Sweeper(test::device(), scene, {.cpuBatch = 100'000}).run(queries).results;
 }
 
 struct Outcomes {
@@ -39,7 +39,7 @@ Outcomes checkAnswers(std::span<const Query> queries, const std::vector<Result>&
     CHECK_FALSE(std::isfinite(read[i].t));
     CHECK_FALSE(std::isfinite(read[i].hi));
     CHECK(read[i].object == kNone);
-    if (read[i].flags == kFlagUnresolved) {
+    if (read[i].flags == Flag::unresolved) {
       ++outcomes.unresolved;
       CHECK(read[i].status == Status::undecided);
       CHECK(read[i].lo <= (truth[i].status == Status::clear ? queries[i].distance : truth[i].hi));
@@ -96,7 +96,7 @@ struct HeavyAndLight {
 
 }  // namespace
 
-TEST_CASE("a query that exceeds Capacity::candidates gets kFlagCandidates, and the others keep their bits",
+TEST_CASE("a query that exceeds Capacity::candidates gets Flag::candidates, and the others keep their bits",
           "[subgroups]") {
   size_t refused = 0, answered = 0;
   for (const char* family : kDense) {
@@ -104,7 +104,7 @@ TEST_CASE("a query that exceeds Capacity::candidates gets kFlagCandidates, and t
     for (const uint32_t candidates : {1u, 200u, 1000u, 1u << 17}) {
       CAPTURE(family, candidates);
       const Outcomes outcomes = batch.outcomes(
-          {.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17}, kFlagCandidates);
+          {.queries = 48, .candidates = candidates, .rounds = 64, .unresolvedPairs = 1u << 17}, Flag::candidates);
       refused += outcomes.refused;
       answered += outcomes.answered;
       CHECK(outcomes.unresolved == 0);
@@ -115,20 +115,20 @@ TEST_CASE("a query that exceeds Capacity::candidates gets kFlagCandidates, and t
   CHECK(answered > 4 * 48);
 }
 
-TEST_CASE("a query that exceeds Capacity::rounds gets kFlagRounds, and a short one beside it is answered",
+TEST_CASE("a query that exceeds Capacity::rounds gets Flag::rounds, and a short one beside it is answered",
           "[subgroups]") {
   const HeavyAndLight batch;
   CHECK(batch.truth[1].status == Status::hit);
   Recorder recorder(test::device(), batch.scene, {.queries = 2, .rounds = 2});
   const std::vector<Result> read = execute(recorder, batch.queries);
-  CHECK(read[0].flags == kFlagRounds);
-  CHECK(checkAnswers(batch.queries, read, batch.truth, kFlagRounds).answered == 1);
+  CHECK(read[0].flags == Flag::rounds);
+  CHECK(checkAnswers(batch.queries, read, batch.truth, Flag::rounds).answered == 1);
   Recorder patient(test::device(), batch.scene,
                    {.queries = 2, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 16});
   CHECK(checkAnswers(batch.queries, execute(patient, batch.queries), batch.truth, 0).answered == 2);
 }
 
-TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets kFlagUnresolved and a valid lower bound",
+TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets Flag::unresolved and a valid lower bound",
           "[subgroups]") {
   // The boxes touch at whole numbers, where only exact arithmetic can decide.
   const FamilyQueries batch(tools::hardFamily("lattice"));
@@ -136,7 +136,7 @@ TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets kFlagUnresolved a
   for (const uint32_t unresolvedPairs : {1u, 20u, 100u}) {
     CAPTURE(unresolvedPairs);
     const Outcomes outcomes =
-        batch.outcomes({.queries = 48, .rounds = 64, .unresolvedPairs = unresolvedPairs}, kFlagUnresolved);
+        batch.outcomes({.queries = 48, .rounds = 64, .unresolvedPairs = unresolvedPairs}, Flag::unresolved);
     unresolved += outcomes.unresolved;
     answered += outcomes.answered;
     CHECK(outcomes.refused == 0);
@@ -153,7 +153,7 @@ TEST_CASE("no answer is wrong when all capacities are too small", "[subgroups]")
     CAPTURE(family.name);
     const FamilyQueries batch(family, 24);
     const Outcomes outcomes = batch.outcomes({.queries = 24, .candidates = 100, .rounds = 2, .unresolvedPairs = 10},
-                                             kFlagUnresolved | kFlagCandidates | kFlagRounds);
+                                             Flag::unresolved | Flag::candidates | Flag::rounds);
     all.refused += outcomes.refused;
     all.answered += outcomes.answered;
   }
@@ -231,7 +231,7 @@ TEST_CASE("the default capacity grows with the number of queries, for sensors of
       // Without doubles, every contact is left to the CPU: too many of 840 interlocking rings.
       const bool mayLeave = workload == &rings && count > 64 && !test::device().doubles();
       const Outcomes outcomes =
-          checkAnswers(batch.queries, execute(recorder, batch.queries), batch.truth, mayLeave ? kFlagUnresolved : 0);
+          checkAnswers(batch.queries, execute(recorder, batch.queries), batch.truth, mayLeave ? Flag::unresolved : 0);
       CHECK(outcomes.refused == 0);
       CHECK(outcomes.answered > (mayLeave ? count / 4 : count - 1));
     }
@@ -250,7 +250,7 @@ TEST_CASE("with the capacity that the last recording needed, the same queries ar
       Recorder recorder(test::device(), scene, capacity);
       CHECK(recorder.needed().candidates == capacity.candidates);  // nothing has been recorded
       outcomes =
-          checkAnswers(queries, execute(recorder, queries), truth, kFlagUnresolved | kFlagCandidates | kFlagRounds);
+          checkAnswers(queries, execute(recorder, queries), truth, Flag::unresolved | Flag::candidates | Flag::rounds);
       const Capacity needed = recorder.needed();
       CHECK(needed.rounds % 2 == 0);
       if (outcomes.answered == queries.size()) {
@@ -280,11 +280,10 @@ TEST_CASE("a Recorder refuses an invalid capacity or one beyond the device's lim
   refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");
   refused({.rounds = 66}, "Capacity::rounds: this device allows 64, got 66");
   refused({.unresolvedPairs = 1u << 30}, "Capacity::unresolvedPairs: this device allows");
-  refused({.rounds = 3}, "Capacity::rounds: expected an even number of at least 2, got 3");
-  refused({.rounds = 0}, "Capacity::rounds: expected an even number of at least 2, got 0");
+  refused({.rounds = 3}, "Capacity::rounds: expected an even number, got 3");
 }
 
-TEST_CASE("an object that floats cannot represent gives kFlagRange only to the queries that reach it") {
+TEST_CASE("an object that floats cannot represent gives Flag::range only to the queries that reach it") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   tools::MeshData huge = box;
@@ -315,9 +314,9 @@ TEST_CASE("an object that floats cannot represent gives kFlagRange only to the q
   for (size_t i = 0; i < 4; ++i) {
     CAPTURE(i);
     CHECK(read[i].status == Status::invalid);
-    CHECK(read[i].flags == kFlagRange);
+    CHECK(read[i].flags == Flag::range);
   }
-  CHECK(checkAnswers(queries, read, truth, kFlagRange).answered == 1);
+  CHECK(checkAnswers(queries, read, truth, Flag::range).answered == 1);
 }
 
 TEST_CASE("a scene that has become small is searched, however many objects it has had") {

@@ -33,7 +33,7 @@ std::vector<FrameScene> makeFrameScenes(const Device& device, uint32_t queries) 
     FrameScene content{tools::hardScene(family, 8, 0, queries, tools::Company::mixed), {}, {}};
     tools::replaceBy(content.workload, 0, scene);
     content.queries = test::queriesOf(content.workload);
-    content.expected = sweeper.run(content.queries);
+    content.expected = sweeper.run(content.queries).results;
     all.push_back(std::move(content));
   }
   return all;
@@ -68,7 +68,7 @@ TEST_CASE("recording 200 frames of all families allocates nothing, submits nothi
         // Reads the frame that was submitted two frames ago while the last one may still execute.
         const FrameScene& past = families[(frame - kInFlight) % families.size()];
         renderer.wait();
-        const std::vector<Result> read = recorder.read();
+        const std::vector<Result> read = recorder.read().results;
         for (size_t i = 0; i < read.size(); ++i) wrong += !sameBits(read[i], past.expected[i]);
       }
       if (frame >= kFrames) continue;
@@ -108,8 +108,8 @@ TEST_CASE("recording frames in which objects move allocates nothing, and queries
       renderer.record(recorder, row.queries);
       renderer.submitAndWait();
       const Renderer::ShaderResult& result = renderer.shaderResult(4);
-      hits +=
-          result.status == static_cast<uint32_t>(Status::hit) || (result.flags == kFlagUnresolved && !device.doubles());
+      hits += result.status == static_cast<uint32_t>(Status::hit) ||
+              (result.flags == Flag::unresolved && !device.doubles());
     }
     CHECK(hits == kFrames);
     CHECK(test::counts().allocations == allocations);
@@ -160,7 +160,7 @@ TEST_CASE("three recorders in flight and a sweeper share one copy of a scene tha
     Frame& frame = *frames[number % 3];
     if (number >= 3) {
       frame.renderer.wait();
-      const std::vector<Result> read = frame.recorder.read();
+      const std::vector<Result> read = frame.recorder.read().results;
       for (size_t i = 0; i < read.size(); ++i) {
         CAPTURE(number, i);
         REQUIRE(sameBits(read[i], frame.expected[i]));
@@ -175,19 +175,17 @@ TEST_CASE("three recorders in flight and a sweeper share one copy of a scene tha
       query.distance = random.uniform(1, 20);
       query.ignoreLeaving = random.oneIn(3);
     }
-    frame.expected = sweeper.run(queries);
+    frame.expected = sweeper.run(queries).results;
     for (Result& result : frame.expected) result.tier = Tier::contact;
     frame.renderer.record(frame.recorder, queries);
     frame.renderer.submit();
     if (random.oneIn(2)) edit(number);
     if (random.oneIn(3)) continue;  // the next recording uploads the changes
     const bool isSampled = random.oneIn(4);
-    for (Query& query : queries) {
-      query.mode = isSampled ? Mode::sampled : Mode::contact;
-      if (isSampled) query.ignoreLeaving = false;
-    }
-    const std::vector<Result> found = beside.run(queries),
-                              alone = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries);
+    const Mode mode = isSampled ? Mode::sampled : Mode::contact;
+    for (Query& query : queries) query.ignoreLeaving = query.ignoreLeaving && !isSampled;
+    const std::vector<Result> found = beside.run(queries, mode).results,
+                              alone = Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries, mode).results;
     for (size_t i = 0; i < found.size(); ++i) {
       CAPTURE(number, i);
       REQUIRE(sameBits(found[i], alone[i]));
@@ -217,13 +215,13 @@ TEST_CASE(
   first.record(commands, row.queries, {.objects = {&moved, 1}});
   second.record(commands, row.queries);  // puts the object back
   submission.submitAndWait();
-  const std::vector<Result> back = CpuSweeper(row.scene).run(row.queries), readBack = second.read();
+  const std::vector<Result> back = CpuSweeper(row.scene).run(row.queries).results, readBack = second.read().results;
   gpu::Submission again(test::device().impl(), false);
   third.record(again.begin(), row.queries, {.objects = {&moved, 1}});
   again.submitAndWait();
-  const std::vector<Result> swept = Sweeper(copy, {.cpuBatch = 0}).run(row.queries);  // puts it back, too
+  const std::vector<Result> swept = Sweeper(copy, {.cpuBatch = 0}).run(row.queries).results;  // puts it back, too
   row.scene.setTransform(kMoved, elsewhere);
-  const std::vector<Result> there = CpuSweeper(row.scene).run(row.queries), readThere = first.read();
+  const std::vector<Result> there = CpuSweeper(row.scene).run(row.queries).results, readThere = first.read().results;
   size_t differ = 0;
   for (size_t i = 0; i < row.queries.size(); ++i) {
     CAPTURE(i);
@@ -276,7 +274,8 @@ TEST_CASE("an engine without a queue records, submits nothing, and names the que
   Renderer renderer(hosts);
   renderer.record(recorder, row.queries);
   renderer.submitAndWait();
-  const std::vector<Result> read = recorder.read(), expected = Sweeper(hosts, row.scene).run(row.queries);
+  const std::vector<Result> read = recorder.read().results,
+                            expected = Sweeper(hosts, row.scene).run(row.queries).results;
   for (size_t i = 0; i < read.size(); ++i) {
     CAPTURE(i);
     CHECK(sameBits(read[i], expected[i]));

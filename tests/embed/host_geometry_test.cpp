@@ -111,7 +111,7 @@ void compareFamilies(uint32_t rounds, bool written = false) {
     inBuffer.reserve(queries.size());
     for (Query& query : queries) inBuffer.push_back(test::hostQueryOf(query));
     for (size_t q = 0; q < queries.size() && written; ++q) queries[q] = test::queryOf(inBuffer[q]);
-    const std::vector<Result> expected = sweeper.run(queries);
+    const std::vector<Result> expected = sweeper.run(queries).results;
     const std::vector<Result> got =
         written ? execute(recorder, inBuffer, host.geometry()) : execute(recorder, queries, host.geometry());
     for (size_t q = 0; q < queries.size(); ++q) {
@@ -120,9 +120,9 @@ void compareFamilies(uint32_t rounds, bool written = false) {
       if (got[q].flags != 0) {
         // With random rest poses every node is as large as the mesh, so capacities may be exceeded; nothing else may go
         // wrong.
-        CHECK((got[q].flags & (kFlagUnresolved | kFlagCandidates | kFlagRounds)) != 0);
-        CHECK(got[q].status == (got[q].flags == kFlagUnresolved ? Status::undecided : Status::invalid));
-        if (got[q].flags == kFlagUnresolved && expected[q].status != Status::clear)
+        CHECK((got[q].flags & (Flag::unresolved | Flag::candidates | Flag::rounds)) != 0);
+        CHECK(got[q].status == (got[q].flags == Flag::unresolved ? Status::undecided : Status::invalid));
+        if (got[q].flags == Flag::unresolved && expected[q].status != Status::clear)
           CHECK_FALSE(got[q].lo > expected[q].hi);
         ++refused;
       } else if (queries[q].anyHit) {
@@ -316,7 +316,7 @@ TEST_CASE("a mesh that a host deforms in a buffer shared with others reads its o
   };
   CHECK(at(moved).t == Approx(2.5));
   CHECK(recorder.boundsViolation().empty());
-  CHECK(at(outside).flags == kFlagBounds);
+  CHECK(at(outside).flags == Flag::bounds);
   CHECK_THAT(recorder.boundsViolation(),
              test::Contains("vertex 4 ") || test::Contains("vertex 5 ") || test::Contains("vertex 6 "));
 }

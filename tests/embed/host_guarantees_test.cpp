@@ -7,7 +7,7 @@
 
 #include "embed/host.h"
 #include "embed/on_device.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "radar/recorder.h"
 #include "spirv/skin_comp.h"
 #include "support/bindings.h"
@@ -61,7 +61,7 @@ std::vector<std::byte> floats(std::initializer_list<float> values) {
 
 }  // namespace
 
-TEST_CASE("every answer is invalid with kFlagBounds while any geometry is outside its bounds") {
+TEST_CASE("every answer is invalid with Flag::bounds while any geometry is outside its bounds") {
   Wall wall;
   Recorder recorder(test::device(), wall.scene);
   const OnDevice inside(floats({-1, -1, 1, 1, -1, 1, 0, 1, 1})), beyond(floats({-1, -1, 1, 1, -1, 2.001f, 0, 1, 1})),
@@ -77,7 +77,7 @@ TEST_CASE("every answer is invalid with kFlagBounds while any geometry is outsid
   const auto expectRefused = [&](const std::vector<Result>& results) {
     for (const Result& result : results) {
       CHECK(result.status == Status::invalid);
-      CHECK(result.flags == kFlagBounds);
+      CHECK(result.flags == Flag::bounds);
       CHECK(std::isnan(result.lo));
     }
   };
@@ -104,7 +104,8 @@ TEST_CASE("every answer is invalid with kFlagBounds while any geometry is outsid
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("geometry that floats cannot represent gives kFlagRange or kFlagBounds, and only to the queries concerned") {
+TEST_CASE(
+    "geometry that floats cannot represent gives Flag::range or Flag::bounds, and only to the queries concerned") {
   Scene scene;
   const float corners[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   const uint32_t triangle[] = {0, 1, 2};
@@ -139,19 +140,19 @@ TEST_CASE("geometry that floats cannot represent gives kFlagRange or kFlagBounds
   std::vector<Result> read = sweep(usual);
   expectHit(read[0], 4);
   expectHit(read[1], 5);
-  expectRefused(read[2], kFlagRange);
+  expectRefused(read[2], Flag::range);
   read = sweep(huge);
-  expectRefused(read[0], kFlagRange);
+  expectRefused(read[0], Flag::range);
   expectHit(read[1], 5);
   read = sweep(none);
-  for (const Result& result : read) expectRefused(result, kFlagBounds);
+  for (const Result& result : read) expectRefused(result, Flag::bounds);
   // If one object is too far away for the tree over objects, every query is invalid.
   scene.setTransform(object, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1e25}});
-  for (const Result& result : execute(recorder, queries)) expectRefused(result, kFlagRange);
+  for (const Result& result : execute(recorder, queries)) expectRefused(result, Flag::range);
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("a mesh flattened to a plane or a line is hit, and one flattened to a point gives kFlagRange") {
+TEST_CASE("a mesh flattened to a plane or a line is hit, and one flattened to a point gives Flag::range") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({2, 2, 2});
   const MeshId cube = scene.addMesh(box.positions, box.indices);
@@ -176,10 +177,10 @@ TEST_CASE("a mesh flattened to a plane or a line is hit, and one flattened to a 
   CHECK(line.t == 7);
   // A size of 0 is out of range.
   CHECK(point.status == Status::invalid);
-  CHECK(point.flags == kFlagRange);
+  CHECK(point.flags == Flag::range);
   const Result tiny = sweep({1e-30f, 0, 0, 0.25f, 0, 1e-30f, 0, 0.25f, 0, 0, 1e-30f, 8});
   CHECK(tiny.status == Status::invalid);
-  CHECK(tiny.flags == kFlagRange);
+  CHECK(tiny.flags == Flag::range);
 }
 
 TEST_CASE("geometry that a recording no longer names is the scene's own again") {
@@ -324,7 +325,7 @@ TEST_CASE("a host that writes geometry in the same command buffer without the do
     if (withBarrier) commands->CmdPipelineBarrier2(commands, &info);
     recorder.record(commands, wall.queries, {.meshes = {&deformed, 1}, .objects = {&moved, 1}});
     submission.submitAndWait();
-    CHECK(recorder.read()[0].t == Approx(8));
+    CHECK(recorder.read().results[0].t == Approx(8));
     const std::vector<std::string> messages = test::takeValidationMessages();
     CHECK(messages.empty() == withBarrier);
     if (!messages.empty()) CHECK(messages[0].find("SYNC-HAZARD-READ-AFTER-WRITE") != std::string::npos);
@@ -384,7 +385,7 @@ TEST_CASE(
       commands->CmdDispatch(commands, 5, 1, 1);
       recordMoving(commands, recorder, queries, moving);
       submission.submitAndWait();
-      for (const Result& result : recorder.read()) CHECK(result.t == 3 + double{lift});
+      for (const Result& result : recorder.read().results) CHECK(result.t == 3 + double{lift});
     }
     const test::Counts after = test::counts();
     CHECK(after.allocations == allocations);

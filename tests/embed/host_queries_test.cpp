@@ -25,7 +25,7 @@ using test::sameBits;
 
 /// The CPU's answers, as of the tier that a Recorder names.
 std::vector<Result> expectedOf(const Scene& scene, std::span<const Query> queries) {
-  std::vector<Result> expected = CpuSweeper(scene, 1).run(queries);
+  std::vector<Result> expected = CpuSweeper(scene, 1).run(queries).results;
   for (Result& result : expected) result.tier = Tier::contact;
   return expected;
 }
@@ -49,12 +49,12 @@ void compare(const Scene& scene, Recorder& recorder, std::span<const HostQuery> 
       CHECK(sameBits(got[q], expected[q]));
       ++tally.answered;
       tally.hits += got[q].status == Status::hit;
-    } else if (got[q].flags == kFlagRange) {
+    } else if (got[q].flags == Flag::range) {
       CHECK(got[q].status == Status::invalid);
       ++tally.outOfRange;
-      tally.stricter += encodedByCpu[q].flags != kFlagRange;
+      tally.stricter += encodedByCpu[q].flags != Flag::range;
     } else {
-      CHECK((got[q].flags & (kFlagCandidates | kFlagRounds | kFlagUnresolved)) != 0);
+      CHECK((got[q].flags & (Flag::candidates | Flag::rounds | Flag::unresolved)) != 0);
       CHECK((isCoarse || encodedByCpu[q].flags != 0));
       ++tally.lacking;
     }
@@ -135,7 +135,7 @@ TEST_CASE("queries that a host's shader writes have the CPU's bits at every scal
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("an invalid query gets kFlagQuery, and those beside it are answered", "[subgroups]") {
+TEST_CASE("an invalid query gets Flag::query, and those beside it are answered", "[subgroups]") {
   Row row(12);
   const MeshId removed =
       row.scene.addMesh(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector<uint32_t>{0, 1, 2});
@@ -176,7 +176,7 @@ TEST_CASE("an invalid query gets kFlagQuery, and those beside it are answered", 
     CHECK(sameBits(read[2 * i], expected[i]));
     Result refused;
     refused.tier = Tier::contact;
-    refused.flags = kFlagQuery;
+    refused.flags = Flag::query;
     CHECK(sameBits(read[2 * i + 1], refused));
   }
   CHECK(test::takeValidationMessages().empty());
@@ -240,7 +240,7 @@ TEST_CASE("as many written queries count as the host's number says, and at most 
     const std::vector<Result> all = test::elementsOf<Result>(recorder.results(), 0, 12);
     for (size_t i = read.size(); i < 12; ++i) {
       CHECK(all[i].status == Status::invalid);
-      CHECK(all[i].flags == kFlagQuery);
+      CHECK(all[i].flags == Flag::query);
     }
   }
   CHECK(execute(recorder, std::span<const HostQuery>()).empty());
@@ -284,7 +284,7 @@ TEST_CASE("a direction whose length lies between two doubles is left to read()")
   const Result expected = expectedOf(row.scene, {&same, 1})[0];
   CHECK(expected.status == Status::hit);
   CHECK(sameBits(read[0], expected));
-  CHECK(test::elementsOf<Result>(recorder.results(), 0, 1)[0].flags == kFlagUnresolved);
+  CHECK(test::elementsOf<Result>(recorder.results(), 0, 1)[0].flags == Flag::unresolved);
 }
 
 TEST_CASE("among no objects, and beyond the range of floats, written queries are answered as others are") {
@@ -297,7 +297,7 @@ TEST_CASE("among no objects, and beyond the range of floats, written queries are
   CHECK(execute(recorder, {&query, 1})[0].status == Status::clear);
   scene.addObject({query.mesh, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0x1p90}}, ~0u});
   CHECK(sameBits(execute(recorder, {&query, 1})[0], execute(recorder, {&same, 1})[0]));
-  CHECK(execute(recorder, {&query, 1})[0].flags == kFlagRange);
+  CHECK(execute(recorder, {&query, 1})[0].flags == Flag::range);
 }
 
 TEST_CASE("a written query whose matrix is singular is answered for the flattened mesh") {

@@ -100,11 +100,11 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
     Scene scene;
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries;
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, Mode::contact));
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec));
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
-    const std::vector<Result> found = sweeper.run(queries);
-    checkSame(found, CpuSweeper(scene).run(queries));
-    onDevice += sweeper.stats().submissions > 0;
+    const Answers found = sweeper.run(queries);
+    checkSame(found.results, CpuSweeper(scene).run(queries).results);
+    onDevice += found.stats.submissions > 0;
   }
   CHECK(onDevice >= 20);
 }
@@ -122,9 +122,9 @@ TEST_CASE(
   Recorder recorder(device, world.scene, kRoom);
   Sweeper sweeper(device, world.scene, {.cpuBatch = 0});
   size_t answered = 0, hits = 0;
-  const auto compare = [&](const std::vector<Query>& queries, const test::Answers& found) {
+  const auto compare = [&](const std::vector<Query>& queries, const Answers& found) {
     CpuSweeper cpu(world.truth);
-    const test::Answers exact = test::ask(cpu, queries);
+    const Answers exact = cpu.run(queries);
     fuzz::checkRecorded(queries, found, exact);
     for (size_t i = 0; i < queries.size(); ++i) {
       answered += found.results[i].flags == 0;
@@ -155,7 +155,7 @@ TEST_CASE(
     }
     compare(queries, test::execute(device, recorder, queries, world.geometry()));
     world.tell();
-    compare(queries, test::ask(sweeper, queries));
+    compare(queries, sweeper.run(queries));
     compare(queries, test::execute(device, recorder, queries));
     asked += 4 * queries.size();
     world.moveAgain();
@@ -171,7 +171,8 @@ TEST_CASE(
   for (Query& query : steps) {
     if (query.distance < 1e20) tools::takeStep(query);
   }
-  compare(steps, test::ask(sweeper, steps));
+  compare(steps, sweeper.run(steps));
+  std::erase_if(steps, [&](const Query& query) { return !test::isRecordable(query, world.scene); });
   compare(steps, test::execute(device, recorder, steps));
   CHECK(test::takeValidationMessages().empty());
 }
@@ -197,20 +198,27 @@ TEST_CASE("too many sensors for one submission are split, and a scene beyond the
   }
   CpuSweeper cpu(scene);
   Sweeper sweeper(device, scene, {.cpuBatch = 0});
-  checkSame(sweeper.run(queries), cpu.run(queries));
-  CHECK(sweeper.stats().submissions == 2);
-  CHECK(sweeper.stats().cpuQueries < queries.size());
+  const Answers split = sweeper.run(queries);
+  checkSame(split.results, cpu.run(queries).results);
+  CHECK(split.stats.submissions == 2);
+  CHECK(split.stats.cpuQueries < queries.size());
   // More placements than such a texel buffer holds.
   addRow(6000, 40);
   sweeper.sync();
-  checkSame(sweeper.run(queries), cpu.run(queries));
-  CHECK(sweeper.stats().cpuQueries == queries.size());
+  const Answers left = sweeper.run(queries);
+  checkSame(left.results, cpu.run(queries).results);
+  CHECK(left.stats.cpuQueries == queries.size());
   // Nor are lists of such a scene taken for empty, though their searches share submissions with others.
   queries.resize(40);
   for (size_t i = 0; i < queries.size(); i += 3) queries[i].hits = kAllHits;
-  checkSame(sweeper.run(queries), cpu.run(queries));
-  REQUIRE(sweeper.lists().hitOffsets == cpu.lists().hitOffsets);
-  CHECK(sweeper.lists().hits.size() > 5);
+  const Answers found = sweeper.run(queries), expected = cpu.run(queries);
+  checkSame(found.results, expected.results);
+  size_t listed = 0;
+  for (size_t i = 0; i < queries.size(); ++i) {
+    REQUIRE(found.lists[i].hits.size() == expected.lists[i].hits.size());
+    listed += found.lists[i].hits.size();
+  }
+  CHECK(listed > 5);
 }
 
 TEST_CASE("a list of excluded objects that exceeds the device's largest storage buffer excludes all of them") {
@@ -226,8 +234,9 @@ TEST_CASE("a list of excluded objects that exceeds the device's largest storage 
   query.exclude.assign(1u << 25, 0);
   query.exclude.push_back(1);
   Sweeper sweeper(device, scene, {.cpuBatch = 0});
-  CHECK(sweeper.run({&query, 1})[0].status == Status::clear);
-  CHECK(sweeper.stats().cpuQueries == 1);
+  const Answers answers = sweeper.run({&query, 1});
+  CHECK(answers.results[0].status == Status::clear);
+  CHECK(answers.stats.cpuQueries == 1);
   Recorder recorder(device, scene);
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
@@ -263,17 +272,15 @@ TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device l
   const Device device = Device::adopt(least.host.handles);
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
-  Query query{
-      .mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1, .mode = Mode::sampled};
+  const Query query{.mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1};
   Sweeper sweeper(device, scene);
   try {
-    sweeper.run({&query, 1});
+    sweeper.run({&query, 1}, Mode::sampled);
     FAIL("run() did not throw");
   } catch (const Error& error) {
-    CHECK_THAT(error.what(), test::StartsWith("query 0: ") && test::Contains("does not support mode sampled"));
+    CHECK_THAT(error.what(), test::StartsWith("run(): ") && test::Contains("does not support mode sampled"));
     CHECK(error.reasons == reasons);
   }
-  query.mode = Mode::contact;
   CHECK_THROWS_WITH(sweeper.scopes(query),
                     test::StartsWith("scopes(): ") && test::Contains("does not support mode sampled"));
   least.host.handles.sampled = false;

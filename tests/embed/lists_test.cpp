@@ -18,9 +18,7 @@ using test::sameBits;
 constexpr Capacity kRoom{
     .queries = 24, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 17, .searches = 1u << 12};
 
-struct Recorded {
-  std::vector<Result> answers;
-  Lists lists;
+struct Recorded : Answers {
   std::vector<Result> onDevice;  ///< answers and lists, before anything is decided
 };
 
@@ -36,8 +34,7 @@ Recorded execute(Recorder& recorder, const std::vector<Query>& queries, const Ho
   commands->CmdCopyBuffer(commands, recorder.results(), readback.get(), 1, &region);
   gpu::copyToHost(commands);
   submission.submitAndWait();
-  Recorded recorded;
-  recorded.answers = recorder.read(&recorded.lists);
+  Recorded recorded{recorder.read(), {}};
   const auto* results = reinterpret_cast<const Result*>(readback.mapped());
   recorded.onDevice.assign(results, results + count);
   return recorded;
@@ -54,14 +51,14 @@ void checkOnDevice(const Recorder& recorder, const Recorded& recorded, uint32_t 
   const std::span<const uint32_t> offsets = recorder.hitOffsets();
   const auto list = std::span(recorded.onDevice).subspan(offsets[query], offsets[query + 1] - offsets[query]);
   const Result& answer = recorded.onDevice[query];
-  const auto isOpen = [](const Result& result) { return result.flags == kFlagUnresolved; };
+  const auto isOpen = [](const Result& result) { return result.flags == Flag::unresolved; };
   if (isOpen(answer)) {
-    CHECK_FALSE(answer.lo > recorded.answers[query].t);  // a decision has no t
+    CHECK_FALSE(answer.lo > recorded.results[query].t);  // a decision has no t
   } else {
-    CHECK(sameBits(answer, recorded.answers[query]));
+    CHECK(sameBits(answer, recorded.results[query]));
   }
   if (std::any_of(list.begin(), list.end(), isOpen)) return;
-  const std::span<const Result> read = recorded.lists.hitsOf(query);
+  const std::span<const Result> read = test::listedBy(recorded, query).hits;
   REQUIRE(list.size() >= read.size());
   for (size_t k = 0; k < list.size(); ++k) {
     if (k < read.size()) CHECK(sameBits(list[k], read[k]));
@@ -89,12 +86,12 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
       if (moves || i % 2 == 0) tools::takeStep(queries[i]);
     }
     const Recorded recorded = execute(recorder, queries);
-    std::vector<Result> expected = sweeper.run(queries);
+    Answers expected = sweeper.run(queries);
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(family.name, i, moves, queries[i].hits);
-      expected[i].tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], expected[i]));
-      const auto found = recorded.lists.hitsOf(i), wanted = sweeper.lists().hitsOf(i);
+      expected.results[i].tier = Tier::contact;
+      CHECK(agree(recorded.results[i], expected.results[i]));
+      const std::vector<Result>&found = recorded.lists[i].hits, &wanted = expected.lists[i].hits;
       REQUIRE(found.size() == wanted.size());
       for (size_t k = 0; k < found.size(); ++k) {
         Result hit = wanted[k];
@@ -103,7 +100,7 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
       }
       checkOnDevice(recorder, recorded, i);
       listed += found.size();
-      steps += moves && (recorded.answers[i].status == Status::hit);
+      steps += moves && (recorded.results[i].status == Status::hit);
     }
   }
   CHECK(listed > 900);
@@ -138,7 +135,7 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
       queries[i].hits = i % 2 == 0 ? kAllHits : 1;
     }
     CpuSweeper sweeper(scene);
-    const std::vector<Result> expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries);
     // The scene's own poses are others; that the host's are within these bounds is all that it knows.
     for (const ObjectId id : objects) {
       Transform pose = scene.object(id).worldFromMesh;
@@ -154,10 +151,10 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
     REQUIRE(recorder.boundsViolation().empty());
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(round, i);
-      Result answer = expected[i];
+      Result answer = expected.results[i];
       answer.tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], answer));
-      CHECK(recorded.lists.hitsOf(i).size() == sweeper.lists().hitsOf(i).size());
+      CHECK(agree(recorded.results[i], answer));
+      CHECK(recorded.lists[i].hits.size() == expected.lists[i].hits.size());
       checkOnDevice(recorder, recorded, i);
       hits += answer.status == Status::hit;
     }
@@ -166,84 +163,41 @@ TEST_CASE("objects that a host's buffers move during a step are met where they a
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("what the device's search does not offer is answered by the CPU while it is recorded, lists included") {
-  Scene scene;
-  Recorder recorder(test::device(), scene, kRoom);
-  CpuSweeper sweeper(scene);
-  tools::Random random(5);
-  size_t listed = 0, skipped = 0, steps = 0;
-  for (const char* name : {"convex", "touching", "assembly", "crossing", "sunk"}) {
-    const tools::Workload workload =
-        tools::hardScene(tools::hardFamily(name), 13, 0, kRoom.queries, tools::Company::mixed);
-    tools::replaceBy(workload, 0, scene);
-    std::vector<Query> queries = queriesOf(workload);
-    const bool moves = random.oneIn(2);
-    if (moves) tools::setMotions(workload, random, scene);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      queries[i].skipOverlapping = i % 4 == 0;
-      queries[i].clearance = i % 4 == 1 || i % 4 == 2 ? 0.02 * tools::sensorSize(scene, queries[i]) : 0;
-      queries[i].ignoreLeaving = i % 4 == 1;
-      queries[i].hits = i % 4 == 2 || i % 8 == 0 ? kAllHits : 1;
-      if (moves && i % 3 == 0) tools::takeStep(queries[i]);
-    }
-    const Recorded recorded = execute(recorder, queries);
-    const std::vector<Result> expected = sweeper.run(queries);
-    for (uint32_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(name, i, moves);
-      Result answer = expected[i];
-      answer.tier = Tier::contact;
-      CHECK(agree(recorded.answers[i], answer));
-      const auto found = recorded.lists.hitsOf(i), wanted = sweeper.lists().hitsOf(i);
-      REQUIRE(found.size() == wanted.size());
-      for (size_t k = 0; k < found.size(); ++k) CHECK(found[k].object == wanted[k].object);
-      CHECK(std::ranges::equal(recorded.lists.overlappingOf(i), sweeper.lists().overlappingOf(i)));
-      checkOnDevice(recorder, recorded, i);
-      listed += found.size();
-      skipped += recorded.lists.overlappingOf(i).size();
-      steps += moves && answer.status == Status::hit;
-    }
-  }
-  CHECK(listed > 50);
-  CHECK(skipped > 10);
-  CHECK(steps > 5);
-  CHECK(test::takeValidationMessages().empty());
-}
-
-TEST_CASE("needed() has room for the hits that the CPU lists while it records") {
-  // It counted only the searches on the device, and the same queries were then refused.
-  const tools::Workload workload =
-      tools::hardScene(tools::hardFamily("convex"), 13, 0, kRoom.queries, tools::Company::mixed);
-  Scene scene;
-  tools::replaceBy(workload, 0, scene);
-  std::vector<Query> queries = queriesOf(workload);
-  for (size_t i = 0; i < queries.size(); ++i) {
-    queries[i].skipOverlapping = i % 2 == 0;
-    queries[i].hits = kAllHits;
-  }
-  Recorder recorder(test::device(), scene, kRoom);
-  const Recorded recorded = execute(recorder, queries);
-  Capacity capacity = kRoom;
-  capacity.searches = recorder.needed().searches;
-  Recorder exact(test::device(), scene, capacity);
-  CHECK(execute(exact, queries).lists.hits.size() == recorded.lists.hits.size());
-  --capacity.searches;
-  Recorder less(test::device(), scene, capacity);
-  CHECK_THROWS_WITH(execute(less, queries), test::Contains("Capacity::searches"));
-}
-
-TEST_CASE("queries for the CPU are refused beside a host's geometry") {
+TEST_CASE("what only the CPU combines is refused and named, and nothing is recorded") {
   test::Row row(2);
-  row.scene.setBounds(3, {{-9, -9, -9}, {9, 9, 9}});
-  std::vector<std::byte> bytes;
-  for (int i = 0; i < 12; ++i) test::append(bytes, {i % 5 == 0 ? 1.0f : 0.0f});
-  const OnDevice transforms(bytes);
-  const ObjectId moved = 3;
-  const MovedObjects objects{.transforms = transforms.get(), .objects = {&moved, 1}};
   Recorder recorder(test::device(), row.scene, kRoom);
-  row.queries[1].skipOverlapping = true;
   gpu::Submission submission(test::device().impl(), false);
-  CHECK_THROWS_WITH(recorder.record(submission.begin(), row.queries, {.objects = {&objects, 1}}),
-                    test::Contains("record: query 1: skipOverlapping") && test::Contains("beside a HostGeometry"));
+  const gpu::Commands commands = submission.begin();
+  const auto refused = [&](const Query& query, const char* what) {
+    CHECK_FALSE(test::isRecordable(query, row.scene));
+    const std::vector<Query> queries{row.queries[0], query};
+    CHECK_THROWS_WITH(
+        recorder.record(commands, queries),
+        test::Contains(std::string("record: query 1: only the CPU combines ") + what + ": ask a Sweeper"));
+  };
+  const Query plain = row.queries[1];
+  Query query = plain;
+  query.skipOverlapping = true;
+  refused(query, "skipOverlapping");
+  query = plain;
+  query.clearance = 0.5;
+  CHECK(test::isRecordable(query, row.scene));
+  query.hits = 2;
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  query.hits = 1;
+  query.ignoreLeaving = true;
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  query.ignoreLeaving = false;
+  tools::takeStep(query);
+  refused(query, "a clearance with ignoreLeaving, hits or a step");
+  recorder.record(commands, row.queries);
+  submission.submitAndWait();
+  CHECK(recorder.read().results.size() == row.queries.size());
+  row.scene.setMotion(0, {0, 0, 1});
+  CHECK_THROWS_WITH(recorder.record(submission.begin(), {&plain, 1}),
+                    test::Contains("record: query 0: only the CPU combines a direction while objects move: ask a "
+                                   "Sweeper"));
+  CHECK_FALSE(test::isRecordable(plain, row.scene));
 }
 
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {
@@ -257,10 +211,10 @@ TEST_CASE("a list whose searches lack room is invalid and says why, and its neig
   small.candidates = 4;
   Recorder recorder(test::device(), scene, small);
   const Recorded recorded = execute(recorder, queries);
-  CHECK(recorded.answers[0].status == Status::invalid);
-  CHECK(recorded.answers[0].flags == kFlagCandidates);
-  CHECK(sameBits(recorded.onDevice[0], recorded.answers[0]));
-  const bool answersOthers = std::any_of(recorded.answers.begin(), recorded.answers.end(),
+  CHECK(recorded.results[0].status == Status::invalid);
+  CHECK(recorded.results[0].flags == Flag::candidates);
+  CHECK(sameBits(recorded.onDevice[0], recorded.results[0]));
+  const bool answersOthers = std::any_of(recorded.results.begin(), recorded.results.end(),
                                          [](const Result& result) { return result.status != Status::invalid; });
   CHECK(answersOthers);
 }

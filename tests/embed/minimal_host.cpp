@@ -47,7 +47,7 @@ int main() {
     for (int frame = 0; frame < 3; ++frame) {
       scene.setTransform(wall, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5.0 + frame}});
       const std::vector<radar::Query> queries{{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10}};
-      for (const radar::Result& result : sweeper.run(queries)) std::printf("free for %g\n", result.t);
+      for (const radar::Result& result : sweeper.run(queries).results) std::printf("free for %g\n", result.t);
     }
   }
   vkDestroyDevice(host.device, nullptr);

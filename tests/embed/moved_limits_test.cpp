@@ -64,7 +64,7 @@ TEST_CASE("if a transform is not finite, or floats cannot hold the object's box,
   const auto expectRefused = [&](std::initializer_list<float> rows) {
     for (const Result& result : boxes.ask(recorder, queries, rows)) {
       CHECK(result.status == Status::invalid);
-      CHECK(result.flags == kFlagBounds);
+      CHECK(result.flags == Flag::bounds);
     }
     CHECK(recorder.boundsViolation() == "object 0: its transform is not finite, or floats cannot hold its box");
   };
@@ -78,7 +78,7 @@ TEST_CASE("if a transform is not finite, or floats cannot hold the object's box,
   expectHits();
   // Bounds count from the next recording on.
   boxes.scene.setBounds(boxes.objects[0], {{-0.6, -0.6, 4.4}, {0.6, 0.6, 5.6}});
-  CHECK(boxes.ask(recorder, queries, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 8})[1].flags == kFlagBounds);
+  CHECK(boxes.ask(recorder, queries, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 8})[1].flags == Flag::bounds);
   CHECK(recorder.boundsViolation() == "object 0: its mesh's box is outside its bounds, or its transform is not finite");
   CHECK(test::takeValidationMessages().empty());
 }
@@ -102,7 +102,7 @@ TEST_CASE("an object that a host moves as far away as a sensor can see is found 
   CHECK(test::takeValidationMessages().empty());
 }
 
-TEST_CASE("a sensor too small for a scene that a host has spread gets kFlagRange, and larger ones their answers") {
+TEST_CASE("a sensor too small for a scene that a host has spread gets Flag::range, and larger ones their answers") {
   Boxes boxes({{0, 0, 5}, {30, 0, 5}});
   std::vector<Query> queries;
   for (const double size : {0x1p-30, 1.0}) {
@@ -121,14 +121,14 @@ TEST_CASE("a sensor too small for a scene that a host has spread gets kFlagRange
       far{1, 0, 0, 0x1p34f, 0, 1, 0, 0, 0, 0, 1, 8};
   for (const Result& result : boxes.ask(recorder, queries, near)) CHECK(result.status == Status::hit);
   const std::vector<Result> read = boxes.ask(recorder, queries, far);
-  CHECK(read[0].flags == kFlagRange);
+  CHECK(read[0].flags == Flag::range);
   CHECK(read[1].t == 4);
-  CHECK(read[2].flags == kFlagRange);  // a clearance that is too small for that scene
+  CHECK(read[2].flags == Flag::range);  // a clearance that is too small for that scene
   // As if the scene had been there.
   boxes.scene.setTransform(boxes.objects[0], {{1, 0, 0, 0x1p34, 0, 1, 0, 0, 0, 0, 1, 8}});
   const std::vector<Result> standing = execute(recorder, queries);
   CHECK(standing[1].t == 4);
-  CHECK(standing[2].flags == kFlagRange);
+  CHECK(standing[2].flags == Flag::range);
   CHECK(boxes.ask(recorder, written, near)[0].status == Status::hit);
   CHECK(boxes.ask(recorder, written, near)[1].t == 4);
   CHECK(test::takeValidationMessages().empty());
@@ -159,18 +159,16 @@ TEST_CASE("lists and steps search every object that a host moves without bounds,
     gpu::Submission submission(test::device().impl(), false);
     recorder.record(submission.begin(), queries, world.geometry());
     submission.submitAndWait();
-    Lists lists;
-    const std::vector<Result> read = recorder.read(&lists);
-    CpuSweeper reference(world.truth);
-    const std::vector<Result> expected = reference.run(queries);
+    const Answers read = recorder.read(), expected = CpuSweeper(world.truth).run(queries);
     for (uint32_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(moves, i, read[i].flags, read[i].t, expected[i].t);
-      Result wanted = expected[i];
-      wanted.tier = read[i].tier;
-      CHECK(sameBits(read[i], wanted));
+      const Result& result = read.results[i];
+      Result wanted = expected.results[i];
+      CAPTURE(moves, i, result.flags, result.t, wanted.t);
+      wanted.tier = result.tier;
+      CHECK(sameBits(result, wanted));
       steps += moves && wanted.status == Status::hit;
       if (queries[i].hits == 1) continue;
-      const std::span<const Result> found = lists.hitsOf(i), others = reference.lists().hitsOf(i);
+      const std::vector<Result>&found = read.lists[i].hits, &others = expected.lists[i].hits;
       REQUIRE(found.size() == others.size());
       for (size_t k = 0; k < found.size(); ++k)
         CHECK((found[k].object == others[k].object && found[k].t == others[k].t));

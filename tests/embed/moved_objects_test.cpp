@@ -29,7 +29,7 @@ struct Found {
 
 /// Answers that the device found have the bits of the CPU's; out of range are at most some.
 void compare(std::span<const Result> got, const Scene& truth, const std::vector<Query>& queries, Found& found) {
-  const std::vector<Result> expected = CpuSweeper(truth).run(queries);
+  const std::vector<Result> expected = CpuSweeper(truth).run(queries).results;
   REQUIRE(got.size() == expected.size());
   for (size_t i = 0; i < got.size(); ++i) {
     Result wanted = expected[i];
@@ -38,7 +38,7 @@ void compare(std::span<const Result> got, const Scene& truth, const std::vector<
     ++found.answers;
     found.hits += wanted.status == Status::hit;
     if (got[i].status == Status::invalid) {
-      CHECK(got[i].flags == kFlagRange);
+      CHECK(got[i].flags == Flag::range);
       ++found.outOfRange;
     } else if (queries[i].anyHit) {
       CHECK(got[i].status == wanted.status);

@@ -20,10 +20,10 @@ normals::Judged judged(int cases, const Fill& fill) {
     fill(random, one);
     Sweeper onDevice(test::device(), one.scene, {.cpuBatch = 0}), onCpu(test::device(), one.scene, {.cpuBatch = 1000});
     Recorder recorder(test::device(), one.scene, {.queries = 8});
-    const std::vector<Result> cpu = onCpu.run(one.queries), device = onDevice.run(one.queries);
+    const std::vector<Result> cpu = onCpu.run(one.queries).results, device = onDevice.run(one.queries).results;
     renderer.record(recorder, one.queries);
     renderer.submitAndWait();
-    const std::vector<Result> read = recorder.read();
+    const std::vector<Result> read = recorder.read().results;
     for (size_t q = 0; q < one.queries.size(); ++q) {
       CAPTURE(i, q);
       CHECK(sameBits(device[q], cpu[q]));

@@ -24,7 +24,7 @@ struct OnDevicePlan {
   OnDevicePlan(const Scene& scene, std::span<const HostQuery> queries) : copy(test::device().impl()) {
     const Device::Impl& device = test::device().impl();
     const auto count = static_cast<uint32_t>(queries.size());
-    ContactPass search(device, copy, {std::shared_ptr<void>(), &device.shared<ContactKernels>()}, {});
+    ContactPass search(device, copy, {});
     HostQueriesPass pass(device);
     const test::OnDevice buffer(test::bytesOf(queries));
     search.stageEncoded(count, scene.impl());

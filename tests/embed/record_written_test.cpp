@@ -62,7 +62,7 @@ class Asker {
       recorder.record(commands, HostQueries{.buffer = queries_.get(), .count = 256, .countBuffer = number_.get()});
     }
     submission_.submitAndWait();
-    return recorder.read();
+    return recorder.read().results;
   }
 
  private:
@@ -100,7 +100,7 @@ TEST_CASE(
       const std::vector<Result> read = asker.ask(recorder, push);
       std::vector<Query> queries;
       for (uint32_t i = 0; i < push.number; ++i) queries.push_back(test::queryOf(queryOfShader(i, push.height)));
-      std::vector<Result> expected = sweeper.run(queries);
+      std::vector<Result> expected = sweeper.run(queries).results;
       REQUIRE(read.size() == expected.size());
       for (size_t i = 0; i < read.size(); ++i) {
         CAPTURE(frame, i, read[i].flags);

@@ -36,7 +36,7 @@ void Renderer::record(Recorder& recorder, std::span<const Query> queries, bool w
 }
 
 bool checkShaderResult(const Renderer::ShaderResult& found, const Result& expected) {
-  if (found.flags == kFlagUnresolved) {
+  if (found.flags == Flag::unresolved) {
     CHECK(found.status == static_cast<uint32_t>(Status::undecided));
     CHECK(std::isinf(found.t));
     return true;
@@ -67,7 +67,7 @@ Row::Row(uint32_t sensors) {
 
 std::vector<Query> queriesOf(const tools::Workload& workload) {
   std::vector<Query> queries;
-  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, Mode::contact, 0));
+  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, 0));
   return queries;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu/buffer.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "gpu/submission.h"
 #include "radar/recorder.h"
 #include "support/bindings.h"

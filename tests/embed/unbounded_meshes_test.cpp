@@ -58,16 +58,16 @@ TEST_CASE("lists, steps, clearances and contacts at rest are those of the vertic
       }
       queries[i].skipOverlapping = false;
     }
-    const test::Answers got = execute(test::device(), recorder, queries, host.geometry());
-    const std::vector<Result> expected = reference.run(queries);
+    const Answers got = execute(test::device(), recorder, queries, host.geometry());
+    const Answers expected = reference.run(queries);
     for (uint32_t i = 0; i < queries.size(); ++i) {
       CAPTURE(family.name, seed, i, moves, queries[i].hits, queries[i].clearance, got.results[i].flags);
       ++answers;
-      Result wanted = expected[i];
+      Result wanted = expected.results[i];
       wanted.tier = Tier::contact;
-      if (got.results[i].status == Status::invalid || got.results[i].flags == kFlagUnresolved) {
+      if (got.results[i].status == Status::invalid || got.results[i].flags == Flag::unresolved) {
         // Without a tree for the deformed mesh, or as a clearance that doubles leave open.
-        CHECK((got.results[i].flags & (kFlagUnresolved | kFlagCandidates | kFlagRounds)) != 0);
+        CHECK((got.results[i].flags & (Flag::unresolved | Flag::candidates | Flag::rounds)) != 0);
         ++refused;
         continue;
       }
@@ -80,7 +80,7 @@ TEST_CASE("lists, steps, clearances and contacts at rest are those of the vertic
         CHECK(sameBits(got.results[i], wanted));
       }
       if (queries[i].hits == 1) continue;
-      const std::span<const Result> found = got.lists.hitsOf(i), others = reference.lists().hitsOf(i);
+      const std::vector<Result>&found = got.lists[i].hits, &others = expected.lists[i].hits;
       REQUIRE(found.size() == others.size());
       for (size_t k = 0; k < found.size(); ++k) {
         CHECK((found[k].lo <= others[k].hi && others[k].lo <= found[k].hi));
@@ -156,7 +156,8 @@ TEST_CASE("meshes that a recording no longer deforms, and their objects, are the
       queries.push_back(query);
     }
     Recorder& recorder = frame % 2 == 0 ? first : second;
-    const std::vector<Result> got = execute(recorder, queries, geometry), expected = CpuSweeper(truth).run(queries);
+    const std::vector<Result> got = execute(recorder, queries, geometry),
+                              expected = CpuSweeper(truth).run(queries).results;
     for (size_t i = 0; i < got.size(); ++i) {
       CAPTURE(i, got[i].flags, got[i].t, expected[i].t, got[i].object, expected[i].object);
       Result wanted = expected[i];
@@ -221,7 +222,7 @@ TEST_CASE("of a mesh without bounds only finite vertices are taken, and those of
   expectHits(0, 0);
   expectHits(nan, 1e35f);
   const auto expectRefused = [&](const std::vector<Result>& read, const std::string& why) {
-    for (const Result& result : read) CHECK((result.status == Status::invalid && result.flags == kFlagBounds));
+    for (const Result& result : read) CHECK((result.status == Status::invalid && result.flags == Flag::bounds));
     CHECK(recorder.boundsViolation() == why);
   };
   expectRefused(answersAt(bufferOf(positions(3, 0, nan)), ownAt(1, 0)),

@@ -8,6 +8,7 @@
 #include "embed/host_geometry.h"
 #include "embed/on_device.h"
 #include "gpu/barrier.h"
+#include "query/swept.h"
 #include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/exact_placement.h"
@@ -26,7 +27,7 @@ struct OnDevicePlaces {
       : copy(test::device().impl()) {
     const Device::Impl& device = test::device().impl();
     const Scene::Impl& impl = scene.impl();
-    ContactPass search(device, copy, {std::shared_ptr<void>(), &device.shared<ContactKernels>()}, {});
+    ContactPass search(device, copy, {});
     HostGeometryPass geometry(device, copy);
     geometry.stage({.meshes = meshes}, impl);
     SensorBatch batch;

@@ -50,7 +50,7 @@ inline std::vector<Result> execute(Recorder& recorder, const HostQueries& querie
   gpu::Submission submission(test::device().impl(), false);
   recorder.record(submission.begin(), queries, geometry);
   submission.submitAndWait();
-  return recorder.read();
+  return recorder.read().results;
 }
 
 /// From a buffer of their own.

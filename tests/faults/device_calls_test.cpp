@@ -16,10 +16,9 @@
 namespace {
 
 using namespace radar;
-using test::Answers;
-using test::ask;
 using test::Contains;
 using test::sameBits;
+using test::sameContacts;
 using test::VulkanFault;
 
 VkResult shortage(int64_t n) {
@@ -37,24 +36,17 @@ int64_t failEach(const TryAt& tryAt) {
   return n - 1;
 }
 
-std::vector<Query> queriesOfBothModes() {
-  std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
-  queries.insert(queries.end(), drawn.begin(), drawn.end());
-  return queries;
-}
-
 // Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
-size_t checkAnswers(const Sweeper& sweeper, const std::vector<Result>& found, const std::vector<Result>& expected,
-                    VkResult result) {
-  REQUIRE(found.size() == expected.size());
+size_t checkAnswers(const Answers& found, const Answers& expected, VkResult result) {
+  REQUIRE(found.results.size() == expected.results.size());
   size_t invalid = 0;
-  for (size_t i = 0; i < found.size(); ++i) {
+  for (size_t i = 0; i < found.results.size(); ++i) {
     CAPTURE(i);
-    if (found[i].status == Status::invalid) {
+    if (found.results[i].status == Status::invalid) {
       ++invalid;
-      CHECK_THAT(sweeper.reason(i), Contains(gpu::resultName(result)));
+      CHECK_THAT(test::reasonFor(found, i), Contains(gpu::resultName(result)));
     } else {
-      CHECK(sameBits(found[i], expected[i]));
+      CHECK(sameBits(found.results[i], expected.results[i]));
     }
   }
   return invalid;
@@ -85,26 +77,26 @@ class Growing {
 TEST_CASE(
     "whichever call of the device fails while a scene grows, answers are right or invalid, and later ones right") {
   const Device& device = test::adopted().device;
-  const std::vector<Query> queries = queriesOfBothModes();
+  const test::BothModes queries;
   for (const bool hasNewMesh : {false, true}) {
     Growing grown;
     grown.grow(hasNewMesh);
     Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-    const Answers expected = ask(sweeper, queries);
+    const Answers expected = queries.answersBy(sweeper);
     const int64_t failed = failEach([&](int64_t n) {
       Growing growing;
       Sweeper other(device, growing.scene, {.timestamps = true, .cpuBatch = 0});
-      other.run(queries);
+      queries.answersBy(other);
       growing.grow(hasNewMesh);
       bool happened = false;
       {
         const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-        const std::vector<Result> found = other.run(queries);
+        const Answers found = queries.answersBy(other);
         happened = fault.happened();
         CAPTURE(hasNewMesh, fault.failed());
-        checkAnswers(other, found, expected.results, shortage(n));
+        checkAnswers(found, expected, shortage(n));
       }
-      CHECK(sameBits(ask(other, queries), expected));
+      CHECK(sameBits(queries.answersBy(other), expected));
       return happened;
     });
     CHECK(failed > 30);
@@ -115,11 +107,11 @@ TEST_CASE(
     "whichever call of the device fails while a recorder records, it is named, and the same recorder then records "
     "right answers") {
   const Device& device = test::adopted().device;
-  const std::vector<Query> queries = test::contactQueries();
+  const std::vector<Query> queries = test::recordableQueries();
   Growing grown;
   grown.grow(false);
   Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-  const Answers expected = ask(sweeper, queries);
+  const Answers expected = sweeper.run(queries);
   gpu::Submission submission(device.impl(), false);
   const int64_t failed = failEach([&](int64_t n) {
     Growing growing;
@@ -145,8 +137,7 @@ TEST_CASE(
       recorder.record(submission.begin(), queries);
     }
     submission.submitAndWait();
-    Answers found;
-    found.results = recorder.read(&found.lists);
+    const Answers found = recorder.read();
     CHECK(sameContacts(found, expected));
     return happened;
   });
@@ -194,11 +185,10 @@ TEST_CASE(
       recorder.record(submission.begin(), queries, geometry);
     }
     submission.submitAndWait();
-    Answers found;
-    found.results = recorder.read(&found.lists);
+    const Answers found = recorder.read();
     CHECK(recorder.boundsViolation().empty());
     CpuSweeper cpu(world.truth, 1);
-    fuzz::checkRecorded(queries, found, ask(cpu, queries));
+    fuzz::checkRecorded(queries, found, cpu.run(queries));
     return failed;
   };
   CHECK(failEach([&](int64_t n) {
@@ -266,9 +256,10 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
   Scene scene;
   test::SceneEdits().make(scene);
   for (const bool drawn : {false, true}) {
+    const Mode mode = drawn ? Mode::sampled : Mode::contact;
     const std::vector<Query> queries = drawn ? test::sampledQueries() : test::contactQueries();
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
-    const std::vector<Result> expected = sweeper.run(queries);
+    const Answers expected = sweeper.run(queries, mode);
     size_t invalid = 0;
     const int64_t failed = failEach([&](int64_t n) {
       Sweeper other(device, scene, {.timestamps = true, .cpuBatch = 0});
@@ -277,13 +268,13 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
         const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost);
         for (int round = 0; round < 2; ++round) {
           CAPTURE(drawn, round, fault.failed());
-          invalid += checkAnswers(other, other.run(queries), expected, VK_ERROR_DEVICE_LOST);
+          invalid += checkAnswers(other.run(queries, mode), expected, VK_ERROR_DEVICE_LOST);
         }
         happened = fault.happened();
         if (happened) CHECK_THROWS_WITH(Device::adopt(device.handles()), Contains("VK_ERROR_DEVICE_LOST"));
       }
       Sweeper later(device, scene, {.cpuBatch = 0});
-      CHECK(sameBits(Answers{later.run(queries), {}}, Answers{expected, {}}));
+      CHECK(sameBits(later.run(queries, mode), expected));
       return happened;
     });
     CHECK(failed > 2);

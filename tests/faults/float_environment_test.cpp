@@ -23,7 +23,6 @@
 namespace {
 
 using namespace radar;
-using test::Answers;
 using test::sameBits;
 
 struct Environment {
@@ -120,31 +119,31 @@ AllAnswers answersIn(const InEnvironment& in) {
   Scene scene;
   in([&] { edits.make(scene); });
   in([&] { addOddMeshes(scene); });
-  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
+  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries(),
+                           recorded = test::recordableQueries();
   AllAnswers answers;
   CpuSweeper cpu(scene);
-  answers.cpu = in([&] { return test::ask(cpu, queries); });
+  answers.cpu = in([&] { return cpu.run(queries); });
   const Device device = in([] { return Device::open({.onValidation = test::onValidation}); });
   CHECK(device.doubles() == test::device().doubles());
   for (const ArithmeticCheck& check : in([&] { return checkArithmetic(device); })) CHECK(check.passed());
   Sweeper sweeper = in([&] { return Sweeper(device, scene, {.cpuBatch = 0}); });
-  answers.contact = in([&] { return test::ask(sweeper, queries); });
-  CHECK(sweeper.stats().submissions > 0);
-  answers.sampled = in([&] { return sweeper.run(drawn); });
+  answers.contact = in([&] { return sweeper.run(queries); });
+  CHECK(answers.contact.stats.submissions > 0);
+  answers.sampled = in([&] { return sweeper.run(drawn, Mode::sampled).results; });
   Recorder recorder = in([&] { return Recorder(device, scene, test::kScenarioRoom); });
   gpu::Submission submission(device.impl(), false);
   const gpu::Commands commands = submission.begin();
-  in([&] { recorder.record(commands, queries); });
+  in([&] { recorder.record(commands, recorded); });
   submission.submitAndWait();
-  answers.recorded.results = in([&] { return recorder.read(&answers.recorded.lists); });
+  answers.recorded = in([&] { return recorder.read(); });
   std::vector<Device> devices;
   devices.push_back(in([&] { return Device::open({.onValidation = test::onValidation}); }));
   Scene posed;  // a pool reads no other than its own
   in([&] { edits.make(posed); });
   in([&] { addOddMeshes(posed); });
   const auto pool = in([&] { return std::make_unique<Pool>(devices, posed, SweeperOptions{.cpuBatch = 0}); });
-  PoolAnswers pooled = in([&] { return pool->submit(queries).get(); });
-  answers.pool = {std::move(pooled.results), std::move(pooled.lists)};
+  answers.pool = in([&] { return pool->submit(queries).get(); });
   const float vertex[] = {0.1f, 0.2f, 0.3f};
   const Transform pose{{0.4, -0.5, 0.6, 0.1, 0.7, 1.1, -1.2, 0.2, 1.3, 0.8, 0.9, 0.3}};
   answers.point = in([&] { return transformPoint(pose, vertex); });

@@ -16,9 +16,8 @@
 namespace {
 
 using namespace radar;
-using test::Answers;
-using test::ask;
 using test::sameBits;
+using test::sameContacts;
 
 // One request fails.
 struct Attempt {
@@ -58,7 +57,7 @@ int64_t failEach(const AttemptAt& attemptAt, int64_t step = 1) {
 // What a scene holds, for comparison.
 Answers answersOf(const Scene& scene) {
   CpuSweeper sweeper(scene, 1);
-  return ask(sweeper, test::contactQueries());
+  return sweeper.run(test::contactQueries());
 }
 
 // Changes a scene to and fro, in all that a copy of it follows.
@@ -136,8 +135,8 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
     const auto checkSame = [&] {
       const std::vector<Query> queries = test::contactQueries();
       const Answers expected = answersOf(reference);
-      CHECK(sameBits(ask(following, queries), expected));
-      CHECK(sameContacts(ask(onDevice, queries), expected));
+      CHECK(sameBits(following.run(queries), expected));
+      CHECK(sameContacts(onDevice.run(queries), expected));
     };
     failed += failEach([&](int64_t n) {
       const Attempt made = attempt(n, [&] { change(scene); });
@@ -163,8 +162,8 @@ TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper th
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
-    const Attempt made = attempt(n, [&] { found = ask(sweeper, queries); });
-    if (made.threw) found = ask(sweeper, queries);
+    const Attempt made = attempt(n, [&] { found = sweeper.run(queries); });
+    if (made.threw) found = sweeper.run(queries);
     CHECK(sameBits(found, answersOf(changing.scene)));
     return made;
   });
@@ -185,21 +184,19 @@ TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper
   Changing changing;
   const Device& device = test::adopted().device;
   Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
-  const std::vector<Query> queries = test::contactQueries(), drawn = test::sampledQueries();
-  std::vector<Query> mixed = queries;
-  mixed.insert(mixed.end(), drawn.begin(), drawn.end());
+  const test::BothModes queries;
   std::array<Answers, 2> expected;
   for (int i = 0; i < 2; ++i) {
     changing.change();
     Sweeper fresh(device, changing.scene, {.cpuBatch = 0});
-    expected.at(changing.isChanged) = ask(fresh, mixed);
+    expected.at(changing.isChanged) = queries.answersBy(fresh);
   }
-  ask(sweeper, mixed);
+  queries.answersBy(sweeper);
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
-    const Attempt made = attempt(n, [&] { found = ask(sweeper, mixed); });
-    if (made.threw) found = ask(sweeper, mixed);
+    const Attempt made = attempt(n, [&] { found = queries.answersBy(sweeper); });
+    if (made.threw) found = queries.answersBy(sweeper);
     CHECK(sameBits(found, expected.at(changing.isChanged)));
     return made;
   });
@@ -218,10 +215,10 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
   }
   const std::vector<Query> later(queries.rbegin(), queries.rbegin() + 5);
   Sweeper sweeper(test::adopted().device, scene, {.cpuBatch = 0});
-  const Answers expected = ask(sweeper, later);
+  const Answers expected = sweeper.run(later);
   const int64_t failed = failEach([&](int64_t n) {
     const Attempt made = attempt(n, [&] { sweeper.run(queries); });
-    CHECK(sameBits(ask(sweeper, later), expected));
+    CHECK(sameBits(sweeper.run(later), expected));
     return made;
   });
   CHECK(failed > 30);
@@ -232,22 +229,22 @@ TEST_CASE("whichever allocation of a recording fails, the same recorder then rec
   const Device& device = test::adopted().device;
   Recorder recorder(device, changing.scene, test::kScenarioRoom);
   gpu::Submission submission(device.impl(), false);
-  const std::vector<Query> queries = test::contactQueries();
+  const std::vector<Query> queries = test::recordableQueries();
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
     gpu::Commands commands = submission.begin();
     const Attempt recorded = attempt(n, [&] { recorder.record(commands, queries); });
     if (recorded.threw) {
-      CHECK(recorder.read().empty());
+      CHECK(recorder.read().results.empty());
       recorder.reset();
       commands = submission.begin();
       recorder.record(commands, queries);
     }
     submission.submitAndWait();
-    const Attempt read = attempt(n, [&] { found.results = recorder.read(&found.lists); });
-    if (read.threw) found.results = recorder.read(&found.lists);
-    CHECK(sameContacts(found, answersOf(changing.scene)));
+    const Attempt read = attempt(n, [&] { found = recorder.read(); });
+    if (read.threw) found = recorder.read();
+    CHECK(sameContacts(found, CpuSweeper(changing.scene, 1).run(queries)));
     return Attempt{recorded.threw || read.threw, recorded.failed || read.failed};
   });
   CHECK(failed > 30);

@@ -7,12 +7,12 @@
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
 #include "support/catch.h"
+#include "support/same_bits.h"
 #include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
-using test::Answers;
 using test::Contains;
 using test::FaultyHost;
 using test::sameBits;
@@ -22,26 +22,23 @@ struct TwoDevices {
   TwoDevices() {
     for (const FaultyHost* host : {&first, &second}) devices.push_back(Device::adopt(host->handles));
     test::SceneEdits().make(scene);
-    queries = test::contactQueries(60);
-    const std::vector<Query> drawn = test::sampledQueries(12);
-    queries.insert(queries.end(), drawn.begin(), drawn.end());
     Sweeper sweeper(devices[0], scene, kOptions);
-    expected = test::ask(sweeper, queries);
+    expected = queries.answersBy(sweeper);
+  }
+  Answers answersBy(Pool& pool) const {
+    return queries.answersBy(
+        [&](const std::vector<Query>& batch, Mode mode) { return Answers(pool.submit(batch, mode).get()); });
   }
   static constexpr SweeperOptions kOptions{.cpuBatch = 0};
   FaultyHost first{0}, second{1};
   std::vector<Device> devices;
   Scene scene;
-  std::vector<Query> queries;
+  test::BothModes queries{test::contactQueries(60), test::sampledQueries(12)};
   Answers expected;
 };
 
 TwoDevices& twoDevices() {
   return test::onceInRun([] { return TwoDevices(); });
-}
-
-Answers of(const PoolAnswers& answers) {
-  return {answers.results, answers.lists};
 }
 
 }  // namespace
@@ -56,9 +53,9 @@ TEST_CASE("if one device of a pool is lost at any submission, the other answers 
       const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost, lost->handles.device,
                               lost->handles.queue);
       for (int round = 0; round < 2; ++round) {
-        const PoolAnswers answers = pool.submit(two.queries).get();
+        const Answers answers = two.answersBy(pool);
         CHECK(answers.reasons.empty());
-        CHECK(sameBits(of(answers), two.expected));
+        CHECK(sameBits(answers, two.expected));
       }
       happened = fault.happened();
       const std::vector<PoolDevice> devices = pool.devices();
@@ -77,12 +74,12 @@ TEST_CASE("if both devices of a pool are lost at any submission, each answer is 
     Pool pool(two.devices, two.scene, TwoDevices::kOptions);
     const VulkanFault fault(n, VK_ERROR_DEVICE_LOST, VulkanFault::When::lost);
     for (int round = 0; round < 2; ++round) {
-      const PoolAnswers answers = pool.submit(two.queries).get();
-      for (size_t i = 0; i < two.queries.size(); ++i) {
+      const Answers answers = two.answersBy(pool);
+      for (size_t i = 0; i < answers.results.size(); ++i) {
         if (answers.results[i].status == Status::invalid) {
           CHECK_THAT(answers.reasons.at(i), Contains("VK_ERROR_DEVICE_LOST"));
         } else {
-          CHECK(sameBits({{answers.results[i]}, {}}, {{two.expected.results[i]}, {}}));
+          CHECK(sameBits(answers.results[i], two.expected.results[i]));
         }
       }
     }
@@ -93,21 +90,21 @@ TEST_CASE("whichever request of a pool's threads for memory fails, it throws or 
   TwoDevices& two = twoDevices();
   const test::EngineWork counting;  // the pool's threads count, too
   Pool pool(two.devices, two.scene, TwoDevices::kOptions);
-  pool.submit(two.queries).wait();
+  two.answersBy(pool);
   int64_t requests = 0, thrown = 0;
   {
     test::host_memory::failAt(-1);
-    pool.submit(two.queries).wait();
+    two.answersBy(pool);
     requests = test::host_memory::requests();
   }
   CHECK(requests > 300);
   // Threads make their requests in no fixed order, and the same ones in every chunk.
   for (int64_t n = 0; n < requests; n += 1 + requests / 300) {
     bool threw = false;
-    PoolAnswers answers;
+    Answers answers;
     test::host_memory::failAt(n);
     try {
-      answers = pool.submit(two.queries).get();
+      answers = two.answersBy(pool);
     } catch (const std::bad_alloc&) {
       threw = true;
       ++thrown;
@@ -116,8 +113,8 @@ TEST_CASE("whichever request of a pool's threads for memory fails, it throws or 
     const test::OthersWork notCounting;
     CAPTURE(n);
     for (const PoolDevice& device : pool.devices()) CHECK(device.retired.empty());
-    if (!threw) CHECK(sameBits(of(answers), two.expected));
-    if (n % 8 == 0) CHECK(sameBits(of(pool.submit(two.queries).get()), two.expected));
+    if (!threw) CHECK(sameBits(answers, two.expected));
+    if (n % 8 == 0) CHECK(sameBits(two.answersBy(pool), two.expected));
   }
   CHECK(thrown > 50);
 }

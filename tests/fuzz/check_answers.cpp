@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "fuzz/target.h"
+#include "support/answer.h"
 #include "support/same_bits.h"
 #include "unit/brute_force.h"
 
@@ -82,14 +83,15 @@ std::string inWords(const Query& query, const Result& result) {
   return words.str();
 }
 
-void checkAnswers(const Scene& scene, std::span<const Query> queries, std::span<const Result> results,
-                  const Lists& lists) {
-  require(results.size() == queries.size(), "another number of answers");
+void checkAnswers(const Scene& scene, std::span<const Query> queries, const Answers& answers) {
+  require(answers.results.size() == queries.size(), "another number of answers");
   for (size_t i = 0; i < queries.size(); ++i) {
-    checkContract(queries[i], results[i]);
+    const Result& result = answers.results[i];
+    checkContract(queries[i], result);
     if (!isForBruteForce(scene, queries[i])) continue;
-    const std::string fault = faultOf(scene, queries[i], results[i], lists.hitsOf(i), lists.overlappingOf(i));
-    require(fault.empty(), "query " + std::to_string(i) + ": " + fault + ":" + inWords(queries[i], results[i]));
+    const Listed& listed = test::listedBy(answers, i);
+    const std::string fault = faultOf(scene, queries[i], result, listed.hits, listed.overlapping);
+    require(fault.empty(), "query " + std::to_string(i) + ": " + fault + ":" + inWords(queries[i], result));
   }
 }
 
@@ -108,16 +110,18 @@ void checkSampled(const Result& sampled, const Result& exact, const std::string&
   }
 }
 
-void requireSame(std::span<const Result> found, const Lists& foundLists, std::span<const Result> expected,
-                 const Lists& expectedLists) {
+void requireSame(const Answers& found, const Answers& expected) {
   const auto isSame = [](Result a, const Result& b) {
     a.tier = b.tier;
     return test::sameBits(a, b);
   };
-  require(std::ranges::equal(found, expected, isSame), "answers differ");
-  require(std::ranges::equal(foundLists.hits, expectedLists.hits, isSame), "lists of hits differ");
-  require(foundLists.hitOffsets == expectedLists.hitOffsets, "lengths of lists differ");
-  require(foundLists.overlapping == expectedLists.overlapping, "lists of overlapping objects differ");
+  require(std::ranges::equal(found.results, expected.results, isSame), "answers differ");
+  require(found.lists.size() == expected.lists.size(), "one lists nothing");
+  for (size_t i = 0; i < found.lists.size(); ++i) {
+    const Listed &ours = found.lists[i], &theirs = expected.lists[i];
+    require(std::ranges::equal(ours.hits, theirs.hits, isSame), "lists of hits differ");
+    require(ours.overlapping == theirs.overlapping, "lists of overlapping objects differ");
+  }
 }
 
 }  // namespace radar::fuzz

@@ -7,6 +7,7 @@
 #include "fuzz/check_answers.h"
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
+#include "support/answer.h"
 
 namespace radar::fuzz {
 
@@ -26,23 +27,21 @@ void checkBatch(const tools::Workload& workload) {
     std::vector<Query> queries;
     for (const uint32_t number : batch.queries) {
       const QuerySpec& spec = workload.queries[number];
-      const bool isSampled = spec.mode == AnswerMode::sampled;
-      queries.push_back(toQuery(spec, isSampled ? Mode::sampled : Mode::contact));
-      const std::string wrong = validate(queries.back(), player.scene());
+      const Mode mode = spec.mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+      queries.push_back(toQuery(spec));
+      const std::string wrong = validate(queries.back(), player.scene(), mode);
       require(wrong.empty(), "a query that breaks its contract: " + wrong);
     }
-    const std::vector<Result> results = sweeper.run(queries);
-    checkAnswers(player.scene(), queries, results, sweeper.lists());
+    const Answers answers = sweeper.run(queries);
+    checkAnswers(player.scene(), queries, answers);
     const std::vector<std::string> names = workload.objectNames(batch.scene);
     for (size_t i = 0; i < queries.size(); ++i) {
       const QuerySpec& spec = workload.queries[batch.queries[i]];
-      const auto hits = sweeper.lists().hitsOf(i);
-      const auto overlapping = sweeper.lists().overlappingOf(i);
-      const Answer answer{
-          results[i], AnswerMode::reference, "", {hits.begin(), hits.end()}, {overlapping.begin(), overlapping.end()}};
+      const Answer answer{answers.results[i], AnswerMode::reference, "", test::listedBy(answers, i)};
       const std::string line = answerLine(spec, answer, names);
       const nlohmann::json read = nlohmann::json::parse(line);
-      require(line.find('\n') == line.npos && read["status"] == nameOf(results[i].status), "a broken line: " + line);
+      require(line.find('\n') == line.npos && read["status"] == nameOf(answers.results[i].status),
+              "a broken line: " + line);
       const bool hasTime = read["t"].is_number();
       require(!hasTime || (read["lo"] <= read["t"] && read["t"] <= read["hi"]), "bounds in disorder: " + line);
     }

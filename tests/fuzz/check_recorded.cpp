@@ -11,7 +11,7 @@ namespace radar::fuzz {
 
 namespace {
 
-constexpr uint32_t kTooSmall = kFlagCandidates | kFlagRounds | kFlagUnresolved;
+constexpr uint32_t kTooSmall = Flag::candidates | Flag::rounds | Flag::unresolved;
 
 /// But for the tier, and the order of contacts that are less than a rounding apart.
 void requireAgreement(const Query& query, Result found, const Result& expected) {
@@ -29,9 +29,9 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact) {
     return require(found.status == Status::overlap && found.t == 0, "no overlap");
   }
   if (found.flags == 0) return requireAgreement(query, found, exact);
-  require((found.flags & ~(kTooSmall | kFlagRange)) == 0, "another flag: " + inWords(query, found));
+  require((found.flags & ~(kTooSmall | Flag::range)) == 0, "another flag: " + inWords(query, found));
   require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
-  if (found.flags != kFlagUnresolved) return require(found.status == Status::invalid, "a flag, but not invalid");
+  if (found.flags != Flag::unresolved) return require(found.status == Status::invalid, "a flag, but not invalid");
   const double end = query.motion ? 1 : query.distance;
   require(found.status == Status::undecided, "open, but not undecided");
   require(found.lo <= (exact.status == Status::clear || query.anyHit ? end : exact.hi), "contact before lo");
@@ -39,22 +39,22 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact) {
 
 }  // namespace
 
-void checkRecorded(std::span<const Query> queries, const test::Answers& recorded, const test::Answers& expected) {
+void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected) {
   require(recorded.results.size() == queries.size(), "another number of answers");
   for (size_t i = 0; i < queries.size(); ++i) {
     checkAnswer(queries[i], recorded.results[i], expected.results[i]);
-    const auto found = recorded.lists.hitsOf(i), listed = expected.lists.hitsOf(i);
+    const std::vector<Result>&found = test::listedBy(recorded, i).hits, &listed = test::listedBy(expected, i).hits;
     const auto isOpen = [](const Result& result) { return result.flags != 0; };
     if (isOpen(recorded.results[i]) || std::ranges::any_of(found, isOpen)) continue;
     require(found.size() == listed.size(), "a list of another length");
     for (size_t k = 0; k < found.size() && queries[i].clearance == 0; ++k) {
       requireAgreement(queries[i], found[k], listed[k]);
     }
-    require(std::ranges::equal(recorded.lists.overlappingOf(i), expected.lists.overlappingOf(i)), "another overlap");
+    require(test::listedBy(recorded, i).overlapping == test::listedBy(expected, i).overlapping, "another overlap");
   }
 }
 
-bool isTooSmall(const test::Answers& recorded) {
+bool isTooSmall(const Answers& recorded) {
   return std::ranges::any_of(recorded.results, [](const Result& result) { return (result.flags & kTooSmall) != 0; });
 }
 

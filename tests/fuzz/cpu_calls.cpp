@@ -19,12 +19,10 @@ void ask(SceneCalls& calls, CpuSweeper& follower) {
   } catch (const Error&) {
     require(std::erase_if(queries, isInvalid) > 0, "a valid query is refused");
   }
-  const std::vector<Result> results = follower.run(queries);
-  checkAnswers(calls.scene(), queries, results, follower.lists());
+  const Answers answers = follower.run(queries);
+  checkAnswers(calls.scene(), queries, answers);
   // A new sweeper gives the same bits as one that has followed the scene, and another number of threads, too.
-  CpuSweeper fresh(calls.scene(), 1 + count % 2);
-  const std::vector<Result> expected = fresh.run(queries);
-  requireSame(results, follower.lists(), expected, fresh.lists());
+  requireSame(answers, CpuSweeper(calls.scene(), 1 + count % 2).run(queries));
 }
 
 void run(std::string_view input) {

@@ -287,12 +287,9 @@ Query SceneCalls::query() {
   return query;
 }
 
-std::vector<Query> SceneCalls::queries(uint32_t most, bool sampledToo) {
+std::vector<Query> SceneCalls::queries(uint32_t most) {
   std::vector<Query> queries(choices_.below(most + 1));
-  for (Query& query : queries) {
-    query = this->query();
-    if (sampledToo && choices_.oneIn(3)) query.mode = Mode::sampled;
-  }
+  for (Query& query : queries) query = this->query();
   return queries;
 }
 

@@ -17,7 +17,7 @@ class SceneCalls {
   /// is not what it must be then.
   void edit();
   /// Some queries, valid or not, of mode contact or of any.
-  std::vector<Query> queries(uint32_t most, bool sampledToo = false);
+  std::vector<Query> queries(uint32_t most);
   const Scene& scene() const { return scene_; }
 
  private:

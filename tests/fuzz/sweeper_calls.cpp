@@ -5,32 +5,32 @@
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/radar.h"
+#include "support/answer.h"
 #include "support/test_device.h"
 
 namespace radar::fuzz {
 
 namespace {
 
-void ask(SceneCalls& calls, Sweeper& sweeper) {
-  std::vector<Query> queries = calls.queries(4, true);
-  const auto isInvalid = [&](const Query& query) { return !validate(query, calls.scene()).empty(); };
+void ask(Choices& choices, SceneCalls& calls, Sweeper& sweeper) {
+  const Mode mode = choices.oneIn(3) ? Mode::sampled : Mode::contact;
+  std::vector<Query> queries = calls.queries(4);
+  const auto isInvalid = [&](const Query& query) { return !validate(query, calls.scene(), mode).empty(); };
   if (std::ranges::any_of(queries, isInvalid)) {
     try {
-      sweeper.run(queries);
+      sweeper.run(queries, mode);
       require(false, "an invalid query is answered");
     } catch (const Error&) {
       std::erase_if(queries, isInvalid);
     }
   }
-  const std::vector<Result> found = sweeper.run(queries);
-  CpuSweeper cpu(calls.scene(), 1);
-  std::vector<Result> expected = cpu.run(queries);
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (queries[i].mode != Mode::sampled) continue;
-    checkSampled(found[i], expected[i], sweeper.reason(i));
-    expected[i] = found[i];
+  const Answers found = sweeper.run(queries, mode);
+  Answers expected = CpuSweeper(calls.scene(), 1).run(queries);
+  for (size_t i = 0; mode == Mode::sampled && i < queries.size(); ++i) {
+    checkSampled(found.results[i], expected.results[i], test::reasonFor(found, i));
+    expected.results[i] = found.results[i];
   }
-  requireSame(found, sweeper.lists(), expected, cpu.lists());
+  requireSame(found, expected);
 }
 
 void run(std::string_view input) {
@@ -39,7 +39,7 @@ void run(std::string_view input) {
   Sweeper sweeper(test::device(), calls.scene(), {.cpuBatch = choices.below(3)});
   for (int i = 0; i < 40 && !choices.areOver(); ++i) {
     if (choices.oneIn(4)) {
-      ask(calls, sweeper);
+      ask(choices, calls, sweeper);
     } else {
       calls.edit();
     }

@@ -9,7 +9,6 @@
 #include "gpu/kernel_fixture.h"
 #include "math/rounding.h"
 #include "scene/gpu_scene.h"
-#include "spirv/contact_margins_comp.h"
 #include "support/catch.h"
 #include "workloads/shapes.h"
 
@@ -121,7 +120,6 @@ class Margins {
     const Object& object = impl.objects[c.object].object;
     const Mesh &a = impl.meshes[meshId], &b = impl.meshes[object.mesh];
     c.query.mesh = meshId;
-    c.query.mode = Mode::contact;
     double size = 0;
     for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(object.worldFromMesh.m[k]) * b.unit);
     c.query.worldFromMesh = poseOf(size / a.unit * magnitude(random_, 10), 0);
@@ -262,24 +260,24 @@ void Margins::check() {
     return array;
   };
   const auto sensors = upload(
-      batch.sensors,
-      gpu::TexelArray<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, 0, VK_FORMAT_R32G32B32A32_UINT));
+      batch.sensors, gpu::Array<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, gpu::kAsTexels));
   const auto touchBuffer = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
   gpu::Array<PairBounds> answers(test::impl(), "pair bounds", gpu::BufferDomain::readback);
   answers.reserve(touches.size());
-  const gpu::Kernel kernel(test::impl(), k_contact_margins_comp, "margins");
-  gpu::KernelArguments arguments(kernel);
+  gpu::Passes passes(test::impl());
   const GpuScene::Buffers& scene = gpuScene_.buffers();
-  arguments.set({{gpu::kSlotMeshNodes, scene.meshNodes},
-                 {gpu::kSlotObjectNodes, scene.objectNodes},
-                 {gpu::kSlotVertices, scene.vertices},
-                 {gpu::kSlotTriangles, scene.triangles},
-                 {gpu::kSlotPlacements, scene.placements},
-                 {gpu::kSlotSensors, sensors},
-                 {test::kSlotTouches, touchBuffer},
-                 {test::kSlotPairBounds, answers}});
   const auto count = static_cast<uint32_t>(touches.size());
-  test::run([&](const gpu::Commands& commands) { arguments.dispatch(commands, gpu::groupsFor(count, 64), count); });
+  test::run([&](const gpu::Commands& commands) {
+    passes(commands, test::kContactMargins, gpu::groupsFor(count, 64), count,
+           {{gpu::kSlotMeshNodes, scene.meshNodes},
+            {gpu::kSlotObjectNodes, scene.objectNodes},
+            {gpu::kSlotVertices, scene.vertices},
+            {gpu::kSlotTriangles, scene.triangles},
+            {gpu::kSlotPlacements, scene.placements},
+            {gpu::kSlotSensors, sensors},
+            {test::kSlotTouches, touchBuffer},
+            {test::kSlotPairBounds, answers}});
+  });
 
   uint32_t inRange = 0, tight = 0, certainlyNear = 0, tightlyNear = 0;
   Real closest = 0;  // the largest error, as a fraction of its bound

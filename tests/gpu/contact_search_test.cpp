@@ -1,7 +1,7 @@
 // The contact search loses nothing with the smallest lists, in the shortest rounds and over very long lists.
 #include <cstring>
-#include <map>
 #include <ostream>
+#include <tuple>
 
 #include "support/catch.h"
 #include "support/same_bits.h"
@@ -14,7 +14,8 @@ namespace radar {
 
 std::ostream& operator<<(std::ostream& out, const SearchRoom& room) {
   return out << "tasks " << room.tasks << ", candidates " << room.candidates << ", unresolved " << room.unresolved
-             << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width;
+             << ", groups " << room.groups << ", budget " << room.budget << ", width " << room.width << ", queue "
+             << room.queue << ", stack " << room.stack;
 }
 
 }  // namespace radar
@@ -23,30 +24,19 @@ namespace {
 
 using namespace radar;
 
-/// Cached for each shape, since compiling takes a second.
-std::shared_ptr<const ContactKernels> kernelsOf(const SearchShape& shape) {
-  const Device& device = test::device();  // outlives the kernels
-  auto& all =
-      test::onceInRun([] { return std::map<std::pair<uint32_t, uint32_t>, std::shared_ptr<const ContactKernels>>(); });
-  auto& kernels = all[{shape.queue, shape.stack}];
-  if (!kernels) kernels = std::make_shared<ContactKernels>(device.impl(), shape);
-  return kernels;
-}
-
 /// Searches on the device, whatever the size of the batch.
 class DeviceSearch {
  public:
-  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {}, const SearchShape& shape = {})
+  explicit DeviceSearch(const Scene& scene, const SearchRoom& room = {})
       : sweeper_(test::device().impl(), scene, {.cpuBatch = 0}, std::make_shared<GpuScene>(test::device().impl()), room,
-                 kernelsOf(shape)) {}
+                 false) {}
 
-  std::vector<Result> run(std::span<const Query> queries) {
-    std::vector<Result> results(queries.size());
-    sweeper_.begin(queries, results);
-    sweeper_.finish();
-    return results;
+  Answers run(std::span<const Query> queries) {
+    Flight flight(queries, false);
+    sweeper_.begin(flight, Mode::contact);
+    sweeper_.finish(flight);
+    return std::move(flight.answers);
   }
-  const SweepStats& stats() const { return sweeper_.stats; }
 
  private:
   Sweeper::Impl sweeper_;
@@ -71,7 +61,7 @@ struct FamilyQueries {
       : workload(tools::hardScene(tools::hardFamily(family), seed, 0, count, company)), player(workload) {
     player.show(0);
     for (const tools::QuerySpec& spec : workload.queries) {
-      queries.push_back(tools::toQuery(spec, Mode::contact));
+      queries.push_back(tools::toQuery(spec));
       queries.back().anyHit = queries.size() % 4 == 0;
     }
   }
@@ -89,21 +79,22 @@ Transform at(double x, double y, double z) {
 TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds") {
   const std::string family = GENERATE("interlocking", "lattice", "touching", "floor", "soup");
   const FamilyQueries batch(family.c_str(), tools::kIsolatedCases, 1, tools::Company::isolated);
-  const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries);
-  const SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
-                                   SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
-                                   SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
-                                   SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
-  const SearchShape shape = GENERATE(SearchShape{}, SearchShape{.queue = 1, .stack = 4}, SearchShape{.stack = 7});
-  CAPTURE(family, room, shape.queue, shape.stack);
-  DeviceSearch narrow(batch.player.scene(), room, shape);
-  checkSame(narrow.run(batch.queries), roomy);
+  const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries).results;
+  SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
+                             SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
+                             SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
+                             SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
+  std::tie(room.queue, room.stack) = GENERATE(std::pair{0u, 0u}, std::pair{1u, 4u}, std::pair{0u, 7u});
+  CAPTURE(family, room);
+  DeviceSearch narrow(batch.player.scene(), room);
+  const Answers answers = narrow.run(batch.queries);
+  checkSame(answers.results, roomy);
   // Only queries that overflow a list go to the CPU, and in some families those with very many unresolved pairs. Rounds
   // that exceed their budget continue in further rounds.
-  if (room.candidates == 1) CHECK(narrow.stats().cpuQueries > 0);
-  if (room.budget == 1 && family == "interlocking") CHECK(narrow.stats().submissions > 1);
+  if (room.candidates == 1) CHECK(answers.stats.cpuQueries > 0);
+  if (room.budget == 1 && family == "interlocking") CHECK(answers.stats.submissions > 1);
   const bool few = family == "lattice" || family == "touching";
-  if (few && room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(narrow.stats().cpuQueries == 0);
+  if (few && room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(answers.stats.cpuQueries == 0);
 }
 
 namespace {
@@ -136,11 +127,11 @@ struct TrianglesOverhead {
 TEST_CASE("a batch with too many candidates for its lists is searched again, in larger ones") {
   const TrianglesOverhead triangles(true);
   DeviceSearch search(triangles.scene);
-  const Result first = search.run({&triangles.query, 1})[0];
-  CHECK(search.stats().submissions > 1);
-  const Result second = search.run({&triangles.query, 1})[0];
-  CHECK(search.stats().submissions == 1);
-  checkSame(second, first);
+  const Answers first = search.run({&triangles.query, 1});
+  CHECK(first.stats.submissions > 1);
+  const Answers second = search.run({&triangles.query, 1});
+  CHECK(second.stats.submissions == 1);
+  checkSame(second.results, first.results);
 }
 
 TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations, are all searched") {
@@ -148,11 +139,11 @@ TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations
   CAPTURE(level);
   const TrianglesOverhead triangles(level);
   DeviceSearch search(triangles.scene, {.candidates = 100'000});
-  const Result result = search.run({&triangles.query, 1})[0];
+  const Result result = search.run({&triangles.query, 1}).results[0];
   CHECK(result.status == Status::hit);
   CHECK(result.t == (level ? 4 : 4.5));
   CHECK(result.object == (level ? 0 : kTriangles - 1));
-  checkSame(DeviceSearch(triangles.scene).run({&triangles.query, 1})[0], result);
+  checkSame(DeviceSearch(triangles.scene).run({&triangles.query, 1}).results[0], result);
 }
 
 TEST_CASE("queries that floats cannot represent are answered on the CPU") {
@@ -165,8 +156,8 @@ TEST_CASE("queries that floats cannot represent are answered on the CPU") {
   scene.addObject({mesh, placed(3), ~0u});
   const Query query{.mesh = mesh, .worldFromMesh = placed(0), .direction = {1, 0, 0}, .distance = 5 * size};
   DeviceSearch search(scene);
-  const Result result = search.run({&query, 1})[0];
-  CHECK(result.status == Status::hit);
-  CHECK(result.t == Approx(2 * size));
-  CHECK(search.stats().cpuQueries == (size == 1 ? 0 : 1));
+  const Answers answers = search.run({&query, 1});
+  CHECK(answers.results[0].status == Status::hit);
+  CHECK(answers.results[0].t == Approx(2 * size));
+  CHECK(answers.stats.cpuQueries == (size == 1 ? 0 : 1));
 }

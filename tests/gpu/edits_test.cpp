@@ -108,7 +108,7 @@ TEST_CASE("after random edits, a sweeper's answers on the device have the bits o
     const std::vector<Query> queries = edited.queries();
     const Scene again = edited.again();
     Sweeper fresh(test::device(), again, {.cpuBatch = 0});
-    const std::vector<Result> results = sweeper.run(queries), expected = fresh.run(queries);
+    const std::vector<Result> results = sweeper.run(queries).results, expected = fresh.run(queries).results;
     for (size_t i = 0; i < queries.size(); ++i) {
       CAPTURE(seed, round, i);
       REQUIRE(test::sameBits(results[i], expected[i]));
@@ -128,7 +128,7 @@ TEST_CASE("10,000 steps of edits and queries leave the process no larger than th
     if (step == 2'000) before = test::residentBytes();
     for (int edits = 0; edits < 10; ++edits) edited.edit();
     const std::vector<Query> queries = edited.queries();
-    const std::vector<Result> results = sweeper.run(queries), expected = cpu.run(queries);
+    const std::vector<Result> results = sweeper.run(queries).results, expected = cpu.run(queries).results;
     for (size_t i = 0; i < queries.size(); ++i) REQUIRE(tools::sameAnswer(results[i], expected[i]));
   }
   const size_t after = test::residentBytes();

@@ -6,7 +6,7 @@
 #include "gpu/submission.h"
 #include "shaders/contact/interop.h"
 #include "shaders/sampled/interop.h"
-#include "spirv/contact_collect_comp.h"
+#include "spirv/radar_shaders.h"
 #include "support/catch.h"
 #include "support/test_device.h"
 
@@ -27,13 +27,10 @@ Array<T> zeros(const char* name) {
 // Messages about an upload and a dispatch that reads it. All counts are zero, so the shader has nothing to do.
 std::vector<std::string> messagesOf(bool withBarrier) {
   const Device::Impl& device = test::device().impl();
-  const gpu::Kernel collect(device, k_contact_collect_comp, "collect");
-  gpu::KernelArguments arguments(collect);
+  gpu::Passes run(device);
   const Array<gpu::SearchCounts> counts = zeros<gpu::SearchCounts>("counts");
   const Array<gpu::SearchState> states = zeros<gpu::SearchState>("states");
   const Array<gpu::SearchTask> tasks = zeros<gpu::SearchTask>("tasks"), spilled = zeros<gpu::SearchTask>("spilled");
-  arguments.set(
-      {{gpu::kSlotCounts, counts}, {gpu::kSlotStates, states}, {gpu::kSlotTasks, tasks}, {gpu::kSlotSpilled, spilled}});
   const gpu::SearchTask nothing{};
   gpu::Upload upload(device);
   upload.begin(gpu::Upload::aligned(sizeof(nothing)));
@@ -42,7 +39,8 @@ std::vector<std::string> messagesOf(bool withBarrier) {
   const gpu::Commands commands = submission.begin();
   upload.record(commands);
   if (withBarrier) gpu::uploadToRead(commands);
-  arguments.dispatch(commands, 1, gpu::CollectPush{0, 0, 0});
+  run(commands, shaders::kCollect, 1, gpu::CollectPush{0, 0, 0},
+      {{gpu::kSlotCounts, counts}, {gpu::kSlotStates, states}, {gpu::kSlotTasks, tasks}, {gpu::kSlotSpilled, spilled}});
   submission.submitAndWait();
   return test::takeValidationMessages();
 }

@@ -1,4 +1,4 @@
-// The tests' kernels, shared per device like the engine's, and a function that runs them.
+// The tests' shaders, and a function that runs them.
 #pragma once
 
 #include <functional>
@@ -7,22 +7,16 @@
 #include "gpu/kernel.h"
 #include "gpu/kernel_interop.h"
 #include "gpu/submission.h"
+#include "spirv/gpu_test_shaders.h"
 #include "support/test_device.h"
 
 namespace radar::test {
 
-struct Kernels {
-  explicit Kernels(const Device::Impl& device);
-  gpu::Kernel scale;         ///< 64 lanes
-  gpu::Kernel scaleAndAdd5;  ///< one lane, offset 5
-  gpu::Kernel fillNodes, sumTexels, countGroups, readDepth;
-};
+inline constexpr gpu::Program kScaleOf64{kScale, {64}};       ///< 64 lanes
+inline constexpr gpu::Program kScaleAndAdd5{kScale, {1, 5}};  ///< one lane, offset 5
 
 inline const Device::Impl& impl() {
   return device().impl();
-}
-inline const Kernels& kernels() {
-  return impl().shared<Kernels>();
 }
 
 /// Submits what `record` records, and waits; the host may then read what compute shaders wrote.

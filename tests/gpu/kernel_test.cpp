@@ -1,5 +1,4 @@
-// Kernels apply their arguments and push constants for any number of workgroups and users.
-#include "gpu/depth_array.h"
+// Dispatches apply their arguments and push constants for any number of workgroups and buffers.
 #include "gpu/kernel_fixture.h"
 #include "support/catch.h"
 
@@ -10,7 +9,7 @@ using namespace radar::test;
 using gpu::Array;
 using gpu::BufferDomain;
 using gpu::Commands;
-using gpu::KernelArguments;
+using gpu::Passes;
 
 constexpr uint32_t kUntouched = 0xdeadbeef;
 
@@ -34,25 +33,27 @@ uint32_t firstWrong(const Array<uint32_t>& results, uint32_t count, uint32_t fac
 }  // namespace
 
 TEST_CASE("a kernel writes every element and none beyond, for sizes around that of a workgroup") {
-  KernelArguments arguments(kernels().scale);
+  Passes passes(impl(), {kScaleOf64});
   for (const uint32_t count : {0u, 1u, 63u, 64u, 65u, 1234u}) {
     CAPTURE(count);
     const Array<uint32_t> values = numbers("values", count), results = untouched(count);
-    arguments.set({{kSlotValues, values}, {kSlotResults, results}});
+    passes.begin();
     run([&](const Commands& commands) {
-      arguments.dispatch(commands, gpu::groupsFor(count, 64), ScalePush{count, 3});
+      passes(commands, kScaleOf64, gpu::groupsFor(count, 64), ScalePush{count, 3},
+             {{kSlotValues, values}, {kSlotResults, results}});
     });
     CHECK(firstWrong(results, count, 3, 0) == count);
   }
 }
 
 TEST_CASE("more workgroups than one axis allows are laid out in rows") {
-  KernelArguments arguments(kernels().scaleAndAdd5);
+  Passes passes(impl());
   for (const uint32_t count : {65535u, 65536u, 65537u, 200001u}) {
     CAPTURE(count);
     const Array<uint32_t> values = numbers("values", count), results = untouched(count);
-    arguments.set({{kSlotResults, results}, {kSlotValues, values}});
-    run([&](const Commands& commands) { arguments.dispatch(commands, count, ScalePush{count, 2}); });
+    run([&](const Commands& commands) {
+      passes(commands, kScaleAndAdd5, count, ScalePush{count, 2}, {{kSlotResults, results}, {kSlotValues, values}});
+    });
     CHECK(firstWrong(results, count, 2, 5) == count);
   }
 }
@@ -60,18 +61,17 @@ TEST_CASE("more workgroups than one axis allows are laid out in rows") {
 TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wrote, and the count can be overwritten") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   command.reserve(1);
-  KernelArguments count(kernels().countGroups), scale(kernels().scaleAndAdd5);
+  Passes passes(impl());
   const uint32_t most = 70000;
   const Array<uint32_t> values = numbers("values", most), results = untouched(most);
-  count.set({{kSlotGroups, command}});
-  scale.set({{kSlotValues, values}, {kSlotResults, results}});
   run([&](const Commands& commands) {
     // The factor shows which dispatch wrote last: 0 workgroups write nothing, then 70,000 write all, then 10 rewrite
     // the first 10.
     for (const auto& [groups, factor] : {std::pair{0u, 1u}, {most, 2u}, {10u, 3u}}) {
-      count.dispatch(commands, 1, groups);
+      passes(commands, kCountGroups, 1, groups, {{kSlotGroups, command}});
       gpu::computeWriteToIndirect(commands);
-      scale.dispatchIndirect(commands, command, 0, ScalePush{most, factor});
+      passes(commands, kScaleAndAdd5, {command, 0}, ScalePush{most, factor},
+             {{kSlotValues, values}, {kSlotResults, results}});
       gpu::computeWriteToComputeReadWrite(commands);
     }
   });
@@ -84,29 +84,29 @@ TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wro
 TEST_CASE("an indirect dispatch without its barrier is reported as a hazard") {
   Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   command.reserve(1);
-  KernelArguments count(kernels().countGroups), scale(kernels().scale);
+  Passes passes(impl());
   const Array<uint32_t> values = numbers("values", 1), results = untouched(1);
-  count.set({{kSlotGroups, command}});
-  scale.set({{kSlotValues, values}, {kSlotResults, results}});
   {
     gpu::Submission submission(impl(), false);  // recorded but never submitted
     const Commands commands = submission.begin();
-    count.dispatch(commands, 1, 1u);
-    scale.dispatchIndirect(commands, command, 0, ScalePush{1, 1});
+    passes(commands, kCountGroups, 1, 1u, {{kSlotGroups, command}});
+    passes(commands, kScaleOf64, {command, 0}, ScalePush{1, 1}, {{kSlotValues, values}, {kSlotResults, results}});
   }
   const std::vector<std::string> messages = takeValidationMessages();
   REQUIRE_FALSE(messages.empty());
   CHECK_THAT(messages[0], test::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
 }
 
-TEST_CASE("two users of one kernel do not see each other's arguments") {
+TEST_CASE("dispatches of one program in one recording do not see each other's arguments") {
   const uint32_t count = 100;
   const Array<uint32_t> values = numbers("values", count);
   const Array<uint32_t> results[] = {untouched(count), untouched(count)};
-  KernelArguments users[] = {KernelArguments(kernels().scale), KernelArguments(kernels().scale)};
-  for (int i = 0; i < 2; ++i) users[i].set({{kSlotValues, values}, {kSlotResults, results[i]}});
+  Passes passes(impl(), {kScaleOf64});
   run([&](const Commands& commands) {
-    for (int i = 0; i < 2; ++i) users[i].dispatch(commands, 2, ScalePush{count, i == 0 ? 7u : 11u});
+    for (int i = 0; i < 2; ++i) {
+      passes(commands, kScaleOf64, 2, ScalePush{count, i == 0 ? 7u : 11u},
+             {{kSlotValues, values}, {kSlotResults, results[i]}});
+    }
   });
   CHECK(firstWrong(results[0], count, 7, 0) == count);
   CHECK(firstWrong(results[1], count, 11, 0) == count);
@@ -117,13 +117,12 @@ TEST_CASE("a kernel samples a depth image") {
   const gpu::Sampler sampler = gpu::texelSampler(impl());
   gpu::DepthArray depth(impl(), "depth", pass.get(), 4, 2);
   const Array<uint32_t> results = untouched(2);
-  KernelArguments arguments(kernels().readDepth);
-  arguments.set({{kSlotDepth, depth.view(), sampler.get()}, {kSlotResults, results}});
+  Passes passes(impl());
   run([&](const Commands& commands) {
     depth.recordFirstUse(commands);
     depth.beginPass(commands, 0, 2, 4);  // clears to 1
     commands->CmdEndRenderPass(commands);
-    arguments.dispatch(commands, 2);
+    passes(commands, kReadDepth, 2, {{kSlotDepth, depth, sampler.get()}, {kSlotResults, results}});
   });
   CHECK(results.mapped()[0] == 1000);
   CHECK(results.mapped()[1] == 1000);
@@ -132,7 +131,8 @@ TEST_CASE("a kernel samples a depth image") {
 namespace {
 
 PFN_vkUpdateDescriptorSets updateDescriptorSets;
-uint32_t updates;
+PFN_vkAllocateDescriptorSets allocateDescriptorSets;
+uint32_t updates, sets;
 
 VKAPI_ATTR void VKAPI_CALL countUpdates(VkDevice device, uint32_t writes, const VkWriteDescriptorSet* write,
                                         uint32_t copies, const VkCopyDescriptorSet* copy) {
@@ -140,35 +140,63 @@ VKAPI_ATTR void VKAPI_CALL countUpdates(VkDevice device, uint32_t writes, const 
   updateDescriptorSets(device, writes, write, copies, copy);
 }
 
-// The number of descriptors that `f` writes.
+VKAPI_ATTR VkResult VKAPI_CALL countSets(VkDevice device, const VkDescriptorSetAllocateInfo* info,
+                                         VkDescriptorSet* made) {
+  sets += info->descriptorSetCount;
+  return allocateDescriptorSets(device, info, made);
+}
+
+// What `f` makes and writes.
+struct Work {
+  uint32_t sets, descriptors;
+  bool operator==(const Work&) const = default;
+};
 template <class F>
-uint32_t updatesOf(F&& f) {
+Work workOf(F&& f) {
   gpu::Api& vk = device().impl().vk;
-  updates = 0;
+  updates = sets = 0;
   updateDescriptorSets = std::exchange(vk.UpdateDescriptorSets, countUpdates);
+  allocateDescriptorSets = std::exchange(vk.AllocateDescriptorSets, countSets);
   f();
   vk.UpdateDescriptorSets = updateDescriptorSets;
-  return updates;
+  vk.AllocateDescriptorSets = allocateDescriptorSets;
+  return {sets, updates};
 }
 
 }  // namespace
 
-TEST_CASE("setting arguments writes only the descriptors whose buffers have changed") {
-  KernelArguments arguments(kernels().scale);
+TEST_CASE("sets are kept, found by their buffers, and given others only once no earlier recording is pending") {
+  Passes passes(impl());
+  CHECK(workOf([&] { passes.reserve({kScaleOf64}); }) == Work{1, 0});
+  CHECK(workOf([&] { passes.reserve({kScaleOf64}); }) == Work{0, 0});
   Array<uint32_t> values = numbers("values", 10);
-  const Array<uint32_t> results = untouched(10);
-  const auto set = [&] { arguments.set({{kSlotValues, values}, {kSlotResults, results}}); };
-  CHECK(updatesOf(set) == 2);
-  CHECK(updatesOf(set) == 0);
+  const Array<uint32_t> results = untouched(10), others = untouched(10);
+  const auto record = [&](const Array<uint32_t>& to) {
+    return workOf([&] {
+      run([&](const Commands& commands) {
+        passes(commands, kScaleOf64, 1, ScalePush{10, 2}, {{kSlotValues, values}, {kSlotResults, to}});
+      });
+    });
+  };
+  CHECK(record(results) == Work{0, 2});
+  CHECK(record(results) == Work{0, 0});
+  CHECK(record(others) == Work{1, 2});
+  CHECK(record(results) == Work{0, 0});
+  passes.begin();
+  CHECK(record(others) == Work{0, 0});
   REQUIRE(values.reserve(100000));
-  CHECK(updatesOf(set) == 1);
+  CHECK(record(others) == Work{0, 2});   // of the set that this recording does not use
+  CHECK(record(results) == Work{1, 2});  // both are in use
   REQUIRE_FALSE(values.reserve(10));
-  CHECK(updatesOf(set) == 0);
+  CHECK(record(others) == Work{0, 0});
   // A buffer that replaces another may have the same handle.
   for (int i = 0; i < 8; ++i) {
     values = Array<uint32_t>(impl(), "none", BufferDomain::device);
     values = Array<uint32_t>(impl(), "values", BufferDomain::device);
     values.reserve(10);
-    CHECK(updatesOf(set) == 1);
+    passes.begin();
+    const Work work = record(others);
+    CHECK(work.sets == 0);
+    CHECK(work.descriptors > 0);
   }
 }

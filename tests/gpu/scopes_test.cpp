@@ -185,7 +185,7 @@ ComparedPixels checkWorkload(const tools::Workload& workload, uint32_t resolutio
     player.show(batch.scene);
     for (uint32_t i : batch.queries) {
       INFO("query " << workload.queries[i].id << " at " << resolution);
-      const Query query = tools::toQuery(workload.queries[i], Mode::sampled, resolution);
+      const Query query = tools::toQuery(workload.queries[i], resolution);
       checkScopes(player.scene(), query, sweeper.scopes(query), count);
     }
   }
@@ -230,12 +230,7 @@ TEST_CASE("R, M and L of two squares are the paper's: L = R + M - d, and M is me
   scene.addObject({small, at(0.45, 0.5, 5), ~0u});
   // The sensor leans: its side at +x lies one unit further along the motion than its side at -x.
   const Transform leaning{{1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1, 0}};
-  const Query query{.mesh = square,
-                    .worldFromMesh = leaning,
-                    .direction = {0, 0, 3},
-                    .distance = 10,
-                    .mode = Mode::sampled,
-                    .resolution = 64};
+  const Query query{.mesh = square, .worldFromMesh = leaning, .direction = {0, 0, 3}, .distance = 10, .resolution = 64};
   Sweeper sweeper(test::device(), scene);
   const Scopes scopes = sweeper.scopes(query);
   CHECK(scopes.d == Approx(11));
@@ -267,8 +262,8 @@ TEST_CASE("an object that covers no pixel centre is not detected, and the answer
   const MeshId square = addSquare(scene, 2), speck = addSquare(scene, 1e-4f);
   scene.addObject({speck, at(0.3, 0.3, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 16};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 10, .resolution = 16};
+  const Result result = sweeper.run({&query, 1}, Mode::sampled).results[0];
   CHECK(result.detected == Detected::no);
   CHECK(result.status == Status::undecided);
   CHECK(result.tier == Tier::sampled);
@@ -283,8 +278,8 @@ TEST_CASE("an object beside the sensor but inside its window is detected and has
   const MeshId half = scene.addMesh(positions, std::vector<uint32_t>{0, 1, 2}), small = addSquare(scene, 0.2f);
   scene.addObject({small, at(0.7, 0.7, 5), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = half, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Query query{.mesh = half, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Result result = sweeper.run({&query, 1}, Mode::sampled).results[0];
   CHECK(result.detected == Detected::yes);
   CHECK(result.status == Status::undecided);
   CHECK(std::isnan(result.paperMinL));
@@ -304,8 +299,8 @@ TEST_CASE("a negative L counts for the paper's minimum but never as a contact") 
   scene.addObject({small, at(0.1, 0.1, 2), ~0u});
   scene.addObject({plate, at(0.05, 0.05, 9), ~0u});
   Sweeper sweeper(test::device(), scene);
-  const Query query{.mesh = frame, .direction = {0, 0, 1}, .distance = 10, .mode = Mode::sampled, .resolution = 64};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Query query{.mesh = frame, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Result result = sweeper.run({&query, 1}, Mode::sampled).results[0];
   CHECK(result.paperMinL == Approx(-2).margin(1e-4));
   CHECK(result.status == Status::hit);
   CHECK(result.object == 1);
@@ -317,12 +312,12 @@ TEST_CASE("the clipping planes keep contact at the start and at exactly D") {
   const MeshId square = addSquare(scene, 2), small = addSquare(scene, 1);
   scene.addObject({small, at(0.1, 0.05, 3), ~0u});
   Sweeper sweeper(test::device(), scene);
-  Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 3.5, .mode = Mode::sampled, .resolution = 64};
-  CHECK(sweeper.run({&query, 1})[0].t == Approx(3));
+  Query query{.mesh = square, .direction = {0, 0, 1}, .distance = 3.5, .resolution = 64};
+  CHECK(sweeper.run({&query, 1}, Mode::sampled).results[0].t == Approx(3));
   query.distance = 3;
-  CHECK(sweeper.run({&query, 1})[0].detected == Detected::yes);
+  CHECK(sweeper.run({&query, 1}, Mode::sampled).results[0].detected == Detected::yes);
   query.distance = 2.9;
-  CHECK(sweeper.run({&query, 1})[0].status == Status::clear);
+  CHECK(sweeper.run({&query, 1}, Mode::sampled).results[0].status == Status::clear);
   query.worldFromMesh = at(0, 0, 3);
-  CHECK(sweeper.run({&query, 1})[0].detected == Detected::yes);
+  CHECK(sweeper.run({&query, 1}, Mode::sampled).results[0].detected == Detected::yes);
 }

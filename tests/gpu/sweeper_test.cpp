@@ -16,8 +16,7 @@ using namespace radar;
 struct LoadedWorkload {
   explicit LoadedWorkload(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries)
-      queries.push_back(tools::toQuery(spec, Mode::sampled, resolution));
+    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, resolution));
   }
   tools::Workload workload;
   tools::ScenePlayer player;
@@ -67,13 +66,14 @@ TEST_CASE("in mode sampled a batch of any size gives the same bits as one query 
   LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}), 32);
   Sweeper sweeper(test::device(), loaded.player.scene());
   std::vector<Result> single;
-  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1})[0]);
+  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1}, Mode::sampled).results[0]);
   uint32_t found = 0;
   for (const Result& result : single) found += result.status == Status::hit;
   CHECK(found > 100);
   for (size_t size : {1, 63, 64, 65, 1234}) {
     CAPTURE(size);
-    checkSame(sweeper.run(std::span(loaded.queries).first(size)), {single.begin(), single.begin() + size});
+    checkSame(sweeper.run(std::span(loaded.queries).first(size), Mode::sampled).results,
+              {single.begin(), single.begin() + size});
   }
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("a batch of more sensors than the device has layers is split and keeps
   LoadedWorkload loaded(
       tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 512, .shape = tools::SensorShape::box}), 16);
   Sweeper sweeper(test::device(), loaded.player.scene());
-  const std::vector<Result> once = sweeper.run(loaded.queries);
+  const std::vector<Result> once = sweeper.run(loaded.queries, Mode::sampled).results;
   std::vector<Query> many;
   std::vector<Result> expected;
   for (int i = 0; i < 12; ++i) {
@@ -89,27 +89,28 @@ TEST_CASE("a batch of more sensors than the device has layers is split and keeps
     expected.insert(expected.end(), once.begin(), once.end());
   }
   REQUIRE(many.size() > 2048);
-  checkSame(sweeper.run(many), expected);
-  CHECK(sweeper.stats().submissions > 1);
+  const Answers answers = sweeper.run(many, Mode::sampled);
+  checkSame(answers.results, expected);
+  CHECK(answers.stats.submissions > 1);
 }
 
 TEST_CASE("a small budget of picture memory splits a batch and keeps its bits") {
   LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 64}), 64);
   Sweeper roomy(test::device(), loaded.player.scene());
   Sweeper narrow(test::device(), loaded.player.scene(), {.pictureBytes = 7 * 2 * 64 * 64 * 4});
-  const std::vector<Result> expected = roomy.run(loaded.queries);
-  CHECK(roomy.stats().submissions == 1);
-  checkSame(narrow.run(loaded.queries), expected);
-  CHECK(narrow.stats().submissions > 5);
+  const Answers whole = roomy.run(loaded.queries, Mode::sampled), split = narrow.run(loaded.queries, Mode::sampled);
+  CHECK(whole.stats.submissions == 1);
+  checkSame(split.results, whole.results);
+  CHECK(split.stats.submissions > 5);
 }
 
 TEST_CASE("drawing every object gives the same bits as drawing only those in reach") {
   LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 16}), 64);
   Sweeper culled(test::device(), loaded.player.scene());
   Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
-  const std::vector<Result> expected = culled.run(loaded.queries);
-  checkSame(naive.run(loaded.queries), expected);
-  CHECK(naive.stats().drawnObjects > 100 * culled.stats().drawnObjects);
+  const Answers inReach = culled.run(loaded.queries, Mode::sampled), all = naive.run(loaded.queries, Mode::sampled);
+  checkSame(all.results, inReach.results);
+  CHECK(all.stats.drawnObjects > 100 * inReach.stats.drawnObjects);
 }
 
 TEST_CASE("drawing only the clusters in reach of one large mesh gives the same bits as drawing it whole") {
@@ -118,11 +119,11 @@ TEST_CASE("drawing only the clusters in reach of one large mesh gives the same b
     for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(17 + i * 37 % 150);
     Sweeper culled(test::device(), loaded.player.scene());
     Sweeper naive(test::device(), loaded.player.scene(), {.select = false});
-    const std::vector<Result> expected = naive.run(loaded.queries);
-    checkSame(culled.run(loaded.queries), expected);
-    CHECK(5 * culled.stats().drawnTriangles < naive.stats().drawnTriangles);
+    const Answers all = naive.run(loaded.queries, Mode::sampled), inReach = culled.run(loaded.queries, Mode::sampled);
+    checkSame(inReach.results, all.results);
+    CHECK(5 * inReach.stats.drawnTriangles < all.stats.drawnTriangles);
     for (size_t i = 0; i < loaded.queries.size(); i += 5)
-      checkSame({culled.scopes(loaded.queries[i]).result}, {expected[i]});
+      checkSame({culled.scopes(loaded.queries[i]).result}, {all.results[i]});
   }
 }
 
@@ -130,9 +131,9 @@ TEST_CASE("the order of a batch of mixed resolutions does not change the answers
   LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 65}), 0);
   for (size_t i = 0; i < loaded.queries.size(); ++i) loaded.queries[i].resolution = uint32_t(i * 37 % 150);
   Sweeper sweeper(test::device(), loaded.player.scene());
-  const std::vector<Result> forward = sweeper.run(loaded.queries);
+  const std::vector<Result> forward = sweeper.run(loaded.queries, Mode::sampled).results;
   std::reverse(loaded.queries.begin(), loaded.queries.end());
-  std::vector<Result> backward = sweeper.run(loaded.queries);
+  std::vector<Result> backward = sweeper.run(loaded.queries, Mode::sampled).results;
   std::reverse(backward.begin(), backward.end());
   checkSame(forward, backward);
 }
@@ -144,9 +145,9 @@ TEST_CASE("answers follow objects that are moved, removed and added, and other i
   const auto at = [](double z) { return Transform{{1, 0, 0, 0.01, 0, 1, 0, 0.02, 0, 0, 1, z}}; };
   const ObjectId far = scene.addObject({mesh, at(7), ~0u});
   const ObjectId near = scene.addObject({mesh, at(4), ~0u});
-  const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10, .mode = Mode::sampled};
+  const Query query{.mesh = mesh, .direction = {0, 0, 2}, .distance = 10};
   Sweeper sweeper(test::device(), scene);
-  const auto answer = [&] { return sweeper.run({&query, 1})[0]; };
+  const auto answer = [&] { return sweeper.run({&query, 1}, Mode::sampled).results[0]; };
 
   CHECK(answer().object == near);
   CHECK(answer().t == Approx(3).epsilon(1e-6));
@@ -159,10 +160,10 @@ TEST_CASE("answers follow objects that are moved, removed and added, and other i
   CHECK(answer().object == near);
   Query masked = query;
   masked.mask = 1;
-  CHECK(sweeper.run({&masked, 1})[0].object == far);
+  CHECK(sweeper.run({&masked, 1}, Mode::sampled).results[0].object == far);
   Query excluding = query;
   excluding.exclude = {near, far};
-  CHECK(sweeper.run({&excluding, 1})[0].status == Status::clear);
+  CHECK(sweeper.run({&excluding, 1}, Mode::sampled).results[0].status == Status::clear);
   const tools::MeshData ball = tools::makeUvSphere(8, 8);
   const MeshId other = scene.addMesh(ball.positions, ball.indices);
   scene.addObject({other, at(2.5), ~0u});
@@ -171,11 +172,9 @@ TEST_CASE("answers follow objects that are moved, removed and added, and other i
 
 TEST_CASE("while a sweeper submits, no other thread can submit to the queue of its device") {
   const LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 200, .sensors = 8}), 32);
-  std::vector<Query> queries = loaded.queries;
-  for (size_t i = 0; i < queries.size(); i += 2) queries[i].mode = Mode::contact;
   Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = 0});
   const WatchedSubmits watched(test::device().impl());
-  sweeper.run(queries);
+  for (const Mode mode : {Mode::contact, Mode::sampled}) sweeper.run(loaded.queries, mode);
   CHECK(WatchedSubmits::submits >= 2);
   CHECK(WatchedSubmits::open == 0);
   CHECK(test::takeValidationMessages().empty());
@@ -186,9 +185,9 @@ TEST_CASE("an empty batch and a query over an empty scene are answered") {
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   Sweeper sweeper(test::device(), scene);
-  CHECK(sweeper.run({}).empty());
-  const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
-  const Result result = sweeper.run({&query, 1})[0];
+  CHECK(sweeper.run({}).results.empty());
+  const Query query{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
+  const Result result = sweeper.run({&query, 1}, Mode::sampled).results[0];
   CHECK(result.status == Status::clear);
   CHECK(result.t == INFINITY);
   const Scopes scopes = sweeper.scopes(query);
@@ -201,16 +200,16 @@ TEST_CASE("run throws for a query that breaks its contract and names its number"
   Scene scene;
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
   Sweeper sweeper(test::device(), scene);
-  const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5, .mode = Mode::sampled};
+  const Query good{.mesh = mesh, .direction = {1, 0, 0}, .distance = 5};
   std::vector<Query> queries(3, good);
   queries[2].direction = {0, 0, 0};
-  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 2") && test::Contains("direction"));
+  CHECK_THROWS_WITH(sweeper.run(queries, Mode::sampled), test::Contains("query 2") && test::Contains("direction"));
   queries[2] = good;
   queries[1].distance = -1;
-  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 1") && test::Contains("distance"));
+  CHECK_THROWS_WITH(sweeper.run(queries, Mode::sampled), test::Contains("query 1") && test::Contains("distance"));
   queries[1] = good;
   queries[0].worldFromMesh.m = {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0};
-  CHECK_THROWS_WITH(sweeper.run(queries), test::Contains("query 0") && test::Contains("singular"));
+  CHECK_THROWS_WITH(sweeper.run(queries, Mode::sampled), test::Contains("query 0") && test::Contains("singular"));
 }
 
 TEST_CASE("a mesh of more triangles than a shader's loop may have iterations is drawn completely") {
@@ -222,13 +221,8 @@ TEST_CASE("a mesh of more triangles than a shader's loop may have iterations is 
   scene.addObject({sphere, {}, ~0u});
   Sweeper sweeper(test::device(), scene);
   const Transform start{{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, -5}};
-  const Query query{.mesh = cube,
-                    .worldFromMesh = start,
-                    .direction = {0, 0, 1},
-                    .distance = 10,
-                    .mode = Mode::sampled,
-                    .resolution = 64};
-  const Result result = sweeper.run({&query, 1})[0];
+  const Query query{.mesh = cube, .worldFromMesh = start, .direction = {0, 0, 1}, .distance = 10, .resolution = 64};
+  const Result result = sweeper.run({&query, 1}, Mode::sampled).results[0];
   CHECK(result.status == Status::hit);
   // The box's upper face lies at -4.75; the ball's lowest point over it at about -1.
   CHECK(result.t == Approx(3.75).margin(0.01));

@@ -64,8 +64,8 @@ TEST_CASE("cancelling a batch invalidates the queries that no device has taken a
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::stop_source stopBegun, stopQueued;
   hold();
-  std::future<PoolAnswers> begun = pool.submit(boxes.queries, stopBegun.get_token());
-  std::future<PoolAnswers> queued = pool.submit(boxes.queries, stopQueued.get_token());
+  std::future<PoolAnswers> begun = pool.submit(boxes.queries, Mode::contact, stopBegun.get_token());
+  std::future<PoolAnswers> queued = pool.submit(boxes.queries, Mode::contact, stopQueued.get_token());
   std::future<PoolAnswers> other = pool.submit(boxes.queries);
   for (size_t i : {0, 1}) faults(i).awaitHeld();
   CHECK_FALSE(isReady(begun));
@@ -144,8 +144,8 @@ TEST_CASE("an edit waits for the chunks of a batch that ended for lack of memory
   Scene scene;
   const MeshId mesh = scene.addMesh(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, std::vector<uint32_t>{0, 1, 2});
   WorkQueue queue(std::vector<PoolDevice>(2));
-  std::future<PoolAnswers> answers =
-      queue.post(std::vector<Query>(64, {.mesh = mesh, .direction = {0, 0, 1}, .distance = 1}), {}, scene);
+  std::future<PoolAnswers> answers = queue.post(
+      std::vector<Query>(64, {.mesh = mesh, .direction = {0, 0, 1}, .distance = 1}), Mode::contact, {}, scene);
   const std::optional<Chunk> first = queue.take(0, 0), second = queue.take(1, 0);
   REQUIRE((first && second));
   const std::exception_ptr shortage = std::make_exception_ptr(std::bad_alloc());

@@ -113,14 +113,12 @@ Boxes::Boxes(uint32_t sensors, uint32_t boxes)
           tools::Table1{.boxes = boxes, .sensors = sensors, .shape = tools::SensorShape::box, .seed = 31})),
       player(workload) {
   player.show(0);
-  for (const tools::QuerySpec& spec : workload.queries) {
-    queries.push_back(tools::toQuery(spec, queries.size() % 3 == 0 ? Mode::sampled : Mode::contact, 16));
-  }
+  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 16));
 }
 
-std::vector<Result> Boxes::answers() const {
+std::vector<Result> Boxes::answers(Mode mode) const {
   Sweeper sweeper(twoDevices()[0], player.scene(), kOnDevice);
-  return sweeper.run(queries);
+  return sweeper.run(queries, mode).results;
 }
 
 size_t differences(std::span<const Result> a, std::span<const Result> b) {

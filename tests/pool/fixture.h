@@ -41,11 +41,11 @@ std::span<const Device> twoDevices();
 /// The faults of one of these devices. A test that sets faults clears them.
 Faults& faults(size_t device);
 
-/// A scene of boxes and the queries of its sensors; every third one uses mode sampled.
+/// A scene of boxes and the queries of its sensors.
 struct Boxes {
   explicit Boxes(uint32_t sensors, uint32_t boxes = 2'000);
   /// The answers of a plain sweeper on the first device.
-  std::vector<Result> answers() const;
+  std::vector<Result> answers(Mode mode = Mode::contact) const;
 
   tools::Workload workload;
   tools::ScenePlayer player;

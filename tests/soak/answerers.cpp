@@ -16,10 +16,6 @@ using fuzz::require;
 constexpr uint32_t kMostQueries = 64, kMostSampled = 12, kFewQueries = 3;
 constexpr uint32_t kMostSearches = 1u << 15, kMostCandidates = 1u << 20;
 
-std::string none(size_t) {
-  return "";
-}
-
 Capacity anyCapacity(tools::Random& random) {
   return {.queries = random.oneIn(4) ? 1 + random.below(kMostQueries) : kMostQueries,
           .candidates = random.oneIn(4) ? 1 + random.below(2000) : 1u << 15,
@@ -55,32 +51,32 @@ void Answerers::share() {
   sharedRecorder_.emplace(*copy_, sharedRoom_);
 }
 
-Batch Answerers::batchOf(std::vector<Query> queries) {
-  Batch batch{std::move(queries), {}};
-  batch.exact = test::ask(cpu_, batch.queries);
+Batch Answerers::batchOf(std::vector<Query> queries, Mode mode) {
+  Batch batch{.queries = std::move(queries), .mode = mode};
+  batch.exact = cpu_.run(batch.queries);
   return batch;
 }
 
-std::vector<Query> Answerers::choose() {
+Batch Answerers::choose() {
   std::vector<Query> queries = world_->queries(kMostQueries);
-  if (!random_->oneIn(4) || !device_->supports(Mode::sampled)) return queries;
-  uint32_t drawn = 0;
+  if (!random_->oneIn(4) || !device_->supports(Mode::sampled)) return batchOf(std::move(queries));
+  std::vector<Query> drawn;
   for (Query query : queries) {
-    query.mode = Mode::sampled;
     query.resolution = 8u << random_->below(4);
     query.clearance = 0;
     query.hits = 1;
     query.ignoreLeaving = query.skipOverlapping = false;
-    if (validate(query, world_->scene()).empty() && drawn < kMostSampled) queries[drawn++] = query;
+    const bool isValid = validate(query, world_->scene(), Mode::sampled).empty();
+    if (isValid && drawn.size() < kMostSampled) drawn.push_back(query);
   }
-  return queries;
+  return batchOf(std::move(drawn), Mode::sampled);
 }
 
 void Answerers::checkExact(const Batch& batch) {
   const auto few = static_cast<ptrdiff_t>(std::min<size_t>(kFewQueries, batch.queries.size()));
   const Batch first = batchOf({batch.queries.begin(), batch.queries.begin() + few});
   measured(Who::bruteForce, *tally_, [&] {
-    fuzz::checkAnswers(world_->scene(), first.queries, first.exact.results, first.exact.lists);
+    fuzz::checkAnswers(world_->scene(), first.queries, first.exact);
     tally_->add(Who::bruteForce, first.queries.size());
   });
   if (!random_->oneIn(4)) return;
@@ -89,26 +85,25 @@ void Answerers::checkExact(const Batch& batch) {
     CpuSweeper fresh(anew, 1);
     std::vector<Query> exact, close;
     for (const Query& query : batch.queries) (query.clearance > 0 ? close : exact).push_back(query);
-    checkBatch(batchOf(exact), test::ask(fresh, exact), none, "", Who::cpu, *tally_);
+    checkBatch(batchOf(exact), fresh.run(exact), "", Who::cpu, *tally_);
     // Their brackets depend on the trees over meshes, which are fitted to changes, or built anew.
-    checkBrackets(batchOf(close), fresh.run(close), *tally_);
+    checkBrackets(batchOf(close), fresh.run(close).results, *tally_);
   });
 }
 
 template <class Remake>
 void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
   const FaultPlan plan = chooseFault(*random_, true);
-  const auto reasonOf = [&](size_t i) { return sweeper->reason(i); };
-  test::Answers found;
-  const FaultOutcome outcome = under(plan, *tally_, [&] { found = test::ask(*sweeper, batch.queries); });
-  if (!outcome.threw) checkBatch(batch, found, reasonOf, outcome.happened ? outcome.reason : "", who, *tally_);
+  Answers found;
+  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
+  if (!outcome.threw) checkBatch(batch, found, outcome.happened ? outcome.reason : "", who, *tally_);
   if (!outcome.happened) return;
   if (*plan.fault == Fault::lost) remake();
-  checkBatch(batch, test::ask(*sweeper, batch.queries), reasonOf, "", who, *tally_);
+  checkBatch(batch, sweeper->run(batch.queries, batch.mode), "", who, *tally_);
 }
 
 /// The fault is in the engine's calls; the submission is the host's.
-test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
+Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
   const FaultPlan plan = chooseFault(*random_, false);
   gpu::Submission submission(device_->impl(), false);
   gpu::Commands commands = submission.begin();
@@ -122,21 +117,19 @@ test::Answers Answerers::record(Recorder& recorder, std::span<const Query> queri
     recorder.record(commands, queries);
   }
   submission.submitAndWait();
-  test::Answers found;
-  found.results = recorder.read(&found.lists);
-  return found;
+  return recorder.read();
 }
 
 template <class Make>
 void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity& capacity, const Batch& all,
                             const Make& make) {
-  const Batch& batch =
-      all.queries.size() <= capacity.queries
-          ? all
-          : batchOf({all.queries.begin(), all.queries.begin() + static_cast<ptrdiff_t>(capacity.queries)});
+  std::vector<Query> queries = all.queries;
+  std::erase_if(queries, [&](const Query& query) { return !test::isRecordable(query, world_->scene()); });
+  if (queries.size() > capacity.queries) queries.resize(capacity.queries);
+  const Batch batch = batchOf(std::move(queries));
   for (int i = 0; i < 40; ++i) {
     try {
-      const test::Answers found = record(*recorder, batch.queries);
+      const Answers found = record(*recorder, batch.queries);
       fuzz::checkRecorded(batch.queries, found, batch.exact);
       tally_->add(who, batch.queries.size());
       if (!fuzz::isTooSmall(found)) return;
@@ -167,11 +160,8 @@ void Answerers::askPool(const Batch& batch) {
   const HostDevice device = random_->oneIn(2) ? failing.handles() : HostDevice{};
   if (random_->oneIn(8)) cancel(batch);
   PoolAnswers answers;
-  const auto ask = [&] { answers = pool_->submit(batch.queries).get(); };
-  const auto check = [&](const std::string& allowed) {
-    const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
-    checkBatch(batch, {answers.results, answers.lists}, reasonOf, allowed, Who::pool, *tally_);
-  };
+  const auto ask = [&] { answers = pool_->submit(batch.queries, batch.mode).get(); };
+  const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
   const FaultOutcome outcome = under(plan, *tally_, ask, device);
   if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
   if (!outcome.happened) return;
@@ -187,25 +177,23 @@ void Answerers::askPool(const Batch& batch) {
 
 void Answerers::cancel(const Batch& batch) {
   std::stop_source stop;
-  std::future<PoolAnswers> future = pool_->submit(batch.queries, stop.get_token());
+  std::future<PoolAnswers> future = pool_->submit(batch.queries, batch.mode, stop.get_token());
   stop.request_stop();
   const PoolAnswers answers = future.get();
   tally_->add(Fault::cancelled);
-  const auto reasonOf = [&](size_t i) { return answers.reasons.contains(i) ? answers.reasons.at(i) : ""; };
-  checkBatch(batch, {answers.results, answers.lists}, reasonOf, "cancelled", Who::pool, *tally_);
+  checkBatch(batch, answers, "cancelled", Who::pool, *tally_);
 }
 
 void Answerers::round() {
   pool_->edit([&] { world_->edit(); });
-  const Batch batch = batchOf(choose());
+  const Batch batch = choose();
   checkExact(batch);
   measured(Who::sweeper, *tally_, [&] {
     askSweeper(Who::sweeper, sweeper_, batch, [&] { sweeper_.emplace(*device_, world_->scene(), options_); });
   });
   measured(Who::sharing, *tally_, [&] { askSweeper(Who::sharing, sharing_, batch, [&] { share(); }); });
   measured(Who::pool, *tally_, [&] { askPool(batch); });
-  const auto isSampled = [](const Query& query) { return query.mode == Mode::sampled; };
-  if (std::ranges::any_of(batch.queries, isSampled)) return;
+  if (batch.mode == Mode::sampled) return;
   measured(Who::recorder, *tally_, [&] {
     askRecorder(Who::recorder, recorder_, ownRoom_, batch,
                 [&] { recorder_.emplace(*device_, world_->scene(), ownRoom_); });

@@ -21,8 +21,8 @@ class Answerers {
   void round();
 
  private:
-  Batch batchOf(std::vector<Query> queries);
-  std::vector<Query> choose();
+  Batch batchOf(std::vector<Query> queries, Mode mode = Mode::contact);
+  Batch choose();
   /// Holds the CPU's answers against brute force, and against those about a scene made anew.
   void checkExact(const Batch& batch);
   template <class Remake>
@@ -30,7 +30,7 @@ class Answerers {
   template <class Make>
   void askRecorder(Who who, std::optional<Recorder>& recorder, Capacity& capacity, const Batch& batch,
                    const Make& make);
-  test::Answers record(Recorder& recorder, std::span<const Query> queries);
+  Answers record(Recorder& recorder, std::span<const Query> queries);
   void askPool(const Batch& batch);
   void cancel(const Batch& batch);
   void share();

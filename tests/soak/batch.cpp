@@ -42,8 +42,7 @@ void measured(Who who, Tally& tally, const std::function<void()>& part) {
   tally.addSeconds(who, std::chrono::duration<double>(Clock::now() - start).count());
 }
 
-void checkBatch(const Batch& batch, const test::Answers& found, const ReasonOf& reasonOf, const std::string& allowed,
-                Who who, Tally& tally) {
+void checkBatch(const Batch& batch, const Answers& found, const std::string& allowed, Who who, Tally& tally) {
   require(found.results.size() == batch.queries.size(), "another number of answers");
   for (size_t i = 0; i < batch.queries.size(); ++i) {
     const Query& query = batch.queries[i];
@@ -53,22 +52,24 @@ void checkBatch(const Batch& batch, const test::Answers& found, const ReasonOf& 
       require(false, "query " + std::to_string(i) + ": " + what + ": found" + fuzz::inWords(query, result) +
                          "; expected" + fuzz::inWords(query, exact));
     };
-    if (query.mode == Mode::sampled) {
-      fuzz::checkSampled(result, exact, reasonOf(i));
+    if (batch.mode == Mode::sampled) {
+      fuzz::checkSampled(result, exact, test::reasonFor(found, i));
       tally.add(Who::sampled, 1);
       continue;
     }
     tally.add(who, 1);
     if (result.status == Status::invalid && !allowed.empty()) {
-      if (reasonOf(i).find(allowed) == std::string::npos) fail("invalid for another reason: " + reasonOf(i));
+      const std::string reason = test::reasonFor(found, i);
+      if (reason.find(allowed) == std::string::npos) fail("invalid for another reason: " + reason);
       ++tally.invalid;
       continue;
     }
     if (!isSame(result, exact)) fail("another answer");
-    if (!std::ranges::equal(found.lists.hitsOf(i), batch.exact.lists.hitsOf(i), isSame))
-      fail("another list of hits" + inWords(found.lists.hitsOf(i)) + " instead of" +
-           inWords(batch.exact.lists.hitsOf(i)));
-    if (!std::ranges::equal(found.lists.overlappingOf(i), batch.exact.lists.overlappingOf(i))) fail("another overlap");
+    const Listed &ours = test::listedBy(found, i), &theirs = test::listedBy(batch.exact, i);
+    if (!std::ranges::equal(ours.hits, theirs.hits, isSame)) {
+      fail("another list of hits" + inWords(ours.hits) + " instead of" + inWords(theirs.hits));
+    }
+    if (ours.overlapping != theirs.overlapping) fail("another overlap");
   }
 }
 

@@ -11,16 +11,13 @@ namespace radar::soak {
 
 struct Batch {
   std::vector<Query> queries;
-  test::Answers exact;
+  Mode mode = Mode::contact;
+  Answers exact{};
 };
-
-/// The reason why an answer is invalid.
-using ReasonOf = std::function<std::string(size_t)>;
 
 /// Throws std::logic_error unless each answer has the bits of the exact one, or, in mode sampled, says nothing wrong.
 /// `allowed`: if not empty, answers may be invalid for a reason that has this in it; they are counted.
-void checkBatch(const Batch& batch, const test::Answers& found, const ReasonOf& reasonOf, const std::string& allowed,
-                Who who, Tally& tally);
+void checkBatch(const Batch& batch, const Answers& found, const std::string& allowed, Who who, Tally& tally);
 
 /// Throws std::logic_error if an answer contradicts the CPU's other one to the same query with a clearance.
 void checkBrackets(const Batch& batch, std::span<const Result> found, Tally& tally);

@@ -66,7 +66,7 @@ class HardWorld : public World {
     model_ = Model::of(scene_);
     ownMeshes_ = static_cast<uint32_t>(workload.meshes.size());
     for (const tools::QuerySpec& spec : workload.queries) {
-      asked_.push_back(tools::toQuery(spec, Mode::contact));
+      asked_.push_back(tools::toQuery(spec));
       sizes_.push_back(tools::sensorSize(scene_, asked_.back()));
     }
   }

@@ -80,7 +80,7 @@ void MovedAnswerers::change() {
 template <class Queries>
 void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query> queries) {
   CpuSweeper cpu(world_.truth, 1);
-  const test::Answers exact = test::ask(cpu, queries);
+  const Answers exact = cpu.run(queries);
   for (Recorder* recorder : {&recorder_, &sharing_}) {
     const FaultPlan plan = chooseFault(*random_, false);
     gpu::Submission submission(device_->impl(), false);
@@ -93,8 +93,7 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
       recorder->record(commands, recorded, world_.geometry());
     }
     submission.submitAndWait();
-    test::Answers found;
-    found.results = recorder->read(&found.lists);
+    const Answers found = recorder->read();
     fuzz::require(recorder->boundsViolation().empty(), recorder->boundsViolation());
     fuzz::checkRecorded(queries, found, exact);
     tally_->limited += fuzz::isTooSmall(found);
@@ -104,10 +103,8 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
 
 void MovedAnswerers::tellAndAsk(const std::vector<Query>& queries) {
   world_.tell();
-  CpuSweeper cpu(world_.truth, 1);
-  const Batch batch{queries, test::ask(cpu, queries)};
-  checkBatch(
-      batch, test::ask(sweeper_, queries), [](size_t) { return ""; }, "", Who::sweeper, *tally_);
+  const Batch batch{.queries = queries, .exact = CpuSweeper(world_.truth, 1).run(queries)};
+  checkBatch(batch, sweeper_.run(queries), "", Who::sweeper, *tally_);
 }
 
 void MovedAnswerers::round() {

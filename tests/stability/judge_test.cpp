@@ -19,7 +19,7 @@ struct Boxes {
         {makeBox({1, 1, 1}), {}}, {{makeBox({1, 1, 1}), {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 3}}}}, {0, 0, 1}, 5};
     const Workload workload = sceneOf({hard}, Company::isolated);
     replaceBy(workload, 0, scene);
-    query = toQuery(workload.queries[0], Mode::contact);
+    query = toQuery(workload.queries[0]);
     exact = test::answer(scene, query);
   }
   Scene scene;
@@ -34,7 +34,7 @@ TEST_CASE("the exact answer keeps every promise, and whatever is changed in it b
   const auto judged = [&](auto change) {
     Result result = boxes.exact;
     change(result);
-    return judge(boxes.scene, boxes.query, result, boxes.exact).words();
+    return judge(boxes.scene, boxes.query, Mode::contact, result, boxes.exact).words();
   };
   REQUIRE(boxes.exact.t == 2);
   CHECK(judged([](Result&) {}).empty());
@@ -58,19 +58,18 @@ TEST_CASE("a decision says nothing but whether there is a contact") {
   query.anyHit = true;
   Result decision = test::answer(boxes.scene, query);
   decision.tier = Tier::contact;
-  CHECK(judge(boxes.scene, query, decision, boxes.exact).words().empty());
+  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact).words().empty());
   decision.object = 0;
-  CHECK(judge(boxes.scene, query, decision, boxes.exact)[Fault::wrongPair]);
+  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact)[Fault::wrongPair]);
   decision.status = Status::overlap;
-  CHECK(judge(boxes.scene, query, decision, boxes.exact)[Fault::wrongStatus]);
-  CHECK_FALSE(judge(boxes.scene, query, boxes.exact, boxes.exact).right());
+  CHECK(judge(boxes.scene, query, Mode::contact, decision, boxes.exact)[Fault::wrongStatus]);
+  CHECK_FALSE(judge(boxes.scene, query, Mode::contact, boxes.exact, boxes.exact).right());
 }
 
 TEST_CASE("an upper bound before the exact t, a lower one, and a contact or a clear that is none are violations") {
-  Boxes boxes;
-  boxes.query.mode = Mode::sampled;
+  const Boxes boxes;
   const auto judged = [&](const Result& result, const Result& exact) {
-    return judge(boxes.scene, boxes.query, result, exact);
+    return judge(boxes.scene, boxes.query, Mode::sampled, result, exact);
   };
   Result result = boxes.exact;
   result.lo = 0;

@@ -1,26 +1,26 @@
-// Answers for tests: to a batch, of the CPU to a single query, and made-up ones.
+// Answers for tests: parts of those to a batch, of the CPU to a single query, and made-up ones.
 #pragma once
 
-#include <utility>
+#include <string>
 
 #include "radar/cpu_sweeper.h"
 
 namespace radar::test {
 
-/// The answers to a batch.
-struct Answers {
-  std::vector<Result> results;
-  Lists lists;
-};
+/// What a query lists.
+inline const Listed& listedBy(const Answers& answers, size_t query) {
+  static const Listed kNothing;
+  return answers.lists.empty() ? kNothing : answers.lists[query];
+}
 
-template <class Sweeper>
-Answers ask(Sweeper& sweeper, std::span<const Query> queries) {
-  std::vector<Result> results = sweeper.run(queries);
-  return {std::move(results), sweeper.lists()};
+/// Why a query is not answered; empty if it is.
+inline std::string reasonFor(const Answers& answers, size_t query) {
+  const auto found = answers.reasons.find(query);
+  return found == answers.reasons.end() ? "" : found->second;
 }
 
 inline Result answer(CpuSweeper& sweeper, const Query& query) {
-  return sweeper.run({&query, 1})[0];
+  return sweeper.run({&query, 1}).results[0];
 }
 
 /// With a new sweeper.

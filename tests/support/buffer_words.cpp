@@ -2,7 +2,7 @@
 
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
-#include "gpu/pipeline.h"
+#include "gpu/kernel.h"
 #include "gpu/submission.h"
 #include "spirv/copy_words_comp.h"
 #include "support/bindings.h"

@@ -23,9 +23,5 @@ template <class T>
 std::vector<T> elementsOf(const gpu::Array<T>& array, size_t first, size_t count) {
   return elementsOf<T>(array.get(), first, count);
 }
-template <class T>
-std::vector<T> elementsOf(const gpu::TexelArray<T>& array, size_t first, size_t count) {
-  return elementsOf<T>(array.get(), first, count);
-}
 
 }  // namespace radar::test

@@ -75,7 +75,7 @@ TEST_CASE("hits and overlapping objects appear only where the query asks for the
   QuerySpec query = queryWithId("a");
   query.hits = 2;
   query.skipOverlapping = true;
-  const Answer answer{.result = hit(), .hits = {hit(), hit()}, .overlapping = {3, 5}};
+  const Answer answer{.result = hit(), .listed = {.hits = {hit(), hit()}, .overlapping = {3, 5}}};
   const auto line = nlohmann::json::parse(answerLine(query, answer));
   CHECK(line["overlapping"] == nlohmann::json::parse("[3, 5]"));
   REQUIRE(line["hits"].size() == 2);
@@ -94,7 +94,8 @@ TEST_CASE("objects are named where the scene has names") {
   const std::vector<std::string> names{"", "", "", "", "", "", "", "the \"lid\""};
   Result other = hit();
   other.object = 3;
-  const auto line = nlohmann::json::parse(answerLine(query, {.result = hit(), .hits = {hit(), other}}, names));
+  const auto line =
+      nlohmann::json::parse(answerLine(query, {.result = hit(), .listed = {.hits = {hit(), other}}}, names));
   CHECK(line["object_name"] == "the \"lid\"");
   CHECK(line["hits"][0]["object_name"] == "the \"lid\"");
   CHECK(line["hits"][1]["object_name"].is_null());
@@ -125,7 +126,7 @@ TEST_CASE("a query with a motion is answered in fractions and in distances of it
   result.t = result.fraction = 0.5;
   result.lo = 0.4375;
   result.hi = 0.75;
-  const auto line = nlohmann::json::parse(answerLine(query, {.result = result, .hits = {result}}));
+  const auto line = nlohmann::json::parse(answerLine(query, {.result = result, .listed = {.hits = {result}}}));
   CHECK((line["fraction"] == 0.5 && line["fraction_lo"] == 0.4375 && line["fraction_hi"] == 0.75));
   CHECK((line["t"] == 2.5 && line["time"] == 0.25));
   CHECK((line["lo"] <= 2.1875 && line["lo"] > 2.1874 && line["hi"] >= 3.75 && line["hi"] < 3.7501));

@@ -18,10 +18,10 @@ class ThreadedSweepers {
       : scene_(scene), one_(scene, 1), two_(scene, 2), five_(scene, 5) {}
 
   void check(std::vector<radar::Query> queries) {
-    const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries);
+    const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries).results;
     compare(queries, exact);
     for (radar::Query& query : queries) query.anyHit = true;
-    const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries);
+    const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries).results;
     compare(queries, decided);
     for (size_t i = 0; i < queries.size(); ++i) {
       INFO("query " << i << " of " << queries.size() << ", anyHit");
@@ -36,7 +36,7 @@ class ThreadedSweepers {
  private:
   void compare(const std::vector<radar::Query>& queries, const std::vector<radar::Result>& expected) {
     for (radar::CpuSweeper* sweeper : {&one_, &two_, &five_}) {
-      const std::vector<radar::Result> results = sweeper->run(queries);
+      const std::vector<radar::Result> results = sweeper->run(queries).results;
       REQUIRE(results.size() == queries.size());
       for (size_t i = 0; i < queries.size(); ++i) {
         INFO("query " << i << " of " << queries.size());
@@ -52,7 +52,7 @@ class ThreadedSweepers {
 inline std::vector<radar::Query> queriesOf(const radar::tools::Workload& workload, uint32_t scene = 0) {
   std::vector<radar::Query> queries;
   for (const radar::tools::QuerySpec& spec : workload.queries) {
-    if (spec.scene == scene) queries.push_back(radar::tools::toQuery(spec, radar::Mode::contact));
+    if (spec.scene == scene) queries.push_back(radar::tools::toQuery(spec));
   }
   return queries;
 }

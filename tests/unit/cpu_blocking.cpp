@@ -14,11 +14,10 @@ namespace {
 
 /// Checks an answer and its lists by brute force.
 void check(const Scene& scene, const Query& query) {
-  CpuSweeper sweeper(scene, 1);
-  const Result result = sweeper.run({&query, 1})[0];
-  const Lists& lists = sweeper.lists();
+  const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
+  const Listed& listed = test::listedBy(answers, 0);
   const oracle::Truth truth = oracle::truthOf(scene, query);
-  const std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+  const std::string fault = oracle::faultOf(truth, query, answers.results[0], listed.hits, listed.overlapping);
   INFO(fault);
   REQUIRE(fault.empty());
 }
@@ -93,7 +92,7 @@ TEST_CASE("solids that fit exactly move until their interiors would meet") {
     Query query{.mesh = made.meshes[0], .worldFromMesh = pose, .direction = turned(pose, direction), .distance = 1000};
     query.ignoreLeaving = true;
     if (random.chance(0.5)) query.slack = 0;
-    const Result result = CpuSweeper(made.scene, 1).run({&query, 1})[0];
+    const Result result = CpuSweeper(made.scene, 1).run({&query, 1}).results[0];
     const Rational truth = truthOf(made, direction);
     if (truth < 0) {
       REQUIRE(result.status == Status::clear);
@@ -125,7 +124,7 @@ TEST_CASE("solids at rest in rotated poses move as they would unrotated") {
     // Rounded once more, so that surfaces that touched may cross.
     for (size_t k : {3, 7, 11}) query.worldFromMesh.m[k] *= 1 + 0x1p-53 * random.integer(-1, 1);
     query.ignoreLeaving = true;
-    const Result result = CpuSweeper(made.scene, 1).run({&query, 1})[0];
+    const Result result = CpuSweeper(made.scene, 1).run({&query, 1}).results[0];
     const Rational truth = truthOf(made, direction);
     if (truth < 0) {
       REQUIRE(result.status == Status::clear);
@@ -197,8 +196,8 @@ TEST_CASE("the blocking graph of a burr puzzle is the known one, and peeling tak
         query.exclude.push_back(static_cast<ObjectId>(piece));
         query.ignoreLeaving = true;
         query.hits = kAllHits;
-        const Result first = sweeper.run({&query, 1})[0];
-        if (first.status == Status::clear) free.insert(piece);
+        const Answers answers = sweeper.run({&query, 1});
+        if (answers.results[0].status == Status::clear) free.insert(piece);
         std::map<ObjectId, double> expected, found;
         for (ObjectId other = 0; other < pieces.size(); ++other) {
           if (std::find(query.exclude.begin(), query.exclude.end(), other) != query.exclude.end()) continue;
@@ -206,7 +205,7 @@ TEST_CASE("the blocking graph of a burr puzzle is the known one, and peeling tak
           const double length = std::hypot(direction[0], direction[1], direction[2]);
           if (s >= 0) expected[other] = s.convert_to<double>() * length;
         }
-        for (const Result& hit : sweeper.lists().hitsOf(0)) found[hit.object] = hit.t;
+        for (const Result& hit : answers.lists[0].hits) found[hit.object] = hit.t;
         INFO("step " << key << ", piece " << piece << ", direction " << direction[0] << direction[1] << direction[2]);
         REQUIRE(found.size() == expected.size());
         for (const auto& [object, t] : expected) REQUIRE(found.at(object) == Approx(t).epsilon(1e-14));

@@ -1,9 +1,9 @@
 // The bounds of the CPU's search contain the exact time of contact, for every pair of nodes and of triangles, not only
 // for those that a search visits.
 #include "cpu/leaf_test.h"
-#include "cpu/swept_box.h"
 #include "cpu_wild_scenes.h"
 #include "exact/contact.h"
+#include "query/swept_box.h"
 
 using namespace radar;
 using namespace radar::cpu;
@@ -27,7 +27,7 @@ struct Pair {
   const Mesh &a, &b;
   const Transform &poseA, &poseB;
   Motion motion;
-  Placement placementA, placementB;
+  MeshPlacement placementA, placementB;
   PairMotion pairMotion;
   RelativePlacement fromA, fromB;
 

@@ -34,7 +34,7 @@ void runSoup(uint64_t seed, double scale, double far) {
     if (random.chance(0.2)) query.exclude = {0};
     if (random.chance(0.2)) query.mask = 2;
   }
-  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries);
+  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries).results;
   for (size_t q = 0; q < queries.size(); ++q) {
     INFO("seed " << seed << " scale " << scale << " far " << far << " query " << q);
     soups::check(scene, queries[q], results[q]);
@@ -74,7 +74,7 @@ TEST_CASE("the CPU's answers equal brute force for tiny sensors beside huge obje
         random.pose(sizeA, {0.5 * sizeB * random.uniform(-1, 1), 0.5 * sizeB * random.uniform(-1, 1), -2 * size});
     query.direction = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1};
     query.distance = 20 * size;
-    soups::check(scene, query, CpuSweeper(scene, 1).run({&query, 1})[0]);
+    soups::check(scene, query, CpuSweeper(scene, 1).run({&query, 1}).results[0]);
   }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("the CPU's answers equal brute force on integer lattices, where everyt
       }
       query.distance = random.integer(0, 12);
       INFO("seed " << seed << " query " << q);
-      soups::check(scene, query, sweeper.run({&query, 1})[0]);
+      soups::check(scene, query, sweeper.run({&query, 1}).results[0]);
     }
   }
 }

@@ -125,7 +125,7 @@ void runSoup(uint64_t seed, double scale, double far, Counts& counts) {
     query.clearance = scale * std::exp(random.uniform(-7, 1));
     if (random.chance(0.5)) query.tolerance = scale * std::exp(random.uniform(-20, -3));
   }
-  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries);
+  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries).results;
   for (size_t q = 0; q < queries.size(); ++q) {
     INFO("seed " << seed << " scale " << scale << " far " << far << " query " << q);
     check(scene, queries[q], results[q], 8 * scale, counts);
@@ -153,7 +153,7 @@ TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
   scene.addObject({box, soups::at(5, 0, 0)});
   Query query{.mesh = box, .direction = {3, 0, 0}, .distance = 10};
   query.clearance = 0.25;
-  const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1})[0]; };
+  const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1}).results[0]; };
   CHECK(move().t == Approx(3.75).epsilon(1e-6));
   CHECK(move().hi - move().lo <= 1e-6);
   query.tolerance = 0;
@@ -180,18 +180,18 @@ TEST_CASE("with a clearance, contacts are listed for each object, and what does 
   query.clearance = 0.5;
   query.hits = kAllHits;
   CpuSweeper sweeper(scene, 1);
-  REQUIRE(sweeper.run({&query, 1})[0].object == beside);
-  REQUIRE(sweeper.lists().hitsOf(0).size() == 4);
+  const Answers all = sweeper.run({&query, 1});
+  REQUIRE(all.results[0].object == beside);
+  REQUIRE(all.lists[0].hits.size() == 4);
   query.ignoreLeaving = true;
-  const Result first = sweeper.run({&query, 1})[0];
-  CHECK(first.object == 2);
-  CHECK(first.t == Approx(1.5).epsilon(1e-6));
-  const auto hits = sweeper.lists().hitsOf(0);
+  const Answers blocking = sweeper.run({&query, 1});
+  CHECK(blocking.results[0].object == 2);
+  CHECK(blocking.results[0].t == Approx(1.5).epsilon(1e-6));
+  const std::vector<Result>& hits = blocking.lists[0].hits;
   REQUIRE(hits.size() == 3);
   CHECK((hits[0].object == 2 && hits[1].object == 1 && hits[2].object == 0));
   query.hits = 2;
-  sweeper.run({&query, 1});
-  CHECK(sweeper.lists().hitsOf(0).size() == 2);
+  CHECK(sweeper.run({&query, 1}).lists[0].hits.size() == 2);
 }
 
 TEST_CASE("needles that pass by a hair are not certified as within a smaller clearance") {
@@ -248,7 +248,8 @@ TEST_CASE("an object that passes at the clearance, to rounding, widens the brack
   CpuSweeper sweeper(scene, 1);
   for (const uint32_t hits : {1u, 2u, 3u, kAllHits}) {
     query.hits = hits;
-    const Result result = sweeper.run({&query, 1})[0];
+    const Answers answers = sweeper.run({&query, 1});
+    const Result& result = answers.results[0];
     CAPTURE(hits);
     CHECK(result.object == 0);
     CHECK(result.lo <= 1.5);
@@ -256,7 +257,7 @@ TEST_CASE("an object that passes at the clearance, to rounding, widens the brack
     CHECK(result.t == result.lo);
     CHECK(result.hi == Approx(3.75));
     if (hits == 1) continue;
-    const auto listed = sweeper.lists().hitsOf(0);
+    const std::vector<Result>& listed = answers.lists[0].hits;
     REQUIRE(listed.size() == 3);
     CHECK((listed[0].object == beside && listed[0].status == Status::undecided && listed[0].hi == INFINITY));
     CHECK((listed[1].object == 0 && listed[2].object == 1));
@@ -304,8 +305,7 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
       const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
       const auto found = cpu::approach(a, b, motion.direction, motion.unit, clearance, query.distance, tolerance);
       distances::Point<Quad> unit{motion.direction[0], motion.direction[1], motion.direction[2]};
-      const Quad length = sqrt(distances::dot(unit, unit));
-      for (Quad& c : unit) c /= length;
+      unit.normalize();
       const auto placedA = quad(a), placedB = quad(b);
       const Quad room = 1e-24 * stretch;
       CAPTURE(stretch, seed, clearance);

@@ -86,7 +86,7 @@ TEST_CASE("the CPU's answers follow a scene to which another is move-assigned") 
     if (random.chance(0.5)) CpuSweeper(other, 1).sync();
     scene = std::move(other);
     const std::vector<Query> queries = queriesThrough(random, meshes);
-    const std::vector<Result> results = sweeper.run(queries), exact = CpuSweeper(scene).run(queries);
+    const std::vector<Result> results = sweeper.run(queries).results, exact = CpuSweeper(scene).run(queries).results;
     for (size_t i = 0; i < queries.size(); ++i) {
       INFO("round " << round << " query " << i);
       REQUIRE(agreement::sameBits(results[i], exact[i]));
@@ -123,7 +123,7 @@ TEST_CASE("the CPU finds contact of meshes so small that the inverse of their si
   query.worldFromMesh = large;
   query.direction = {0, 0, 1};
   query.distance = 10;
-  const Result result = CpuSweeper(scene, 1).run({&query, 1})[0];
+  const Result result = CpuSweeper(scene, 1).run({&query, 1}).results[0];
   REQUIRE(result.status == Status::hit);
   REQUIRE(result.t == 3);
 }
@@ -140,8 +140,8 @@ TEST_CASE("the CPU answers no query of a batch in which one breaks its contract,
   CpuSweeper sweeper(scene);
   REQUIRE_THROWS_WITH(sweeper.run(queries), test::Contains("query 1: distance"));
   queries[1].distance = 1;
-  REQUIRE(sweeper.run(queries).size() == 3);
-  REQUIRE(sweeper.run({}).empty());
+  REQUIRE(sweeper.run(queries).results.size() == 3);
+  REQUIRE(sweeper.run({}).results.empty());
 }
 
 TEST_CASE("a scene whose meshes are deformed answers as one that is built anew") {
@@ -171,7 +171,8 @@ TEST_CASE("a scene whose meshes are deformed answers as one that is built anew")
         query.direction = {1, random.uniform(-0.2, 0.2), 0};
         query.distance = 8;
       }
-      const std::vector<Result> results = sweeper.run(queries), expected = CpuSweeper(again, 1).run(queries);
+      const std::vector<Result> results = sweeper.run(queries).results,
+                                expected = CpuSweeper(again, 1).run(queries).results;
       for (size_t i = 0; i < queries.size(); ++i) REQUIRE(agreement::sameBits(results[i], expected[i]));
     }
   }

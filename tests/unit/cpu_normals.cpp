@@ -15,7 +15,7 @@ Judged judged(uint64_t seed, int cases, const Fill& fill) {
     Random random(seed + static_cast<uint64_t>(i));
     Case one;
     fill(random, one);
-    const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries);
+    const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries).results;
     for (size_t q = 0; q < results.size(); ++q) {
       const size_t before = all.faults.size();
       all.add(one.scene, one.queries[q], results[q]);

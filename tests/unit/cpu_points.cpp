@@ -102,7 +102,7 @@ TEST_CASE("a corner that touches is the point of contact, at every scale and far
         if (random.chance(0.3)) {
           for (Query& query : one.queries) query.clearance = scale * random.uniform(0.01, 0.5);
         }
-        const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries);
+        const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries).results;
         for (size_t q = 0; q < results.size(); ++q) points.add(one.scene, one.queries[q], results[q]);
       }
       CAPTURE(scale, far, isFlat);
@@ -122,7 +122,7 @@ TEST_CASE("edges cross at a point on both, also where products of their coordina
       Case one;
       normals::floats(random, 1, one);
       place(one, scale, 0);
-      const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries);
+      const std::vector<Result> results = CpuSweeper(one.scene, 1).run(one.queries).results;
       for (size_t q = 0; q < results.size(); ++q) {
         const Result& result = results[q];
         if (result.featureA != Feature::edge || result.featureB != Feature::edge) continue;

@@ -25,7 +25,7 @@ struct Room {
   Result move(std::array<double, 3> direction, double distance = 10) {
     Query query{.mesh = box, .worldFromMesh = soups::at(0.5, 0.5, 0.5), .direction = direction, .distance = distance};
     query.ignoreLeaving = true;
-    return CpuSweeper(scene, 1).run({&query, 1})[0];
+    return CpuSweeper(scene, 1).run({&query, 1}).results[0];
   }
 };
 
@@ -93,14 +93,13 @@ TEST_CASE("objects that cross the sensor are skipped and listed, those that touc
   Query query{.mesh = room.box, .worldFromMesh = soups::at(0.5, 0.5, 0.5), .direction = {1, 0, 0}, .distance = 10};
   query.ignoreLeaving = query.skipOverlapping = true;
   CpuSweeper sweeper(room.scene, 1);
-  const Result result = sweeper.run({&query, 1})[0];
-  REQUIRE(result.object == wall);
-  REQUIRE(result.t == 2);
-  const auto overlapping = sweeper.lists().overlappingOf(0);
-  REQUIRE(std::vector(overlapping.begin(), overlapping.end()) == std::vector{crossing});
+  const Answers answers = sweeper.run({&query, 1});
+  REQUIRE(answers.results[0].object == wall);
+  REQUIRE(answers.results[0].t == 2);
+  REQUIRE(answers.lists[0].overlapping == std::vector{crossing});
 
   query.ignoreLeaving = false;  // then the floor, which is only touched, ends the motion
-  REQUIRE(sweeper.run({&query, 1})[0].object == resting);
+  REQUIRE(sweeper.run({&query, 1}).results[0].object == resting);
 }
 
 TEST_CASE("equal boxes stacked exactly let each other go upwards only") {
@@ -129,7 +128,7 @@ TEST_CASE("boxes pressed together are blocked though rounding has let them pass 
       query.direction[k] = -rest.m[4 * k + 2];
     }
     query.ignoreLeaving = true;
-    const Result result = CpuSweeper(room.scene, 1).run({&query, 1})[0];
+    const Result result = CpuSweeper(room.scene, 1).run({&query, 1}).results[0];
     REQUIRE(result.status != Status::clear);
     REQUIRE(result.t <= 1e-12);
   }

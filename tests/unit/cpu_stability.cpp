@@ -50,7 +50,7 @@ TEST_CASE("the CPU's answers equal brute force for hard cases") {
       const Workload workload = workloadOf(hard);
       Scene scene;
       replaceBy(workload, 0, scene);
-      const Query query = toQuery(workload.queries[0], Mode::contact);
+      const Query query = toQuery(workload.queries[0]);
       soups::check(scene, query, test::answer(scene, query));
       ++checked;
     }
@@ -71,14 +71,13 @@ TEST_CASE("all contacts and skipped objects among bodies at rest equal brute for
       const Workload workload = workloadOf(hard);
       Scene scene;
       replaceBy(workload, 0, scene);
-      Query query = toQuery(workload.queries[0], Mode::contact);
+      Query query = toQuery(workload.queries[0]);
       query.hits = kAllHits;
-      CpuSweeper sweeper(scene, 1);
-      const Result result = sweeper.run({&query, 1})[0];
+      const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
       ++cases;
-      const Lists& lists = sweeper.lists();
+      const auto& [hits, overlapping] = answers.lists[0];
       const oracle::Truth truth = oracle::truthOf(scene, query);
-      const std::string fault = oracle::faultOf(truth, query, result, lists.hitsOf(0), lists.overlappingOf(0));
+      const std::string fault = oracle::faultOf(truth, query, answers.results[0], hits, overlapping);
       INFO(fault);
       REQUIRE(fault.empty());
       contacts += truth.contacts.size();
@@ -108,9 +107,9 @@ TEST_CASE("bodies at rest are wound outwards, and the one that moves later touch
                   .direction = hard.direction,
                   .exclude = hard.exclude,
                   .skipOverlapping = true};
-      CpuSweeper sweeper(scene, 1);
-      touching += sweeper.run({&query, 1})[0].status == Status::overlap;
-      CHECK(sweeper.lists().overlappingOf(0).empty());
+      const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
+      touching += answers.results[0].status == Status::overlap;
+      CHECK(answers.lists[0].overlapping.empty());
     }
   }
   CHECK(touching > 250);

@@ -23,7 +23,7 @@ TEST_CASE("the CPU's answers equal brute force at every scale, far away and in p
     wild::Made made;
     wild::make(random, seed % 2 == 0 ? 150 : 3, made);
     CpuSweeper sweeper(made.scene, 1);
-    const std::vector<Result> results = sweeper.run(made.queries);
+    const std::vector<Result> results = sweeper.run(made.queries).results;
     for (size_t i = 0; i < results.size(); i += 2) {
       INFO("query " << i);
       soups::checkTruth(made.scene, made.queries[i], results[i]);
@@ -44,7 +44,7 @@ TEST_CASE("the CPU's answers equal brute force for directions at the limits of t
         c = std::ldexp(std::rint(3 * random.uniform(-1, 1)), exponent - (seed % 2 == 0 ? 2 : 0));
       if (query.direction == std::array<double, 3>{}) query.direction[0] = std::ldexp(1.0, exponent);
     }
-    const std::vector<Result> results = sweeper.run(made.queries);
+    const std::vector<Result> results = sweeper.run(made.queries).results;
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("query " << i);
       soups::checkTruth(made.scene, made.queries[i], results[i]);
@@ -67,13 +67,13 @@ TEST_CASE("directions from the greatest to the least doubles are answered as far
       made.queries[i].direction = direction;
     }
     CpuSweeper sweeper(made.scene, 1);
-    const std::vector<Result> results = sweeper.run(made.queries);
+    const std::vector<Result> results = sweeper.run(made.queries).results;
     // Without the least component the direction can be scaled, and the contact is the same to far more than doubles.
     std::vector<Query> scalable = made.queries;
     for (Query& query : scalable) {
       for (double& c : query.direction) c = std::abs(c) < 1 ? 0 : c;
     }
-    const std::vector<Result> expected = sweeper.run(scalable);
+    const std::vector<Result> expected = sweeper.run(scalable).results;
     for (size_t i = 0; i < results.size(); ++i) {
       INFO("query " << i);
       CHECK(results[i].status == expected[i].status);

@@ -1,37 +1,18 @@
 // Distances of triangles, one of them in motion, in numbers of any precision: another method than the engine's.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <boost/multiprecision/eigen.hpp>
 #include <cmath>
 
 namespace distances {
 
 template <class Real>
-using Point = std::array<Real, 3>;
+using Point = Eigen::Matrix<Real, 3, 1>;
 template <class Real>
 using Points = std::array<Point<Real>, 3>;
-
-template <class Real>
-Point<Real> operator-(const Point<Real>& p, const Point<Real>& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-template <class Real>
-Point<Real> operator+(const Point<Real>& p, const Point<Real>& q) {
-  return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
-}
-template <class Real>
-Point<Real> operator*(const Real& f, const Point<Real>& p) {
-  return {f * p[0], f * p[1], f * p[2]};
-}
-template <class Real>
-Real dot(const Point<Real>& p, const Point<Real>& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-template <class Real>
-Point<Real> crossProduct(const Point<Real>& p, const Point<Real>& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
 
 /// Above every distance.
 template <class Real>
@@ -42,36 +23,36 @@ template <class Real>
 Real fromSegment(const Point<Real>& p, const Point<Real>& from, const Point<Real>& to) {
   using std::sqrt;
   const Point<Real> way = to - from;
-  const Real square = dot(way, way), share = square > 0 ? Real(dot(p - from, way) / square) : Real(0);
+  const Real square = way.dot(way), share = square > 0 ? Real((p - from).dot(way) / square) : Real(0);
   const Real at = share < 0 ? Real(0) : share > 1 ? Real(1) : share;
   const Point<Real> gap = p - (from + at * way);
-  return sqrt(dot(gap, gap));
+  return gap.norm();
 }
 template <class Real>
 Real acrossLines(const Point<Real>& a0, const Point<Real>& a1, const Point<Real>& b0, const Point<Real>& b1) {
   using std::abs;
   using std::sqrt;
-  const Point<Real> x = a1 - a0, y = b1 - b0, r = b0 - a0, n = crossProduct(x, y);
-  const Real nn = dot(n, n);
+  const Point<Real> x = a1 - a0, y = b1 - b0, r = b0 - a0, n = x.cross(y);
+  const Real nn = n.dot(n);
   if (nn == 0) return kFar<Real>;
-  const Real s = dot(crossProduct(r, y), n) / nn, t = dot(crossProduct(r, x), n) / nn;
-  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? Real(abs(dot(r, n)) / sqrt(nn)) : kFar<Real>;
+  const Real s = r.cross(y).dot(n) / nn, t = r.cross(x).dot(n) / nn;
+  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? Real(abs(r.dot(n)) / sqrt(nn)) : kFar<Real>;
 }
 template <class Real>
 Real aboveFace(const Point<Real>& p, const Points<Real>& face) {
   using std::abs;
   using std::sqrt;
-  const Point<Real> x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = crossProduct(x, y);
-  const Real nn = dot(n, n);
+  const Point<Real> x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = x.cross(y);
+  const Real nn = n.dot(n);
   if (nn == 0) return kFar<Real>;
-  const Real v = dot(crossProduct(r, y), n) / nn, w = dot(crossProduct(x, r), n) / nn;
-  return v >= 0 && w >= 0 && v + w <= 1 ? Real(abs(dot(r, n)) / sqrt(nn)) : kFar<Real>;
+  const Real v = r.cross(y).dot(n) / nn, w = x.cross(r).dot(n) / nn;
+  return v >= 0 && w >= 0 && v + w <= 1 ? Real(abs(r.dot(n)) / sqrt(nn)) : kFar<Real>;
 }
 template <class Real>
 bool crosses(const Point<Real>& p, const Point<Real>& q, const Points<Real>& face) {
-  const Point<Real> n = crossProduct(face[1] - face[0], face[2] - face[0]);
-  const Real before = dot(n, p - face[0]), after = dot(n, q - face[0]);
-  return before * after < 0 && aboveFace(p + Real(before / (before - after)) * (q - p), face) < kFar<Real>;
+  const Point<Real> n = (face[1] - face[0]).cross(face[2] - face[0]);
+  const Real before = n.dot(p - face[0]), after = n.dot(q - face[0]);
+  return before * after < 0 && aboveFace<Real>(p + Real(before / (before - after)) * (q - p), face) < kFar<Real>;
 }
 
 template <class Real>

@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 
-#include "engine_shaders.h"
 #include "radar/host_queries.h"
 #include "radar/radar.h"
 #include "shaders/arithmetic/interop.h"
@@ -17,6 +16,7 @@
 #include "shaders/sampled/interop.h"
 #include "spirv/host_query_comp.h"
 #include "spirv/host_query_comp_SCALAR.h"
+#include "spirv/radar_shaders.h"
 #include "spirv/shared_structs_comp.h"
 #include "spirv/shared_structs_comp_RADAR_NO_DOUBLES.h"
 #include "support/catch.h"
@@ -24,7 +24,7 @@
 namespace {
 
 using namespace radar::gpu;
-using radar::test::kEngineShaders;
+using radar::shaders::kAll;
 
 // struct -> member -> offset, and struct -> stride of its arrays.
 struct Layouts {
@@ -239,6 +239,51 @@ const std::vector<Expected>& sharedStructs() {
   return all;
 }
 
+// Of a shared struct, or of the other type that slots have.
+std::string strideOf(const std::string& type) {
+  for (const Expected& one : sharedStructs()) {
+    if (one.structure == type) return std::to_string(one.size);
+  }
+  return type == "uint" ? "4" : "";
+}
+
+// Of the bindings by number: the shared struct of a buffer's elements, or their stride; "" of an image.
+std::map<uint32_t, std::string> elementsOf(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kOpName = 5, kOpTypeRuntimeArray = 29, kOpTypeStruct = 30, kOpTypePointer = 32, kOpVariable = 59,
+                     kOpDecorate = 71, kArrayStride = 6, kBinding = 33, kDescriptorSet = 34, kStorageBuffer = 12;
+  std::map<uint32_t, std::string> names, elements;
+  std::map<uint32_t, uint32_t> numbers, strides, inner;  // of a pointer, an array, or a struct's last member
+  for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+    const uint32_t op = spirv[at] & 0xffff, last = spirv[at + (spirv[at] >> 16) - 1];
+    if (op == kOpName) names[spirv[at + 1]] = reinterpret_cast<const char*>(&spirv[at + 2]);
+    if (op == kOpDecorate && spirv[at + 2] == kBinding) numbers[spirv[at + 1]] = last;
+    if (op == kOpDecorate && spirv[at + 2] == kArrayStride) strides[spirv[at + 1]] = last;
+    if (op == kOpDecorate && spirv[at + 2] == kDescriptorSet) CHECK(last == 0);
+    if (op == kOpTypePointer || op == kOpTypeRuntimeArray || op == kOpTypeStruct) inner[spirv[at + 1]] = last;
+    if (op != kOpVariable || numbers.count(spirv[at + 2]) == 0) continue;
+    std::string& element = elements[numbers.at(spirv[at + 2])];
+    if (spirv[at + 3] != kStorageBuffer) continue;
+    const uint32_t member = inner.at(inner.at(spirv[at + 1]));
+    const std::string& name = names[strides.count(member) == 1 ? inner.at(member) : member];
+    const bool isShared = name == "RadarResult" || !strideOf(name).empty();
+    element = isShared ? name : std::to_string(strides.at(member));
+  }
+  return elements;
+}
+
+// The types of a header's slots, by number.
+std::multimap<uint32_t, std::string> slotsIn(const char* header) {
+  std::ifstream stream(std::string(RADAR_SHADERS) + "/" + header);
+  REQUIRE(stream);
+  const std::regex slot("^INTEROP_SLOT\\(\\w+, (\\d+), (\\w+)\\)");
+  std::multimap<uint32_t, std::string> slots;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (std::regex_search(line, match, slot)) slots.emplace(std::stoul(match[1]), match[2]);
+  }
+  return slots;
+}
+
 // radar/result.glsl declares it for hosts.
 const Expected& publicResult() {
   using radar::Result;
@@ -303,21 +348,57 @@ TEST_CASE("no shared struct is left out of the comparison") {
 
 TEST_CASE("the engine's shaders lay out shared structs and results as C++ does") {
   std::set<std::string> seen;
-  for (const auto& [shader, spirv] : kEngineShaders) {
-    const Layouts layouts = layoutsOf(spirv);
-    const auto check = [&, name = std::string(shader)](const Expected& one) {
-      if (layouts.offsets.count(one.structure) == 0) return;
-      CAPTURE(name, one.structure);
-      seen.insert(one.structure);
-      checkLayout(layouts, one);
-    };
-    for (const Expected& one : sharedStructs()) check(one);
-    check(publicResult());
+  for (const Shader* shader : kAll) {
+    for (const std::span<const uint32_t> spirv : {shader->spirv, shader->spirvWithoutDoubles}) {
+      const Layouts layouts = layoutsOf(spirv);
+      const auto check = [&](const Expected& one) {
+        if (layouts.offsets.count(one.structure) == 0) return;
+        CAPTURE(shader->name, one.structure);
+        seen.insert(one.structure);
+        checkLayout(layouts, one);
+      };
+      for (const Expected& one : sharedStructs()) check(one);
+      check(publicResult());
+    }
   }
   for (const char* name :
        {"RadarResult", "SearchCounts", "SearchPush", "RefinedPair", "Placement", "MeshNode", "View"}) {
     CAPTURE(name);
     CHECK(seen.count(name) == 1);
+  }
+}
+
+TEST_CASE("the build describes what each shader binds, and buffers have the elements of their slots") {
+  std::map<std::string, std::multimap<uint32_t, std::string>> slots;
+  for (const char* folder : {"arithmetic", "contact", "embed", "sampled"}) {
+    slots[folder] = slotsIn((std::string(folder) + "/interop.h").c_str());
+    slots[folder].merge(slotsIn("shared/interop.h"));
+  }
+  slots["embed"].merge(slotsIn("contact/interop.h"));
+  // Arguments are told apart by their numbers alone.
+  for (auto at = slots["embed"].begin(), next = std::next(at); next != slots["embed"].end(); at = next++) {
+    CAPTURE(at->second, next->second);
+    CHECK(at->first != next->first);
+  }
+  for (const Shader* shader : kAll) {
+    const std::string name = shader->name;
+    const auto& ofFolder = slots.at(name.substr(0, name.find('/')));
+    for (const std::span<const uint32_t> spirv : {shader->spirv, shader->spirvWithoutDoubles}) {
+      const std::map<uint32_t, std::string> elements = elementsOf(spirv);
+      CHECK((spirv.empty() || elements.size() == shader->bindings.size()));
+      for (const Binding& binding : shader->bindings) {
+        CAPTURE(name, binding.number, binding.name);
+        if (spirv.empty()) continue;
+        REQUIRE(elements.count(binding.number) == 1);
+        const std::string& element = elements.at(binding.number);
+        CHECK(element.empty() == (binding.type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER));
+        if (element.empty()) continue;
+        const auto [first, end] = ofFolder.equal_range(binding.number);
+        CHECK(std::any_of(first, end, [&](const auto& slot) {
+          return slot.second == (element == "RadarResult" ? "Result" : element) || strideOf(slot.second) == element;
+        }));
+      }
+    }
   }
 }
 
@@ -348,17 +429,11 @@ TEST_CASE("structs that shaders read as texels have as many whole texels as the 
 }
 
 TEST_CASE("every shader that uses doubles has a variant without them or is used only on devices with doubles") {
-  const std::set<std::string> onlyWithDoubles{"arithmetic/doubles.comp", "contact/block.comp", "contact/refine.comp"};
-  const std::string suffix = ":RADAR_NO_DOUBLES";
-  std::map<std::string, bool> doubles;
-  for (const auto& [shader, spirv] : kEngineShaders) doubles[shader] = hasDoubles(spirv);
-  for (const auto& [shader, uses] : doubles) {
-    CAPTURE(shader);
-    if (shader.ends_with(suffix)) {
-      CHECK_FALSE(uses);
-      CHECK(doubles.at(shader.substr(0, shader.size() - suffix.size())));
-    } else {
-      CHECK(uses == (doubles.count(shader + suffix) == 1 || onlyWithDoubles.count(shader) == 1));
-    }
+  const std::set<std::string> onlyWithDoubles{"arithmetic/doubles", "contact/block", "contact/refine"};
+  for (const Shader* shader : kAll) {
+    CAPTURE(shader->name);
+    const bool hasVariant = !shader->spirvWithoutDoubles.empty();
+    CHECK(hasDoubles(shader->spirv) == (hasVariant || onlyWithDoubles.count(shader->name) == 1));
+    if (hasVariant) CHECK_FALSE(hasDoubles(shader->spirvWithoutDoubles));
   }
 }

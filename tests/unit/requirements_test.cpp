@@ -1,8 +1,7 @@
 // The reasons why made-up devices are unsupported.
 #include "gpu/requirements.h"
-#include "engine_shaders.h"
-#include "gpu/spirv.h"
 #include "radar/radar.h"
+#include "spirv/radar_shaders.h"
 #include "support/catch.h"
 
 namespace {
@@ -39,23 +38,18 @@ gpu::DeviceFacts goodDevice() {
           .limits = gpu::limitsOf(limits, kSubgroups)};
 }
 
-bool isOfSampled(const std::string& shader) {
-  return shader.starts_with("sampled/");
-}
-
 // The largest number of descriptors of these types that a shader of the mode binds.
 uint64_t mostOf(std::initializer_list<VkDescriptorType> types, Mode mode) {
-  size_t most = 0, shaders = 0;
-  for (const auto& [shader, spirv] : test::kEngineShaders) {
-    if (std::string(shader).ends_with(".vert") || isOfSampled(shader) != (mode == Mode::sampled)) continue;
-    ++shaders;
-    size_t count = 0;
-    for (const gpu::Descriptor& descriptor : gpu::reflectShader(spirv, shader).descriptors) {
-      count += std::count(types.begin(), types.end(), descriptor.type);
-    }
-    most = std::max(most, count);
+  size_t most = 0, count = 0;
+  for (const gpu::Shader* shader : shaders::kAll) {
+    const bool isOfSampled = std::string(shader->name).starts_with("sampled/");
+    if (shader->stage != VK_SHADER_STAGE_COMPUTE_BIT || isOfSampled != (mode == Mode::sampled)) continue;
+    ++count;
+    size_t bound = 0;
+    for (const gpu::Binding& binding : shader->bindings) bound += std::ranges::count(types, binding.type);
+    most = std::max(most, bound);
   }
-  REQUIRE(shaders > 2);
+  REQUIRE(count > 2);
   return most;
 }
 

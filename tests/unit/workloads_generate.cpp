@@ -174,7 +174,7 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
     ScenePlayer player(workload);
     for (const QuerySpec& query : workload.queries) {
       player.show(query.scene);
-      CHECK(validate(toQuery(query, radar::Mode::sampled), player.scene()).empty());
+      CHECK(validate(toQuery(query), player.scene(), radar::Mode::sampled).empty());
     }
   }
 }
@@ -191,7 +191,7 @@ TEST_CASE("hard cases keep the contracts of Scene and Query and have the same bi
       Scene scene;
       replaceBy(workload, 0, scene);
       for (const QuerySpec& query : workload.queries) {
-        CHECK(validate(toQuery(query, radar::Mode::contact), scene).empty());
+        CHECK(validate(toQuery(query), scene).empty());
       }
     }
   }

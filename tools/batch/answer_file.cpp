@@ -109,12 +109,12 @@ std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<c
   line.addString("tier", nameOf(result.tier));
   if (answer.mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
   if (query.hits > 1) {
-    line.add("hits", listOf(answer.hits, ", ",
+    line.add("hits", listOf(answer.listed.hits, ", ",
                             [&](std::string& text, const Result& hit) { text += hitText(query, hit, objectNames); }));
   }
   if (query.skipOverlapping) {
-    line.add("overlapping",
-             listOf(answer.overlapping, ", ", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+    line.add("overlapping", listOf(answer.listed.overlapping, ", ",
+                                   [](std::string& text, ObjectId id) { text += std::to_string(id); }));
   }
   return line.text();
 }

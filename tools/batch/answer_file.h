@@ -13,9 +13,8 @@ namespace radar::tools {
 struct Answer {
   Result result;
   AnswerMode mode = AnswerMode::reference;
-  std::string reason;                 ///< why the status is invalid
-  std::vector<Result> hits;           ///< as in radar::Lists
-  std::vector<ObjectId> overlapping;  ///< as in radar::Lists
+  std::string reason;  ///< why the status is invalid
+  Listed listed;
 };
 
 /// The times of an answer, NaN where it has none: distances of the sensor in world units, and fractions.

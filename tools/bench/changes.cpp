@@ -57,7 +57,7 @@ struct Town {
 
 template <class Searcher>
 void addMethods(std::vector<Method>& methods, const std::string& where, Town& town, Searcher& searcher) {
-  const auto answer = [&searcher](std::span<const Query> queries) { return searcher.run(queries); };
+  const auto answer = [&searcher](std::span<const Query> queries) { return searcher.run(queries).results; };
   const auto add = [&](const char* name, auto change) {
     methods.push_back({where + name, answer, [&town, &searcher, change](uint32_t) {
                          change(town);
@@ -94,7 +94,7 @@ void run(uint32_t boxes, int& status) {
                        submission.submitAndWait();
                      }});
   addMethods(methods, "CPU", onCpu, cpu);
-  const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
+  const std::vector<Batch> batches = batchesOf(workload);
   printRows("changes-" + std::to_string(boxes), methods, {&batches.front(), 1}, {.least = 9, .most = 9}, status);
 }
 

@@ -113,17 +113,17 @@ void run(int& status) {
   Sea refitted(waves), rebuilt(waves), onDevice(waves);
   CpuSweeper cpu(refitted.scene), cpuRebuilt(rebuilt.scene);
   Sweeper sweeper(device, onDevice.scene, {.cpuBatch = 0});
-  std::vector<Method> methods{{"CPU, tree refitted", [&](auto queries) { return cpu.run(queries); },
+  std::vector<Method> methods{{"CPU, tree refitted", [&](auto queries) { return cpu.run(queries).results; },
                                [&](uint32_t) {
                                  refitted.refit();
                                  cpu.sync();
                                }},
-                              {"CPU, tree built anew", [&](auto queries) { return cpuRebuilt.run(queries); },
+                              {"CPU, tree built anew", [&](auto queries) { return cpuRebuilt.run(queries).results; },
                                [&](uint32_t) {
                                  rebuilt.rebuild();
                                  cpuRebuilt.sync();
                                }},
-                              {"device, tree refitted", [&](auto queries) { return sweeper.run(queries); },
+                              {"device, tree refitted", [&](auto queries) { return sweeper.run(queries).results; },
                                [&](uint32_t) {
                                  onDevice.refit();
                                  sweeper.sync();

@@ -7,13 +7,13 @@
 
 namespace radar::bench {
 
-std::vector<Batch> batchesOf(const tools::Workload& workload, Mode mode, uint32_t resolution) {
+std::vector<Batch> batchesOf(const tools::Workload& workload, uint32_t resolution) {
   std::vector<Batch> batches;
   for (const tools::Batch& one : tools::batchesOf(workload.queries)) {
     Batch& batch = batches.emplace_back();
     batch.scene = one.scene;
     for (const uint32_t i : one.queries) {
-      batch.queries.push_back(tools::toQuery(workload.queries[i], mode, resolution));
+      batch.queries.push_back(tools::toQuery(workload.queries[i], resolution));
     }
   }
   return batches;

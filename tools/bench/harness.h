@@ -17,7 +17,7 @@ struct Batch {
   uint32_t scene = 0;
   std::vector<Query> queries;
 };
-std::vector<Batch> batchesOf(const tools::Workload& workload, Mode mode, uint32_t resolution = 0);
+std::vector<Batch> batchesOf(const tools::Workload& workload, uint32_t resolution = 0);
 
 /// A way of answering queries.
 struct Method {

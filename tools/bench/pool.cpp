@@ -16,21 +16,21 @@ namespace radar::bench {
 
 namespace {
 
-Method methodOf(const char* name, Pool& pool) {
-  return {name, [&pool](std::span<const Query> queries) {
-            return pool.submit({queries.begin(), queries.end()}).get().results;
+Method methodOf(const char* name, Pool& pool, Mode mode) {
+  return {name, [&pool, mode](std::span<const Query> queries) {
+            return pool.submit({queries.begin(), queries.end()}, mode).get().results;
           }};
 }
 
-void overhead(const Device& device, const Scene& scene, Batch batch, const char* name, Mode mode, bool select,
+void overhead(const Device& device, const Scene& scene, const Batch& batch, const char* name, Mode mode, bool select,
               int& status) {
-  for (Query& query : batch.queries) query.mode = mode;
   const SweeperOptions options{.select = select, .cpuBatch = 0};
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
   Sweeper sweeper(device, scene, options);
   Pool pool({&device, 1}, scene, options);
   printRows(name,
-            {{"sweeper", [&](auto queries) { return sweeper.run(queries); }}, methodOf("pool of one device", pool)},
+            {{"sweeper", [&](auto queries) { return sweeper.run(queries, mode).results; }},
+             methodOf("pool of one device", pool, mode)},
             {&batch, 1}, {.warmUps = 3, .least = 13, .most = 13}, status);
 }
 
@@ -68,7 +68,8 @@ void unequal(std::span<const Device> devices, const Scene& scene, const Batch& b
   Pool first(devices.first(1), scene), second(devices.subspan(1, 1), scene), both(devices, scene);
   const std::vector<double> us =
       printRows("second device " + std::to_string(factor) + " times slower",
-                {methodOf("first device", first), methodOf("second device", second), methodOf("both", both)},
+                {methodOf("first device", first, Mode::sampled), methodOf("second device", second, Mode::sampled),
+                 methodOf("both", both, Mode::sampled)},
                 {&batch, 1}, {.warmUps = 3, .least = 7, .most = 7}, status);
   devices[1].impl().vk = slowed->driver;
   std::printf("# both: %.0f%% of the sum of the speeds of each\n", 100 / (1 / us[0] + 1 / us[1]) / us[2]);
@@ -82,7 +83,7 @@ void addPool(CLI::App& app, int& status) {
     const std::vector<Device> devices = openDevices();
     printHead(devices);
     const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 1});
-    Batch batch = batchesOf(workload, Mode::sampled).front();
+    Batch batch = batchesOf(workload).front();
     tools::ScenePlayer player(workload);
     player.show(batch.scene);
     overhead(devices[0], player.scene(), batch, "naive", Mode::sampled, false, status);

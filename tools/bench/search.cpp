@@ -108,7 +108,7 @@ struct Searches {
 
 template <class AnySweeper>
 Method plain(const char* name, AnySweeper& sweeper) {
-  return {name, [&](auto queries) { return sweeper.run(queries); }};
+  return {name, [&](auto queries) { return sweeper.run(queries).results; }};
 }
 
 /// Asks each query changed by `change`, once and for all before the passes that count.
@@ -121,7 +121,7 @@ Method changed(const char* name, AnySweeper& sweeper, const Change& change) {
               asked.assign(queries.begin(), queries.end());
               for (Query& query : asked) change(query);
             }
-            return sweeper.run(asked);
+            return sweeper.run(asked).results;
           }};
 }
 
@@ -144,7 +144,7 @@ void run(const Device& device, const Case& one, const Settings& settings, std::v
          int& status) {
   const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
   const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
-  const std::vector<Batch> batches = batchesOf(workload, Mode::contact);
+  const std::vector<Batch> batches = batchesOf(workload);
   tools::ScenePlayer player(workload);
   const auto show = [&](uint32_t scene) { player.show(scene); };
   show(batches[0].scene);

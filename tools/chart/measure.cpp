@@ -81,8 +81,8 @@ std::array<double*, 6> timesOf(Cell& cell) {
 }
 
 // The whole question, whatever the file says of modes.
-std::vector<bench::Batch> batchesOf(const Workload& workload, Mode mode, uint32_t resolution) {
-  std::vector<bench::Batch> batches = bench::batchesOf(workload, mode, resolution);
+std::vector<bench::Batch> batchesOf(const Workload& workload, uint32_t resolution = 0) {
+  std::vector<bench::Batch> batches = bench::batchesOf(workload, resolution);
   for (bench::Batch& batch : batches) {
     for (Query& query : batch.queries) query.anyHit = false;
   }
@@ -105,10 +105,10 @@ std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::spa
   return series.answers;
 }
 
-// Ours. `make` makes what answers in a scene.
-template <class Make>
-std::vector<Result> search(Cell& cell, const Workload& workload, Mode mode, const bench::Repetition& repetition,
-                           const Make& make) {
+// Ours. `make` makes what answers in a scene, and `ask` asks it.
+template <class Make, class Ask>
+std::vector<Result> search(Cell& cell, const Workload& workload, const bench::Repetition& repetition, const Make& make,
+                           const Ask& ask) {
   const bench::Stopwatch stopwatch;
   ScenePlayer player(workload);
   auto searcher = make(player.scene());
@@ -118,28 +118,32 @@ std::vector<Result> search(Cell& cell, const Workload& workload, Mode mode, cons
   };
   show(0);
   cell.prepareMs = 1e3 * stopwatch.lap().wall;
-  cell.certified = mode != Mode::sampled;
-  const auto answer = [&](std::span<const Query> queries) { return searcher.run(queries); };
-  return timePasses(cell, {cell.method, answer, show}, batchesOf(workload, mode, cell.size), repetition);
+  const auto answer = [&](std::span<const Query> queries) { return ask(searcher, queries).results; };
+  return timePasses(cell, {cell.method, answer, show}, batchesOf(workload, cell.size), repetition);
 }
 
 std::vector<Result> searchOnCpu(Cell& cell, const Workload& workload, const bench::Repetition& repetition) {
-  return search(cell, workload, Mode::contact, repetition,
-                [&](const Scene& scene) { return CpuSweeper(scene, cell.threads); });
+  cell.certified = true;
+  return search(
+      cell, workload, repetition, [&](const Scene& scene) { return CpuSweeper(scene, cell.threads); },
+      [](CpuSweeper& cpu, std::span<const Query> queries) { return cpu.run(queries); });
 }
 
 std::vector<Result> searchOnDevice(Cell& cell, const Workload& workload, const bench::Repetition& repetition,
                                    const Device& device) {
   const SweeperOptions options{.select = cell.family != "drawing all",
                                .cpuBatch = cell.family == "contact on device" ? 0 : kNone};
-  return search(cell, workload, cell.family.starts_with("contact") ? Mode::contact : Mode::sampled, repetition,
-                [&](const Scene& scene) { return Sweeper(device, scene, options); });
+  const Mode mode = cell.family.starts_with("contact") ? Mode::contact : Mode::sampled;
+  cell.certified = mode == Mode::contact;
+  return search(
+      cell, workload, repetition, [&](const Scene& scene) { return Sweeper(device, scene, options); },
+      [mode](Sweeper& sweeper, std::span<const Query> queries) { return sweeper.run(queries, mode); });
 }
 
 // In cell.threads threads, each with a Baseline of its own.
 std::vector<Result> cast(Cell& cell, const Workload& workload, const BaselineRow& row,
                          const bench::Repetition& repetition) {
-  std::vector<bench::Batch> batches = batchesOf(workload, Mode::contact, 0);
+  std::vector<bench::Batch> batches = batchesOf(workload);
   unmask(batches, workload);
   const bench::Stopwatch stopwatch;
   std::vector<std::unique_ptr<Baseline>> baselines;
@@ -191,7 +195,7 @@ std::vector<Result> castInChild(Cell& cell, const Workload& workload, const Base
 std::vector<double> sizesOf(const Workload& workload) {
   ScenePlayer player(workload);
   std::vector<double> sizes;
-  for (const bench::Batch& batch : batchesOf(workload, Mode::contact, 0)) {
+  for (const bench::Batch& batch : batchesOf(workload)) {
     for (const Query& query : batch.queries) {
       const double size = sensorSize(player.scene(), query);
       sizes.push_back(size > 0 ? size : 1);

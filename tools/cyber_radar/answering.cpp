@@ -63,11 +63,9 @@ std::vector<Answering::Group> Answering::groupsOf(std::span<const QuerySpec> que
     for (const uint32_t number : batch.queries) {
       const QuerySpec& spec = queries[number];
       const AnswerMode mode = spec.mode.value_or(options_.mode);
-      Part& part = mode == AnswerMode::reference ? group.onCpu : group.swept;
+      Part& part = group.parts[static_cast<size_t>(mode)];
       part.numbers.push_back(number);
-      part.modes.push_back(mode);
-      part.queries.push_back(
-          toQuery(spec, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact, options_.resolution));
+      part.queries.push_back(toQuery(spec, options_.resolution));
     }
   }
   return groups;
@@ -77,17 +75,12 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   std::vector<Answer> answers(queries.size());
   const std::vector<Group> groups = groupsOf(queries);
   const double start = bench::now();
-  const auto keep = [&](const Part& part, const PoolAnswers& found) {
+  const auto keep = [&](const Part& part, AnswerMode mode, Answers found) {
     for (size_t i = 0; i < found.results.size(); ++i) {
-      const auto reason = found.reasons.find(i);
-      const auto hits = found.lists.hitsOf(i);
-      const auto overlapping = found.lists.overlappingOf(i);
-      answers[part.numbers[i]] = {found.results[i],
-                                  part.modes[i],
-                                  reason == found.reasons.end() ? "" : reason->second,
-                                  {hits.begin(), hits.end()},
-                                  {overlapping.begin(), overlapping.end()}};
+      answers[part.numbers[i]] = {.result = found.results[i], .mode = mode};
     }
+    for (size_t i = 0; i < found.lists.size(); ++i) answers[part.numbers[i]].listed = std::move(found.lists[i]);
+    for (const auto& [i, reason] : found.reasons) answers[part.numbers[i]].reason = reason;
     for (const Result& result : found.results) {
       ++stats_.statuses[static_cast<size_t>(result.status)];
       if (result.resolution == 0) continue;
@@ -101,34 +94,26 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
   };
   for (const Group& group : groups) {
     show(group.scene);
-    if (!group.swept.queries.empty()) keep(group.swept, sweep(group.swept.queries));
-    if (!group.onCpu.queries.empty()) keep(group.onCpu, answerOnCpu(group.onCpu.queries));
+    for (const AnswerMode mode : {AnswerMode::sampled, AnswerMode::contact, AnswerMode::reference}) {
+      const Part& part = group.parts[static_cast<size_t>(mode)];
+      if (!part.queries.empty()) keep(part, mode, answer(part.queries, mode));
+    }
   }
   stats_.batches += groups.size();
   stats_.ms += 1e3 * (bench::now() - start);
   return answers;
 }
 
-PoolAnswers Answering::sweep(const std::vector<Query>& queries) {
-  if (pool_) return pool_->submit(queries).get();
-  PoolAnswers found;
-  found.results = sweeper_->run(queries);
-  found.lists = sweeper_->lists();
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (found.results[i].status == Status::invalid) found.reasons[i] = sweeper_->reason(i);
+Answers Answering::answer(const std::vector<Query>& queries, AnswerMode mode) {
+  if (mode == AnswerMode::reference) {
+    const double start = bench::now();
+    Answers found = cpu_->run(queries);
+    found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
+    return found;
   }
-  found.stats = sweeper_->stats();
-  return found;
-}
-
-PoolAnswers Answering::answerOnCpu(const std::vector<Query>& queries) {
-  const double start = bench::now();
-  PoolAnswers found;
-  found.results = cpu_->run(queries);
-  found.lists = cpu_->lists();
-  found.stats.pairs = found.stats.cpuPairs = cpu_->stats().pairs;
-  found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
-  return found;
+  const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+  if (pool_) return pool_->submit(queries, ofDevice).get();
+  return sweeper_->run(queries, ofDevice);
 }
 
 std::vector<Answer> answersTo(const Workload& workload, Answering& answering, const std::string& label) {

@@ -62,16 +62,14 @@ class Answering {
  private:
   struct Part {
     std::vector<uint32_t> numbers;  ///< among those asked together
-    std::vector<AnswerMode> modes;
     std::vector<Query> queries;
   };
   struct Group {
     uint32_t scene = 0;
-    Part swept, onCpu;
+    std::array<Part, 3> parts;  ///< by AnswerMode
   };
   void show(uint32_t scene);
-  PoolAnswers sweep(const std::vector<Query>& queries);
-  PoolAnswers answerOnCpu(const std::vector<Query>& queries);
+  Answers answer(const std::vector<Query>& queries, AnswerMode mode);
 
   std::vector<Group> groupsOf(std::span<const QuerySpec> queries) const;
 

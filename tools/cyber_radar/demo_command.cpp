@@ -112,7 +112,7 @@ std::string drawHits(const std::filesystem::path& folder, const Workload& worklo
   std::string files;
   for (uint32_t i = 0, drawn = 0; i < rows.size() && drawn < kPictures; ++i) {
     if (rows[i].sampled.result.status != Status::hit) continue;
-    const Scopes scopes = sweeper.scopes(toQuery(rows[i].query, Mode::sampled));
+    const Scopes scopes = sweeper.scopes(toQuery(rows[i].query));
     const std::string name = "teapot-" + std::to_string(i) + ".png";
     const std::string title = rows[i].query.id + ":  d = " + inDigits(scopes.d) + ",  t = " + inDigits(scopes.result.t);
     writeScopePicture(folder / name, title + ",  min(L) = " + leastFreeDistance(scopes), scopes);

@@ -27,9 +27,9 @@ void draw(const Device& device, const Shown& shown, const std::filesystem::path&
   Scene scene;
   replaceBy(workload, 0, scene);
   Sweeper sweeper(device, scene);
-  const Query query = toQuery(workload.queries[0], Mode::sampled, kResolution);
+  const Query query = toQuery(workload.queries[0], kResolution);
   const Scopes scopes = sweeper.scopes(query);
-  const Result exact = CpuSweeper(scene).run({&query, 1})[0];
+  const Result exact = CpuSweeper(scene).run({&query, 1}).results[0];
   const double value = family.values[shown.number % family.values.size()];
   const std::string numbers = "case " + std::to_string(shown.number) + " of \"" + family.name + "\" (" +
                               inDigits(value) + "):  D = " + inDigits(query.distance) +

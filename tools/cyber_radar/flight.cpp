@@ -42,7 +42,7 @@ class Prediction {
       queries.push_back(queryOf(flyers_[i], time));
       queries.back().motion = (1 - time) * flyers_[i].way;
     }
-    return cpu_.run(queries);
+    return cpu_.run(queries).results;
   }
 
   /// Whether its surface meets nothing at that time.
@@ -53,7 +53,7 @@ class Prediction {
     }
     Query query = queryOf(flyer, time);
     query.direction = {0, 0, 1};
-    return cpu_.run({&query, 1})[0].status == Status::clear;
+    return cpu_.run({&query, 1}).results[0].status == Status::clear;
   }
 
  private:

@@ -35,7 +35,6 @@ Query viewOf(uint32_t discMesh, double side, uint32_t resolution) {
   query.worldFromMesh = {{a, -b, -c, back, -a, -b, -c, back, 0, 2 * b, -c, back}};
   query.direction = {-c, -c, -c};
   query.distance = 1.1 * diagonal;
-  query.mode = Mode::sampled;
   query.resolution = resolution;
   return query;
 }

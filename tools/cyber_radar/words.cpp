@@ -42,7 +42,7 @@ std::string inDigits(const std::array<double, 3>& vector) {
 }
 
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
-  if (!answer.overlapping.empty()) {
+  if (!answer.listed.overlapping.empty()) {
     return "skipped: the surfaces cross at the start, so nothing is left to meet\n";
   }
   const Result& result = answer.result;

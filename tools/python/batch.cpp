@@ -51,17 +51,17 @@ double lengthOf(const std::array<double, 3>& way) {
 // end is exact. Sweeps are those along an axis, where the length is a component and distances round only once; and
 // those that may round the length up: mode sampled, which has no steps, and a clearance where nothing moves, for which
 // the device has none. Both bracket the distance more widely than that.
-void setWay(Query& query, const std::array<double, 3>& way, bool mayRoundUp) {
+void setWay(Query& query, const std::array<double, 3>& way, Mode mode, bool mayRoundUp) {
   const double length = lengthOf(way);
   const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2;
   query.motion.reset();
-  if (query.mode == Mode::sampled && length == 0) {
+  if (mode == Mode::sampled && length == 0) {
     query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
     query.distance = 0;
   } else if (isAlongAxis && length <= kMostWay) {
     for (int k = 0; k < 3; ++k) query.direction[k] = way[k] / length;
     query.distance = length;
-  } else if (query.mode == Mode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
+  } else if (mode == Mode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
     query.direction = way;
     query.distance = std::nextafter((1 + 0x1p-50) * length, std::numeric_limits<double>::infinity());
   } else {
@@ -115,7 +115,7 @@ void Reader::next(Query& query) {
     query.direction = way;
     read(input_.distances, &query.distance, 1);
   } else {
-    setWay(query, way, mayRoundUp_);
+    setWay(query, way, input_.mode, mayRoundUp_);
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
@@ -127,8 +127,8 @@ void Reader::next(Query& query) {
 }
 
 /// A query's broken contract in the words of the arguments; empty if it is kept.
-std::string wrongWith(const Query& query, const Scene& scene) {
-  std::string wrong = validate(query, scene);
+std::string wrongWith(const Query& query, const Scene& scene, Mode mode) {
+  std::string wrong = validate(query, scene, mode);
   for (const auto& [engine, argument] :
        {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
         std::pair{"motion: ", "displacements: "}, std::pair{"distance: ", "distances: "}}) {
@@ -138,47 +138,35 @@ std::string wrongWith(const Query& query, const Scene& scene) {
 }
 
 /// Answers those of the queries that keep their contracts; the others become invalid, with a reason.
-PoolAnswers answerValid(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+Answers answerValid(CastingScene& scene, const std::vector<Query>& queries, Mode mode, bool onCpu) {
   std::vector<Query> valid;
   std::vector<size_t> numbers;
-  PoolAnswers all;
+  Answers all;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (std::string wrong = wrongWith(queries[i], scene.scene()); !wrong.empty()) {
+    if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
       all.reasons[i] = std::move(wrong);
     } else {
       numbers.push_back(i);
       valid.push_back(queries[i]);
     }
   }
-  const PoolAnswers some = scene.answer(valid, onCpu);
+  Answers some = scene.answer(valid, mode, onCpu);
   all.results.resize(queries.size());
-  size_t done = 0;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    const bool isValid = done < numbers.size() && numbers[done] == i;
-    if (isValid) {
-      all.results[i] = some.results[done];
-      if (const auto reason = some.reasons.find(done); reason != some.reasons.end()) all.reasons[i] = reason->second;
-      const auto hits = some.lists.hitsOf(done);
-      all.lists.hits.insert(all.lists.hits.end(), hits.begin(), hits.end());
-      const auto overlapping = some.lists.overlappingOf(done);
-      all.lists.overlapping.insert(all.lists.overlapping.end(), overlapping.begin(), overlapping.end());
-      ++done;
-    }
-    if (i == 0) all.lists.hitOffsets = all.lists.overlappingOffsets = {0};
-    all.lists.hitOffsets.push_back(all.lists.hits.size());
-    all.lists.overlappingOffsets.push_back(all.lists.overlapping.size());
-  }
+  if (!some.lists.empty()) all.lists.resize(queries.size());
+  for (size_t i = 0; i < numbers.size(); ++i) all.results[numbers[i]] = some.results[i];
+  for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
+  for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
   return all;
 }
 
-PoolAnswers answer(CastingScene& scene, const std::vector<Query>& queries, bool onCpu) {
+Answers answer(CastingScene& scene, const std::vector<Query>& queries, Mode mode, bool onCpu) {
   try {
-    return scene.answer(queries, onCpu);
+    return scene.answer(queries, mode, onCpu);
   } catch (const Error&) {
-    const auto isWrong = [&](const Query& query) { return !validate(query, scene.scene()).empty(); };
+    const auto isWrong = [&](const Query& query) { return !validate(query, scene.scene(), mode).empty(); };
     if (std::none_of(queries.begin(), queries.end(), isWrong)) throw;
   }
-  return answerValid(scene, queries, onCpu);
+  return answerValid(scene, queries, mode, onCpu);
 }
 
 /// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a
@@ -193,27 +181,21 @@ void toDistances(Result& result, double length) {
   result.hi = result.hi == 0 ? 0 : (1 + kRoom) * scaled(result.hi) + kFloor;
 }
 
-void timesToDistances(const std::vector<Query>& queries, PoolAnswers& answers) {
+void timesToDistances(const std::vector<Query>& queries, Answers& answers) {
   for (size_t i = 0; i < queries.size(); ++i) {
     if (!queries[i].motion) continue;
     const double length = lengthOf(*queries[i].motion);
     toDistances(answers.results[i], length);
-    if (answers.lists.hitOffsets.empty()) continue;
-    for (size_t hit = answers.lists.hitOffsets[i]; hit < answers.lists.hitOffsets[i + 1]; ++hit) {
-      toDistances(answers.lists.hits[hit], length);
-    }
+    if (answers.lists.empty()) continue;
+    for (Result& hit : answers.lists[i].hits) toDistances(hit, length);
   }
 }
 
-void append(Lists& to, const Lists& lists, size_t queries) {
-  for (size_t i = 0; i < queries; ++i) {
-    const auto hits = lists.hitsOf(i);
-    to.hits.insert(to.hits.end(), hits.begin(), hits.end());
-    to.hitOffsets.push_back(to.hits.size());
-    const auto overlapping = lists.overlappingOf(i);
-    to.overlapping.insert(to.overlapping.end(), overlapping.begin(), overlapping.end());
-    to.overlappingOffsets.push_back(to.overlapping.size());
-  }
+void append(BatchLists& to, const Listed& listed) {
+  to.hits.insert(to.hits.end(), listed.hits.begin(), listed.hits.end());
+  to.hitOffsets.push_back(static_cast<int64_t>(to.hits.size()));
+  to.overlapping.insert(to.overlapping.end(), listed.overlapping.begin(), listed.overlapping.end());
+  to.overlappingOffsets.push_back(static_cast<int64_t>(to.overlapping.size()));
 }
 
 }  // namespace
@@ -250,7 +232,6 @@ void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
 BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput& output,
                 const std::function<void(size_t)>& afterChunk) {
   BatchLists lists;
-  lists.lists.hitOffsets = lists.lists.overlappingOffsets = {0};
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
   const bool mayRoundUp = input.options.clearance > 0 && !scene.moves();
   const size_t count = input.count();
@@ -264,13 +245,14 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
       Reader reader(input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    PoolAnswers answers = answer(scene, queries, input.onCpu);
+    Answers answers = answer(scene, queries, input.mode, input.onCpu);
     timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i], input.options.anyHit);
     });
     for (const auto& [i, reason] : answers.reasons) lists.reasons[reason].push_back(static_cast<int64_t>(first + i));
-    if (listing) append(lists.lists, answers.lists, queries.size());
+    if (listing) answers.lists.resize(queries.size());  // there are none if no query is valid
+    for (const Listed& listed : answers.lists) append(lists, listed);
     first = end;
     chunk = nextChunk(chunk, std::chrono::duration<double>(Clock::now() - start).count());
     afterChunk(first);

@@ -28,7 +28,8 @@ struct BatchInput {
   PerQuery masks;             ///< uint32_t
   PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;
-  Query options;       ///< for the members that all queries share
+  Query options;  ///< for the members that all queries share
+  Mode mode = Mode::contact;
   bool onCpu = false;  ///< mode reference
 
   size_t count() const;
@@ -51,7 +52,9 @@ struct BatchOutput {
 
 /// What the answers of a batch list: nothing unless the queries ask for several hits or skip what overlaps.
 struct BatchLists {
-  Lists lists;
+  /// Those of query i are entries hitOffsets[i] to hitOffsets[i + 1] of `hits`; likewise what overlaps.
+  std::vector<Result> hits;
+  std::vector<int64_t> hitOffsets{0}, overlapping, overlappingOffsets{0};
   std::map<std::string, std::vector<int64_t>> reasons;  ///< why queries are invalid, and which
 };
 

@@ -66,31 +66,23 @@ void CastingScene::edit(const std::function<void(Scene&)>& change) {
   }
 }
 
-PoolAnswers CastingScene::answer(const std::vector<Query>& queries, bool onCpu) {
+Answers CastingScene::answer(const std::vector<Query>& queries, Mode mode, bool onCpu) {
   Answerers& by = answerers();
-  PoolAnswers found;
   if (onCpu) {
     if (!by.cpu) by.cpu.emplace(scene_, choice_.threads);
-    found.results = by.cpu->run(queries);
-    found.lists = by.cpu->lists();
-    return found;
+    return by.cpu->run(queries);
   }
   const SweeperOptions options{.cpuBatch = choice_.cpuBatch, .cpuThreads = choice_.threads};
   if (choice_.pool) {
     if (by.devices.empty()) by.devices = openDevices(*choice_.pool, onValidation);
     if (!by.pool) by.pool.emplace(by.devices, scene_, options);
-    return by.pool->submit(queries).get();
+    return by.pool->submit(queries, mode).get();
   }
   if (by.devices.empty()) {
     by.devices.push_back(Device::open({.index = choice_.device, .onValidation = onValidation}));
   }
   if (!by.sweeper) by.sweeper.emplace(by.devices[0], scene_, options);
-  found.results = by.sweeper->run(queries);
-  found.lists = by.sweeper->lists();
-  for (size_t i = 0; i < queries.size(); ++i) {
-    if (found.results[i].status == Status::invalid) found.reasons[i] = by.sweeper->reason(i);
-  }
-  return found;
+  return by.sweeper->run(queries, mode);
 }
 
 std::span<const Device> CastingScene::devices() const {

@@ -35,7 +35,7 @@ class CastingScene {
 
   /// Answers on the CPU alone or as chosen. Throws Error as Sweeper::run and Pool::submit do, or if no device is
   /// usable.
-  PoolAnswers answer(const std::vector<Query>& queries, bool onCpu);
+  Answers answer(const std::vector<Query>& queries, Mode mode, bool onCpu);
 
   std::span<const Device> devices() const;
 

@@ -213,7 +213,6 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
 
 Query optionsFrom(const py::dict& options) {
   Query query;
-  query.mode = options["sampled"].cast<bool>() ? Mode::sampled : Mode::contact;
   query.anyHit = options["any_hit"].cast<bool>();
   query.ignoreLeaving = options["ignore_leaving"].cast<bool>();
   query.skipOverlapping = options["skip_overlapping"].cast<bool>();
@@ -225,25 +224,20 @@ Query optionsFrom(const py::dict& options) {
   return query;
 }
 
-Array<int64_t> offsetsOf(const std::vector<size_t>& offsets) {
-  const std::vector<int64_t> wide(offsets.begin(), offsets.end());
-  return arrayOf(wide, {py::ssize_t(wide.size())});
-}
-
 /// Offsets of the queries' hits; how many there are; a function that writes them to arrays. Offsets and objects of what
 /// overlaps. Reasons.
 py::tuple listsFor(BatchLists&& found, const py::function& makeArrays) {
-  const size_t count = found.lists.hits.size();
+  const size_t count = found.hits.size();
   const py::dict arrays = makeArrays(count);
   const BatchOutput to = outputFrom(arrays, count);
-  for (size_t i = 0; i < count; ++i) to.write(i, found.lists.hits[i], false);
-  const std::vector<int64_t> overlapping(found.lists.overlapping.begin(), found.lists.overlapping.end());
+  for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i], false);
   py::dict reasons;
   for (const auto& [reason, which] : found.reasons) {
     reasons[py::str(reason)] = arrayOf(which, {py::ssize_t(which.size())});
   }
-  return py::make_tuple(offsetsOf(found.lists.hitOffsets), arrays, offsetsOf(found.lists.overlappingOffsets),
-                        arrayOf(overlapping, {py::ssize_t(overlapping.size())}), reasons);
+  const auto whole = [](const std::vector<int64_t>& values) { return arrayOf(values, {py::ssize_t(values.size())}); };
+  return py::make_tuple(whole(found.hitOffsets), arrays, whole(found.overlappingOffsets), whole(found.overlapping),
+                        reasons);
 }
 
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
@@ -265,6 +259,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
     input.distances = perQuery<double>(distances, shape, 1, "distances");
   }
   input.options = optionsFrom(options);
+  input.mode = options["sampled"].cast<bool>() ? Mode::sampled : Mode::contact;
   input.onCpu = options["on_cpu"].cast<bool>();
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;

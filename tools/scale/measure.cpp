@@ -46,14 +46,15 @@ class Pools {
   // No batch is with any pool.
   void load(const Workload& workload) {
     player_.emplace(workload);  // the same place: the pools' scene
-    batches_ = bench::batchesOf(workload, settings_.mode, settings_.resolution);
+    batches_ = bench::batchesOf(workload, settings_.resolution);
   }
 
   Pass run(size_t set, bool profile) {
     Pool& pool = *(profile ? profiled_ : pools_)[set];
     Pass pass;
     const auto answer = [&](std::span<const Query> queries) {
-      PoolAnswers& answers = pass.batches.emplace_back(pool.submit({queries.begin(), queries.end()}).get());
+      PoolAnswers& answers =
+          pass.batches.emplace_back(pool.submit({queries.begin(), queries.end()}, settings_.mode).get());
       if (!answers.reasons.empty()) throw Error("a query was not answered: " + answers.reasons.begin()->second);
       if (!answers.retired.empty()) throw Error("a device was given up: " + answers.retired.front());
       return std::move(answers.results);

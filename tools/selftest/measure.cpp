@@ -31,8 +31,7 @@ Workload heavyWorkload() {
 
 // A scene that stands, and a batch of queries in it.
 struct Standing {
-  explicit Standing(const Workload& workload, Mode mode = Mode::contact)
-      : player(workload), batch(bench::batchesOf(workload, mode).front()) {
+  explicit Standing(const Workload& workload) : player(workload), batch(bench::batchesOf(workload).front()) {
     player.show(batch.scene);
   }
   // So many queries: the first ones, over and over where there are fewer.
@@ -68,8 +67,9 @@ class Race {
   double measure(
       const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline, Json& rows,
       const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
-    const std::vector<bench::Method> methods{{"device", [&](auto queries) { return sweeper_.run(queries); }, show},
-                                             {"CPU", [&](auto queries) { return cpu_.run(queries); }, show}};
+    const std::vector<bench::Method> methods{
+        {"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
+        {"CPU", [&](auto queries) { return cpu_.run(queries).results; }, show}};
     const std::vector<bench::Series> all =
         bench::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
     const auto us = [](const bench::Series& series) {
@@ -117,7 +117,7 @@ bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
     // The more there are, the more each meets: three times as many cost each up to three times as much.
     if (!fits(rows, us, uint64_t{3} * kSteps * teapots, deadline)) return false;
     const Workload workload = makeWorkload(Figure7{.teapots = teapots, .boxes = 10'000, .steps = kSteps});
-    const std::vector<bench::Batch> batches = bench::batchesOf(workload, Mode::contact);
+    const std::vector<bench::Batch> batches = bench::batchesOf(workload);
     ScenePlayer player(workload);
     player.show(batches[0].scene);
     us = Race(device, player.scene(), batches[0].queries)
@@ -129,17 +129,18 @@ bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
 // Medians of each stage over some runs, and of what the calling thread saw.
 bool addStages(const Device& device, const char* name, const Workload& workload, Mode mode, const Deadline& deadline,
                Json& rows) {
-  const Standing standing(workload, mode);
+  const Standing standing(workload);
   const uint64_t queries = standing.batch.queries.size();
   Sweeper sweeper(device, standing.scene(), {.timestamps = true, .cpuBatch = 0});
   std::vector<bench::Lap> laps;
   std::map<std::string, std::vector<double>> times;
   std::vector<std::string> order;
   bench::inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
-    const bench::Lap lap = bench::lapOf([&] { sweeper.run(standing.batch.queries); });
+    Answers answers;
+    const bench::Lap lap = bench::lapOf([&] { answers = sweeper.run(standing.batch.queries, mode); });
     if (!counts) return;
     laps.push_back(lap);
-    for (const StageTime& stage : sweeper.stats().stages) {
+    for (const StageTime& stage : answers.stats.stages) {
       if (!times.contains(stage.name)) order.push_back(stage.name);
       times[stage.name].push_back(stage.ms);
     }
@@ -278,7 +279,7 @@ bool measureLanes(const Device& device, uint32_t, const Deadline& deadline, Json
   Pool pool({&device, 1}, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
-    return sweeper.run(queries);
+    return sweeper.run(queries).results;
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
                   standing.batch, deadline, rows);

@@ -22,7 +22,7 @@ uint32_t strideOf(uint32_t resolution) {
 }
 
 Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
-  if (method != Method::paper) return judge(scene, query, result, exact);
+  if (method != Method::paper) return judge(scene, query, modeOf(method), result, exact);
   return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
 }
 
@@ -50,19 +50,27 @@ bool canAnswer(Method method, const HardFamily& family) {
   return method == Method::contact || !(family.ignoresLeaving || family.skipsOverlapping);
 }
 
+Mode modeOf(Method method) {
+  return method == Method::contact ? Mode::contact : Mode::sampled;
+}
+
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
-  for (Query& query : queries) {
-    query.mode = asked.method == Method::contact ? Mode::contact : Mode::sampled;
-    query.resolution = asked.resolution;
-  }
+  for (Query& query : queries) query.resolution = asked.resolution;
   return queries;
 }
 
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
-  std::vector<Result> results = sweeper.run(queriesFor(asked, queries));
+  std::vector<Result> results = sweeper.run(queriesFor(asked, queries), modeOf(asked.method)).results;
   if (asked.method != Method::paper) return results;
   for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
   return results;
+}
+
+/// Whether two batches' answers list the same for a query.
+bool sameLists(const Answers& ours, const Answers& exact, size_t query) {
+  if (ours.lists.empty() || exact.lists.empty()) return ours.lists.size() == exact.lists.size();
+  const Listed &own = ours.lists[query], &right = exact.lists[query];
+  return own.overlapping == right.overlapping && std::ranges::equal(own.hits, right.hits, sameAnswer);
 }
 
 std::vector<std::string> runFamilies(const MeshFamilies& meshes) {
@@ -90,19 +98,12 @@ struct CaseRun::Stage {
 
   /// D becomes where the CPU finds the contact, or a rounding beside it.
   void moveDistances(std::vector<Query>& queries, uint64_t number) {
-    const std::vector<Result> exact = cpu.run(queries);
+    const std::vector<Result> exact = cpu.run(queries).results;
     for (size_t i = 0; i < queries.size(); ++i, ++number) {
       if (exact[i].status != Status::hit) continue;
       const double beside = number % 3 == 1 ? 0 : INFINITY;
       queries[i].distance = number % 3 == 0 ? exact[i].t : std::nextafter(exact[i].t, beside);
     }
-  }
-
-  /// Whether the device lists for a query what the CPU does.
-  bool sameLists(size_t query) const {
-    const Lists &ours = sweeper.lists(), &exact = cpu.lists();
-    return std::ranges::equal(ours.overlappingOf(query), exact.overlappingOf(query)) &&
-           std::ranges::equal(ours.hitsOf(query), exact.hitsOf(query), sameAnswer);
   }
 
   /// Most objects move, by up to as much as some sensor; a third of the queries keep their direction. `workload`: the
@@ -131,7 +132,7 @@ struct CaseRun::Stage {
     cpu.sync();
     const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
     std::vector<Query> queries;
-    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size], Mode::contact));
+    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size]));
     for (Query& query : queries) {
       if (range.ignoreLeaving) query.ignoreLeaving = true;
       if (range.allHits) query.hits = kAllHits;
@@ -158,7 +159,7 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
   const uint32_t size = range.company == Company::mixed ? kMixedCases : kIsolatedCases;
   for (uint64_t next = range.first; next < range.first + range.cases;) {
     const std::vector<Query> queries = stage_->show(range, next, size);
-    std::vector<Result> exact, results;
+    Answers exact, found;
     const double cpuSeconds = bench::lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
     double seconds = 0;
     for (size_t a = 0; a < asked.size(); ++a) {
@@ -166,20 +167,22 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       const std::vector<Query> put = queriesFor(asked[a], queries);
       // The paper's min(L) stands beside mode sampled's own answer.
       if (a == 0 || asked[a].resolution != asked[a - 1].resolution) {
-        seconds = bench::lapOf([&] { results = stage_->sweeper.run(put); }).wall;
+        seconds = bench::lapOf([&] { found = stage_->sweeper.run(put, modeOf(asked[a].method)); }).wall;
       }
       Tally& tally = tallies[a];
       tally.deviceSeconds += seconds;
       tally.cpuSeconds += cpuSeconds;
-      tally.pairs += stage_->sweeper.stats().pairs;
-      tally.cpuPairs += stage_->sweeper.stats().cpuPairs;
+      tally.pairs += found.stats.pairs;
+      tally.cpuPairs += found.stats.cpuPairs;
       for (size_t i = 0; i < put.size(); ++i) {
-        Verdict verdict = range.steps ? judgeByBits(results[i], exact[i])
-                                      : judgeAs(asked[a].method, stage_->scene, put[i], results[i], exact[i]);
-        verdict.set(Fault::wrongList, !stage_->sameLists(i));
-        tally.add(verdict, exact[i]);
+        const Result &result = found.results[i], &right = exact.results[i];
+        Verdict verdict =
+            range.steps ? judgeByBits(result, right) : judgeAs(asked[a].method, stage_->scene, put[i], result, right);
+        verdict.set(Fault::wrongList, !sameLists(found, exact, i));
+        tally.add(verdict, right);
         if (asked[a].method == Method::paper || verdict.right()) continue;
-        onWrong(next + i, asked[a], verdict.words() + " " + stage_->sweeper.reason(i));
+        const auto reason = found.reasons.find(i);
+        onWrong(next + i, asked[a], verdict.words() + " " + (reason == found.reasons.end() ? "" : reason->second));
       }
     }
     next += queries.size();

@@ -34,7 +34,8 @@ Result paperAnswer(const Query& query, const Result& sampled);
 /// Whether it offers what the family's queries ask for.
 bool canAnswer(Method method, const HardFamily& family);
 
-/// The queries in the mode and at the resolution that are asked.
+Mode modeOf(Method method);
+/// The queries at the resolution that is asked.
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);
 

@@ -178,7 +178,7 @@ Verdict judgeByBits(const Result& result, const Result& exact) {
   return verdict;
 }
 
-Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact) {
+Verdict judge(const Scene& scene, const Query& query, Mode mode, const Result& result, const Result& exact) {
   Verdict verdict;
   if (result.status == Status::invalid) {
     verdict.set(Fault::unanswered);
@@ -187,7 +187,7 @@ Verdict judge(const Scene& scene, const Query& query, const Result& result, cons
   if (query.clearance > 0) return judgeByBits(result, exact);
   const double unit = unitOf(scene, query, exact);
   verdict = judge(result, exact, unit);
-  const bool sampled = query.mode == Mode::sampled;
+  const bool sampled = mode == Mode::sampled;
   if (result.status == Status::clear) {
     verdict.set(Fault::bracket, !sampled && std::min({result.t, result.lo, result.hi}) != INFINITY);
   }

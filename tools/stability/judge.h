@@ -56,9 +56,9 @@ Verdict judge(const Result& result, const Result& exact, double unit);
 /// What errors are relative to: max(size of the sensor, t*).
 double unitOf(const Scene& scene, const Query& query, const Result& exact);
 
-/// All that an answer promises, in the query's mode and with its `decide`. In mode sampled `lo` must be 0, and pair, t,
+/// All that an answer promises, in that mode and with its `decide`. In mode sampled `lo` must be 0, and pair, t,
 /// point and normal are not judged.
-Verdict judge(const Scene& scene, const Query& query, const Result& result, const Result& exact);
+Verdict judge(const Scene& scene, const Query& query, Mode mode, const Result& result, const Result& exact);
 /// Of an answer that has the CPU's bits, as those to queries with a clearance and those of a step.
 Verdict judgeByBits(const Result& result, const Result& exact);
 

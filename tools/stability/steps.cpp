@@ -49,11 +49,11 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       Random random(settings.seed * 7'919 + next);
       std::vector<Query> queries;
       for (const QuerySpec& spec : workload.queries) {
-        const Query query = toQuery(spec, Mode::contact);
+        const Query query = toQuery(spec);
         const Vec3 step = settings.size * sensorSize(scene, query) * random.direction();
         appendSteps(queries, query, step, settings.steps);
       }
-      const std::vector<Result> exact = cpu.run(queries);
+      const std::vector<Result> exact = cpu.run(queries).results;
       for (StepRow& row : own) {
         const uint32_t resolution = row.method == Method::contact ? 0 : settings.resolution;
         const std::vector<Result> results = answersBy({row.method, resolution}, sweeper, queries);

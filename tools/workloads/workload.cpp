@@ -60,14 +60,13 @@ std::vector<std::string> Workload::objectNames(uint32_t scene) const {
   return names;
 }
 
-Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution) {
+Query toQuery(const QuerySpec& spec, uint32_t resolution) {
   Query query;
   query.mesh = spec.sensor.mesh;
   query.worldFromMesh = spec.sensor.worldFromMesh;
   query.direction = spec.direction;
   query.distance = spec.distance;
   query.motion = spec.motion;
-  query.mode = mode;
   query.exclude = spec.exclude;
   query.mask = spec.mask;
   query.anyHit = spec.anyHit;

@@ -88,7 +88,7 @@ struct Workload {
 };
 
 /// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
-Query toQuery(const QuerySpec& spec, radar::Mode mode, uint32_t resolution = 0);
+Query toQuery(const QuerySpec& spec, uint32_t resolution = 0);
 
 /// Greatest extent of the placed sensor's box.
 double sensorSize(const Scene& scene, const Query& query);

@@ -2,14 +2,13 @@
 // reference for tests.
 #pragma once
 
+#include <memory>
+#include <span>
+
+#include "radar/answers.h"
 #include "radar/query.h"
 
 namespace radar {
-
-/// Statistics of the last run().
-struct CpuStats {
-  uint64_t pairs = 0;  ///< pairs of triangles that reached the triangle test
-};
 
 /// Answers batches of queries against one scene.
 class RADAR_API CpuSweeper {
@@ -24,18 +23,14 @@ class RADAR_API CpuSweeper {
   /// Updates the tree over the scene's objects. run() does this too; a separate call only moves the cost.
   void sync();
 
-  /// Answers any number of queries, in the order given. `mode` and `resolution` are ignored: every answer is exact.
-  /// Status is hit, clear or overlap (for a query with `anyHit`: hit or clear); `tier` is Tier::reference. t is t* to a
-  /// few roundings, which also separate `lo` and `hi`, its bounds. The pair is the least (object, triB, triA) of those
-  /// that attain t*; `point` and `normal` belong to it. There is no normal if the two triangles already meet at the
-  /// start, other than by just touching, or lie in one plane that contains the motion. There is no point if they meet
-  /// at the start and lie in one plane. An answer's bits do not depend on its batch or on the number of threads. Throws
-  /// Error, naming the query, if one breaks its contract, before any is answered. A batch of one starts no thread.
-  std::vector<Result> run(std::span<const Query> queries);
-
-  const CpuStats& stats() const;
-  /// Lists of the last run(): of queries with `hits` above 1 or `skipOverlapping`.
-  const Lists& lists() const;
+  /// Answers any number of queries exactly. Status is hit, clear or overlap (for a query with `anyHit`: hit or clear);
+  /// `tier` is Tier::reference. t is t* to a few roundings, which also separate `lo` and `hi`, its bounds. The pair is
+  /// the least (object, triB, triA) of those that attain t*; `point` and `normal` belong to it. There is no normal if
+  /// the two triangles already meet at the start, other than by just touching, or lie in one plane that contains the
+  /// motion. There is no point if they meet at the start and lie in one plane. An answer's bits do not depend on its
+  /// batch or on the number of threads. Throws Error, naming the query, if one breaks its contract, before any is
+  /// answered. A batch of one starts no thread.
+  Answers run(std::span<const Query> queries);
 
  private:
   struct Impl;

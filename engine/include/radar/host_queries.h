@@ -8,8 +8,9 @@ namespace radar {
 /// A query of mode contact in a host's buffer; radar/query.glsl declares it for shaders. Its floats are taken as exact
 /// numbers. Members are those of Query; what is missing here, only a Query offers.
 ///
-/// It is not answered, but Status::invalid with kFlagQuery, if a number is not finite, the direction is 0, the distance
-/// negative, the mesh not one of the scene when recording, or another flag set. A singular matrix flattens the mesh.
+/// It is not answered, but Status::invalid with Flag::query, if a number is not finite, the direction is 0, the
+/// distance negative, the mesh not one of the scene when recording, or another flag set. A singular matrix flattens the
+/// mesh.
 struct HostQuery {
   float worldFromMesh[12]{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< rows (m0 m1 m2 t)
   float direction[3]{};

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <future>
-#include <map>
 #include <stop_token>
 
 #include "radar/radar.h"
@@ -29,14 +28,9 @@ struct ChunkTrace {
   std::vector<StageTime> stages;  ///< empty unless SweeperOptions::timestamps
 };
 
-/// The answers to a batch.
-struct PoolAnswers {
-  std::vector<Result> results;  ///< in the order of the queries
-  Lists lists;                  ///< of queries with `hits` above 1 or `skipOverlapping`
-  /// Why a result is Status::invalid, by its index. In addition to a Sweeper's reasons: "cancelled", "the pool was
-  /// closed", or that no device is left and why.
-  std::map<size_t, std::string> reasons;
-  SweepStats stats;                    ///< summed over devices
+/// The answers to a batch. Reasons beyond a Sweeper's: "cancelled", "the pool was closed", or that no device is left
+/// and why. Statistics are summed over devices.
+struct PoolAnswers : Answers {
   std::vector<ChunkTrace> chunks;      ///< in order of completion
   std::vector<std::string> retired;    ///< one line per device retired while working on this batch
   double submitted = 0, answered = 0;  ///< as in ChunkTrace
@@ -70,10 +64,10 @@ class RADAR_API Pool {
   Pool& operator=(const Pool&) = delete;
 
   /// Submits any number of queries; the future gets their answers, or std::bad_alloc if the host's memory does not
-  /// suffice: the pool keeps its devices, and later batches are answered. Throws, naming the query, if one breaks its
-  /// contract or has a mode that a device does not support. Once `stop` is requested, queries that no device has taken
+  /// suffice: the pool keeps its devices, and later batches are answered. Throws if a device does not support the mode,
+  /// or, naming the query, if one breaks its contract. Once `stop` is requested, queries that no device has taken
   /// become Status::invalid ("cancelled") when the batch's turn comes. Blocks only while the scene is being edited.
-  std::future<PoolAnswers> submit(std::vector<Query> queries, std::stop_token stop = {});
+  std::future<PoolAnswers> submit(std::vector<Query> queries, Mode mode = Mode::contact, std::stop_token stop = {});
 
   /// While the pool lives, the scene may change only in `change`. Waits until all earlier batches are answered, then
   /// calls `change` on this thread; later batches see the change on every device. An exception from `change` is passed

@@ -1,7 +1,7 @@
 // Cyber Radar: how far can a shape move along a direction before its surface first touches anything?
 //
-// The public interface: scene.h (meshes and objects), query.h (queries and answers), device.h (Vulkan devices) and,
-// here, what answers batches of queries on one device. See also cpu_sweeper.h (the CPU alone), pool.h (several devices)
+// The public interface: scene.h (meshes and objects), query.h and answers.h, device.h (Vulkan devices) and, here,
+// what answers batches of queries on one device. See also cpu_sweeper.h (the CPU alone), pool.h (several devices)
 // and recorder.h (a host's own command buffers).
 //
 // Threads: each object of this interface may be used by one thread at a time. Different objects are independent, except
@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "radar/answers.h"
 #include "radar/device.h"
 #include "radar/query.h"
 #include "radar/scene.h"
@@ -31,7 +32,7 @@ namespace radar {
 
 /// Semantic version of this interface: before 1.0 a new minor version may break compatibility, a patch never does.
 inline constexpr uint32_t kVersionMajor = 0;
-inline constexpr uint32_t kVersionMinor = 1;
+inline constexpr uint32_t kVersionMinor = 2;
 inline constexpr uint32_t kVersionPatch = 0;
 
 struct SweeperOptions {
@@ -46,23 +47,6 @@ struct SweeperOptions {
   uint32_t cpuBatch = kNone;
   /// Threads of the CPU's search; 0: one per core. Large changes of a scene are prepared on all cores.
   uint32_t cpuThreads = 0;
-};
-
-/// Time of one stage, summed over the submissions of the last run(), milliseconds.
-struct StageTime {
-  std::string name;
-  double ms = 0;
-};
-
-/// Statistics of the last run().
-struct SweepStats {
-  uint32_t submissions = 0;
-  uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
-  uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
-  uint64_t pairs = 0;             ///< proposed pairs of triangles (sampled), pairs of leaves (contact)
-  uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
-  uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
-  std::vector<StageTime> stages;  ///< with SweeperOptions::timestamps, CPU stages included; else empty
 };
 
 /// The scopes of one query as pictures: row-major from the window's lower left corner, `width` x `height` floats, world
@@ -98,22 +82,16 @@ class RADAR_API Sweeper {
   /// too; a separate call only moves the cost.
   void sync();
 
-  /// Answers any number of queries, each in its mode, in the order given. Queries that go to the device take one
-  /// upload, one command buffer and one readback per mode; batches of more than 16,384, or too large for the device's
-  /// layers or memory, take several; the CPU answers those of mode contact for which memory does not suffice. The
-  /// answer to a query does not depend on its batch. Before anything is submitted, throws, naming the query, if one
-  /// breaks its contract or has a mode that the device does not support. Blocks until done.
-  std::vector<Result> run(std::span<const Query> queries);
+  /// Answers any number of queries. Those that go to the device take one upload, one command buffer and one readback;
+  /// batches of more than 16,384, or too large for the device's layers or memory, take several; in mode contact the CPU
+  /// answers those for which memory does not suffice. The answer to a query does not depend on its batch. Before
+  /// anything is submitted, throws if the device does not support the mode, or, naming the query, if one breaks its
+  /// contract. Blocks until done.
+  Answers run(std::span<const Query> queries, Mode mode = Mode::contact);
 
   /// The pictures from which mode sampled answers `query`, at the query's resolution. Throws Error if they do not fit
   /// the device, or it does not support the mode.
   Scopes scopes(const Query& query);
-
-  const SweepStats& stats() const;
-  /// Lists of the last run(): of queries with `hits` above 1 or `skipOverlapping`.
-  const Lists& lists() const;
-  /// Why the i-th answer of the last run() is invalid; empty if it is valid.
-  const std::string& reason(size_t i) const;
 
   struct Impl;
 

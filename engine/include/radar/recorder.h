@@ -5,31 +5,38 @@
 // for shaders.
 #pragma once
 
+#include "radar/answers.h"
 #include "radar/host_geometry.h"
 #include "radar/host_queries.h"
 #include "radar/scene_copy.h"
 
 namespace radar {
 
-/// Limits of one recording; nothing is retried with more. A query that exceeds a limit becomes Status::invalid with
-/// that flag; other queries are unaffected, unless they share the exhausted resource. Recorder::needed() tells which
-/// limits would do.
+/// Room of one recording, over all queries. Nothing is retried with more: needed() tells what would do. A query that
+/// exceeds a limit gets that flag; others are unaffected, unless they share the exhausted resource.
+///
+/// | member          | counts                                  | 0 stands for             | too small        | bytes |
+/// |-----------------|-----------------------------------------|--------------------------|------------------|-------|
+/// | queries         | queries                                 | none                     | record() throws  | 900   |
+/// | candidates      | pairs of triangles that may be first    | 2,048 a query, most 2^20 | Flag::candidates | 76    |
+/// | rounds          | dispatches of the search; even, to 64   | 16                       | Flag::rounds     | none  |
+/// | unresolvedPairs | pairs that only the CPU decides         | 128 a query, most 2^15   | Flag::unresolved | 192   |
+/// | searches        | objects searched one by one             | none                     | record() throws  | 1,000 |
+///
+/// Bytes are about what each takes of the device's memory; for unresolvedPairs, of the host's. Searches count as
+/// queries where 0 is chosen, and each query has at least 64 candidates and 4 unresolved pairs. Without
+/// Device::doubles(), 0 stands for eight times as many unresolved pairs. If a query's do not fit, read() leaves
+/// Flag::unresolved.
+///
+/// Candidates are some 10 per query among boxes, 30 among meshes, 1,000 where meshes of 5,000 triangles interlock. A
+/// round takes a few milliseconds at most, and next to nothing if unneeded. A query with Query::hits above 1, and any
+/// if objects have motions, takes a search for each object in reach, and for each that is moved, or whose mesh is
+/// deformed, without bounds; for every object if its sensor's mesh is.
 struct Capacity {
-  uint32_t queries = 64;  ///< record() throws if there are more
-  /// Pairs of triangles that may be first as far as floats can tell, during the search, over all queries: some 10 per
-  /// query among boxes, 30 among meshes, 1,000 where meshes of 5,000 triangles interlock. 76 bytes of device memory
-  /// each. 0: 2,048 per query, but at most 2^20 (80 MB), or 64 per query if that is more. kFlagCandidates.
+  uint32_t queries = 64;
   uint32_t candidates = 0;
-  /// Dispatches of the search, each of a few milliseconds at most; unneeded ones cost next to nothing. An even number
-  /// up to 64. kFlagRounds.
-  uint32_t rounds = 16;
-  /// Pairs of triangles left open, over all queries. 192 bytes of host memory each. 0: 128 per query, but at most 2^15
-  /// (6 MB), or 4 per query if that is more; eight times that without Device::doubles(). If a query's pairs do not fit,
-  /// read() cannot decide them: kFlagUnresolved stays.
+  uint32_t rounds = 0;
   uint32_t unresolvedPairs = 0;
-  /// Searches past one object each, which count as queries above; record() throws if there are more. A query with
-  /// Query::hits above 1, and any if objects have motions, takes one for each object in reach, and each that is moved,
-  /// or whose mesh is deformed, without bounds; for every object if its sensor's mesh is.
   uint32_t searches = 0;
 };
 
@@ -51,8 +58,8 @@ class RADAR_API Recorder {
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
   /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
   /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has kFlagUnresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`.
-  /// Queries with numbers that floats cannot hold become Status::invalid with kFlagRange:
+  /// has Flag::unresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`.
+  /// Queries with numbers that floats cannot hold become Status::invalid with Flag::range:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
   ///   on which a mesh is flat but its matrix is not; an object in reach that is more than 10^12 sensor sizes away, or,
@@ -65,14 +72,14 @@ class RADAR_API Recorder {
   /// Lists of hits (Query::hits) follow the answers in results(): those of query i are answers hitOffsets()[i] to
   /// hitOffsets()[i + 1], nearest first, then clear ones. Objects whose contacts are less than a rounding apart are
   /// ordered by t as given, then by number, and a step's answer is the first of them. An entry may be invalid or have
-  /// kFlagUnresolved; it stands where its contact may be.
+  /// Flag::unresolved; it stands where its contact may be.
   ///
-  /// With a clearance, hits have kFlagUnresolved until read() decides them, except decisions (`anyHit`). If something
+  /// With a clearance, hits have Flag::unresolved until read() decides them, except decisions (`anyHit`). If something
   /// is within the clearance at the start, the answer is overlap without object, triangles, point and normal. A bracket
   /// that rounding keeps wider than the tolerance may begin before that of a Sweeper, which then searches on the CPU.
   ///
   /// If anything in the host's buffers leaves its bounds, is not finite or too large for floats, every answer becomes
-  /// Status::invalid with kFlagBounds.
+  /// Status::invalid with Flag::bounds.
   ///
   /// - Before: the previous recording of this object has executed and been waited for. Writes to the buffers of
   ///   `geometry` are visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them
@@ -82,16 +89,14 @@ class RADAR_API Recorder {
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
-  /// While recording, the CPU answers queries that ask for skipOverlapping or for a clearance with ignoreLeaving, hits
-  /// or a step, and those that have a direction although objects move. Their hits count as searches.
-  ///
-  /// Throws before recording anything if a query breaks its contract, is not of mode contact, or is one for the CPU
-  /// although there is a `geometry`; if there are more queries or searches than Capacity says, a query has more than
-  /// 2^15 objects in reach, `geometry` breaks its contract, or something does not fit the device.
+  /// Throws before recording anything if a query breaks its contract, or asks for what only the CPU combines, and so a
+  /// Sweeper answers: skipOverlapping; a direction while objects move; a clearance with ignoreLeaving, hits or a step.
+  /// Likewise if there are more queries or searches than Capacity says, a query has more than 2^15 objects in reach,
+  /// `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
-  /// shaders read has kFlagUnresolved as above; read() decides it. Answers beyond the number of queries, up to
-  /// HostQueries::count, become Status::invalid with kFlagQuery, as do queries that break the contract of HostQuery.
+  /// shaders read has Flag::unresolved as above; read() decides it. Answers beyond the number of queries, up to
+  /// HostQueries::count, become Status::invalid with Flag::query, as do queries that break the contract of HostQuery.
   /// Matrices of nothing but subnormal floats are out of range, too. Without Device::doubles(), a sensor modelled far
   /// from its own origin is placed with the precision of floats, and may need more candidates.
   ///
@@ -114,15 +119,16 @@ class RADAR_API Recorder {
   std::span<const uint32_t> hitOffsets() const;
 
   /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided,
-  /// and if wanted their lists. Call it once the last recording has executed and been waited for (by a fence, or a
-  /// semaphore's wait on the host); it does not wait itself. Later changes of the scene do not matter.
-  std::vector<Result> read(Lists* lists = nullptr);
+  /// and lists; Result::flags tell what is missing, instead of reasons, and there are no statistics. Call it once the
+  /// last recording has executed and been waited for (by a fence, or a semaphore's wait on the host); it does not wait
+  /// itself. Later changes of the scene do not matter.
+  Answers read();
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
   /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,
   /// twice as many rounds. If a query exceeded a limit and this is no more than there was, only a Sweeper answers it:
   /// it alone has more than 16,384 pairs, or takes more than 64 rounds.
   Capacity needed() const;
-  /// If kFlagBounds is set, describes something that has left its bounds; else empty. Call it when read() may be
+  /// If Flag::bounds is set, describes something that has left its bounds; else empty. Call it when read() may be
   /// called.
   std::string boundsViolation() const;
 

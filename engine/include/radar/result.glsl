@@ -1,4 +1,4 @@
-// The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/query.h explains the members.
+// The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/answers.h explains the members.
 // Absent numbers are infinite or NaN, absent ids RADAR_NONE.
 //
 //     #extension GL_EXT_scalar_block_layout : require
@@ -11,6 +11,8 @@
 #ifndef RADAR_RESULT_GLSL
 #define RADAR_RESULT_GLSL
 
+#include "radar/codes.h"
+
 #if defined(RADAR_NO_DOUBLES) || defined(RADAR_RESULT_BITS)
 #define RADAR_DOUBLE uvec2
 #else
@@ -18,9 +20,9 @@
 #endif
 
 struct RadarResult {
-  uint status;      // RADAR_HIT ...
+  uint status;      // RADAR_STATUS_*
   uint tier;        // RADAR_TIER_*
-  uint detected;    // RADAR_NOT_DETECTED ...
+  uint detected;    // RADAR_DETECTED_*
   uint resolution;  // pixels
   RADAR_DOUBLE t;
   RADAR_DOUBLE lo;
@@ -29,40 +31,15 @@ struct RadarResult {
   uint object;
   uint triB;
   uint triA;
-  uint flags;       // RADAR_UNRESOLVED ...: why there is no answer; else 0
-  uint featureB;    // RADAR_VERTEX ...
+  uint flags;       // RADAR_FLAG_*: why there is no answer; else 0
+  uint featureB;    // RADAR_FEATURE_*
   uint featureA;
   RADAR_DOUBLE point[3];
   RADAR_DOUBLE normal[3];
   RADAR_DOUBLE paperMinL;
 };
 
-const uint RADAR_HIT = 0;
-const uint RADAR_CLEAR = 1;
-const uint RADAR_OVERLAP = 2;
-const uint RADAR_UNDECIDED = 3;
-const uint RADAR_INVALID = 4;
-
-const uint RADAR_TIER_SELECT = 0;
-const uint RADAR_TIER_CONTACT = 2;
-
-const uint RADAR_NOT_DETECTED = 0;
-const uint RADAR_DETECTED = 1;
-const uint RADAR_NOT_LOOKED = 2;
-
 const uint RADAR_NONE = 0xffffffffu;
-
-const uint RADAR_NO_FEATURE = 0;
-const uint RADAR_VERTEX = 1;
-const uint RADAR_EDGE = 2;
-const uint RADAR_FACE = 3;
-
-const uint RADAR_UNRESOLVED = 1;
-const uint RADAR_TOO_MANY_CANDIDATES = 2;
-const uint RADAR_TOO_LONG = 4;
-const uint RADAR_OUT_OF_RANGE = 8;
-const uint RADAR_OUT_OF_BOUNDS = 16;
-const uint RADAR_BAD_QUERY = 32;
 
 // Rounds a double, given as its bits, low word first, to float, towards 0.
 float radarFloat(uvec2 bits) {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace radar::cpu {
+namespace radar {
 
 using FourFloats = float __attribute__((vector_size(16)));
 using TwoDoubles = double __attribute__((vector_size(16)));
@@ -106,4 +106,4 @@ inline void transpose(const FourFloats (&rows)[4], FourFloats (&out)[4]) {
   out[3] = __builtin_shufflevector(xyHigh, zwHigh, 2, 3, 6, 7);
 }
 
-}  // namespace radar::cpu
+}  // namespace radar

@@ -2,11 +2,11 @@
 // error bounds.
 #pragma once
 
-#include "cpu/lanes.h"
 #include "exact/motion.h"
+#include "math/lanes.h"
 #include "scene/object_tree.h"
 
-namespace radar::cpu {
+namespace radar {
 
 class SweptBox {
  public:
@@ -20,4 +20,4 @@ class SweptBox {
   TwoDoubles rate_[3], rateSize_[3], offset_[3], half_[3];
 };
 
-}  // namespace radar::cpu
+}  // namespace radar

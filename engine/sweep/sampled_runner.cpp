@@ -1,4 +1,4 @@
-#include "sweep/sampled_tier.h"
+#include "sweep/sampled_runner.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,33 +8,31 @@
 
 namespace radar {
 
-SampledTier::SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
-                         GpuScene& resident, QueryBatch& batch)
+SampledRunner::SampledRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+                             GpuScene& resident)
     : device_(device),
       scene_(scene),
       options_(options),
-      batch_(batch),
-      submitter_(device, resident, options.pictureBytes, options.timestamps),
-      pending_(batch) {
+      submitter_(device, resident, options.pictureBytes, options.timestamps) {
   // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
   bufferBytes_ = std::min<uint64_t>(device.properties.limits.maxStorageBufferRange, 256ull << 20);
   maxItems_ = std::min<uint64_t>(bufferBytes_ / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
 }
 
-void SampledTier::Load::add(const ViewPlan& plan) {
+void SampledRunner::Load::add(const ViewPlan& plan) {
   ++views;
   resolution = plan.view.resolution;
   draws += 1 + plan.inReach.size() + plan.others.size();
   items += plan.items;
 }
 
-bool SampledTier::fits(const Load& load) const {
+bool SampledRunner::fits(const Load& load) const {
   const uint64_t layer = 2ull * load.resolution * load.resolution * sizeof(float);
   return load.views <= device_.maxLayers && load.views * layer <= options_.pictureBytes &&
          load.draws * sizeof(gpu::Draw) <= bufferBytes_ && load.items <= maxItems_;
 }
 
-std::string SampledTier::reasonAgainst(const ViewPlan& plan) const {
+std::string SampledRunner::reasonAgainst(const ViewPlan& plan) const {
   if (!plan.outOfRange.empty()) return plan.outOfRange;
   Load load;
   load.add(plan);
@@ -45,11 +43,11 @@ std::string SampledTier::reasonAgainst(const ViewPlan& plan) const {
          std::to_string(bufferBytes_);
 }
 
-ViewPlan SampledTier::planOf(const Query& query, Drawn drawn) const {
+ViewPlan SampledRunner::planOf(const Query& query, Drawn drawn) const {
   return planSampled(query, scene_.impl(), device_.properties.limits.subPixelPrecisionBits, drawn);
 }
 
-bool SampledTier::trySubmit(std::span<Planned> part, bool isLast) {
+bool SampledRunner::trySubmit(Flight& flight, std::span<Planned> part, bool isLast) {
   const Clock::time_point start = Clock::now();
   std::vector<const ViewPlan*> plans;
   std::vector<size_t> queries;
@@ -58,52 +56,63 @@ bool SampledTier::trySubmit(std::span<Planned> part, bool isLast) {
     queries.push_back(planned.query);
   }
   packBatch(drawn_, plans);
-  batch_.addCpuTime("encode", msSince(start));
-  bool fits = true;
-  pending_.submit(std::move(queries), [&](std::span<const size_t>) {
-    try {
-      submitter_.submit(drawn_, scene_.impl());
-    } catch (const Error& error) {
-      if (isLast || !batch_.survives(error)) throw;
-      fits = false;
-      return false;
-    }
-    ++batch_.stats.submissions;
-    batch_.stats.drawnObjects += drawn_.objects;
-    batch_.stats.drawnTriangles += drawn_.triangles;
+  flight.addCpuTime("encode", msSince(start));
+  try {
+    submitter_.submit(drawn_, scene_.impl());
+  } catch (const Error& error) {
+    if (!isLast && flight.survives(error)) return false;
+    for (const size_t query : queries) flight.fail(query, error);
     return true;
-  });
-  return fits;
+  }
+  SweepStats& stats = flight.answers.stats;
+  ++stats.submissions;
+  stats.drawnObjects += drawn_.objects;
+  stats.drawnTriangles += drawn_.triangles;
+  flight.drawn = std::move(queries);
+  return true;
 }
 
-void SampledTier::submit(std::span<Planned> part) {
+void SampledRunner::submit(Flight& flight, std::span<Planned> part) {
   if (part.empty()) return;
-  collect();
-  if (trySubmit(part, false)) return;
+  finish(flight);
+  if (trySubmit(flight, part, false)) return;
   if (part.size() == 1) {
-    trySubmit(part, true);  // pictures of other queries have been freed
+    trySubmit(flight, part, true);  // pictures of other queries have been freed
     return;
   }
-  submit(part.first(part.size() / 2));
-  submit(part.subspan(part.size() / 2));
+  submit(flight, part.first(part.size() / 2));
+  submit(flight, part.subspan(part.size() / 2));
 }
 
-void SampledTier::collect() {
-  pending_.collect([&](std::span<const size_t> queries) {
-    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages);
-    batch_.deviceDone = Clock::now();
+void SampledRunner::finish(Flight& flight) {
+  const std::vector<size_t> queries = std::exchange(flight.drawn, {});
+  if (queries.empty()) return;
+  Answers& answers = flight.answers;
+  try {
+    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), answers.stats.stages);
+    flight.deviceDone = Clock::now();
     for (size_t i = 0; i < queries.size(); ++i) {
-      batch_.answers[queries[i]] = decodeSampled(
+      answers.results[queries[i]] = decodeSampled(
           found.answers[i], found.unresolvedPairs.subspan(i * gpu::kUnresolvedPerView, gpu::kUnresolvedPerView),
-          batch_.asked[queries[i]], scene_.impl(), drawn_.views[i].resolution, batch_.stats.cpuPairs);
-      batch_.stats.pairs += found.answers[i].pairs;
+          flight.queries[queries[i]], scene_.impl(), drawn_.views[i].resolution, answers.stats.cpuPairs);
+      answers.stats.pairs += found.answers[i].pairs;
     }
-    batch_.addCpuTime("decode", msSince(batch_.deviceDone));
-  });
+    flight.addCpuTime("decode", msSince(flight.deviceDone));
+  } catch (const Error& error) {
+    for (const size_t query : queries) flight.fail(query, error);
+  }
+}
+
+void SampledRunner::abandon(Flight& flight) noexcept {
+  if (std::exchange(flight.drawn, {}).empty()) return;
+  try {
+    submitter_.collect(drawn_, scene_.impl(), flight.answers.stats.stages);
+  } catch (const std::exception&) {  // the exception that was first is the one to report
+  }
 }
 
 // Cuts a slice into submissions that fit.
-void SampledTier::flush(std::vector<Planned>& slice) {
+void SampledRunner::flush(Flight& flight, std::vector<Planned>& slice) {
   std::stable_sort(slice.begin(), slice.end(),
                    [](const Planned& a, const Planned& b) { return a.plan.view.resolution < b.plan.view.resolution; });
   size_t first = 0;
@@ -112,57 +121,58 @@ void SampledTier::flush(std::vector<Planned>& slice) {
     Load next = load;
     next.add(slice[i].plan);
     if (i > first && !fits(next)) {
-      submit(std::span(slice).subspan(first, i - first));
+      submit(flight, std::span(slice).subspan(first, i - first));
       first = i;
       next = {};
       next.add(slice[i].plan);
     }
     load = next;
   }
-  submit(std::span(slice).subspan(first));
+  submit(flight, std::span(slice).subspan(first));
   slice.clear();
 }
 
-void SampledTier::run(std::span<const size_t> which) {
+void SampledRunner::begin(Flight& flight) {
   // A slice is encoded, then submitted in as few parts as fit; it holds what a submission can at most, so that memory
   // stays bounded however many queries there are.
   std::vector<Planned> slice;
   Load load;
-  for (const size_t i : which) {
+  for (size_t i = 0; i < flight.queries.size(); ++i) {
     const Clock::time_point start = Clock::now();
-    ViewPlan plan = planOf(batch_.asked[i], options_.select ? Drawn::inReach : Drawn::everything);
-    batch_.addCpuTime("select", msSince(start));
+    ViewPlan plan = planOf(flight.queries[i], options_.select ? Drawn::inReach : Drawn::everything);
+    flight.addCpuTime("select", msSince(start));
     if (plan.inReach.empty() && plan.outOfRange.empty()) {
-      batch_.answers[i] = decodeClear();
+      flight.answers.results[i] = decodeClear();
       continue;
     }
     if (std::string reason = reasonAgainst(plan); !reason.empty()) {
-      batch_.reasons[i] = std::move(reason);
+      flight.answers.reasons[i] = std::move(reason);
       continue;
     }
     load.add(plan);
     slice.push_back({i, std::move(plan)});
     if (slice.size() >= device_.maxLayers || load.draws * sizeof(gpu::Draw) > bufferBytes_ || load.items > maxItems_) {
-      flush(slice);
+      flush(flight, slice);
       load = {};
     }
   }
-  flush(slice);
+  flush(flight, slice);
 }
 
-Scopes SampledTier::scopes(const Query& query) {
+Scopes SampledRunner::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = reasonAgainst(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
   packBatch(drawn_, plans);
   StoredScopes stored;
+  SweepStats stats;
   submitter_.submit(drawn_, scene_.impl(), true);
-  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), batch_.stats.stages, &stored);
+  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()
                                     : decodeSampled(found.answers[0], found.unresolvedPairs, query, scene_.impl(),
-                                                    plan.view.resolution, batch_.stats.cpuPairs);
+                                                    plan.view.resolution, stats.cpuPairs);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

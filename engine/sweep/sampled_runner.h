@@ -3,19 +3,20 @@
 #pragma once
 
 #include "sampled/submitter.h"
-#include "sweep/query_batch.h"
+#include "sweep/flight.h"
 
 namespace radar {
 
-class SampledTier {
+class SampledRunner {
  public:
-  SampledTier(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
-              QueryBatch& batch);
+  SampledRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident);
 
-  /// Plans and submits these queries; on return the last submission may still be running.
-  void run(std::span<const size_t> which);
-  /// Waits for the last submission and decodes it.
-  void collect();
+  /// Plans and submits the batch; on return the last submission may still be running.
+  void begin(Flight& flight);
+  /// Waits for the last submission, if one is running, and decodes it.
+  void finish(Flight& flight);
+  /// Waits for what is running of a batch that is given up.
+  void abandon(Flight& flight) noexcept;
   /// The pictures from which a valid query is answered. No submission may be running.
   Scopes scopes(const Query& query);
 
@@ -35,21 +36,19 @@ class SampledTier {
   bool fits(const Load& load) const;
   std::string reasonAgainst(const ViewPlan& plan) const;
   ViewPlan planOf(const Query& query, Drawn drawn) const;
-  void flush(std::vector<Planned>& slice);
+  void flush(Flight& flight, std::vector<Planned>& slice);
   /// Submits a part, in halves if the device's memory does not suffice.
-  void submit(std::span<Planned> part);
+  void submit(Flight& flight, std::span<Planned> part);
   /// Returns false, and submits nothing, if memory does not suffice; if `isLast`, the part's queries fail instead.
-  bool trySubmit(std::span<Planned> part, bool isLast);
+  bool trySubmit(Flight& flight, std::span<Planned> part, bool isLast);
 
   const Device::Impl& device_;
   const Scene& scene_;
   const SweeperOptions options_;
-  QueryBatch& batch_;
   SampledSubmitter submitter_;
   uint64_t bufferBytes_;
-  uint64_t maxItems_;       ///< so that item and lane fit 32 bits (gpu::Candidate)
-  PendingQueries pending_;  ///< in the order of `drawn_.views`
-  SampledBatch drawn_;
+  uint64_t maxItems_;   ///< so that item and lane fit 32 bits (gpu::Candidate)
+  SampledBatch drawn_;  ///< the last submission
 };
 
 }  // namespace radar

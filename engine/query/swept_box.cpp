@@ -1,9 +1,9 @@
-#include "cpu/swept_box.h"
+#include "query/swept_box.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace radar::cpu {
+namespace radar {
 
 namespace {
 
@@ -54,4 +54,4 @@ TwoDoubles SweptBox::operator()(const gpu::ObjectNode& first, const gpu::ObjectN
   return from <= to ? from : both(INFINITY);
 }
 
-}  // namespace radar::cpu
+}  // namespace radar

@@ -1,4 +1,4 @@
-// Texel arrays hold what was uploaded or written as storage, also after they have grown.
+// Arrays that shaders read as texels hold what was uploaded or written as storage, also after they have grown.
 #include <algorithm>
 #include <numeric>
 
@@ -12,11 +12,10 @@ using namespace radar::test;
 using gpu::Array;
 using gpu::BufferDomain;
 using gpu::Commands;
-using gpu::KernelArguments;
-using gpu::TexelArray;
+using gpu::Passes;
 
-TexelArray<Node> makeNodes() {
-  return {impl(), "nodes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_FORMAT_R32G32B32A32_UINT};
+Array<Node> makeNodes() {
+  return {impl(), "nodes", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT | gpu::kAsTexels};
 }
 
 // The sum of a node's words, which count up from `first`.
@@ -34,8 +33,8 @@ bool sumsAre(const Array<uint32_t>& sums, uint32_t count, uint32_t first) {
 }  // namespace
 
 TEST_CASE("texels have the uploaded values, also after the array has grown") {
-  TexelArray<Node> nodes = makeNodes();
-  KernelArguments arguments(kernels().sumTexels);
+  Array<Node> nodes = makeNodes();
+  Passes passes(impl());
   gpu::Upload upload(impl());
   for (const uint32_t count : {1u, 63u, 64u, 65u, 1234u}) {
     CAPTURE(count);
@@ -44,13 +43,12 @@ TEST_CASE("texels have the uploaded values, also after the array has grown") {
     nodes.reserve(count);
     CHECK(nodes.capacity() >= count);
     const Array<uint32_t> sums = numbers("sums", count);
-    arguments.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
     upload.begin(gpu::Upload::aligned(gpu::bytesOf(uploaded)));
     upload.add(uploaded.data(), gpu::bytesOf(uploaded), nodes);
     run([&](const Commands& commands) {
       upload.record(commands);
       gpu::uploadToRead(commands);
-      arguments.dispatch(commands, count);
+      passes(commands, kSumTexels, count, {{kSlotNodes, nodes}, {kSlotResults, sums}});
     });
     CHECK(sumsAre(sums, count, 1000));
   }
@@ -58,17 +56,21 @@ TEST_CASE("texels have the uploaded values, also after the array has grown") {
 
 TEST_CASE("texels have the values that a kernel wrote as storage, and a missing barrier is reported as a hazard") {
   constexpr uint32_t kCount = 100;
-  TexelArray<Node> nodes = makeNodes();
+  Array<Node> nodes = makeNodes();
   nodes.reserve(kCount);
-  KernelArguments fill(kernels().fillNodes), sum(kernels().sumTexels);
+  Passes passes(impl());
   const Array<uint32_t> sums = numbers("sums", kCount);
-  fill.set({{kSlotNodes, nodes}});
-  sum.set({{kSlotNodes, nodes}, {kSlotResults, sums}});
+  const auto fill = [&](const Commands& commands, uint32_t first) {
+    passes(commands, kFillNodes, kCount, first, {{kSlotNodes, nodes}});
+  };
+  const auto sum = [&](const Commands& commands) {
+    passes(commands, kSumTexels, kCount, {{kSlotNodes, nodes}, {kSlotResults, sums}});
+  };
   run([&](const Commands& commands) {
     for (const uint32_t first : {5u, 17u}) {
-      fill.dispatch(commands, kCount, first);
+      fill(commands, first);
       gpu::computeWriteToComputeReadWrite(commands);
-      sum.dispatch(commands, kCount);
+      sum(commands);
       gpu::computeWriteToComputeReadWrite(commands);
     }
   });
@@ -77,8 +79,8 @@ TEST_CASE("texels have the values that a kernel wrote as storage, and a missing 
   {
     gpu::Submission submission(impl(), false);  // recorded but never submitted
     const Commands commands = submission.begin();
-    fill.dispatch(commands, kCount, 1u);
-    sum.dispatch(commands, kCount);
+    fill(commands, 1);
+    sum(commands);
   }
   const std::vector<std::string> messages = takeValidationMessages();
   REQUIRE_FALSE(messages.empty());
@@ -86,21 +88,12 @@ TEST_CASE("texels have the values that a kernel wrote as storage, and a missing 
 }
 
 TEST_CASE("reserve refuses more texels than the device allows, names both numbers and leaves the array as it was") {
-  TexelArray<uint32_t> words(impl(), "words", BufferDomain::device, 0, VK_FORMAT_R32_UINT);
-  const VkBufferView view = words.view();
+  Array<Node> nodes = makeNodes();
+  nodes.reserve(1);
+  const VkBufferView view = nodes.view();
   const uint64_t most = std::min<uint64_t>(impl().properties.limits.maxTexelBufferElements, INT32_MAX);
-  CHECK_THROWS_WITH(words.reserve(most + 1), "words: " + std::to_string(most + 1) +
-                                                 " texels, but the device's maxTexelBufferElements is " +
-                                                 std::to_string(most));
-  CHECK(words.view() == view);
-  TexelArray<Node> nodes = makeNodes();
-  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), test::StartsWith("nodes: " + std::to_string(2 * (most / 2 + 1))));
-}
-
-TEST_CASE("elements that are not whole texels, and formats that not every device reads, are refused") {
-  using Triple = uint32_t[3];
-  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32_UINT),
-                    "triples: elements of 12 bytes are not whole texels of 8");
-  CHECK_THROWS_WITH(TexelArray<Triple>(impl(), "triples", BufferDomain::device, 0, VK_FORMAT_R32G32B32_UINT),
-                    "triples: not every device supports texel buffers of VkFormat 104");
+  CHECK_THROWS_WITH(nodes.reserve(most / 2 + 1), "nodes: " + std::to_string(2 * (most / 2 + 1)) +
+                                                     " texels, but the device's maxTexelBufferElements is " +
+                                                     std::to_string(most));
+  CHECK(nodes.view() == view);
 }

@@ -1,0 +1,166 @@
+#include "embed/recorded.h"
+
+#include <algorithm>
+
+#include "contact/decode.h"
+#include "cpu/clearance.h"
+#include "embed/host_queries.h"
+#include "query/route.h"
+#include "query/swept.h"
+
+namespace radar {
+
+namespace {
+
+// Of a query past one object each: lavapipe ends longer loops silently.
+constexpr size_t kMostSearches = 1u << 15;
+
+Result outOfRange() {
+  Result result;
+  result.tier = Tier::contact;
+  result.flags = Flag::range;
+  return result;
+}
+
+// The objects in reach of a query, ascending, and those that may be, wherever the host moves them: every object if only
+// the device knows how large the sensor is.
+std::vector<ObjectId> mayReach(const Query& query, const Scene::Impl& scene, const HostGeometryPass& geometry) {
+  std::vector<ObjectId> objects = inReach(query, scene, scene.objectTree());
+  const auto add = [&](ObjectId id) {
+    if (scene.objects[id].used && takesPart(query, scene, id)) objects.push_back(id);
+  };
+  if (geometry.isUnbounded(query.mesh)) {
+    for (ObjectId id = 0; id < scene.objects.size(); ++id) add(id);
+  } else {
+    for (const ObjectId id : geometry.unbounded()) add(id);
+  }
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  return objects;
+}
+
+bool isOpen(const Result& result, std::span<const gpu::UnresolvedPair* const> pairs) {
+  return result.flags == Flag::unresolved && !pairs.empty();
+}
+
+}  // namespace
+
+void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, const HostGeometryPass& geometry,
+                    uint32_t mostSearches) {
+  isWritten = false;
+  count = static_cast<uint32_t>(asked.size());
+  queries.assign(asked.begin(), asked.end());
+  sensors.clear();
+  deformedSensors.clear();
+  gathered.clear();
+  hitOffsets.clear();
+  tolerances.clear();
+  const bool isInRange = scene.objectTree().inRange();
+  std::vector<std::vector<ObjectId>> objects(count);
+  size_t searches = 0;
+  uint32_t end = count;
+  for (uint32_t i = 0; i < count; ++i) {
+    const Query& query = queries[i];
+    const bool searchesEach = isInRange && routeOf(query, scene, false) == Route::searchEach;
+    objects[i] = searchesEach ? mayReach(query, scene, geometry) : std::vector<ObjectId>{kNone};
+    const auto several = static_cast<uint32_t>(searchesEach ? objects[i].size() : 0);
+    if (several > kMostSearches) {
+      throw Error("record: query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
+                  " objects in reach, got " + std::to_string(several));
+    }
+    searches += several;
+    hitOffsets.push_back(end);
+    const uint32_t listed = query.hits > 1 ? std::min(query.hits, several) : 0;
+    if (several > 0) gathered.push_back({.query = i, .first = 0, .count = several, .list = end, .listed = listed});
+    end += listed;
+    tolerances.push_back(cpu::toleranceOf(query, scene.meshes[query.mesh]));
+  }
+  if (searches > mostSearches) {
+    throw Error("record: expected at most " + std::to_string(mostSearches) +
+                " searches past one object each (Capacity::searches), got " + std::to_string(searches));
+  }
+  hitOffsets.push_back(end);
+  known.assign(end, clearAnswer());
+  auto next = gathered.begin();
+  for (uint32_t i = 0; i < count; ++i) {
+    const bool takesSeveral = next != gathered.end() && next->query == i;
+    if (takesSeveral) next++->first = static_cast<uint32_t>(known.size());
+    for (const ObjectId object : objects[i]) {
+      const uint32_t result = takesSeveral ? static_cast<uint32_t>(known.size()) : i;
+      if (takesSeveral) known.push_back(clearAnswer());
+      planSearch(queries[i], result, object, scene, geometry);
+    }
+  }
+}
+
+void Recorded::planSearch(const Query& query, uint32_t result, ObjectId object, const Scene::Impl& scene,
+                          const HostGeometryPass& geometry) {
+  const Planned planned = addSensor(sensors, query, result, scene, scene.objectTree(), object);
+  if (planned == Planned::outOfRange) known[result] = outOfRange();
+  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) {
+    deformedSensors.push_back(deformedSensor(sensors.count() - 1, query, motionPast(query, scene, object)));
+  }
+}
+
+void Recorded::planWritten(uint32_t most) {
+  isWritten = true;
+  count = most;
+  queries.clear();
+  deformedSensors.clear();
+  gathered.clear();
+  hitOffsets.assign(size_t{most} + 1, most);
+  tolerances.clear();
+  known.clear();
+}
+
+void Recorded::learn(const std::map<MeshId, Box>& boxes) {
+  if (boxes.empty()) return;
+  std::vector<Vector> all = *farthest;
+  for (const auto& [mesh, box] : boxes) {
+    Mesh shape;
+    setBox(shape, box);
+    all[mesh] = shape.farthest;
+    for (size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].mesh == mesh) tolerances[i] = cpu::toleranceOf(queries[i], shape);
+    }
+  }
+  farthest = std::make_shared<const std::vector<Vector>>(std::move(all));
+}
+
+Answers Recorded::answers(std::vector<Result> all, std::span<const gpu::UnresolvedPair> pairs) const {
+  const UnresolvedPairs unresolved(pairs);
+  auto next = gathered.begin();
+  for (uint32_t i = 0; i < sensors.count(); ++i) {
+    const gpu::Sweep& sweep = sensors.sweeps[i];
+    while (next != gathered.end() && sweep.result >= next->first + next->count) ++next;
+    Result& result = all[sweep.result];
+    if (!isOpen(result, unresolved.of(i))) continue;
+    const uint32_t number = sweep.result >= hitOffsets.back() ? next->query : sweep.result;
+    const Query& query = queries[number];
+    const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
+    result =
+        decideUnresolved(result, unresolved.of(i), query, query.motion ? Motion(*query.motion, drift) : Motion(query),
+                         tolerances[number], *farthest);
+  }
+  Answers answers = unanswered(queries);
+  std::copy_n(all.begin(), count, answers.results.begin());
+  for (const gpu::Gathered& several : gathered) {
+    Merged found = merged(std::span(all).subspan(several.first, several.count), several.listed);
+    answers.results[several.query] = found.first;
+    if (!answers.lists.empty()) answers.lists[several.query].hits = std::move(found.hits);
+  }
+  return answers;
+}
+
+Answers Recorded::answersToWritten(std::vector<Result> all, std::span<const gpu::UnresolvedPair> pairs,
+                                   const gpu::Sweep* sweeps) const {
+  const UnresolvedPairs unresolved(pairs);
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    if (!isOpen(all[i], unresolved.of(i))) continue;
+    const Query query = queryOf(sweeps[i]);
+    all[i] = decideUnresolved(all[i], unresolved.of(i), query, Motion(query), 0, *farthest);
+  }
+  return {.results = std::move(all)};
+}
+
+}  // namespace radar

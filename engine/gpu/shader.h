@@ -1,0 +1,29 @@
+// A shader as the build describes it (shaders/CMakeLists.txt): radar::shaders, in spirv/radar_shaders.h, are the engine's.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <vulkan/vulkan_core.h>
+
+namespace radar::gpu {
+
+/// What a shader binds in descriptor set 0.
+struct Binding {
+  uint32_t number;
+  /// STORAGE_BUFFER, UNIFORM_TEXEL_BUFFER or COMBINED_IMAGE_SAMPLER.
+  VkDescriptorType type;
+  const char* name;  ///< of the variable, or of its block
+};
+
+struct Shader {
+  const char* name;  ///< its path in `shaders`, without suffixes
+  VkShaderStageFlagBits stage;
+  std::span<const uint32_t> spirv;
+  /// For devices without doubles; empty if it needs no such variant. It binds no more, and has the same push constants.
+  std::span<const uint32_t> spirvWithoutDoubles;
+  std::span<const Binding> bindings;  ///< by number
+  uint32_t pushBytes;                 ///< of push constants; 0: none
+};
+
+}  // namespace radar::gpu

@@ -1,0 +1,92 @@
+// Answers. R, M, L and d are those of the paper that radar.h names.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "radar/codes.h"
+#include "radar/scene.h"
+
+namespace radar {
+
+/// An answer. Layout version 4: 128 bytes, natural alignment. Absent ids are kNone. Where no contact within D is
+/// certain, t, hi and fraction are +infinity, and if the answer is clear, lo is, too: distances of any answers compare.
+/// Other absent numbers, and all of an invalid answer, are NaN.
+///
+/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; ids, features, point and
+/// normal are absent, and for a hit t and fraction are; then lo is 0 and hi at most D (in mode contact: D).
+struct RADAR_API Result {
+  Status status = Status::invalid;
+  Tier tier = Tier::select;
+  Detected detected = Detected::notLooked;
+  uint32_t resolution = 0;  ///< pixels along the window's longer side; 0 if no picture was drawn
+  double t;                 ///< best estimate of t*, world units; tier sampled: hi
+  double lo, hi;            ///< the certified bracket, world units
+  double fraction;          ///< t / D (0 if D is 0); of the step, if the query takes one
+  ObjectId object = kNone;  ///< the object touched
+  uint32_t triB = kNone;    ///< its triangle
+  uint32_t triA = kNone;    ///< the sensor's triangle
+  uint32_t flags = 0;       ///< Flag: why a Recorder gave no answer; else 0
+  /// The smallest features of the two triangles that contain every point at which they touch then, exactly; with a
+  /// clearance, of the nearest points. Tier sampled: those that were found, none at the start.
+  Feature featureB = Feature::none, featureA = Feature::none;
+  /// World position of the contact at the moment of contact. Where featureB is a vertex, it is that corner as placed,
+  /// exactly (in a step, moved with its object); where only featureA is one, that corner moved by t. Where surfaces
+  /// cross at the start, it is a point of the crossing, found in plain doubles, so that needles cost digits; absent if
+  /// both triangles lie in one plane and neither feature is a vertex. With a clearance, it is of the touched surface.
+  std::array<double, 3> point;
+  /// Unit, from the touched surface towards the sensor. Every hit in mode contact has one. To rounding, normal .
+  /// direction <= 0 (in a step: the relative motion), and normal . (a - b) >= 0 for all points a of the sensor's
+  /// triangle and b of the object's, when they touch. If some normal that the motion goes against keeps apart all
+  /// triangles of both meshes around `point`, this one does, so that who slides along it slides; likewise all pairs
+  /// that touch then, if a normal of one of them does (docs/exact.md). Starts that cross have none: at the start it
+  /// exists only if contact of the two triangles begins there, and keeps these two apart. With a clearance, it lies
+  /// along the line between the nearest points, and is absent where they touch. Mode sampled: that of the features
+  /// found, absent if parallel.
+  std::array<double, 3> normal;
+  double paperMinL;  ///< the paper's literal min(L), for comparison: may be negative, too early or too late
+  Result();
+  /// An answer without a contact: clear or undecided, with lo to be set. Others as above.
+  explicit Result(Status status);
+};
+inline constexpr uint32_t kResultVersion = 4;
+static_assert(sizeof(Result) == 128);
+
+/// What a query lists besides its first contact.
+struct Listed {
+  /// With Query::hits above 1: the first contact with each object, by (t, object), t being exact and not rounded. With
+  /// a clearance, by (lo, object), and beside as many objects as were asked for those that are undecided: they have a
+  /// lo, but no finite hi.
+  std::vector<Result> hits;
+  std::vector<ObjectId> overlapping;  ///< with Query::skipOverlapping: the objects left out, ascending
+};
+
+/// Time of one stage, summed over submissions, milliseconds.
+struct StageTime {
+  std::string name;
+  double ms = 0;
+};
+
+/// What answering took.
+struct SweepStats {
+  uint32_t submissions = 0;
+  uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
+  uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
+  uint64_t pairs = 0;             ///< proposed pairs of triangles (sampled), pairs of leaves (contact)
+  uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
+  uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
+  std::vector<StageTime> stages;  ///< with SweeperOptions::timestamps, CPU stages included; else empty
+};
+
+/// The answers to a batch.
+struct Answers {
+  std::vector<Result> results;            ///< in the order of the queries
+  std::vector<Listed> lists;              ///< one per query, or none if no query lists anything
+  std::map<size_t, std::string> reasons;  ///< why a result is Status::invalid, by its index
+  SweepStats stats;
+};
+
+}  // namespace radar

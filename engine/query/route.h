@@ -1,0 +1,20 @@
+// Who may answer a query.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace radar {
+
+enum class Route {
+  cpu,        ///< the CPU's search only: it combines what the device's does not
+  oneSearch,  ///< one search of the device past all objects
+  searchEach  ///< one search of the device past each object in reach, since several hits are asked for or objects move
+};
+
+/// Null, or what of a query only the CPU's search combines. `canRevise`: what the device finds is looked at before it
+/// is an answer, as a Sweeper does; a Recorder's device leaves answers behind.
+const char* onlyForCpu(const Query& query, const Scene::Impl& scene, bool canRevise);
+
+Route routeOf(const Query& query, const Scene::Impl& scene, bool canRevise);
+
+}  // namespace radar

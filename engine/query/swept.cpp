@@ -1,0 +1,41 @@
+#include "query/swept.h"
+
+namespace radar {
+
+namespace detail {
+
+OpenNode* openNodes(size_t count) {
+  thread_local std::vector<OpenNode> nodes;
+  if (nodes.size() < count) nodes.resize(count);
+  return nodes.data();
+}
+
+Box roomyBox(const Query& query, const Scene::Impl& scene) {
+  Box box = boxOf(scene.meshes[query.mesh], query.worldFromMesh.m);
+  // Boxes have room for the default slack.
+  const double room = std::max(query.clearance, 2 * query.slack.value_or(0));
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= room;
+    box.hi[k] += room;
+  }
+  return box;
+}
+
+}  // namespace detail
+
+Motion motionPast(const Query& query, const Scene::Impl& scene, ObjectId object) {
+  if (!isStep(query, scene)) return Motion(query);
+  return {displacementOf(query), object == kNone ? Vector{} : scene.objects[object].object.motion};
+}
+
+std::vector<ObjectId> inReach(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
+  const Motion motion = motionPast(query, scene);
+  const double way = motion.wayUntil(motion.distance);
+  std::vector<ObjectId> found;
+  walk(
+      query, motion, scene, tree, [&](double near) { return near <= way; }, [&](ObjectId id) { found.push_back(id); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace radar

@@ -1,0 +1,90 @@
+// Validation of queries, and the initial values of a Result.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/float_environment.h"
+#include "math/frame.h"
+#include "query/hits.h"
+#include "scene/scene.h"
+
+namespace radar {
+
+namespace {
+
+// Lengths of directions up to this do not overflow, if they cannot be scaled exactly.
+constexpr double kMostLength = 0x1p1023;
+
+// Checks where a query's sensor goes.
+std::string validateCourse(const Query& query, const Scene::Impl& scene) {
+  if (query.motion) {
+    if (std::string wrong = validateMotion(*query.motion); !wrong.empty()) return "motion: " + wrong;
+    if (query.direction != std::array<double, 3>{} || query.distance != 0) {
+      return "motion: expected no direction and no distance beside it";
+    }
+    return {};
+  }
+  double largest = 0;
+  for (double value : query.direction) {
+    if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + std::to_string(value);
+    largest = std::max(largest, std::abs(value));
+  }
+  if (largest == 0) return "direction: expected a vector that is not zero";
+  if (largest >= kMostLength / 2 && !(lengthOf(scaledDirection(query.direction)) < kMostLength)) {
+    return "direction: expected a length below 2^1023 beside a component below 2^-1020";
+  }
+  if (!std::isfinite(query.distance) || query.distance < 0) {
+    return "distance: expected a finite number of 0 or more, got " + std::to_string(query.distance);
+  }
+  if (scene.moving > 0 && query.distance > kMostMotion) {
+    return "distance: expected at most 2^1000 where objects move, got " + std::to_string(query.distance);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string validate(const Query& query, const Scene& scene, Mode mode) {
+  const FloatEnvironment floats;
+  if (!scene.hasMesh(query.mesh)) return "sensor: mesh " + std::to_string(query.mesh) + " does not exist";
+  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) return "sensor: " + wrong;
+  if (std::string wrong = validateCourse(query, scene.impl()); !wrong.empty()) return wrong;
+  for (ObjectId object : query.exclude) {
+    if (!scene.hasObject(object)) return "exclude: object " + std::to_string(object) + " does not exist";
+  }
+  if (query.slack && !(std::isfinite(*query.slack) && *query.slack >= 0)) {
+    return "slack: expected a finite number of 0 or more, got " + std::to_string(*query.slack);
+  }
+  if (!std::isfinite(query.clearance) || query.clearance < 0) {
+    return "clearance: expected a finite number of 0 or more, got " + std::to_string(query.clearance);
+  }
+  if (query.tolerance && !(std::isfinite(*query.tolerance) && *query.tolerance >= 0)) {
+    return "tolerance: expected a finite number of 0 or more, got " + std::to_string(*query.tolerance);
+  }
+  if (query.hits == 0) return "hits: expected 1 or more, got 0";
+  if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);
+  if (mode == Mode::sampled && (query.ignoreLeaving || query.clearance > 0 || hasLists(query))) {
+    return "mode: expected contact with ignoreLeaving, skipOverlapping, clearance or several hits, got sampled";
+  }
+  if (mode == Mode::sampled && isStep(query, scene.impl())) {
+    return "mode: expected contact with a motion, of the query or of objects, got sampled";
+  }
+  if (query.resolution > kMaxResolution) {
+    return "resolution: expected 0 to " + std::to_string(kMaxResolution) + ", got " + std::to_string(query.resolution);
+  }
+  return {};
+}
+
+Result::Result() {
+  t = lo = hi = fraction = paperMinL = std::numeric_limits<double>::quiet_NaN();
+  point.fill(std::numeric_limits<double>::quiet_NaN());
+  normal.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+Result::Result(Status noContact) : Result() {
+  status = noContact;
+  if (status != Status::clear && status != Status::undecided) return;
+  t = lo = hi = fraction = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace radar

@@ -1,0 +1,62 @@
+// Checks of poses and motions.
+#include <cmath>
+
+#include "math/float_environment.h"
+#include "scene/scene.h"
+
+namespace radar {
+
+namespace {
+
+// Vertices that poses up to this place do not overflow, nor do differences of such vertices.
+constexpr double kMostPose = 0x1p800;
+
+// Whether a pose certainly passes the test of validate(): columns of length 1 make rows of at most
+// sqrt(3), so the scaled determinant loses at most a factor of 5.2.
+bool isSurelyInvertible(const Transform& pose) {
+  double squares = 1;
+  for (int k = 0; k < 3; ++k) {
+    squares *= pose.m[k] * pose.m[k] + pose.m[4 + k] * pose.m[4 + k] + pose.m[8 + k] * pose.m[8 + k];
+  }
+  const double volume = determinant(pose);
+  const double position = std::abs(pose.m[3]) + std::abs(pose.m[7]) + std::abs(pose.m[11]);
+  return squares > 1e-250 && squares < 1e250 && volume * volume > 1e-20 * squares && position <= kMostPose;
+}
+
+}  // namespace
+
+std::string validate(const Transform& pose) {
+  const FloatEnvironment floats;
+  if (isSurelyInvertible(pose)) return {};
+  for (double value : pose.m) {
+    if (!(std::abs(value) <= kMostPose)) {
+      return "expected 12 finite numbers of at most 2^800, got " + std::to_string(value);
+    }
+  }
+  // Columns, then rows are scaled to length 1, so that a scale of 1e-5 along one axis does not look singular.
+  Transform scaled = pose;
+  for (int k = 0; k < 3; ++k) {
+    const double length = std::hypot(pose.m[k], pose.m[4 + k], pose.m[8 + k]);
+    if (length == 0) return "expected an invertible matrix, got a singular one, with a zero column";
+    for (int i = 0; i < 3; ++i) scaled.m[4 * i + k] /= length;
+  }
+  for (int i = 0; i < 3; ++i) {
+    double* r = &scaled.m[4 * i];
+    const double length = std::hypot(r[0], r[1], r[2]);
+    if (length == 0) return "expected an invertible matrix, got a singular one, with a zero row";
+    for (int k = 0; k < 3; ++k) r[k] /= length;
+  }
+  if (std::abs(determinant(scaled)) < 1e-12) return "expected an invertible matrix, got a singular one";
+  return {};
+}
+
+std::string validateMotion(const std::array<double, 3>& motion) {
+  for (double value : motion) {
+    if (!(std::abs(value) <= kMostMotion)) {
+      return "expected 3 finite numbers of at most 2^1000, got " + std::to_string(value);
+    }
+  }
+  return {};
+}
+
+}  // namespace radar

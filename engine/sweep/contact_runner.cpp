@@ -1,0 +1,245 @@
+#include "sweep/contact_runner.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "contact/decode.h"
+#include "cpu/clearance.h"
+#include "gpu/check.h"
+#include "query/route.h"
+#include "query/swept.h"
+#include "scene/parallel.h"
+#include "sweep/known_answers.h"
+
+namespace radar {
+
+namespace {
+
+// Sensors of one submission, at most: what a device has in hand while the next ones are planned.
+constexpr size_t kMostSensors = 1u << 14;
+// Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
+// the batch (docs/benchmarks.md). On another, a submission takes the time in which a CPU answers some queries: an
+// estimate, as no such device has been measured.
+constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
+// Pairs that are left to the host: more of one sensor are dearer to decide than to search again.
+constexpr size_t kMostDecided = 256;
+
+// Of one submission: what a texel buffer of sensors holds.
+size_t mostSensorsOf(const Device::Impl& device) {
+  return std::min<size_t>(kMostSensors, device.properties.limits.maxTexelBufferElements / gpu::kSensorTexels);
+}
+
+uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
+  if (options.cpuBatch != kNone) return options.cpuBatch;
+  return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? kCpuBatchOnCpu : kCpuBatchElsewhere;
+}
+
+}  // namespace
+
+ContactRunner::ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+                             GpuScene& resident, const SearchRoom& room, bool needsProof)
+    : device_(device),
+      scene_(scene),
+      options_(options),
+      resident_(resident),
+      room_(room),
+      mostSensors_(mostSensorsOf(device)) {
+  if (needsProof && !isOnCpu()) requireProof(device);
+}
+
+bool ContactRunner::isOnCpu() const {
+  return cpuBatchOf(options_, device_) == kNone;
+}
+
+void ContactRunner::begin(Flight& flight) {
+  std::vector<size_t> all(flight.queries.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  plan(flight, all);
+  answerLeft(flight);
+}
+
+void ContactRunner::finish(Flight& flight) {
+  collect(flight);
+  while (!flight.again.empty()) {
+    plan(flight, std::exchange(flight.again, {}));
+    collect(flight);
+  }
+  answerLeft(flight);
+}
+
+void ContactRunner::abandon(Flight& flight) noexcept {
+  if (std::exchange(flight.submitted, {}).empty()) return;
+  try {
+    submitter_->collect(scene_.impl(), flight.answers.stats.stages);
+  } catch (const std::exception&) {  // the exception that was first is the one to report
+  }
+}
+
+void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
+  if (which.size() < cpuBatchOf(options_, device_)) {
+    flight.left.insert(flight.left.end(), which.begin(), which.end());
+    return;
+  }
+  const Clock::time_point begun = Clock::now();
+  const ObjectTree& tree = scene_.impl().objectTree();
+  flight.addCpuTime("select", msSince(begun));
+  flight.encoding = Clock::now();
+  for (const size_t query : which) {
+    if (!planQuery(flight, query, tree)) flight.left.push_back(query);
+  }
+  submit(flight);
+}
+
+bool ContactRunner::planQuery(Flight& flight, size_t query, const ObjectTree& tree) {
+  const Query& asked = flight.queries[query];
+  const Scene::Impl& scene = scene_.impl();
+  const Route route = routeOf(asked, scene, true);
+  if (route == Route::cpu || !tree.inRange()) return false;
+  std::vector<ObjectId> objects{kNone};
+  if (route == Route::searchEach) objects = inReach(asked, scene, tree);
+  if (objects.size() > mostSensors_) return false;
+  if (flight.planned.sensors.count() + objects.size() > mostSensors_) submit(flight);
+  SensorBatch& sensors = flight.planned.sensors;
+  const uint32_t first = sensors.count();
+  for (const ObjectId object : objects) {
+    if (addSensor(sensors, asked, sensors.count(), scene, tree, object) != Planned::outOfRange) continue;
+    sensors.truncate(first);
+    return false;
+  }
+  if (const uint32_t count = sensors.count() - first; count > 0) {
+    flight.planned.groups.push_back({query, first, count});
+  } else {
+    flight.answers.results[query] = clearAnswer();
+  }
+  return true;
+}
+
+template <class Step>
+bool ContactRunner::attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step) {
+  const auto leave = [&] {
+    for (const PlannedSearches::Group& group : groups) flight.left.push_back(group.query);
+  };
+  try {
+    step();
+    return true;
+  } catch (const gpu::LimitError&) {
+    leave();
+  } catch (const Error& error) {
+    if (flight.survives(error)) {
+      leave();
+    } else {
+      for (const PlannedSearches::Group& group : groups) flight.fail(group.query, error);
+    }
+  }
+  return false;
+}
+
+void ContactRunner::submit(Flight& flight) {
+  flight.addCpuTime("encode", msSince(flight.encoding));
+  PlannedSearches planned = std::exchange(flight.planned, {});
+  if (planned.groups.empty()) return;
+  collect(flight);
+  const bool isSubmitted = attempt(flight, planned.groups, [&] {
+    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, room_);
+    try {
+      submitter_->submit(planned.sensors, scene_.impl());
+    } catch (const Error& error) {
+      if (gpu::isOutOfMemory(error)) submitter_.reset();  // its lists may have grown too large
+      throw;
+    }
+  });
+  if (isSubmitted) flight.submitted = std::move(planned.groups);
+  flight.encoding = Clock::now();
+}
+
+void ContactRunner::collect(Flight& flight) {
+  const std::vector<PlannedSearches::Group> groups = std::exchange(flight.submitted, {});
+  if (groups.empty()) return;
+  attempt(flight, groups, [&] {
+    const SearchAnswers found = submitter_->collect(scene_.impl(), flight.answers.stats.stages);
+    flight.deviceDone = Clock::now();
+    flight.answers.stats.submissions += submitter_->submissions();
+    flight.answers.stats.pairs += found.trianglePairs;
+    decode(flight, found, groups);
+    flight.addCpuTime("decode", msSince(flight.deviceDone));
+  });
+}
+
+void ContactRunner::decode(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups) {
+  const Scene::Impl& scene = scene_.impl();
+  std::vector<Result> results(found.results.begin(), found.results.end());
+  decide(flight, found, groups, results);
+  for (const PlannedSearches::Group& group : groups) {
+    const Query& query = flight.queries[group.query];
+    const auto searches = std::span(results).subspan(group.first, group.count);
+    const bool lacksRoom = found.roomier && std::any_of(searches.begin(), searches.end(), [](const Result& result) {
+                             return result.flags == Flag::candidates;
+                           });
+    if (auto answer = certainAnswer(query, scene, searches)) {
+      flight.answers.results[group.query] = answer->first;
+      if (query.hits > 1) flight.answers.lists[group.query].hits = std::move(answer->hits);
+    } else {
+      (lacksRoom ? flight.again : flight.left).push_back(group.query);
+    }
+  }
+}
+
+// Decides the searches that are open, in place.
+void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups,
+                           std::span<Result> results) const {
+  const Scene::Impl& scene = scene_.impl();
+  const UnresolvedPairs unresolved(found.unresolved);
+  struct Open {
+    uint32_t search;
+    size_t query;
+  };
+  std::vector<Open> open;
+  for (const PlannedSearches::Group& group : groups) {
+    for (uint32_t i = group.first; i < group.first + group.count; ++i) {
+      if (results[i].flags == 0 && results[i].status == Status::invalid) {
+        throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
+      }
+      const size_t pairs = results[i].flags == Flag::unresolved ? unresolved.of(i).size() : 0;
+      if (pairs == 0 || pairs > kMostDecided) continue;
+      open.push_back({i, group.query});
+      flight.answers.stats.cpuPairs += pairs;
+    }
+  }
+  parallelFor(open.size(), 16, options_.cpuThreads, [&](unsigned, size_t first, size_t last) {
+    for (size_t k = first; k < last; ++k) {
+      const auto [i, query] = open[k];
+      const Query& asked = flight.queries[query];
+      const auto pairs = unresolved.of(i);
+      const Motion motion = motionPast(asked, scene, pairs.front()->object);
+      const double tolerance = cpu::toleranceOf(asked, scene.meshes[asked.mesh]);
+      results[i] = decideUnresolved(results[i], pairs, asked, motion, tolerance, *resident_.farthest());
+    }
+  });
+}
+
+void ContactRunner::answerLeft(Flight& flight) {
+  std::vector<size_t> left = std::exchange(flight.left, {});
+  if (left.empty()) return;
+  std::sort(left.begin(), left.end());
+  const Clock::time_point start = Clock::now();
+  Answers& answers = flight.answers;
+  const size_t first = left.front(), count = left.size();
+  if (left.back() - first + 1 == count) {  // without gaps
+    cpu_.run(flight.queries.subspan(first, count), scene_.impl(), Tier::contact, options_.cpuThreads,
+             std::span(answers.results).subspan(first, count),
+             answers.lists.empty() ? std::span<Listed>() : std::span(answers.lists).subspan(first, count));
+  } else {
+    std::vector<Query> queries;
+    queries.reserve(count);
+    for (const size_t i : left) queries.push_back(flight.queries[i]);
+    Answers found = unanswered(queries);
+    cpu_.run(queries, scene_.impl(), Tier::contact, options_.cpuThreads, found.results, found.lists);
+    for (size_t k = 0; k < count; ++k) answers.results[left[k]] = found.results[k];
+    for (size_t k = 0; k < found.lists.size(); ++k) answers.lists[left[k]] = std::move(found.lists[k]);
+  }
+  answers.stats.cpuQueries += count;
+  flight.addCpuTime("cpu", msSince(start));
+}
+
+}  // namespace radar

@@ -1,0 +1,51 @@
+// Mode contact: sends each search to the device or to the CPU's cores, and divides batches into submissions. Both give
+// the same bits.
+#pragma once
+
+#include "contact/submitter.h"
+#include "cpu/search.h"
+#include "sweep/flight.h"
+
+namespace radar {
+
+class ContactRunner {
+ public:
+  /// `needsProof`: that of the device (known_answers.h), unless isOnCpu().
+  ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
+                const SearchRoom& room, bool needsProof);
+
+  /// Whether all batches are answered on the CPU, so that the device needs no scene.
+  bool isOnCpu() const;
+  /// Plans and submits all queries; on return the last submission may still be running.
+  void begin(Flight& flight);
+  /// Waits, and answers the queries that the device had no room or range for.
+  void finish(Flight& flight);
+  /// Waits for what is running of a batch that is given up.
+  void abandon(Flight& flight) noexcept;
+
+ private:
+  void plan(Flight& flight, std::span<const size_t> which);
+  /// Plans the searches of a query; returns false, and plans none, if floats cannot hold one.
+  bool planQuery(Flight& flight, size_t query, const ObjectTree& tree);
+  void submit(Flight& flight);
+  void collect(Flight& flight);
+  void decode(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups);
+  void decide(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups,
+              std::span<Result> results) const;
+  void answerLeft(Flight& flight);
+  /// Calls `step`; leaves the queries to the CPU if memory, or a limit of the device, does not suffice for it, and
+  /// without an answer if another Vulkan call fails. Returns whether nothing did.
+  template <class Step>
+  bool attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step);
+
+  const Device::Impl& device_;
+  const Scene& scene_;
+  const SweeperOptions options_;
+  GpuScene& resident_;
+  const SearchRoom room_;
+  const size_t mostSensors_;                   ///< per submission
+  std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
+  cpu::Search cpu_;
+};
+
+}  // namespace radar

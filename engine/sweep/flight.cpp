@@ -1,0 +1,29 @@
+#include "sweep/flight.h"
+
+#include "gpu/check.h"
+#include "gpu/submission.h"
+#include "query/hits.h"
+
+namespace radar {
+
+Flight::Flight(std::span<const Query> asked, bool timestamps)
+    : queries(asked), answers(unanswered(asked)), deviceDone(Clock::now()), measures(timestamps) {}
+
+void Flight::fail(size_t query, const Error& error) {
+  if (error.vulkan == VK_SUCCESS) throw error;
+  if (!failure) failure = error;
+  answers.results[query] = Result();
+  answers.reasons[query] = error.what();
+}
+
+bool Flight::survives(const Error& error) {
+  if (!gpu::isOutOfMemory(error)) return false;
+  if (!failure) failure = error;
+  return true;
+}
+
+void Flight::addCpuTime(const char* name, double ms) {
+  if (measures) gpu::addStageTime(answers.stats.stages, name, ms);
+}
+
+}  // namespace radar

@@ -1,0 +1,56 @@
+// One batch on its way: its answers so far, and what is still open.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contact/sensors.h"
+#include "radar/answers.h"
+
+namespace radar {
+
+using Clock = std::chrono::steady_clock;
+
+inline double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The searches of one submission.
+struct PlannedSearches {
+  struct Group {
+    size_t query;
+    uint32_t first, count;  ///< of `sensors`; several ascend by object
+  };
+  std::vector<Group> groups;
+  SensorBatch sensors;
+};
+
+struct Flight {
+  /// `asked` stays in place until the batch is answered. `timestamps`: as SweeperOptions::timestamps.
+  Flight(std::span<const Query> asked, bool timestamps);
+
+  std::span<const Query> queries;
+  Answers answers;
+  std::optional<Error> failure;  ///< the first Vulkan call that failed, also if all queries were answered
+  Clock::time_point deviceDone;  ///< when the device ended the last submission
+  bool measures;                 ///< SweeperOptions::timestamps
+
+  // Mode contact.
+  PlannedSearches planned;                        ///< for the next submission
+  std::vector<PlannedSearches::Group> submitted;  ///< in the last one, until it is collected
+  std::vector<size_t> left;                       ///< queries for the CPU
+  std::vector<size_t> again;                      ///< queries to repeat, now that the device has room for them
+  Clock::time_point encoding;                     ///< since when the next submission is being planned
+  // Mode sampled.
+  std::vector<size_t> drawn;  ///< queries of the last submission, until it is collected
+
+  /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
+  void fail(size_t query, const Error& error);
+  /// If a call failed for lack of memory, records that, and returns true: its queries can be answered otherwise.
+  bool survives(const Error& error);
+  void addCpuTime(const char* name, double ms);
+};
+
+}  // namespace radar

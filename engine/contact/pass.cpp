@@ -13,7 +13,6 @@ namespace radar {
 
 using gpu::BufferDomain;
 using gpu::bytesOf;
-using gpu::Upload;
 
 namespace {
 
@@ -118,10 +117,10 @@ void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded)
   results_.reserve(results);
   counts_.reserve(1);
   reserveLists(sensors);
-  reservedBytes_ = Upload::aligned(sensors * sizeof(gpu::Sensor)) + Upload::aligned(sensors * sizeof(gpu::Sweep)) +
-                   Upload::aligned(sensors * sizeof(gpu::SearchState)) +
-                   Upload::aligned(sensors * sizeof(gpu::SearchTask)) + Upload::aligned(excluded * sizeof(uint32_t)) +
-                   Upload::aligned(results * sizeof(Result)) + Upload::aligned(sizeof(gpu::SearchCounts));
+  constexpr size_t kPerSensor =
+      sizeof(gpu::Sensor) + sizeof(gpu::Sweep) + sizeof(gpu::SearchState) + sizeof(gpu::SearchTask);
+  upload_.reserve(sensors * kPerSensor + excluded * sizeof(uint32_t) + results * sizeof(Result) +
+                  sizeof(gpu::SearchCounts) + 7 * 8);  // each of seven pieces may be rounded up
 }
 
 void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene) {
@@ -132,7 +131,8 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
                                [](const gpu::Sweep& sweep) { return sweep.hasClearance != 0; });
   if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
-  const VkDeviceSize sceneBytes = scene_.prepare(scene);
+  upload_.begin();
+  scene_.prepare(scene);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   stateList_.clear();
@@ -143,7 +143,6 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
     stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
     taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
   }
-  upload_.begin(sceneBytes + reservedBytes_);
   scene_.upload(scene, upload_);
   upload_.add(batch.sensors.data(), bytesOf(batch.sensors), sensors_);
   upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
@@ -158,9 +157,9 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
 void ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene) {
   sensorCount_ = sensors;
   ignoresLeaving_ = hasClearances_ = false;
-  const VkDeviceSize sceneBytes = scene_.prepare(scene);
+  upload_.begin();
+  scene_.prepare(scene);
   reserve(sensors, sensors, sensors);
-  upload_.begin(sceneBytes + reservedBytes_);
   scene_.upload(scene, upload_);
   addCounts(0);
   run_.begin();
@@ -181,7 +180,7 @@ void ContactPass::stageMore(const gpu::SearchCounts& before) {
   const uint32_t tasks = tasksLeft(before);
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;
-  upload_.begin(Upload::aligned(sizeof(counts)));
+  upload_.begin();
   upload_.add(&counts, sizeof(counts), counts_);
 }
 

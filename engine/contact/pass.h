@@ -65,6 +65,8 @@ class ContactPass {
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
 
+  /// Where the results begin in a readback of counts, then results.
+  static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
   /// Few enough iterations that no device aborts the dispatch or reports a hang.
   static constexpr uint32_t kMostBudget = 30'000;
 
@@ -95,7 +97,6 @@ class ContactPass {
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;
   bool ignoresLeaving_ = false, hasClearances_ = false;
   uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
-  VkDeviceSize reservedBytes_ = 0;
 };
 
 }  // namespace radar

@@ -36,7 +36,7 @@ void ContactSubmitter::recordAndSubmit() {
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
-  const VkBufferCopy results{0, gpu::Upload::aligned(counts.size), pass_.sensorCount() * sizeof(Result)};
+  const VkBufferCopy results{0, ContactPass::kFirstResult, pass_.sensorCount() * sizeof(Result)};
   commands->CmdCopyBuffer(commands, pass_.counts().get(), readback_.get(), 1, &counts);
   commands->CmdCopyBuffer(commands, pass_.results().get(), readback_.get(), 1, &results);
   gpu::writtenToHost(commands);
@@ -47,7 +47,7 @@ void ContactSubmitter::recordAndSubmit() {
 void ContactSubmitter::submit(SensorBatch& batch, const Scene::Impl& scene) {
   submissions_ = 0;
   pass_.stage(batch, {}, scene);
-  readback_.reserve(gpu::Upload::aligned(sizeof(gpu::SearchCounts)) + batch.count() * sizeof(Result));
+  readback_.reserve(ContactPass::kFirstResult + batch.count() * sizeof(Result));
   recordAndSubmit();
 }
 
@@ -66,7 +66,7 @@ SearchAnswers ContactSubmitter::collect(const Scene::Impl& scene, std::vector<St
   if (all.broken != 0) {
     throw Error("the device runs a workgroup of the contact search as several subgroups", VK_ERROR_UNKNOWN);
   }
-  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + gpu::Upload::aligned(sizeof(all)));
+  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + ContactPass::kFirstResult);
   return {{results, pass_.sensorCount()},
           pass_.unresolved(all),
           pass_.learn(all),

@@ -11,7 +11,7 @@ Download::Download(const Device::Impl& device)
 
 size_t Download::add(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
   ranges_.push_back({buffer, {first, end_, bytes}});
-  end_ += gpu::Upload::aligned(bytes);
+  end_ += gpu::roundedUp(bytes, 8);
   return ranges_.size() - 1;
 }
 

@@ -12,13 +12,14 @@ GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
       buffer_(device, "searches to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       run_(device, {shaders::kGather}) {
   buffer_.reserve(searches);
+  upload_.reserve(searches * sizeof(gpu::Gathered));
 }
 
 void GatherPass::stage(std::span<const gpu::Gathered> queries) {
   searches_.clear();
   for (const gpu::Gathered& query : queries) searches_.insert(searches_.end(), query.count, query);
   run_.begin();
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(searches_)));
+  upload_.begin();
   upload_.add(searches_.data(), gpu::bytesOf(searches_), buffer_);
 }
 

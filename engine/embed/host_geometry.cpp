@@ -57,7 +57,7 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
 // Returns the bytes' offset in `words_`.
 uint32_t HostGeometryPass::copyFrom(VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
   const VkDeviceSize at = copied_;
-  copied_ += gpu::Upload::aligned(bytes);
+  copied_ += gpu::roundedUp(bytes, 8);
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   if (copied_ + sizeof(uint32_t) > limit) {
     throw Error("record: the host's geometry exceeds the " + std::to_string(limit) +
@@ -130,7 +130,7 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
   words_.reserve(copied_ / sizeof(uint32_t) + 1);
   refitNodes_.reserve(nodeList_.size());
   numbers_.reserve(vertexNumbers_.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(nodeList_)) + gpu::Upload::aligned(gpu::bytesOf(vertexNumbers_)));
+  upload_.begin();
   upload_.add(nodeList_.data(), gpu::bytesOf(nodeList_), refitNodes_);
   upload_.add(vertexNumbers_.data(), gpu::bytesOf(vertexNumbers_), numbers_);
 }

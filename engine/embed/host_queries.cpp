@@ -43,7 +43,7 @@ HostQueriesPass::HostQueriesPass(const Device::Impl& device)
       words_(device, "host queries", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void HostQueriesPass::stage(const HostQueries& queries) {
-  const VkDeviceSize span = gpu::Upload::aligned(spanOf(queries.stride, queries.count, sizeof(HostQuery)));
+  const VkDeviceSize span = gpu::roundedUp(spanOf(queries.stride, queries.count, sizeof(HostQuery)), 8);
   // Then the number of queries, and the word after the last that a shader may load.
   const VkDeviceSize bytes = span + 2 * sizeof(uint32_t);
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;

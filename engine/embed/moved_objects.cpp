@@ -159,7 +159,7 @@ void MovedObjectsPass::stage(std::span<const MovedObjects> groups, std::span<con
 void MovedObjectsPass::stageUpload(const List& list) {
   moved_.reserve(list.moved.size());
   fitNodes_.reserve(list.nodes.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(list.moved)) + gpu::Upload::aligned(gpu::bytesOf(list.nodes)));
+  upload_.begin();
   upload_.add(list.moved.data(), gpu::bytesOf(list.moved), moved_);
   upload_.add(list.nodes.data(), gpu::bytesOf(list.nodes), fitNodes_);
 }

@@ -21,7 +21,7 @@ namespace {
 
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
-constexpr VkDeviceSize kFirstResult = (sizeof(gpu::SearchCounts) + 7) / 8 * 8;
+constexpr VkDeviceSize kFirstResult = ContactPass::kFirstResult;
 SearchRoom roomFor(const Capacity& capacity) {
   return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
 }

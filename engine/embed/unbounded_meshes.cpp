@@ -61,7 +61,7 @@ void UnboundedMeshesPass::stage(std::vector<MeshId> meshes) {
 void UnboundedMeshesPass::stageSensors(std::span<const gpu::DeformedSensor> sensors, const Scene::Impl& scene) {
   if (empty()) return;
   sensors_.reserve(sensors.size());
-  upload_.begin(gpu::Upload::aligned(gpu::bytesOf(meshes_)) + gpu::Upload::aligned(sensors.size_bytes()));
+  upload_.begin();
   upload_.add(meshes_.data(), gpu::bytesOf(meshes_), unbounded_);
   upload_.add(sensors.data(), sensors.size_bytes(), sensors_);
   push_.count = static_cast<uint32_t>(sensors.size());

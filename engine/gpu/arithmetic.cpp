@@ -119,7 +119,7 @@ std::vector<Outcome> outcomesOf(const Device::Impl& device, const Program& progr
   given.reserve(kTrials);
   computed.reserve(kTrials);
   readback.reserve(copy.size);
-  upload.begin(Upload::aligned(bytesOf(trials)));
+  upload.begin();
   upload.add(trials.data(), bytesOf(trials), given);
 
   Submission submission(device, false);

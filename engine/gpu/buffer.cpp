@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <utility>
 
 #include "gpu/check.h"
 
@@ -65,7 +66,6 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   }
   // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
   // seldom made and filled anew.
-  const auto roundedUp = [](VkDeviceSize n, VkDeviceSize step) { return (n + step - 1) / step * step; };
   const VkDeviceSize wanted = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
                                        roundedUp(capacity_ + capacity_ / 2, 256));
   const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), most);
@@ -108,14 +108,25 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   return true;
 }
 
-Upload::Upload(const Device::Impl& device)
-    : staging_(device, "staging", BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT) {}
+Upload::Upload(const Device::Impl& device) : device_(&device) {}
 
-void Upload::begin(VkDeviceSize bytes) {
-  staging_.reserve(bytes);
+void Upload::begin() {
+  current_ = 0;
   used_ = 0;
   regions_.clear();
-  targets_.clear();
+  runs_.clear();
+}
+
+void Upload::reserve(VkDeviceSize bytes) {
+  for (; current_ < blocks_.size(); ++current_, used_ = 0) {
+    if (used_ + bytes <= blocks_[current_].capacity()) return;
+  }
+  VkDeviceSize all = 0;
+  for (const Buffer& block : blocks_) all += block.capacity();
+  // As large as all others together, so that there are few.
+  Buffer block(*device_, "staging", BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  block.reserve(std::max(bytes, std::min(all, device_->maxBufferBytes)));
+  blocks_.push_back(std::move(block));
 }
 
 void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
@@ -123,30 +134,33 @@ void Upload::add(const void* data, VkDeviceSize bytes, const Buffer& target, VkD
 }
 
 std::byte* Upload::place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset) {
-  assert(used_ + bytes <= staging_.capacity() && offset + bytes <= target.capacity());
-  std::byte* at = staging_.mapped() + used_;
-  // Adjacent pieces of one target are merged into one copy.
-  if (!regions_.empty()) {
-    VkBufferCopy& last = regions_.back();
-    if (targets_.back() == target.get() && last.srcOffset + last.size == used_ &&
-        last.dstOffset + last.size == offset) {
-      last.size += bytes;
-      used_ = aligned(used_ + bytes);
-      return at;
-    }
+  assert(offset + bytes <= target.capacity());
+  reserve(bytes);
+  const Buffer& block = blocks_[current_];
+  const VkDeviceSize at = std::exchange(used_, roundedUp(used_ + bytes, 8));
+  const bool continues = !runs_.empty() && runs_.back().from == block.get() && runs_.back().to == target.get();
+  if (continues && regions_.back().srcOffset + regions_.back().size == at &&
+      regions_.back().dstOffset + regions_.back().size == offset) {
+    regions_.back().size += bytes;
+  } else {
+    regions_.push_back({at, offset, bytes});
+    if (!continues) runs_.push_back({block.get(), target.get(), 0});
+    runs_.back().end = static_cast<uint32_t>(regions_.size());
   }
-  regions_.push_back({used_, offset, bytes});
-  targets_.push_back(target.get());
-  used_ = aligned(used_ + bytes);
-  return at;
+  return block.mapped() + at;
+}
+
+VkDeviceSize Upload::bytes() const {
+  VkDeviceSize bytes = 0;
+  for (const VkBufferCopy& region : regions_) bytes += region.size;
+  return bytes;
 }
 
 void Upload::record(const Commands& commands) const {
-  // One command for each run of copies to one target.
-  for (size_t first = 0, end = 0; first < targets_.size(); first = end) {
-    while (end < targets_.size() && targets_[end] == targets_[first]) ++end;
-    commands->CmdCopyBuffer(commands, staging_.get(), targets_[first], static_cast<uint32_t>(end - first),
-                            &regions_[first]);
+  uint32_t first = 0;
+  for (const Run& run : runs_) {
+    commands->CmdCopyBuffer(commands, run.from, run.to, run.end - first, &regions_[first]);
+    first = run.end;
   }
 }
 

@@ -1,4 +1,4 @@
-// Growable buffers, also as texels, and the staging buffer that uploads a batch.
+// Growable buffers, also as texels, and the staging buffers that upload a batch.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,10 @@ namespace radar::gpu {
 template <class T>
 VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
+}
+
+constexpr VkDeviceSize roundedUp(VkDeviceSize n, VkDeviceSize step) {
+  return (n + step - 1) / step * step;
 }
 
 /// A number that nothing else has: unlike handles, which Vulkan may reuse.
@@ -56,27 +60,38 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// Gathers copies of host data into one staging buffer, then records them as one upload.
+/// Gathers copies of host data in staging buffers that it keeps, then records them as one upload.
 class Upload {
  public:
   explicit Upload(const Device::Impl& device);
 
-  /// Space that `add` takes for `bytes`. Call begin with the sum before the first add.
-  static VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + 7) & ~VkDeviceSize{7}; }
-  void begin(VkDeviceSize bytes);
+  /// Forgets what was gathered, and keeps the memory, which the device must not be using.
+  void begin();
+  /// Makes room: pieces placed next, of up to `bytes` in all (each rounded up to a multiple of 8), need no more memory
+  /// and lie one behind the other.
+  void reserve(VkDeviceSize bytes);
   /// Copies `data` to `offset` in `target`; does nothing for empty data.
   void add(const void* data, VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset = 0);
-  /// The same for data that the caller then writes where this returns. Of consecutive calls for multiples of 8 bytes,
-  /// one place begins where the last ends.
+  /// The same for data that the caller then writes where this returns.
   std::byte* place(VkDeviceSize bytes, const Buffer& target, VkDeviceSize offset);
+  /// What was gathered, in bytes.
+  VkDeviceSize bytes() const;
   /// Records all copies; allocates nothing. The caller records the barriers.
   void record(const Commands& commands) const;
 
  private:
-  Buffer staging_;
-  VkDeviceSize used_ = 0;
+  /// Copies from one block to one target, which end before region `end`.
+  struct Run {
+    VkBuffer from, to;
+    uint32_t end;
+  };
+
+  const Device::Impl* device_;
+  std::vector<Buffer> blocks_;
+  size_t current_ = 0;     ///< block for the next piece, if it has room
+  VkDeviceSize used_ = 0;  ///< of the current block
   std::vector<VkBufferCopy> regions_;
-  std::vector<VkBuffer> targets_;  ///< of the regions
+  std::vector<Run> runs_;
 };
 
 /// A memory type with all `needed` properties, and if possible all `wanted` ones. Throws if there is none.

@@ -10,7 +10,6 @@ namespace radar {
 
 using gpu::BufferDomain;
 using gpu::bytesOf;
-using gpu::Upload;
 
 namespace {
 
@@ -59,8 +58,8 @@ void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene
   ranks_.reserve(batch.views.size() * gpu::kCells);
   answers_.reserve(batch.views.size());
   unresolvedPairs_.reserve(batch.views.size() * gpu::kUnresolvedPerView);
-  upload_.begin(resident_.prepare(scene) + Upload::aligned(bytesOf(batch.views)) +
-                Upload::aligned(bytesOf(batch.draws)) + Upload::aligned(bytesOf(batch.items)));
+  resident_.prepare(scene);
+  upload_.begin();
   resident_.upload(scene, upload_);
   upload_.add(batch.views.data(), bytesOf(batch.views), views_);
   upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);

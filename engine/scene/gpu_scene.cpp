@@ -239,15 +239,14 @@ VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
       describe(id, scene.meshes[id]);
       if (places_[id].uploaded != scene.meshes[id].version) changedMeshes_.push_back(id);
     }
-    bytes += Upload::aligned(sizeof(gpu::MeshRecord) * records_.size());
+    bytes += sizeof(gpu::MeshRecord) * records_.size();
   }
   for (const MeshId id : restored) {
     if (places_[id].uploaded == scene.meshes[id].version) changedMeshes_.push_back(id);
   }
   for (const MeshId id : changedMeshes_) {
-    bytes += Upload::aligned(sizeof(gpu::Vertex) * places_[id].vertices) +
-             Upload::aligned(sizeof(gpu::Triangle) * places_[id].triangles) +
-             Upload::aligned(sizeof(gpu::MeshNode) * places_[id].nodes);
+    bytes += sizeof(gpu::Vertex) * places_[id].vertices + sizeof(gpu::Triangle) * places_[id].triangles +
+             sizeof(gpu::MeshNode) * places_[id].nodes;
   }
   return bytes;
 }
@@ -267,7 +266,7 @@ VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
     }
     if (places_[id].uploadedIndices == scene.meshes[id].version) continue;
     changedIndices_.push_back(id);
-    bytes += Upload::aligned(12 * places_[id].triangles);
+    bytes += 12 * places_[id].triangles;
   }
   return bytes;
 }
@@ -300,7 +299,7 @@ VkDeviceSize GpuScene::prepareTree(const ObjectTree& tree) {
   VkDeviceSize bytes = 0;
   const auto add = [&](size_t first, size_t last) {
     changedNodes_.push_back({first, last});
-    bytes += Upload::aligned(sizeof(gpu::ObjectNode) * (last - first));
+    bytes += sizeof(gpu::ObjectNode) * (last - first);
   };
   std::vector<uint32_t> restored;
   if (overwritten_.moved != next_.moved) addDifference(movedBefore().nodes, movedNext().nodes, restored);
@@ -348,10 +347,11 @@ void GpuScene::uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, Up
 }
 
 void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
-  static_assert(sizeof(gpu::ObjectRecord) % 8 == 0 && sizeof(gpu::Placement) % 8 == 0);  // for Upload::place
+  static_assert(sizeof(gpu::ObjectRecord) % 8 == 0 && sizeof(gpu::Placement) % 8 == 0);  // for Upload::reserve
   // Where each array's changed elements begin; all follow in their order.
   const auto places = [&](const gpu::Buffer& target, VkDeviceSize size) {
     std::byte* first = nullptr;
+    upload.reserve(size * changedObjects_.size());
     for (size_t i = 0, end = 0; i < changedObjects_.size(); i = end) {
       for (end = i + 1; end < changedObjects_.size() && changedObjects_[end] == changedObjects_[end - 1] + 1;) ++end;
       std::byte* at = upload.place(size * (end - i), target, size * changedObjects_[i]);
@@ -393,7 +393,7 @@ void GpuScene::sync(const Scene::Impl& scene) {
   const VkDeviceSize bytes = prepare(scene);
   if (bytes == 0) return confirm(scene);
   if (!sync_) sync_ = std::make_unique<Sync>(Sync{gpu::Upload(*device_), gpu::Submission(*device_, false)});
-  sync_->upload.begin(bytes);
+  sync_->upload.begin();
   upload(scene, sync_->upload);
   const gpu::Commands commands = sync_->submission.begin();
   gpu::computeToOverwrite(commands);

@@ -24,7 +24,7 @@ class OnDevice {
     const Device::Impl& device = on.impl();
     gpu::Upload upload(device);
     buffer_.reserve(bytes.size());
-    upload.begin(bytes.size());
+    upload.begin();
     upload.add(bytes.data(), bytes.size(), buffer_);
     gpu::Submission submission(device, false);
     upload.record(submission.begin());

@@ -17,7 +17,7 @@ struct OnDeviceScene {
     gpu::Upload upload(device);
     pass.stage(geometry, scene.impl());
     pass.stageSensors({}, scene.impl());
-    upload.begin(copy.prepare(scene.impl()));
+    copy.prepare(scene.impl());
     copy.upload(scene.impl(), upload);
     gpu::Submission submission(device, false);
     const gpu::Commands commands = submission.begin();

@@ -254,7 +254,7 @@ TEST_CASE("data that a host has overwritten is staged again when the host stops 
   CHECK(sync({.meshes = {1}, .moved = moved({}, {0}, {2, 5})}) == objectBytes);
   CHECK(sync({.meshes = {1}, .moved = moved({2}, {0}, {5})}) == objectBytes);
   const Mesh& mesh = filled.scene.impl().meshes[1];
-  const VkDeviceSize recordBytes = gpu::Upload::aligned(filled.scene.impl().meshes.size() * sizeof(gpu::MeshRecord));
+  const VkDeviceSize recordBytes = filled.scene.impl().meshes.size() * sizeof(gpu::MeshRecord);
   CHECK(sync({}) == 2 * objectBytes + nodeBytes + recordBytes + mesh.vertexCount() * sizeof(gpu::Vertex) +
                         mesh.triangleCount() * sizeof(gpu::Triangle) + mesh.tree.nodes.size() * sizeof(gpu::MeshNode));
   CHECK(sync({}) == 0);

@@ -33,7 +33,7 @@ std::vector<std::string> messagesOf(bool withBarrier) {
   const Array<gpu::SearchTask> tasks = zeros<gpu::SearchTask>("tasks"), spilled = zeros<gpu::SearchTask>("spilled");
   const gpu::SearchTask nothing{};
   gpu::Upload upload(device);
-  upload.begin(gpu::Upload::aligned(sizeof(nothing)));
+  upload.begin();
   upload.add(&nothing, sizeof(nothing), tasks);
   gpu::Submission submission(device, false);
   const gpu::Commands commands = submission.begin();

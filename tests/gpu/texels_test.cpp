@@ -43,7 +43,7 @@ TEST_CASE("texels have the uploaded values, also after the array has grown") {
     nodes.reserve(count);
     CHECK(nodes.capacity() >= count);
     const Array<uint32_t> sums = numbers("sums", count);
-    upload.begin(gpu::Upload::aligned(gpu::bytesOf(uploaded)));
+    upload.begin();
     upload.add(uploaded.data(), gpu::bytesOf(uploaded), nodes);
     run([&](const Commands& commands) {
       upload.record(commands);

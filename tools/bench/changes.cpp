@@ -88,7 +88,7 @@ void run(uint32_t boxes, int& status) {
   gpu::Upload upload(device.impl());
   gpu::Submission submission(device.impl(), false);
   methods.push_back({"device, all poses copied there", methods[0].answer, [&](uint32_t) {
-                       upload.begin(bytes);
+                       upload.begin();
                        upload.add(poses.data(), bytes, there);
                        upload.record(submission.begin());
                        submission.submitAndWait();

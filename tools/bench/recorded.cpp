@@ -87,7 +87,7 @@ void runAllMoved(const Device& device, uint32_t boxes, int& status) {
   copied.reserve(bytes);
   {
     gpu::Upload upload(device.impl());
-    upload.begin(bytes);
+    upload.begin();
     upload.add(rows.data(), bytes, transforms);
     upload.record(submission.begin());
     submission.submitAndWait();

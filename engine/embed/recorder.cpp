@@ -105,7 +105,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
 // Stages what both kinds of record() have planned, but for the search.
 void Recorder::Impl::stage() {
-  geometry.stageSensors(recorded.deformedSensors, scene.impl());
+  geometry.stageSensors(recorded.deformedSensors);
   gathers.stage(recorded.gathered);
   copy->willOverwrite(geometry.overwritten());
   usedBuffers.reset();
@@ -133,7 +133,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer) {
     stage("plan");
     hostQueries->record(commands, pass, *copy, scene.impl());
   }
-  if (!areWritten) geometry.recordReach(commands, pass);
+  if (!areWritten) geometry.recordReach(commands, pass, scene.impl());
   pass.record(commands, stage, capacity.rounds, true);
   if (!gathers.empty()) {
     stage("gather");

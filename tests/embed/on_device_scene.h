@@ -16,7 +16,7 @@ struct OnDeviceScene {
     HostGeometryPass pass(device, copy);
     gpu::Upload upload(device);
     pass.stage(geometry, scene.impl());
-    pass.stageSensors({}, scene.impl());
+    upload.begin();
     copy.prepare(scene.impl());
     copy.upload(scene.impl(), upload);
     gpu::Submission submission(device, false);

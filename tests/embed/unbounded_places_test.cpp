@@ -38,14 +38,14 @@ struct OnDevicePlaces {
       sensorsOfThem.push_back(deformedSensor(batch.count() - 1, query, motionPast(query, impl)));
       known.emplace_back();
     }
-    geometry.stageSensors(sensorsOfThem, impl);
+    geometry.stageSensors(sensorsOfThem);
     copy.willOverwrite(geometry.overwritten());
     search.stage(batch, known, impl);
     gpu::Submission submission(device, false);
     const gpu::Commands commands = submission.begin();
     search.recordUpload(commands, [](const char*) {});
     geometry.record(commands, impl);
-    geometry.recordReach(commands, search);
+    geometry.recordReach(commands, search, impl);
     gpu::computeWriteToCopy(commands);
     geometry.recordReadback(commands);
     gpu::writtenToHost(commands);

@@ -68,7 +68,8 @@ TEST_CASE(
   CHECK(answers.stats.submissions == 0);
 }
 
-TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU") {
+TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU",
+          "[subgroups]") {
   LoadedWorkload loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
   Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
   std::vector<Result> single;

@@ -76,7 +76,7 @@ Transform at(double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds") {
+TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds", "[subgroups]") {
   const std::string family = GENERATE("interlocking", "lattice", "touching", "floor", "soup");
   const FamilyQueries batch(family.c_str(), tools::kIsolatedCases, 1, tools::Company::isolated);
   const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries).results;
@@ -134,7 +134,7 @@ TEST_CASE("a batch with too many candidates for its lists is searched again, in 
   checkSame(second.results, first.results);
 }
 
-TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations, are all searched") {
+TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations, are all searched", "[subgroups]") {
   const bool level = GENERATE(true, false);
   CAPTURE(level);
   const TrianglesOverhead triangles(level);

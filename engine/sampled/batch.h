@@ -31,11 +31,9 @@ struct SampledBatch {
   uint32_t resolution = 0;  ///< the greatest
   uint64_t triangles = 0;
   uint64_t objects = 0;  ///< objects drawn for R
-
-  void clear();
 };
 
 /// `plans`: in ascending resolution, each with at least one object in reach. Plan i becomes view i, in layer i.
-void packBatch(SampledBatch& batch, std::span<const ViewPlan* const> plans);
+SampledBatch packBatch(std::span<const ViewPlan* const> plans);
 
 }  // namespace radar

@@ -4,17 +4,21 @@
 #include <bit>
 #include <cmath>
 
+#include "math/frame.h"
 #include "query/swept.h"
-#include "sampled/cluster_walk.h"
 #include "scene/placement.h"
 
 namespace radar {
 
 namespace {
 
+// Half an ulp of 1 in float.
+constexpr double kFloatUnit = 0x1p-24;
 // Larger clip coordinates might overflow in products of the identify stage (docs/method.md, "Ranges, infinities and
 // rounding"). Units: half the window across, the picture's depth along.
 constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
+// Largest number of triangles in a cluster: neighbours that are drawn or skipped together.
+constexpr uint32_t kClusterTriangles = 64;
 
 // The reason why the scopes cannot be drawn, as far as it is known before the view is set up; else empty.
 std::string outOfRange(const Query& query, const Scene::Impl& scene) {
@@ -29,158 +33,420 @@ std::string outOfRange(const Query& query, const Scene::Impl& scene) {
   return {};
 }
 
-// Whether floats can hold the mesh in the window, and the errors of its vertices.
-bool fitsWindow(const Mesh& mesh, const Affine& clipFromMesh, double snap, double slack) {
-  bool fits = fitsFloats(mesh, clipFromMesh) && snap < kMostAcross && slack < kMostAlong;
+// Whether each row's terms, for vectors of the mesh's reach, but at least `least`, sum up to less than `most`.
+bool staysBelow(const Vector& most, const Mesh& mesh, const Affine& m, double least) {
   for (int row = 0; row < 3; ++row) {
-    const double* r = &clipFromMesh[4 * row];
+    const double* r = &m[4 * row];
     double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * mesh.reach[k];
-    fits = fits && sum < (row < 2 ? kMostAcross : kMostAlong);
+    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max<double>(least, mesh.reach[k]);
+    if (!(sum < most[row])) return false;
   }
-  return fits;
+  return true;
 }
 
-std::array<float, 12> floatsOf(const Affine& m) {
-  std::array<float, 12> out;
-  for (size_t i = 0; i < m.size(); ++i) out[i] = static_cast<float>(m[i]);
-  return out;
+// Whether floats hold every entry of the matrix and every vertex that it places.
+bool fitsFloats(const Mesh& mesh, const Affine& m) {
+  return staysBelow({0x1p125, 0x1p125, 0x1p125}, mesh, m, 1);
 }
 
-// clip.xy = 2 (frame.xy - corner) / (pixel * resolution) - 1; clip.z = scaleZ * frame.z + offsetZ.
-Affine clipFrom(const Affine& frameFromMesh, const Box& window, double pixel, uint32_t resolution, double scaleZ,
-                double offsetZ) {
-  const double across = 2 / (pixel * resolution);
-  const double scale[3] = {across, across, scaleZ};
-  const double offset[3] = {-across * window.lo[0] - 1, -across * window.lo[1] - 1, offsetZ};
-  Affine out;
+// Bound on the error of a vertex placed by a shader, world units (docs/method.md, "Placement in the pictures").
+double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
+  // The 2^-120 terms cover floats below the normal range: of a product, of an entry per unit of the mesh, of a vertex.
+  const Vector reach{mesh.reach[0], mesh.reach[1], mesh.reach[2]};
+  double scale = 0;
   for (int row = 0; row < 3; ++row) {
-    for (int k = 0; k < 4; ++k) out[4 * row + k] = scale[row] * frameFromMesh[4 * row + k] + (k == 3 ? offset[row] : 0);
+    const double* r = &frameFromMesh[4 * row];
+    scale = std::max(scale, norm1({r[0], r[1], r[2]}));
   }
-  return out;
+  return 16 * kFloatUnit * placedMagnitude(reach, {frameFromMesh}) + 0x1p-120 * (1 + norm1(reach) + scale);
 }
 
-uint32_t pixelsAcross(const SensorWindow& window, int axis, double pixel, uint32_t resolution) {
-  const double pixels = std::ceil((window.box.hi[axis] - window.box.lo[axis]) / pixel);
-  return std::clamp(static_cast<uint32_t>(pixels), 1u, resolution);
+// Bound on the double-precision error of a vertex in a frame about `origin`, relative to `transformPoint`, world units.
+double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
+  Vector farthest;
+  for (int k = 0; k < 3; ++k) farthest[k] = std::abs(mesh.origin[k]) + mesh.reach[k];
+  return 0x1p-47 * (placedMagnitude(farthest, pose) + largest(origin));
 }
 
-void fillView(gpu::View& view, const Query& query, const SensorWindow& window, const Selection& reach,
-              const ViewPlan& plan, uint32_t resolution) {
+// A box around a box that `m` has turned, whose points are then off by up to `error`.
+Box turned(const auto& centre, const auto& halfExtent, const Affine& m, double error) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = &m[4 * row];
+    double middle = r[3], half = error;
+    for (int k = 0; k < 3; ++k) {
+      middle += r[k] * centre[k];
+      half += std::abs(r[k]) * halfExtent[k];
+    }
+    box.lo[row] = middle - half;
+    box.hi[row] = middle + half;
+  }
+  return box;
+}
+
+// The box of the vertices in the frame, which is tighter than the mesh's box in the frame, so that M fills the window.
+Box tightBox(const Mesh& mesh, const Affine& m) {
+  Box box;
+  for (int row = 0; row < 3; ++row) {
+    const auto x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
+               z = static_cast<float>(m[4 * row + 2]);
+    const float *px = mesh.local[0].data(), *py = mesh.local[1].data(), *pz = mesh.local[2].data();
+    float low = 3e38f, high = -3e38f;
+    for (uint32_t i = 0; i < mesh.vertexCount(); ++i) {
+      const float at = x * px[i] + y * py[i] + z * pz[i];
+      low = at < low ? at : low;
+      high = at > high ? at : high;
+    }
+    box.lo[row] = low + m[4 * row + 3];
+    box.hi[row] = high + m[4 * row + 3];
+  }
+  return box;
+}
+
+Box worldBox(const gpu::ObjectNode& node, const Vector& anchor) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = anchor[k] + (double(node.centre[k]) - node.halfExtent[k]);
+    box.hi[k] = anchor[k] + (double(node.centre[k]) + node.halfExtent[k]);
+  }
+  return box;
+}
+
+// A plan in the making. Boxes are in the view's frame, unless noted otherwise.
+class Planner {
+ public:
+  Planner(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn)
+      : query_(query),
+        scene_(scene),
+        sensor_(scene.meshes[query.mesh]),
+        subPixel_(std::ldexp(1.0, -static_cast<int>(subPixelBits))),
+        drawn_(drawn) {}
+
+  ViewPlan plan();
+
+ private:
+  void lookAlong();
+  void sweepWindow();
+  bool mayReach(const Box& world) const;
+  std::vector<ObjectId> objectsInPrism() const;
+  void selectObjects();
+  void setView();
+  void setVisible();
+  Placed framed(ObjectId object, MeshId mesh, const Transform& worldFromMesh) const;
+  Box inFrame(const Box& world) const;
+  void place(Placed& placed, double scaleZ, double offsetZ) const;
+  void placeInRange(Placed& placed) const;
+  void addWhole(Placed& placed);
+  template <class Wanted>
+  void addClusters(Placed& placed, const Wanted& wanted);
+  void addReached();
+  void addOthers();
+
+  const Query& query_;
+  const Scene::Impl& scene_;
+  const Mesh& sensor_;
+  const double subPixel_;
+  const Drawn drawn_;
+  ViewPlan plan_;
+  Vector origin_{};        // of the frame, in world coordinates: the sensor's centre
+  Affine turn_{};          // from the world, about the origin
+  Box window_;             // the sensor's extents, widened by `margin_` across
+  double margin_ = 0;      // world units
+  double size_ = 0;        // of the sensor, its greatest extent
+  Box prism_;              // the window, swept
+  Box prismInWorld_;       // around it, in world coordinates
+  double prismSlack_ = 0;  // bound on the rounding errors of tests against the prism
+  double depth_ = 0;       // from the back plane to the farthest object in the prism, at most d
+  double error_ = 0;       // the greatest placement error of an object in the prism
+  Box visible_;            // all that the scopes can show
+};
+
+// Sets the frame and the window.
+void Planner::lookAlong() {
+  plan_.axes = axesAlong(query_.direction);
+  origin_ = transform(query_.worldFromMesh, sensor_.origin);
+  for (int i = 0; i < 9; ++i) turn_[4 * (i / 3) + i % 3] = plan_.axes[i / 3][i % 3];
+  plan_.mask = framed(kNone, query_.mesh, query_.worldFromMesh);
+  const Affine& m = plan_.mask.frameFromMesh;
+  window_ = !sensor_.deforms && fitsFloats(sensor_, m) ? tightBox(sensor_, m) : boxOfLocal(sensor_, m);
+  plan_.length = window_.hi[2] - window_.lo[2];
+  plan_.d = plan_.length + query_.distance;
+  for (int k = 0; k < 3; ++k) size_ = std::max(size_, window_.hi[k] - window_.lo[k]);
+  margin_ = std::max(64 * plan_.mask.error, 1e-5 * size_);
+  // A sensor without extent (a point) still gets a window.
+  if (margin_ == 0) margin_ = std::max(1e-5 * query_.distance, 1e-30);
+  for (int k = 0; k < 2; ++k) {
+    window_.lo[k] -= margin_;
+    window_.hi[k] += margin_;
+  }
+}
+
+// The mesh as yet without a draw.
+Placed Planner::framed(ObjectId object, MeshId mesh, const Transform& worldFromMesh) const {
+  Placed placed;
+  placed.draw.object = object;
+  placed.draw.mesh = mesh;
+  placed.frameFromMesh = frameFromLocal(plan_.axes, origin_, worldFromMesh, scene_.meshes[mesh].origin);
+  placed.error = doubleError(scene_.meshes[mesh], worldFromMesh, origin_) +
+                 placementError(scene_.meshes[mesh], placed.frameFromMesh);
+  return placed;
+}
+
+void Planner::sweepWindow() {
+  prism_ = window_;
+  prism_.hi[2] = window_.lo[2] + plan_.d;
+  Vector middle, half;
+  Affine worldFromFrame;
+  for (int k = 0; k < 3; ++k) {
+    prism_.lo[k] -= plan_.mask.error;
+    prism_.hi[k] += plan_.mask.error;
+    middle[k] = prism_.middle(k);
+    half[k] = 0.5 * (prism_.hi[k] - prism_.lo[k]);
+    for (int i = 0; i < 3; ++i) worldFromFrame[4 * i + k] = plan_.axes[k][i];
+    worldFromFrame[4 * k + 3] = origin_[k];
+  }
+  prismInWorld_ = turned(middle, half, worldFromFrame, 0);
+  prismSlack_ = 0x1p-45 * std::max({largest(origin_), largest(prismInWorld_.lo), largest(prismInWorld_.hi),
+                                    largest(scene_.objectTree().anchor())});
+}
+
+// The box in the frame around a box in the world.
+Box Planner::inFrame(const Box& world) const {
+  Vector centre, half;
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = 0.5 * (world.lo[k] + world.hi[k]) - origin_[k];
+    half[k] = 0.5 * (world.hi[k] - world.lo[k]);
+  }
+  return turned(centre, half, turn_, 0x1p-47 * (std::max(largest(world.lo), largest(world.hi)) + largest(origin_)));
+}
+
+// Tests the world's axes and the prism's as separating axes. Cross products are not tested, since tighter tests of the
+// objects follow.
+bool Planner::mayReach(const Box& world) const {
+  return overlap(world, prismInWorld_, prismSlack_) && overlap(inFrame(world), prism_, prismSlack_);
+}
+
+// Not the walk of query/swept.h: its swept box and the prism differ in the window's margin, and so in what they leave
+// out, on which the depth of the pictures depends.
+std::vector<ObjectId> Planner::objectsInPrism() const {
+  const ObjectTree& tree = scene_.objectTree();
+  std::vector<ObjectId> found;
+  thread_local std::vector<uint32_t> open;
+  open.assign(tree.nodes().empty() ? 0 : 1, 0);
+  while (!open.empty()) {
+    const gpu::ObjectNode& node = tree.nodes()[open.back()];
+    open.pop_back();
+    const uint32_t item = node.link & gpu::kLinkItem;
+    const bool isLeaf = (node.link & gpu::kLinkLeaf) != 0;
+    if (!mayReach(isLeaf ? objectBox(scene_, item) : worldBox(node, tree.anchor()))) continue;
+    if (!isLeaf) {
+      open.insert(open.end(), {item, item + 1});
+    } else if (takesPart(query_, scene_, item)) {
+      found.push_back(item);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// Sets inReach to the objects in the prism, and their depth and error.
+void Planner::selectObjects() {
+  double farthest = window_.lo[2];
+  for (const ObjectId id : objectsInPrism()) {
+    const Object& object = scene_.objects[id].object;
+    const Placed placed = framed(id, object.mesh, object.worldFromMesh);
+    Box box = boxOfLocal(scene_.meshes[object.mesh], placed.frameFromMesh);
+    if (const Box* bounds = scene_.boundsOf(id)) box.merge(inFrame(*bounds));
+    if (!overlap(box, prism_, doubleError(scene_.meshes[object.mesh], object.worldFromMesh, origin_))) continue;
+    farthest = std::max(farthest, box.hi[2]);
+    error_ = std::max(error_, placed.error);
+    plan_.inReach.push_back(placed);
+  }
+  depth_ = std::min(plan_.d, std::max(farthest - window_.lo[2], 0.0));
+}
+
+void Planner::setView() {
+  const double across[2] = {window_.hi[0] - window_.lo[0], window_.hi[1] - window_.lo[1]};
+  const double side = std::max(across[0], across[1]), scale = std::cbrt(std::abs(determinant(query_.worldFromMesh)));
+  const uint32_t resolution =
+      query_.resolution != 0 ? query_.resolution : chooseResolution(side, scale * sensor_.meanEdge);
+  plan_.pixel = side / resolution;
+  for (int i = 0; i < 3; ++i) {
+    plan_.corner[i] = origin_[i];
+    for (int k = 0; k < 3; ++k) plan_.corner[i] += plan_.axes[k][i] * window_.lo[k];
+  }
+  const auto pixels = [&](double length) {
+    return std::clamp(static_cast<uint32_t>(std::ceil(length / plan_.pixel)), 1u, resolution);
+  };
   // The far plane is a little beyond the depth that must be visible, so that contact exactly at D is not clipped.
-  const double rangeScale = reach.depth + std::max({64 * kFloatUnit * reach.depth, 2 * reach.error, window.margin});
-  const double maskScale = plan.length + 2 * window.margin;
-  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), view.pose);
-  const Vector direction = scaledDirection(query.direction);
+  const double rangeScale = depth_ + std::max({64 * kFloatUnit * depth_, 2 * error_, margin_});
+  const double maskScale = plan_.length + 2 * margin_;
+  gpu::View& view = plan_.view;
+  std::copy(query_.worldFromMesh.m.begin(), query_.worldFromMesh.m.end(), view.pose);
+  const Vector direction = scaledDirection(query_.direction);
   std::copy(direction.begin(), direction.end(), view.direction);
   view.directionLength = lengthOf(direction);
-  view.distance = query.distance;
-  view.size = window.size;
-  view.mesh = query.mesh;
+  view.distance = query_.distance;
+  view.size = size_;
+  view.mesh = query_.mesh;
   view.resolution = resolution;
-  view.width = pixelsAcross(window, 0, plan.pixel, resolution);
-  view.height = pixelsAcross(window, 1, plan.pixel, resolution);
+  view.width = pixels(across[0]);
+  view.height = pixels(across[1]);
   view.cell = std::max(2u, 2 * ((resolution + 2 * gpu::kCellsPerSide - 1) / (2 * gpu::kCellsPerSide)));
   view.rangeScale = static_cast<float>(rangeScale);
-  view.maskBase = static_cast<float>(plan.length + window.margin);
+  view.maskBase = static_cast<float>(plan_.length + margin_);
   view.maskScale = static_cast<float>(maskScale);
-  view.slack = static_cast<float>(reach.error + window.error + 4 * kFloatUnit * (rangeScale + maskScale));
+  view.slack = static_cast<float>(error_ + plan_.mask.error + 4 * kFloatUnit * (rangeScale + maskScale));
   // Stored depths are at most 1.
   view.rangeLimit =
-      static_cast<float>(std::min((plan.d + reach.error + window.error) / rangeScale + 4 * kFloatUnit, 2.0));
+      static_cast<float>(std::min((plan_.d + error_ + plan_.mask.error) / rangeScale + 4 * kFloatUnit, 2.0));
 }
 
-// The box that the scopes can show, without a mesh's own error: whole pixels, which may pass the window's edge, plus
-// twice the distance by which snapping and float rounding move a vertex.
-Box visibleBox(const SensorWindow& window, const ViewPlan& plan, uint32_t subPixelBits) {
-  const double around =
-      plan.pixel * 2 * (std::ldexp(1.0, -static_cast<int>(subPixelBits)) + 6 * kFloatUnit * plan.view.resolution);
-  const double along = 64 * kFloatUnit * plan.view.rangeScale;
-  const double width = plan.pixel * plan.view.width, height = plan.pixel * plan.view.height;
-  const auto& lo = window.box.lo;
-  return {{lo[0] - around, lo[1] - around, lo[2] - along},
-          {lo[0] + width + around, lo[1] + height + around, lo[2] + plan.view.rangeScale + along}};
+// The visible box, without a mesh's own error: whole pixels, which may pass the window's edge, plus twice the distance
+// by which snapping and float rounding move a vertex.
+void Planner::setVisible() {
+  const gpu::View& view = plan_.view;
+  const double around = plan_.pixel * 2 * (subPixel_ + 6 * kFloatUnit * view.resolution);
+  const double along = 64 * kFloatUnit * view.rangeScale;
+  const double width = plan_.pixel * view.width, height = plan_.pixel * view.height;
+  const Vector& lo = window_.lo;
+  visible_ = {{lo[0] - around, lo[1] - around, lo[2] - along},
+              {lo[0] + width + around, lo[1] + height + around, lo[2] + view.rangeScale + along}};
 }
 
-void addWhole(ViewPlan& plan, Placed& placed, const Mesh& mesh) {
-  placed.firstRun = static_cast<uint32_t>(plan.runs.size());
+// Sets the draw: clip.xy = 2 (frame.xy - corner) / (pixel * resolution) - 1; clip.z = scaleZ * frame.z + offsetZ.
+void Planner::place(Placed& placed, double scaleZ, double offsetZ) const {
+  const Mesh& mesh = scene_.meshes[placed.draw.mesh];
+  const uint32_t resolution = plan_.view.resolution;
+  const double snap = subPixel_ + placed.error / plan_.pixel + 6 * kFloatUnit * resolution;
+  const double slack = placed.error * std::abs(scaleZ) + 8 * kFloatUnit;
+  const double across = 2 / (plan_.pixel * resolution);
+  const double scale[3] = {across, across, scaleZ};
+  const double offset[3] = {-across * window_.lo[0] - 1, -across * window_.lo[1] - 1, offsetZ};
+  Affine clip;
+  for (int i = 0; i < 12; ++i) clip[i] = scale[i / 4] * placed.frameFromMesh[i] + (i % 4 == 3 ? offset[i / 4] : 0);
+  placed.fits = fitsFloats(mesh, clip) && staysBelow({kMostAcross, kMostAcross, kMostAlong}, mesh, clip, 0) &&
+                snap < kMostAcross && slack < kMostAlong;
+  if (!placed.fits) return;
+  const auto toFloat = [](double x) { return static_cast<float>(x); };
+  std::transform(clip.begin(), clip.end(), placed.draw.clipFromMesh, toFloat);
+  std::transform(mesh.origin.begin(), mesh.origin.end(), placed.draw.origin, toFloat);
+  placed.draw.snap = toFloat(snap);
+  placed.draw.slack = toFloat(slack);
+}
+
+void Planner::placeInRange(Placed& placed) const {
+  const double rangeScale = plan_.view.rangeScale;
+  place(placed, 1 / rangeScale, -window_.lo[2] / rangeScale);
+}
+
+void Planner::addWhole(Placed& placed) {
+  placed.firstRun = static_cast<uint32_t>(plan_.runs.size());
   placed.runs = 1;
-  plan.runs.push_back({0, mesh.triangleCount()});
+  plan_.runs.push_back({0, scene_.meshes[placed.draw.mesh].triangleCount()});
 }
 
-// Adds the clusters for which `wanted` holds; calls found(box) for each.
-template <class Wanted, class Found>
-void addClusters(ViewPlan& plan, Placed& placed, const Mesh& mesh, const Affine& frameFromMesh, double error,
-                 const Wanted& wanted, const Found& found) {
-  placed.firstRun = static_cast<uint32_t>(plan.runs.size());
-  walkClusters(mesh, frameFromMesh, error, wanted, [&](const MeshTree::Below& cluster, const Box& box) {
+// Adds the clusters that are wanted, in the order of their triangles. bool wanted(box, isCluster) must hold for every
+// box around a wanted one.
+template <class Wanted>
+void Planner::addClusters(Placed& placed, const Wanted& wanted) {
+  const Mesh& mesh = scene_.meshes[placed.draw.mesh];
+  Affine frameFromNormalised = placed.frameFromMesh;
+  for (int i = 0; i < 12; ++i) frameFromNormalised[i] *= i % 4 == 3 ? 1 : mesh.unit;
+  placed.firstRun = static_cast<uint32_t>(plan_.runs.size());
+  thread_local std::vector<uint32_t> open;
+  open.assign(1, 0);
+  while (!open.empty()) {
+    const uint32_t at = open.back();
+    open.pop_back();
+    const gpu::MeshNode& node = mesh.tree.nodes[at];
+    const MeshTree::Below& below = mesh.tree.below[at];
+    const bool isCluster = below.count <= kClusterTriangles;
+    if (!wanted(turned(node.centre, node.halfExtent, frameFromNormalised, placed.error), isCluster)) continue;
+    if (!isCluster) {
+      open.insert(open.end(), {node.link + 1, node.link});
+      continue;
+    }
     const bool follows =
-        plan.runs.size() > placed.firstRun && plan.runs.back().first + plan.runs.back().count == cluster.first;
-    if (!follows) plan.runs.push_back({cluster.first, 0});
-    plan.runs.back().count += cluster.count;
-    found(box);
-  });
-  placed.runs = static_cast<uint32_t>(plan.runs.size()) - placed.firstRun;
+        plan_.runs.size() > placed.firstRun && plan_.runs.back().first + plan_.runs.back().count == below.first;
+    if (!follows) plan_.runs.push_back({below.first, 0});
+    plan_.runs.back().count += below.count;
+  }
+  placed.runs = static_cast<uint32_t>(plan_.runs.size()) - placed.firstRun;
 }
 
-// Fills inReach, unless no cluster meets the swept prism, and `mask`, unless it is drawn whole.
-void addReached(ViewPlan& plan, const Scene::Impl& scene, const Selection& reach, const Box& visible, Drawn drawn,
-                const Mesh& sensor, const SensorWindow& window, const auto& placeInRange) {
+// Keeps in inReach what is visible, or nothing if no cluster meets the prism, and draws it and `mask`.
+void Planner::addReached() {
   bool inPrism = false;
   std::vector<Box> columns;  // around the visible clusters of each object, unbounded along the motion
-  for (const SelectedObject& r : reach.objects) {
-    Placed placed = placeInRange(r.object, r.frameFromMesh, r.error);
-    const Mesh& mesh = scene.meshes[placed.mesh];
+  if (drawn_ != Drawn::inReach) addWhole(plan_.mask);
+  for (Placed& placed : plan_.inReach) {
+    placeInRange(placed);
     Box around;
-    addClusters(
-        plan, placed, mesh, r.frameFromMesh, r.error, [&](const Box& box) { return overlap(box, visible, 0); },
-        [&](const Box& box) {
-          inPrism = inPrism || overlap(box, reach.prism.box, 0);
-          around.merge(box);
-        });
+    addClusters(placed, [&](const Box& box, bool isCluster) {
+      if (!overlap(box, visible_, 0)) return false;
+      if (isCluster) {
+        inPrism = inPrism || overlap(box, prism_, 0);
+        around.merge(box);
+      }
+      return true;
+    });
     if (placed.runs == 0) continue;
-    if (drawn == Drawn::everything) {
-      plan.runs.resize(placed.firstRun);
-      addWhole(plan, placed, mesh);
+    if (drawn_ == Drawn::everything) {
+      plan_.runs.resize(placed.firstRun);
+      addWhole(placed);
     }
     around.lo[2] = -1e300;
     around.hi[2] = 1e300;
     columns.push_back(around);
-    plan.inReach.push_back(placed);
   }
-  if (!inPrism) {
-    plan.inReach.clear();
-    plan.runs.resize(plan.mask.runs);
-  }
-  if (drawn != Drawn::inReach || !inPrism) return;
+  std::erase_if(plan_.inReach, [&](const Placed& placed) { return !inPrism || placed.runs == 0; });
+  if (!inPrism) plan_.runs.resize(plan_.mask.runs);
+  if (drawn_ != Drawn::inReach || !inPrism) return;
   // A pixel in both R and M is in a column and in the box of a cluster of the sensor, each widened by the same
   // snapping.
-  const double around = window.box.lo[0] - visible.lo[0];
-  const auto passesOver = [&](const Box& box) {
+  const double around = window_.lo[0] - visible_.lo[0];
+  addClusters(plan_.mask, [&](const Box& box, bool) {
     return std::any_of(columns.begin(), columns.end(), [&](const Box& c) { return overlap(box, c, around); });
-  };
-  addClusters(plan, plan.mask, sensor, window.frameFromMesh, window.error, passesOver, [](const Box&) {});
+  });
 }
 
-// Adds objects out of reach. Those that meet the visible box are left out: the scopes reach farther than select by a
+// Adds objects out of reach. Those that meet the visible box are left out: the scopes reach farther than the prism by a
 // rounding error, which must not change the answer.
-void addOthers(ViewPlan& plan, const Query& query, const Scene::Impl& scene, const Selection& reach, const Box& visible,
-               const Vector& origin, const auto& placeInRange) {
-  auto next = reach.objects.begin();
-  for (ObjectId id = 0; id < scene.objects.size(); ++id) {
-    if (next != reach.objects.end() && next->object == id) {
-      ++next;
-    } else if (const Object& object = scene.objects[id].object; scene.objects[id].used && takesPart(query, scene, id)) {
-      const Mesh& mesh = scene.meshes[object.mesh];
-      const Affine m = frameFromLocal(plan.axes, origin, object.worldFromMesh, mesh.origin);
-      const double error = placementError(mesh, m);
-      if (overlap(boxOfLocal(mesh, m), visible, 2 * error)) continue;
-      Placed placed = placeInRange(id, m, error);
-      if (!placed.fits) continue;
-      plan.others.push_back(placed);
-      addWhole(plan, plan.others.back(), mesh);
-    }
+void Planner::addOthers() {
+  for (ObjectId id = 0; id < scene_.objects.size(); ++id) {
+    const Object& object = scene_.objects[id].object;
+    if (!scene_.objects[id].used || !takesPart(query_, scene_, id)) continue;
+    Placed placed = framed(id, object.mesh, object.worldFromMesh);
+    const Box box = boxOfLocal(scene_.meshes[object.mesh], placed.frameFromMesh);
+    if (overlap(box, visible_, 2 * placed.error)) continue;
+    placeInRange(placed);
+    if (!placed.fits) continue;
+    addWhole(placed);
+    plan_.others.push_back(placed);
   }
+}
+
+ViewPlan Planner::plan() {
+  lookAlong();
+  sweepWindow();
+  selectObjects();
+  setView();
+  setVisible();
+  // The scales are those rounded to float, as shaders use them, so that drawing and reading the scopes agree.
+  const double maskScale = plan_.view.maskScale, maskBase = plan_.view.maskBase;
+  place(plan_.mask, -1 / maskScale, (maskBase + window_.lo[2]) / maskScale);
+  addReached();
+  const bool fits = std::all_of(plan_.inReach.begin(), plan_.inReach.end(), [](const Placed& p) { return p.fits; });
+  if (!plan_.inReach.empty() && !(plan_.mask.fits && fits)) {
+    plan_.outOfRange =
+        "range: an object in reach is too large relative to the sensor, or placed too imprecisely, for floats";
+    return std::move(plan_);
+  }
+  for (const Run& run : plan_.runs) plan_.items += (run.count + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
+  if (drawn_ == Drawn::everything && !plan_.inReach.empty()) addOthers();
+  for (const Run& run : plan_.runs) plan_.triangles += run.count;
+  return std::move(plan_);
 }
 
 }  // namespace
@@ -191,65 +457,9 @@ uint32_t chooseResolution(double windowSide, double meanEdge) {
 }
 
 ViewPlan planSampled(const Query& query, const Scene::Impl& scene, uint32_t subPixelBits, Drawn drawn) {
-  ViewPlan plan;
-  plan.outOfRange = outOfRange(query, scene);
-  if (!plan.outOfRange.empty()) return plan;
-  const Mesh& sensor = scene.meshes[query.mesh];
-  const SensorWindow window = lookAlong(query, sensor);
-  plan.axes = window.axes;
-  plan.length = window.length;
-  plan.d = plan.length + query.distance;
-  const double side = std::max(window.box.hi[0] - window.box.lo[0], window.box.hi[1] - window.box.lo[1]);
-  const double scale = std::cbrt(std::abs(determinant(query.worldFromMesh)));
-  const uint32_t resolution =
-      query.resolution != 0 ? query.resolution : chooseResolution(side, scale * sensor.meanEdge);
-  plan.pixel = side / resolution;
-  for (int i = 0; i < 3; ++i) {
-    plan.corner[i] = window.origin[i];
-    for (int k = 0; k < 3; ++k) plan.corner[i] += plan.axes[k][i] * window.box.lo[k];
-  }
-  const Selection reach = selectionOf(query, scene, window);
-  fillView(plan.view, query, window, reach, plan, resolution);
-
-  // The scales are those rounded to float, as shaders use them, so that drawing and reading the scopes agree.
-  const double backPlane = window.box.lo[2];
-  const double rangeScale = plan.view.rangeScale, maskScale = plan.view.maskScale, maskBase = plan.view.maskBase;
-  const auto place = [&](ObjectId object, MeshId mesh, const Affine& m, double error, double scaleZ, double offsetZ) {
-    const double snap =
-        std::ldexp(1.0, -static_cast<int>(subPixelBits)) + error / plan.pixel + 6 * kFloatUnit * resolution;
-    const double slack = error * std::abs(scaleZ) + 8 * kFloatUnit;
-    const Affine clip = clipFrom(m, window.box, plan.pixel, resolution, scaleZ, offsetZ);
-    if (!fitsWindow(scene.meshes[mesh], clip, snap, slack))
-      return Placed{.object = object, .mesh = mesh, .fits = false};
-    const Vector& origin = scene.meshes[mesh].origin;
-    return Placed{object,
-                  mesh,
-                  true,
-                  floatsOf(clip),
-                  {static_cast<float>(origin[0]), static_cast<float>(origin[1]), static_cast<float>(origin[2])},
-                  static_cast<float>(snap),
-                  static_cast<float>(slack)};
-  };
-  plan.mask =
-      place(kNone, query.mesh, window.frameFromMesh, window.error, -1 / maskScale, (maskBase + backPlane) / maskScale);
-  if (drawn != Drawn::inReach) addWhole(plan, plan.mask, sensor);
-  const auto placeInRange = [&](ObjectId id, const Affine& m, double error) {
-    return place(id, scene.objects[id].object.mesh, m, error, 1 / rangeScale, -backPlane / rangeScale);
-  };
-  const Box visible = visibleBox(window, plan, subPixelBits);
-  addReached(plan, scene, reach, visible, drawn, sensor, window, placeInRange);
-  const bool fits = std::all_of(plan.inReach.begin(), plan.inReach.end(), [](const Placed& p) { return p.fits; });
-  if (!plan.inReach.empty() && !(plan.mask.fits && fits)) {
-    plan.outOfRange =
-        "range: an object in reach is too large relative to the sensor, or placed too imprecisely, for floats";
-    return plan;
-  }
-  for (const Run& run : plan.runs) plan.items += (run.count + gpu::kItemTriangles - 1) / gpu::kItemTriangles;
-  if (drawn == Drawn::everything && !plan.inReach.empty()) {
-    addOthers(plan, query, scene, reach, visible, window.origin, placeInRange);
-  }
-  for (const Run& run : plan.runs) plan.triangles += run.count;
-  return plan;
+  ViewPlan none;
+  none.outOfRange = outOfRange(query, scene);
+  return none.outOfRange.empty() ? Planner(query, scene, subPixelBits, drawn).plan() : none;
 }
 
 }  // namespace radar

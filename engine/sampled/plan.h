@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sampled/selection.h"
+#include "scene/scene.h"
 #include "shaders/sampled/interop.h"
 
 namespace radar {
@@ -17,13 +17,10 @@ struct Run {
 
 /// A mesh in the window, for R or M.
 struct Placed {
-  ObjectId object = kNone;  ///< kNone: the sensor
-  MeshId mesh = kNone;
-  bool fits = true;  ///< floats can hold it; if not, the members below are not set
-  std::array<float, 12> clipFromMesh{};
-  std::array<float, 3> origin{};    ///< of local vertices
-  float snap = 0;                   ///< largest distance of a covered pixel centre from the triangle, pixels
-  float slack = 0;                  ///< rounding of stored depth
+  gpu::Draw draw{};                 ///< all but `view` and `layer`, if floats can hold it
+  bool fits = true;                 ///< floats can hold it; if not, only the draw's mesh and object are set
+  Affine frameFromMesh{};           ///< from recentred vertices
+  double error = 0;                 ///< bound on the error of a vertex placed by a shader, world units
   uint32_t firstRun = 0, runs = 0;  ///< the runs drawn, ascending, in ViewPlan::runs
 };
 
@@ -45,8 +42,8 @@ struct ViewPlan {
   uint64_t triangles = 0;       ///< drawn, R and M
   uint64_t items = 0;           ///< number of gpu::Item, without `others`
 
-  std::array<Vector, 3> axes{};
-  Vector corner{};  ///< world position of the window's lower left corner at the back plane
+  std::array<Vector, 3> axes{};  ///< of the view's frame, in world coordinates; the last along the motion
+  Vector corner{};               ///< world position of the window's lower left corner at the back plane
   double pixel = 0, length = 0, d = 0;
 };
 

@@ -55,7 +55,7 @@ bool SampledRunner::trySubmit(Flight& flight, std::span<Planned> part, bool isLa
     plans.push_back(&planned.plan);
     queries.push_back(planned.query);
   }
-  packBatch(drawn_, plans);
+  drawn_ = packBatch(plans);
   flight.addCpuTime("encode", msSince(start));
   try {
     submitter_.submit(drawn_, scene_.impl());
@@ -163,7 +163,7 @@ Scopes SampledRunner::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = reasonAgainst(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
-  packBatch(drawn_, plans);
+  drawn_ = packBatch(plans);
   StoredScopes stored;
   SweepStats stats;
   submitter_.submit(drawn_, scene_.impl(), true);

@@ -1,8 +1,7 @@
-// Selects the objects in a swept prism while the scene changes.
+// Plans of mode sampled select the objects in the sensor's way while the scene changes.
 #include <algorithm>
 
-#include "math/frame.h"
-#include "sampled/select.h"
+#include "sampled/plan.h"
 #include "support/catch.h"
 #include "workloads/generate.h"
 
@@ -10,37 +9,41 @@ namespace {
 
 using namespace radar;
 
-bool reachesInto(const Prism& prism, const Scene& scene, ObjectId id) {
-  const Object& object = scene.object(id);
-  const MeshView mesh = scene.mesh(object.mesh);
-  for (const uint32_t vertex : mesh.indices) {
-    std::array<double, 3> p = transformPoint(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]);
-    for (int k = 0; k < 3; ++k) p[k] -= prism.origin[k];
-    bool inside = true;
-    for (int k = 0; k < 3; ++k) {
-      const double at = dot(prism.axes[k], p);
-      inside = inside && at >= prism.box.lo[k] && at <= prism.box.hi[k];
-    }
-    if (inside) return true;
-  }
-  return false;
+ViewPlan planOf(const Scene& scene, const Query& query) {
+  return planSampled(query, scene.impl(), 8, Drawn::inReach);
 }
 
-std::vector<ObjectId> selected(const Scene& scene, const Prism& prism) {
+std::vector<ObjectId> selectedBy(const ViewPlan& plan) {
   std::vector<ObjectId> ids;
-  selectObjects(scene.impl(), prism, ids);
-  std::sort(ids.begin(), ids.end());
+  for (const Placed& placed : plan.inReach) ids.push_back(placed.draw.object);
   return ids;
+}
+
+// Whether a vertex of the object is in the window, swept.
+bool reachesInto(const ViewPlan& plan, const Scene& scene, ObjectId id) {
+  const Object& object = scene.object(id);
+  const MeshView mesh = scene.mesh(object.mesh);
+  // The last pixels may pass the window's edge.
+  const double extents[] = {plan.pixel * (plan.view.width - 1), plan.pixel * (plan.view.height - 1), plan.d};
+  return std::any_of(mesh.indices.begin(), mesh.indices.end(), [&](uint32_t vertex) {
+    const Vector p = minus(transformPoint(object.worldFromMesh, &mesh.positions[3 * size_t{vertex}]), plan.corner);
+    for (int k = 0; k < 3; ++k) {
+      if (const double at = dot(plan.axes[k], p); at < 0 || at > extents[k]) return false;
+    }
+    return true;
+  });
 }
 
 }  // namespace
 
-TEST_CASE("every object with a vertex in the prism is selected once, while the scene changes") {
+TEST_CASE("every object with a vertex in the sensor's way is selected once, while the scene changes") {
   tools::Random random(11);
   const double away = GENERATE(0.0, 1e9);
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 2, 3});
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const tools::MeshData plate = tools::makeBox({4, 2, 1});
+  const MeshId sensor = scene.addMesh(plate.positions, plate.indices);
   std::vector<ObjectId> objects;
   const auto anywhere = [&] { return random.inBox({away - 20, away - 20, -20}, {away + 20, away + 20, 20}); };
   const auto randomPose = [&] { return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, anywhere()); };
@@ -53,13 +56,18 @@ TEST_CASE("every object with a vertex in the prism is selected once, while the s
       scene.removeObject(objects.back());
       objects.pop_back();
     }
-    const Prism prism{anywhere(), axesAlong(random.direction()), {{-2, -1, 0}, {2, 1, random.uniform(0, 30)}}};
-    const std::vector<ObjectId> ids = selected(scene, prism);
+    const Query query{.mesh = sensor,
+                      .worldFromMesh = tools::makePose(random.rotation(), {1, 1, 1}, anywhere()),
+                      .direction = random.direction(),
+                      .distance = random.uniform(0, 30)};
+    const ViewPlan plan = planOf(scene, query);
+    const std::vector<ObjectId> ids = selectedBy(plan);
+    CHECK(std::is_sorted(ids.begin(), ids.end()));
     CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
     CHECK(std::includes(objects.begin(), objects.end(), ids.begin(), ids.end()));
     named += ids.size();
     for (const ObjectId id : objects) {
-      const bool reaches = reachesInto(prism, scene, id);
+      const bool reaches = reachesInto(plan, scene, id);
       inside += reaches;
       if (reaches) CHECK(std::binary_search(ids.begin(), ids.end(), id));
     }
@@ -68,7 +76,7 @@ TEST_CASE("every object with a vertex in the prism is selected once, while the s
   CHECK(named < 4 * inside);
 }
 
-TEST_CASE("objects are also selected if one of them is too far away for the tree") {
+TEST_CASE("scopes are out of range while an object is too far away for the tree") {
   Scene scene;
   const tools::MeshData box = tools::makeBox({1, 1, 1});
   const MeshId mesh = scene.addMesh(box.positions, box.indices);
@@ -76,8 +84,8 @@ TEST_CASE("objects are also selected if one of them is too far away for the tree
   const ObjectId near = scene.addObject({mesh, at(0), ~0u});
   scene.addObject({mesh, at(50), ~0u});
   const ObjectId remote = scene.addObject({mesh, at(1e30), ~0u});
-  const Prism prism{{0, 0, 0}, axesAlong({0, 0, 1}), {{-1, -1, -1}, {1, 1, 1}}};
-  CHECK(selected(scene, prism) == std::vector<ObjectId>{near});
+  const Query query{.mesh = mesh, .worldFromMesh = at(0), .direction = {0, 0, 1}, .distance = 1};
+  CHECK(planOf(scene, query).outOfRange == "range: an object has coordinates beyond 2^80");
   scene.removeObject(remote);
-  CHECK(selected(scene, prism) == std::vector<ObjectId>{near});
+  CHECK(selectedBy(planOf(scene, query)) == std::vector<ObjectId>{near});
 }

@@ -123,7 +123,8 @@ void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded)
                   sizeof(gpu::SearchCounts) + 7 * 8);  // each of seven pieces may be rounded up
 }
 
-void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene) {
+GpuScene::Staged ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
+                                    GpuScene::Overwritten next) {
   sensorCount_ = batch.count();
   ignoresLeaving_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
                                 [](const gpu::Sweep& sweep) { return sweep.ignoreLeaving != 0; });
@@ -132,7 +133,7 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
   upload_.begin();
-  scene_.prepare(scene);
+  GpuScene::Staged staged = scene_.stage(scene, std::move(next), upload_);
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   stateList_.clear();
@@ -143,7 +144,6 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
     stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
     taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
   }
-  scene_.upload(scene, upload_);
   upload_.add(batch.sensors.data(), bytesOf(batch.sensors), sensors_);
   upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
   upload_.add(stateList_.data(), bytesOf(stateList_), states_);
@@ -152,17 +152,18 @@ void ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const
   upload_.add(known.data(), known.size_bytes(), results_);
   addCounts(sensorCount_);
   run_.begin();
+  return staged;
 }
 
-void ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene) {
+GpuScene::Staged ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene, GpuScene::Overwritten next) {
   sensorCount_ = sensors;
   ignoresLeaving_ = hasClearances_ = false;
   upload_.begin();
-  scene_.prepare(scene);
+  GpuScene::Staged staged = scene_.stage(scene, std::move(next), upload_);
   reserve(sensors, sensors, sensors);
-  scene_.upload(scene, upload_);
   addCounts(0);
   run_.begin();
+  return staged;
 }
 
 // Uploads the counts of a search that begins with this many tasks.

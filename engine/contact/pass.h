@@ -27,14 +27,16 @@ class ContactPass {
  public:
   ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room);
 
-  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size.
+  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size, but
+  /// for changes of the scene.
   void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
-  /// given, they include placeholders for those of the batch. The device is idle.
-  void stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene);
+  /// given, they include placeholders for those of the batch. `next`: see GpuScene::stage. The device is idle.
+  GpuScene::Staged stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
+                         GpuScene::Overwritten next = {});
   /// The same for `sensors` that a shader encodes after the upload. None has a clearance or ignores what does not
   /// block.
-  void stageEncoded(uint32_t sensors, const Scene::Impl& scene);
+  GpuScene::Staged stageEncoded(uint32_t sensors, const Scene::Impl& scene, GpuScene::Overwritten next = {});
   /// What that shader writes: sensors, sweeps and states, one per result; tasks, whose number it adds to counts(); and
   /// excluded objects, for which there is room for one per sensor.
   struct Encoded {

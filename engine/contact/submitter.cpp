@@ -46,14 +46,14 @@ void ContactSubmitter::recordAndSubmit() {
 
 void ContactSubmitter::submit(SensorBatch& batch, const Scene::Impl& scene) {
   submissions_ = 0;
-  pass_.stage(batch, {}, scene);
+  staged_ = pass_.stage(batch, {}, scene);
   readback_.reserve(ContactPass::kFirstResult + batch.count() * sizeof(Result));
   recordAndSubmit();
 }
 
-SearchAnswers ContactSubmitter::collect(const Scene::Impl& scene, std::vector<StageTime>& stages) {
+SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
   submission_.wait();
-  scene_.confirm(scene);
+  scene_.commit(std::move(staged_));
   submission_.addTimes(stages);
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
     if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);

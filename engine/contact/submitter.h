@@ -23,7 +23,7 @@ class ContactSubmitter {
   void submit(SensorBatch& batch, const Scene::Impl& scene);
   /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
   /// had no room or range for.
-  SearchAnswers collect(const Scene::Impl& scene, std::vector<StageTime>& stages);
+  SearchAnswers collect(std::vector<StageTime>& stages);
   uint32_t submissions() const { return submissions_; }  ///< made for the last batch
 
  private:
@@ -34,6 +34,7 @@ class ContactSubmitter {
   gpu::Submission submission_;
   ContactPass pass_;
   gpu::Buffer readback_;  ///< counts, then results
+  GpuScene::Staged staged_;
   uint32_t submissions_ = 0;
 };
 

@@ -47,7 +47,7 @@ struct Recorder::Impl {
   void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   void stage();
-  void recordSearch(VkCommandBuffer commandBuffer);
+  void recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged);
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
 
   const Device::Impl& device;
@@ -107,12 +107,11 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::Impl::stage() {
   geometry.stageSensors(recorded.deformedSensors);
   gathers.stage(recorded.gathered);
-  copy->willOverwrite(geometry.overwritten());
   usedBuffers.reset();
 }
 
 // Records what either kind of record() has staged.
-void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer) {
+void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged) {
   const bool areWritten = recorded.isWritten;
   const uint32_t results = areWritten ? recorded.count : static_cast<uint32_t>(recorded.known.size());
   const gpu::Commands commands{&device.vk, commandBuffer};
@@ -152,7 +151,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer) {
   if (areWritten) readBack(pass.encoded().sweeps, firstSweep(), results * sizeof(gpu::Sweep));
   gpu::writtenToHost(commands);
   device.endLabel(commands);
-  copy->confirm(scene.impl());
+  copy->commit(std::move(staged));
   geometry.confirm();
   usedBuffers = copy->shareBuffers();
   recorded.farthest = copy->farthest();
@@ -168,8 +167,9 @@ void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, 
   self.geometry.stage(geometry, self.scene.impl());
   self.recorded.plan(queries, self.scene.impl(), self.geometry, self.capacity.searches);
   self.stage();
-  self.pass.stage(self.recorded.sensors, self.recorded.known, self.scene.impl());
-  self.recordSearch(commands);  // from here on nothing throws
+  GpuScene::Staged staged =
+      self.pass.stage(self.recorded.sensors, self.recorded.known, self.scene.impl(), self.geometry.overwritten());
+  self.recordSearch(commands, std::move(staged));  // from here on nothing throws
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
@@ -180,11 +180,11 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.geometry.stage(geometry, self.scene.impl());
   self.recorded.planWritten(queries.count);
   self.stage();
-  self.pass.stageEncoded(queries.count, self.scene.impl());
+  GpuScene::Staged staged = self.pass.stageEncoded(queries.count, self.scene.impl(), self.geometry.overwritten());
   self.readback.reserve(self.firstSweep() + self.capacity.queries * sizeof(gpu::Sweep));
   if (!self.hostQueries) self.hostQueries.emplace(self.device);
   if (queries.count != 0) self.hostQueries->stage(queries);
-  self.recordSearch(commands);
+  self.recordSearch(commands, std::move(staged));
 }
 
 void Recorder::reset() {

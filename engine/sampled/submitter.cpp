@@ -58,9 +58,8 @@ void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene
   ranks_.reserve(batch.views.size() * gpu::kCells);
   answers_.reserve(batch.views.size());
   unresolvedPairs_.reserve(batch.views.size() * gpu::kUnresolvedPerView);
-  resident_.prepare(scene);
   upload_.begin();
-  resident_.upload(scene, upload_);
+  staged_ = resident_.stage(scene, {}, upload_);
   upload_.add(batch.views.data(), bytesOf(batch.views), views_);
   upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
   upload_.add(batch.items.data(), bytesOf(batch.items), items_);
@@ -178,10 +177,10 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
   submission_.submit();
 }
 
-SampledAnswers SampledSubmitter::collect(const SampledBatch& batch, const Scene::Impl& scene,
-                                         std::vector<StageTime>& stages, StoredScopes* scopes) {
+SampledAnswers SampledSubmitter::collect(const SampledBatch& batch, std::vector<StageTime>& stages,
+                                         StoredScopes* scopes) {
   submission_.wait();
-  resident_.confirm(scene);
+  resident_.commit(std::move(staged_));
   submission_.addTimes(stages);
   const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes != nullptr);
   if (scopes != nullptr) {

@@ -28,11 +28,10 @@ class SampledSubmitter {
   SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// Submits one upload, one command buffer and one readback without waiting; call collect() next, with the same
-  /// arguments. `scopes`: also reads back the pictures of view 0. If this throws, the memory of all pictures is free.
+  /// batch. `scopes`: also reads back the pictures of view 0. If this throws, the memory of all pictures is free.
   void submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes = false);
   /// Waits for the submission, and adds each stage's time to `stages`.
-  SampledAnswers collect(const SampledBatch& batch, const Scene::Impl& scene, std::vector<StageTime>& stages,
-                         StoredScopes* scopes = nullptr);
+  SampledAnswers collect(const SampledBatch& batch, std::vector<StageTime>& stages, StoredScopes* scopes = nullptr);
 
  private:
   struct Pictures {
@@ -68,6 +67,7 @@ class SampledSubmitter {
   gpu::Array<gpu::Answer> answers_;
   gpu::Array<gpu::SampledUnresolved> unresolvedPairs_;
   gpu::Buffer readback_;
+  GpuScene::Staged staged_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side
 };
 

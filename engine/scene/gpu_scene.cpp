@@ -37,6 +37,10 @@ void copyPoint(const Vector& from, float (&to)[3]) {
 
 const GpuScene::Moved kNothingMoved;
 
+const GpuScene::Moved& movedOf(const GpuScene::Overwritten& overwritten) {
+  return overwritten.moved ? *overwritten.moved : kNothingMoved;
+}
+
 // Appends the elements of `all` that are not in `less`; both ascend.
 template <class Id>
 void addDifference(const std::vector<Id>& all, const std::vector<Id>& less, std::vector<Id>& out) {
@@ -74,19 +78,6 @@ GpuScene::GpuScene(const Device::Impl& device)
       buffers_(std::make_shared<Buffers>(device)),
       farthest_(std::make_shared<const std::vector<Vector>>()) {}
 
-void GpuScene::willOverwrite(Overwritten next) {
-  next_ = std::move(next);
-  std::sort(next_.meshes.begin(), next_.meshes.end());
-}
-
-const GpuScene::Moved& GpuScene::movedBefore() const {
-  return overwritten_.moved ? *overwritten_.moved : kNothingMoved;
-}
-
-const GpuScene::Moved& GpuScene::movedNext() const {
-  return next_.moved ? *next_.moved : kNothingMoved;
-}
-
 // Whether no buffer that searches use need grow.
 bool GpuScene::fits(const Scene::Impl& scene) const {
   const auto [vertices, triangles, nodes] = elementsOf(scene);
@@ -98,9 +89,9 @@ bool GpuScene::fits(const Scene::Impl& scene) const {
 }
 
 void GpuScene::forget() {
-  seenScene_ = seenMeshes_ = seenPoses_ = seenTree_ = 0;
+  ++era_;
+  seen_ = {};
   for (Place& place : places_) place.uploaded = place.uploadedIndices = 0;
-  overwritten_ = {};
 }
 
 void GpuScene::clear() {
@@ -109,19 +100,33 @@ void GpuScene::clear() {
   forget();
 }
 
-VkDeviceSize GpuScene::prepare(const Scene::Impl& scene) try {
-  if (seenScene_ != scene.identity) forget();
-  checkWriteLimits(scene);
+GpuScene::Staged GpuScene::stage(const Scene::Impl& scene, Overwritten next, Upload& upload) try {
+  std::ranges::sort(next.meshes);
+  if (seen_.scene != scene.identity) forget();
+  checkWriteLimits(scene, next);
   if (buffers_.use_count() > 1 && !fits(scene)) {
     buffers_ = std::make_shared<Buffers>(*device_);
     clear();
   }
-  const VkDeviceSize meshes = prepareMeshes(scene);
-  return meshes + prepareIndices(scene) + prepareObjects(scene) + prepareTree(scene.objectTree());
+  const ObjectTree& tree = scene.objectTree();
+  Staged staged{.era = era_,
+                .seen = {scene.identity, scene.meshVersion, scene.poseVersion, tree.version(), std::move(next)}};
+  stageMeshes(scene, staged, upload);
+  stageIndices(scene, staged, upload);
+  stageObjects(scene, staged.seen.overwritten, upload);
+  stageTree(tree, staged.seen.overwritten, upload);
+  return staged;
 } catch (...) {
   // Some buffers may have grown, and lost their contents: everything is placed and staged again.
   clear();
   throw;
+}
+
+void GpuScene::commit(Staged staged) noexcept {
+  if (staged.era != era_) return;
+  seen_ = std::move(staged.seen);
+  for (const auto& [mesh, version] : staged.meshes) places_[mesh].uploaded = version;
+  for (const auto& [mesh, version] : staged.indices) places_[mesh].uploadedIndices = version;
 }
 
 void GpuScene::removePlace(MeshId id) {
@@ -151,7 +156,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
     throw gpu::LimitError("the scene's meshes exceed 2^30 vertices, triangles or nodes");
   }
   places_.assign(scene.meshes.size(), {});
-  seenPoses_ = 0;  // placements refer to nodes
+  seen_.poses = 0;  // placements refer to nodes
   buffers_->vertices.reserve(vertices);
   buffers_->triangles.reserve(triangles);
   buffers_->meshNodes.reserve(nodes);
@@ -162,7 +167,7 @@ void GpuScene::layOut(const Scene::Impl& scene) {
 }
 
 // Keeps the places of meshes that have the same numbers of elements as before.
-void GpuScene::placeMeshes(const Scene::Impl& scene) {
+void GpuScene::placeMeshes(const Scene::Impl& scene, const Overwritten& next) {
   const auto numbersOf = [](const Mesh& mesh) {
     return std::array<uint64_t, 3>{mesh.vertexCount(), mesh.triangleCount(), mesh.tree.nodes.size()};
   };
@@ -179,12 +184,12 @@ void GpuScene::placeMeshes(const Scene::Impl& scene) {
   places_.resize(scene.meshes.size());
   records_.resize(scene.meshes.size());
   const bool fits = std::ranges::all_of(homeless, [&](MeshId id) { return placeMesh(id, scene.meshes[id]); });
-  if (!fits || exceedsWriteLimits()) layOut(scene);
+  if (!fits || exceedsWriteLimits(next)) layOut(scene);
 }
 
 // Whether meshes that the host overwrites may end beyond what a storage buffer binds.
-bool GpuScene::exceedsWriteLimits() const {
-  if (next_.meshes.empty()) return false;
+bool GpuScene::exceedsWriteLimits(const Overwritten& next) const {
+  if (next.meshes.empty()) return false;
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   for (MeshId id = 0; id < places_.size(); ++id) {
     if ((records_[id].firstVertex + places_[id].vertices) * sizeof(gpu::Vertex) > limit ||
@@ -196,13 +201,14 @@ bool GpuScene::exceedsWriteLimits() const {
 }
 
 // Buffers that shaders write are bound as storage buffers, so they are subject to maxStorageBufferRange.
-void GpuScene::checkWriteLimits(const Scene::Impl& scene) const {
-  if (!movedNext().objects.empty() || !movedNext().standing.empty())
+void GpuScene::checkWriteLimits(const Scene::Impl& scene, const Overwritten& next) const {
+  const Moved& moved = movedOf(next);
+  if (!moved.objects.empty() || !moved.standing.empty())
     checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
-  if (!movedNext().nodes.empty()) {
+  if (!moved.nodes.empty()) {
     checkLimit<gpu::ObjectNode>(*device_, "object nodes", scene.objectTree().nodes().size());
   }
-  if (next_.meshes.empty()) return;
+  if (next.meshes.empty()) return;
   const Elements elements = elementsOf(scene);
   checkLimit<gpu::Vertex>(*device_, "vertices", elements.vertices);
   checkLimit<gpu::MeshNode>(*device_, "mesh nodes", elements.nodes);
@@ -217,105 +223,7 @@ void GpuScene::describe(MeshId id, const Mesh& mesh) {
   record.perUnit = static_cast<float>(1 / mesh.unit);
 }
 
-VkDeviceSize GpuScene::prepareMeshes(const Scene::Impl& scene) {
-  changedMeshes_.clear();
-  std::vector<MeshId> restored;
-  addDifference(overwritten_.meshes, next_.meshes, restored);
-  // Shaders need buffers even if there is no mesh.
-  buffers_->vertices.reserve(0);
-  buffers_->triangles.reserve(0);
-  buffers_->meshNodes.reserve(0);
-  buffers_->meshes.reserve(0);
-  recordsChanged_ = seenMeshes_ != scene.meshVersion || !restored.empty() || exceedsWriteLimits();
-  VkDeviceSize bytes = 0;
-  if (recordsChanged_) {
-    checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
-    placeMeshes(scene);
-    buffers_->meshes.reserve(records_.size());
-    std::vector<Vector> farthest;
-    for (const Mesh& mesh : scene.meshes) farthest.push_back(mesh.farthest);
-    farthest_ = std::make_shared<const std::vector<Vector>>(std::move(farthest));
-    for (MeshId id = 0; id < scene.meshes.size(); ++id) {
-      describe(id, scene.meshes[id]);
-      if (places_[id].uploaded != scene.meshes[id].version) changedMeshes_.push_back(id);
-    }
-    bytes += sizeof(gpu::MeshRecord) * records_.size();
-  }
-  for (const MeshId id : restored) {
-    if (places_[id].uploaded == scene.meshes[id].version) changedMeshes_.push_back(id);
-  }
-  for (const MeshId id : changedMeshes_) {
-    bytes += sizeof(gpu::Vertex) * places_[id].vertices + sizeof(gpu::Triangle) * places_[id].triangles +
-             sizeof(gpu::MeshNode) * places_[id].nodes;
-  }
-  return bytes;
-}
-
-VkDeviceSize GpuScene::prepareIndices(const Scene::Impl& scene) {
-  changedIndices_.clear();
-  if (!hasIndices_) return 0;
-  if (buffers_->indices.reserve(3 * buffers_->triangles.capacity())) {
-    for (Place& place : places_) place.uploadedIndices = 0;
-  }
-  VkDeviceSize bytes = 0;
-  const uint32_t most = device_->properties.limits.maxDrawIndexedIndexValue;
-  for (MeshId id = 0; id < places_.size(); ++id) {
-    if (places_[id].vertices > 0 && records_[id].firstVertex + (places_[id].vertices - 1) > most) {
-      throw gpu::LimitError("the scene's meshes have vertices beyond number " + std::to_string(most) +
-                            ", the device's maxDrawIndexedIndexValue");
-    }
-    if (places_[id].uploadedIndices == scene.meshes[id].version) continue;
-    changedIndices_.push_back(id);
-    bytes += 12 * places_[id].triangles;
-  }
-  return bytes;
-}
-
-VkDeviceSize GpuScene::prepareObjects(const Scene::Impl& scene) {
-  checkLimit<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
-  const bool grew = buffers_->objects.reserve(scene.objects.size());
-  if (buffers_->placements.reserve(scene.objects.size()) || grew) seenPoses_ = 0;
-  changedObjects_.clear();
-  scene.changedObjects.forEachSince(seenPoses_, [&](size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      if (scene.changedAt[i] > seenPoses_ && scene.objects[i].used) changedObjects_.push_back(static_cast<ObjectId>(i));
-    }
-  });
-  std::vector<ObjectId> restored;
-  if (overwritten_.moved != next_.moved) {
-    addDifference(movedBefore().objects, movedNext().objects, restored);
-    addDifference(movedBefore().standing, movedNext().standing, restored);
-  }
-  for (const ObjectId id : restored) {
-    if (scene.objects[id].used && scene.changedAt[id] <= seenPoses_) changedObjects_.push_back(id);
-  }
-  if (!restored.empty()) std::sort(changedObjects_.begin(), changedObjects_.end());
-  return (sizeof(gpu::ObjectRecord) + sizeof(gpu::Placement)) * changedObjects_.size();
-}
-
-VkDeviceSize GpuScene::prepareTree(const ObjectTree& tree) {
-  if (buffers_->objectNodes.reserve(tree.nodes().size())) seenTree_ = 0;
-  changedNodes_.clear();
-  VkDeviceSize bytes = 0;
-  const auto add = [&](size_t first, size_t last) {
-    changedNodes_.push_back({first, last});
-    bytes += sizeof(gpu::ObjectNode) * (last - first);
-  };
-  std::vector<uint32_t> restored;
-  if (overwritten_.moved != next_.moved) addDifference(movedBefore().nodes, movedNext().nodes, restored);
-  if (restored.empty()) {
-    tree.changedNodes().forEachSince(seenTree_, add);
-  } else {
-    ChangedPages both = tree.changedNodes();
-    for (const uint32_t node : restored) {
-      if (node < tree.nodes().size()) both.mark(node, seenTree_ + 1);
-    }
-    both.forEachSince(seenTree_, add);
-  }
-  return bytes;
-}
-
-void GpuScene::uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, Upload& upload) {
+void GpuScene::stageMesh(const Mesh& mesh, const gpu::MeshRecord& record, Upload& upload) const {
   std::vector<gpu::Vertex> vertices(mesh.vertexCount());
   for (size_t v = 0; v < vertices.size(); ++v) std::copy_n(&mesh.positions[3 * v], 3, vertices[v].position);
   std::vector<gpu::Triangle> triangles;
@@ -337,33 +245,99 @@ void GpuScene::uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, Uploa
              sizeof(gpu::MeshNode) * VkDeviceSize{record.firstNode});
 }
 
-void GpuScene::uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, Upload& upload) const {
-  std::vector<uint32_t> indices;
-  indices.reserve(mesh.indices.size());
-  for (const uint32_t id : mesh.tree.order) {
-    for (int i = 0; i < 3; ++i) indices.push_back(record.firstVertex + mesh.indices[3 * size_t{id} + i]);
+void GpuScene::stageMeshes(const Scene::Impl& scene, Staged& staged, Upload& upload) {
+  const Overwritten& next = staged.seen.overwritten;
+  std::vector<MeshId> restored;
+  addDifference(seen_.overwritten.meshes, next.meshes, restored);
+  // Shaders need buffers even if there is no mesh.
+  buffers_->vertices.reserve(0);
+  buffers_->triangles.reserve(0);
+  buffers_->meshNodes.reserve(0);
+  buffers_->meshes.reserve(0);
+  if (seen_.meshes == scene.meshVersion && restored.empty() && !exceedsWriteLimits(next)) return;
+  for (const MeshId id : restored) places_[id].uploaded = 0;
+  checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
+  placeMeshes(scene, next);
+  buffers_->meshes.reserve(records_.size());
+  std::vector<Vector> farthest;
+  for (const Mesh& mesh : scene.meshes) farthest.push_back(mesh.farthest);
+  farthest_ = std::make_shared<const std::vector<Vector>>(std::move(farthest));
+  for (MeshId id = 0; id < scene.meshes.size(); ++id) {
+    const Mesh& mesh = scene.meshes[id];
+    describe(id, mesh);
+    if (places_[id].uploaded == mesh.version) continue;
+    stageMesh(mesh, records_[id], upload);
+    staged.meshes.emplace_back(id, mesh.version);
   }
-  upload.add(indices.data(), gpu::bytesOf(indices), buffers_->indices, 12 * VkDeviceSize{record.firstTriangle});
+  upload.add(records_.data(), gpu::bytesOf(records_), buffers_->meshes);
 }
 
-void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
+void GpuScene::stageIndices(const Scene::Impl& scene, Staged& staged, Upload& upload) {
+  if (!hasIndices_) return;
+  if (buffers_->indices.reserve(3 * buffers_->triangles.capacity())) {
+    for (Place& place : places_) place.uploadedIndices = 0;
+  }
+  const uint32_t most = device_->properties.limits.maxDrawIndexedIndexValue;
+  for (MeshId id = 0; id < places_.size(); ++id) {
+    const Mesh& mesh = scene.meshes[id];
+    const gpu::MeshRecord& record = records_[id];
+    if (places_[id].vertices > 0 && record.firstVertex + (places_[id].vertices - 1) > most) {
+      throw gpu::LimitError("the scene's meshes have vertices beyond number " + std::to_string(most) +
+                            ", the device's maxDrawIndexedIndexValue");
+    }
+    if (places_[id].uploadedIndices == mesh.version) continue;
+    std::vector<uint32_t> indices;
+    indices.reserve(mesh.indices.size());
+    for (const uint32_t triangle : mesh.tree.order) {
+      for (int i = 0; i < 3; ++i) indices.push_back(record.firstVertex + mesh.indices[3 * size_t{triangle} + i]);
+    }
+    upload.add(indices.data(), gpu::bytesOf(indices), buffers_->indices, 12 * VkDeviceSize{record.firstTriangle});
+    staged.indices.emplace_back(id, mesh.version);
+  }
+}
+
+// Ascending.
+std::vector<ObjectId> GpuScene::changedObjects(const Scene::Impl& scene, const Overwritten& next) const {
+  std::vector<ObjectId> changed, restored;
+  scene.changedObjects.forEachSince(seen_.poses, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      if (scene.changedAt[i] > seen_.poses && scene.objects[i].used) changed.push_back(static_cast<ObjectId>(i));
+    }
+  });
+  if (seen_.overwritten.moved != next.moved) {
+    addDifference(movedOf(seen_.overwritten).objects, movedOf(next).objects, restored);
+    addDifference(movedOf(seen_.overwritten).standing, movedOf(next).standing, restored);
+  }
+  for (const ObjectId id : restored) {
+    if (scene.objects[id].used && scene.changedAt[id] <= seen_.poses) changed.push_back(id);
+  }
+  if (!restored.empty()) std::ranges::sort(changed);
+  return changed;
+}
+
+void GpuScene::stageObjects(const Scene::Impl& scene, const Overwritten& next, Upload& upload) {
+  checkLimit<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
+  const bool grew = buffers_->objects.reserve(scene.objects.size());
+  if (buffers_->placements.reserve(scene.objects.size()) || grew) seen_.poses = 0;
+  const std::vector<ObjectId> changed = changedObjects(scene, next);
+  if (changed.empty()) return;
   static_assert(sizeof(gpu::ObjectRecord) % 8 == 0 && sizeof(gpu::Placement) % 8 == 0);  // for Upload::reserve
   // Where each array's changed elements begin; all follow in their order.
   const auto places = [&](const gpu::Buffer& target, VkDeviceSize size) {
     std::byte* first = nullptr;
-    upload.reserve(size * changedObjects_.size());
-    for (size_t i = 0, end = 0; i < changedObjects_.size(); i = end) {
-      for (end = i + 1; end < changedObjects_.size() && changedObjects_[end] == changedObjects_[end - 1] + 1;) ++end;
-      std::byte* at = upload.place(size * (end - i), target, size * changedObjects_[i]);
+    upload.reserve(size * changed.size());
+    for (size_t i = 0, end = 0; i < changed.size(); i = end) {
+      for (end = i + 1; end < changed.size() && changed[end] == changed[end - 1] + 1;) ++end;
+      std::byte* at = upload.place(size * (end - i), target, size * changed[i]);
       if (i == 0) first = at;
     }
     return first;
   };
   std::byte* records = places(buffers_->objects, sizeof(gpu::ObjectRecord));
   std::byte* placements = places(buffers_->placements, sizeof(gpu::Placement));
-  parallelFor(changedObjects_.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
+  parallelFor(changed.size(), kChunk, 0, [&](unsigned, size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
-      const Object& object = scene.objects[changedObjects_[i]].object;
+      const Object& object = scene.objects[changed[i]].object;
       gpu::ObjectRecord record{};
       std::copy(object.worldFromMesh.m.begin(), object.worldFromMesh.m.end(), record.pose);
       record.mesh = object.mesh;
@@ -377,41 +351,38 @@ void GpuScene::uploadObjects(const Scene::Impl& scene, Upload& upload) {
   });
 }
 
-void GpuScene::upload(const Scene::Impl& scene, Upload& upload) {
-  for (const MeshId id : changedMeshes_) uploadMesh(scene.meshes[id], records_[id], upload);
-  for (const MeshId id : changedIndices_) uploadIndices(scene.meshes[id], records_[id], upload);
-  if (recordsChanged_) upload.add(records_.data(), gpu::bytesOf(records_), buffers_->meshes);
-  uploadObjects(scene, upload);
-  const std::vector<gpu::ObjectNode>& nodes = scene.objectTree().nodes();
-  for (const Range& range : changedNodes_) {
+void GpuScene::stageTree(const ObjectTree& tree, const Overwritten& next, Upload& upload) {
+  const std::vector<gpu::ObjectNode>& nodes = tree.nodes();
+  if (buffers_->objectNodes.reserve(nodes.size())) seen_.tree = 0;
+  const auto add = [&](size_t first, size_t last) {
     const VkDeviceSize size = sizeof(gpu::ObjectNode);
-    upload.add(&nodes[range.first], size * (range.last - range.first), buffers_->objectNodes, size * range.first);
+    upload.add(&nodes[first], size * (last - first), buffers_->objectNodes, size * first);
+  };
+  std::vector<uint32_t> restored;
+  if (seen_.overwritten.moved != next.moved) {
+    addDifference(movedOf(seen_.overwritten).nodes, movedOf(next).nodes, restored);
   }
+  if (restored.empty()) return tree.changedNodes().forEachSince(seen_.tree, add);
+  ChangedPages both = tree.changedNodes();
+  for (const uint32_t node : restored) {
+    if (node < nodes.size()) both.mark(node, seen_.tree + 1);
+  }
+  both.forEachSince(seen_.tree, add);
 }
 
 void GpuScene::sync(const Scene::Impl& scene) {
-  const VkDeviceSize bytes = prepare(scene);
-  if (bytes == 0) return confirm(scene);
   if (!sync_) sync_ = std::make_unique<Sync>(Sync{gpu::Upload(*device_), gpu::Submission(*device_, false)});
   sync_->upload.begin();
-  upload(scene, sync_->upload);
-  const gpu::Commands commands = sync_->submission.begin();
-  gpu::computeToOverwrite(commands);
-  sync_->submission.stage("upload");
-  sync_->upload.record(commands);
-  gpu::transferToComputeReadWrite(commands);
-  sync_->submission.submitAndWait();
-  confirm(scene);
-}
-
-void GpuScene::confirm(const Scene::Impl& scene) {
-  overwritten_ = std::exchange(next_, {});
-  seenScene_ = scene.identity;
-  seenMeshes_ = scene.meshVersion;
-  for (const MeshId id : changedMeshes_) places_[id].uploaded = scene.meshes[id].version;
-  for (const MeshId id : changedIndices_) places_[id].uploadedIndices = scene.meshes[id].version;
-  seenPoses_ = scene.poseVersion;
-  seenTree_ = scene.objectTree().version();
+  Staged staged = stage(scene, {}, sync_->upload);
+  if (sync_->upload.bytes() != 0) {
+    const gpu::Commands commands = sync_->submission.begin();
+    gpu::computeToOverwrite(commands);
+    sync_->submission.stage("upload");
+    sync_->upload.record(commands);
+    gpu::transferToComputeReadWrite(commands);
+    sync_->submission.submitAndWait();
+  }
+  commit(std::move(staged));
 }
 
 }  // namespace radar

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "gpu/array.h"
 #include "gpu/submission.h"
@@ -27,7 +28,7 @@ class GpuScene {
     gpu::Array<uint32_t> indices;  ///< 3 vertices per triangle, for drawing; empty until needIndices()
   };
 
-  /// Makes the next prepare() fill the index buffer, too.
+  /// Makes the next stage() fill the index buffer, too.
   void needIndices() { hasIndices_ = true; }
   bool hasIndices() const { return hasIndices_; }
 
@@ -40,18 +41,25 @@ class GpuScene {
     std::vector<MeshId> meshes;          ///< in any order
     std::shared_ptr<const Moved> moved;  ///< null: none; shared, since there may be millions
   };
-  /// Declares what commands after the next upload overwrite. What was overwritten after the last upload, and is not
-  /// now, is staged again from the scene.
-  void willOverwrite(Overwritten next);
+  /// Versions of what is on the device; 0: nothing.
+  struct Seen {
+    uint64_t scene = 0, meshes = 0, poses = 0, tree = 0;
+    Overwritten overwritten;
+  };
+  /// What commit() needs of the changes that stage() has staged.
+  struct Staged {
+    uint64_t era = 0;
+    Seen seen;
+    std::vector<std::pair<MeshId, uint64_t>> meshes, indices;  ///< with Mesh::version
+  };
 
-  /// Finds the changes and makes room for them; returns the bytes that `upload` will stage. Throws if they do not fit a
-  /// buffer of the device.
-  VkDeviceSize prepare(const Scene::Impl& scene);
-  /// Stages the changes found by the last `prepare`.
-  void upload(const Scene::Impl& scene, gpu::Upload& upload);
-  /// Marks staged changes as uploaded, and overwritten what willOverwrite() declared. Throws nothing. Without this
-  /// call, as after a failed submission, they are staged again.
-  void confirm(const Scene::Impl& scene);
+  /// Finds the changes, makes room for them in the buffers, and stages them. `next`: what commands after the upload
+  /// overwrite; what they overwrote after the last, and will not now, is staged from the scene. Throws if something
+  /// does not fit a buffer of the device.
+  Staged stage(const Scene::Impl& scene, Overwritten next, gpu::Upload& upload);
+  /// Marks staged changes as uploaded, and `next` as overwritten, unless stage() has thrown since or forget() was
+  /// called. Without this call, as after a failed submission, the changes are staged again.
+  void commit(Staged staged) noexcept;
   /// Uploads the changes and waits. The device must have a queue.
   void sync(const Scene::Impl& scene);
   /// Marks all uploads as uncertain: everything is staged again.
@@ -60,9 +68,9 @@ class GpuScene {
   const Buffers& buffers() const { return *buffers_; }
   /// Keeps the buffers while submitted commands use them: if they must grow meanwhile, others take their place.
   std::shared_ptr<const Buffers> shareBuffers() const { return buffers_; }
-  /// A mesh's place in the buffers, after prepare().
+  /// A mesh's place in the buffers, after stage().
   const gpu::MeshRecord& record(MeshId mesh) const { return records_[mesh]; }
-  /// Mesh::farthest of each mesh, as of the last prepare().
+  /// Mesh::farthest of each mesh, as of the last stage().
   using Farthest = std::shared_ptr<const std::vector<Vector>>;
   const Farthest& farthest() const { return farthest_; }
 
@@ -74,22 +82,19 @@ class GpuScene {
   };
   void clear();
   bool fits(const Scene::Impl& scene) const;
-  void checkWriteLimits(const Scene::Impl& scene) const;
-  VkDeviceSize prepareMeshes(const Scene::Impl& scene);
-  VkDeviceSize prepareIndices(const Scene::Impl& scene);
-  VkDeviceSize prepareObjects(const Scene::Impl& scene);
-  VkDeviceSize prepareTree(const ObjectTree& tree);
-  const Moved& movedBefore() const;
-  const Moved& movedNext() const;
-  void placeMeshes(const Scene::Impl& scene);
+  void checkWriteLimits(const Scene::Impl& scene, const Overwritten& next) const;
+  void placeMeshes(const Scene::Impl& scene, const Overwritten& next);
   bool placeMesh(MeshId id, const Mesh& mesh);
   void removePlace(MeshId id);
   void layOut(const Scene::Impl& scene);
-  bool exceedsWriteLimits() const;
+  bool exceedsWriteLimits(const Overwritten& next) const;
   void describe(MeshId id, const Mesh& mesh);
-  void uploadMesh(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload);
-  void uploadIndices(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload) const;
-  void uploadObjects(const Scene::Impl& scene, gpu::Upload& upload);
+  void stageMesh(const Mesh& mesh, const gpu::MeshRecord& record, gpu::Upload& upload) const;
+  void stageMeshes(const Scene::Impl& scene, Staged& staged, gpu::Upload& upload);
+  void stageIndices(const Scene::Impl& scene, Staged& staged, gpu::Upload& upload);
+  std::vector<ObjectId> changedObjects(const Scene::Impl& scene, const Overwritten& next) const;
+  void stageObjects(const Scene::Impl& scene, const Overwritten& next, gpu::Upload& upload);
+  void stageTree(const ObjectTree& tree, const Overwritten& next, gpu::Upload& upload);
 
   const Device::Impl* device_;
   std::shared_ptr<Buffers> buffers_;
@@ -97,15 +102,9 @@ class GpuScene {
   std::vector<Place> places_;           ///< by mesh
   std::vector<gpu::MeshRecord> records_;
   Farthest farthest_;
-  uint64_t seenScene_ = 0, seenMeshes_ = 0, seenPoses_ = 0, seenTree_ = 0;
-  bool hasIndices_ = false, recordsChanged_ = false;
-  std::vector<MeshId> changedMeshes_, changedIndices_;
-  std::vector<ObjectId> changedObjects_;  ///< ascending
-  struct Range {
-    size_t first, last;
-  };
-  std::vector<Range> changedNodes_;
-  Overwritten overwritten_, next_;  ///< meshes ascend
+  Seen seen_;         ///< overwritten meshes ascend
+  uint64_t era_ = 0;  ///< ends with forget()
+  bool hasIndices_ = false;
   struct Sync {
     gpu::Upload upload;
     gpu::Submission submission;

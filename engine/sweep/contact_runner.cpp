@@ -71,7 +71,7 @@ void ContactRunner::finish(Flight& flight) {
 void ContactRunner::abandon(Flight& flight) noexcept {
   if (std::exchange(flight.submitted, {}).empty()) return;
   try {
-    submitter_->collect(scene_.impl(), flight.answers.stats.stages);
+    submitter_->collect(flight.answers.stats.stages);
   } catch (const std::exception&) {  // the exception that was first is the one to report
   }
 }
@@ -157,7 +157,7 @@ void ContactRunner::collect(Flight& flight) {
   const std::vector<PlannedSearches::Group> groups = std::exchange(flight.submitted, {});
   if (groups.empty()) return;
   attempt(flight, groups, [&] {
-    const SearchAnswers found = submitter_->collect(scene_.impl(), flight.answers.stats.stages);
+    const SearchAnswers found = submitter_->collect(flight.answers.stats.stages);
     flight.deviceDone = Clock::now();
     flight.answers.stats.submissions += submitter_->submissions();
     flight.answers.stats.pairs += found.trianglePairs;

@@ -89,7 +89,7 @@ void SampledRunner::finish(Flight& flight) {
   if (queries.empty()) return;
   Answers& answers = flight.answers;
   try {
-    const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), answers.stats.stages);
+    const SampledAnswers found = submitter_.collect(drawn_, answers.stats.stages);
     flight.deviceDone = Clock::now();
     for (size_t i = 0; i < queries.size(); ++i) {
       answers.results[queries[i]] = decodeSampled(
@@ -106,7 +106,7 @@ void SampledRunner::finish(Flight& flight) {
 void SampledRunner::abandon(Flight& flight) noexcept {
   if (std::exchange(flight.drawn, {}).empty()) return;
   try {
-    submitter_.collect(drawn_, scene_.impl(), flight.answers.stats.stages);
+    submitter_.collect(drawn_, flight.answers.stats.stages);
   } catch (const std::exception&) {  // the exception that was first is the one to report
   }
 }
@@ -167,7 +167,7 @@ Scopes SampledRunner::scopes(const Query& query) {
   StoredScopes stored;
   SweepStats stats;
   submitter_.submit(drawn_, scene_.impl(), true);
-  const SampledAnswers found = submitter_.collect(drawn_, scene_.impl(), stats.stages, &stored);
+  const SampledAnswers found = submitter_.collect(drawn_, stats.stages, &stored);
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()

@@ -33,7 +33,6 @@ void Sweeper::Impl::validateAll(std::span<const Query> queries, Mode mode) const
 }
 
 std::optional<Error> Sweeper::Impl::sync() {
-  copy->willOverwrite({});
   if (contactRunner.isOnCpu() && !copy->hasIndices()) {  // nothing is drawn, nor searched there
     scene.impl().objectTree();
     return {};
@@ -50,7 +49,6 @@ std::optional<Error> Sweeper::Impl::sync() {
 }
 
 void Sweeper::Impl::begin(Flight& flight, Mode mode) {
-  copy->willOverwrite({});
   if (flight.queries.empty()) return;
   try {
     if (mode == Mode::contact) return contactRunner.begin(flight);
@@ -116,7 +114,6 @@ Scopes Sweeper::scopes(const Query& query) {
   const FloatEnvironment floats;
   impl_->device.requireSampled("scopes()");
   impl_->validateAll({&query, 1}, Mode::sampled);
-  impl_->copy->willOverwrite({});
   return impl_->sampled().scopes(query);
 }
 

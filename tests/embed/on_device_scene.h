@@ -16,9 +16,7 @@ struct OnDeviceScene {
     HostGeometryPass pass(device, copy);
     gpu::Upload upload(device);
     pass.stage(geometry, scene.impl());
-    upload.begin();
-    copy.prepare(scene.impl());
-    copy.upload(scene.impl(), upload);
+    copy.stage(scene.impl(), {}, upload);
     gpu::Submission submission(device, false);
     const gpu::Commands commands = submission.begin();
     upload.record(commands);

@@ -39,8 +39,7 @@ struct OnDevicePlaces {
       known.emplace_back();
     }
     geometry.stageSensors(sensorsOfThem);
-    copy.willOverwrite(geometry.overwritten());
-    search.stage(batch, known, impl);
+    search.stage(batch, known, impl, geometry.overwritten());
     gpu::Submission submission(device, false);
     const gpu::Commands commands = submission.begin();
     search.recordUpload(commands, [](const char*) {});

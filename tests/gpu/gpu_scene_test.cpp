@@ -91,12 +91,19 @@ MeshId addSoup(Scene& scene, tools::Random& random, uint32_t triangles) {
   return scene.addMesh(soup.positions, soup.indices);
 }
 
+// Bytes that are staged, but not uploaded.
+VkDeviceSize stagedOf(GpuScene& copy, const Scene& scene) {
+  gpu::Upload upload(test::device().impl());
+  copy.stage(scene.impl(), {}, upload);
+  return upload.bytes();
+}
+
 struct FilledScene {
   explicit FilledScene(uint64_t seed) : random(seed), copy(test::device().impl()) {
     for (uint32_t i = 0; i < 3; ++i) meshes.push_back(addSoup(scene, random, 20 + 30 * i));
     for (uint32_t i = 0; i < 12; ++i) objects.push_back(scene.addObject({meshes[i % 3], randomPose(random), i + 1}));
   }
-  VkDeviceSize staged() { return copy.prepare(scene.impl()); }
+  VkDeviceSize staged() { return stagedOf(copy, scene); }
   tools::Random random;
   Scene scene;
   std::vector<MeshId> meshes;
@@ -190,7 +197,7 @@ TEST_CASE("of a large scene in which one object moves, appears or goes, little i
   copy.sync(scene.impl());
   const VkDeviceSize all = scene.impl().objectTree().nodes().size() * sizeof(gpu::ObjectNode);
   const auto check = [&] {
-    const VkDeviceSize staged = copy.prepare(scene.impl());
+    const VkDeviceSize staged = stagedOf(copy, scene);
     CHECK(staged > 0);
     CHECK(staged < all / 8);
     copy.sync(scene.impl());
@@ -215,7 +222,10 @@ TEST_CASE("data that has not been uploaded is staged again") {
   const VkDeviceSize one = filled.staged();
   CHECK(one > 0);
   CHECK(filled.staged() == one);  // as after a failed submission
+  gpu::Upload upload(test::device().impl());
+  GpuScene::Staged late = filled.copy.stage(filled.scene.impl(), {}, upload);
   filled.copy.forget();
+  filled.copy.commit(std::move(late));
   CHECK(filled.staged() == all);
   filled.copy.sync(filled.scene.impl());
   checkCopy(filled.copy, filled.scene);
@@ -232,10 +242,9 @@ TEST_CASE("a scene that is move-assigned to another is uploaded completely") {
 TEST_CASE("data that a host has overwritten is staged again when the host stops overwriting it") {
   FilledScene filled(8);
   const auto sync = [&](const GpuScene::Overwritten& next) {
-    filled.copy.willOverwrite(next);
-    const VkDeviceSize bytes = filled.staged();
-    filled.copy.sync(filled.scene.impl());
-    return bytes;
+    gpu::Upload upload(test::device().impl());
+    filled.copy.commit(filled.copy.stage(filled.scene.impl(), next, upload));
+    return upload.bytes();
   };
   sync({});
   const auto moved = [](std::vector<ObjectId> objects, std::vector<uint32_t> nodes,

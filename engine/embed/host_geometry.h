@@ -7,7 +7,7 @@
 #include "embed/moved_objects.h"
 #include "embed/unbounded_meshes.h"
 #include "gpu/kernel.h"
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "scene/gpu_scene.h"
 #include "shaders/embed/interop.h"
 

@@ -26,7 +26,6 @@ double toleranceOf(const Query& query, const Mesh& sensor) {
 ClearanceContact::ClearanceContact(const Query& query, const Motion& motion, double tolerance)
     : PairVisitor(motion.distance),
       query_(query),
-      sensorMotion_(motion),
       motion_(&motion),
       tolerance_(tolerance),
       lo_(std::numeric_limits<double>::infinity()) {}
@@ -83,15 +82,11 @@ void ClearanceContact::consider(const exact::PairName& name, const exact::Placed
 void ClearanceContact::endObject() {
   if (query_.hits == 1 || best_.empty()) return;
   if (best_[0].isCertain()) {
-    const auto isBefore = [](const Near& p, const Near& q) { return p.precedes(q); };
-    nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), best_[0], isBefore), best_[0]);
-    if (nearest_.size() > query_.hits) nearest_.pop_back();
+    latest_ = std::min(motion_->distance, addNearest(nearest_, query_.hits, best_[0]));
+    atStart_ = false;
   } else {
     open_.push_back(best_[0]);
   }
-  latest_ = sensorMotion_.distance;
-  if (nearest_.size() == query_.hits) latest_ = std::min(latest_, nearest_.back().approach.hi);
-  atStart_ = false;
   best_.clear();
 }
 
@@ -103,7 +98,7 @@ Result ClearanceContact::answer(const Near& near) const {
   result.detected = Detected::yes;
   result.t = near.lo;
   result.hi = near.approach.hi;
-  result.fraction = sensorMotion_.distance > 0 ? result.t / sensorMotion_.distance : 0;
+  result.fraction = motion_->distance > 0 ? result.t / motion_->distance : 0;
   result.triB = near.name.triB;
   result.triA = near.name.triA;
   result.featureB = near.approach.features.b;
@@ -122,7 +117,7 @@ Result ClearanceContact::first() const {
   // No ids, as of any decision and of what is undecided.
   Result result(first.isCertain() ? Status::hit : Status::undecided);
   result.lo = first.isCertain() ? 0 : lo_;
-  if (first.isCertain()) result.hi = sensorMotion_.distance;
+  if (first.isCertain()) result.hi = motion_->distance;
   if (first.isCertain()) result.detected = Detected::yes;
   return result;
 }

@@ -38,12 +38,12 @@ class ClearanceContact final : public PairVisitor {
 
     bool isCertain() const;
     bool precedes(const Near& other) const;
+    double latest() const { return approach.hi; }
   };
   std::optional<Approach> approachOf(const exact::PlacedPair& pair) const;
   Result answer(const Near& near) const;
 
   const Query& query_;
-  const Motion& sensorMotion_;
   const Motion* motion_;  // past the current object
   double tolerance_;
   PairRule rule_;

@@ -11,7 +11,6 @@ namespace radar::cpu {
 FirstContact::FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size)
     : PairVisitor(motion.distance),
       query_(query),
-      sensorMotion_(motion),
       motion_(&motion),
       sensor_(sensor),
       size_(size),
@@ -58,32 +57,14 @@ void FirstContact::consider(const exact::PairName& name, const exact::PlacedPair
   decided_ = query_.anyHit;
   atStart_ = earliest_.overlaps();
   first_ = earliest_.name();
-  limit(earliest_);
-}
-
-// Lowers `latest_` to a t a little beyond that of a contact, by what the parameter, the length and the product
-// may have lost.
-void FirstContact::limit(const exact::EarliestContact& contact) {
-  double latest = 0;
-  if (!contact.overlaps()) {
-    const exact::Event& first = contact.event();
-    const bool rough = first.error > 1e-12 * first.s;
-    const double s = rough ? exact::parameter(first) : first.s + first.error;
-    latest = s * sensorMotion_.length * (1 + 8 * kUnit);
-  }
-  latest_ = std::min(latest_, latest);
+  latest_ = std::min(latest_, earliest_.latest());
 }
 
 void FirstContact::endObject() {
   if (query_.hits == 1 || !earliest_.found()) return;
-  const auto isBefore = [](const auto& p, const auto& q) { return p.precedes(q); };
-  const auto place = std::upper_bound(nearest_.begin(), nearest_.end(), earliest_, isBefore);
-  nearest_.insert(place, std::move(earliest_));
-  if (nearest_.size() > query_.hits) nearest_.pop_back();
-  latest_ = sensorMotion_.distance;
-  if (nearest_.size() == query_.hits) limit(nearest_.back());
+  latest_ = std::min(motion_->distance, addNearest(nearest_, query_.hits, std::move(earliest_)));
   atStart_ = false;
-  earliest_ = exact::EarliestContact(sensorMotion_);
+  earliest_ = exact::EarliestContact(*motion_);
 }
 
 Result FirstContact::first() const {

@@ -2,14 +2,43 @@
 // of the nearest objects.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
-#include "cpu/pair_visitor.h"
+#include "cpu/leaf_test.h"
 #include "cpu/view.h"
 #include "exact/blocking.h"
+#include "exact/earliest_contact.h"
 
 namespace radar::cpu {
+
+/// What a search over pairs of triangles serves: finds the pairs that matter and bounds those still wanted.
+class PairVisitor {
+ public:
+  PairVisitor(const PairVisitor&) = delete;
+  PairVisitor& operator=(const PairVisitor&) = delete;
+
+  /// Considers a pair of placed triangles that probably meet first along `axis`.
+  virtual void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) = 0;
+
+  /// Whether no further pair matters.
+  bool isDecided() const { return decided_; }
+  /// No contact later than this t of the motion matters.
+  double latest() const { return latest_; }
+  /// Whether `least` and all pairs after it are ruled out, because a lesser pair meets at the start.
+  bool isBefore(const exact::PairName& least) const { return atStart_ && first_ < least; }
+
+ protected:
+  explicit PairVisitor(double latest) : latest_(latest) {}
+  ~PairVisitor() = default;
+
+  double latest_;
+  bool decided_ = false;
+  bool atStart_ = false;   // some pair meets at the start
+  exact::PairName first_;  // the least of these
+};
 
 /// How the pairs of a sensor and an object are judged (exact/blocking.h).
 struct PairRule {
@@ -24,13 +53,24 @@ struct PairRule {
   }
 };
 
+/// Adds the first contact with an object to those with the `most` nearest, earliest first. Returns the t after which no
+/// contact is one of them.
+template <class Contact>
+double addNearest(std::vector<Contact>& nearest, size_t most, Contact contact) {
+  const auto isBefore = [](const Contact& p, const Contact& q) { return p.precedes(q); };
+  const auto place = std::upper_bound(nearest.begin(), nearest.end(), contact, isBefore);
+  nearest.insert(place, std::move(contact));
+  if (nearest.size() > most) nearest.pop_back();
+  return nearest.size() == most ? nearest.back().latest() : std::numeric_limits<double>::infinity();
+}
+
 class FirstContact final : public PairVisitor {
  public:
   /// `sensor`, `size`: the sensor's approximate position and size. `query` and `motion` must outlive this.
   FirstContact(const Query& query, const Motion& motion, const Vector& sensor, double size);
 
   /// Call before and after the pairs of one object. `rule` matters only if the query ignores pairs that do not block.
-  /// `motion` must stay in place meanwhile.
+  /// `motion` must stay in place until the next object, or until the answers are taken.
   void beginObject(const PairRule& rule, const Motion& motion);
   void endObject();
 
@@ -43,10 +83,8 @@ class FirstContact final : public PairVisitor {
 
  private:
   bool considerExactly(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis);
-  void limit(const exact::EarliestContact& contact);
 
   const Query& query_;
-  const Motion& sensorMotion_;
   const Motion* motion_;  // past the current object
   const Vector sensor_;
   const double size_;

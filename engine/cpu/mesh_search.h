@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "cpu/first_contact.h"
 #include "cpu/node_test.h"
-#include "cpu/pair_visitor.h"
 
 namespace radar::cpu {
 

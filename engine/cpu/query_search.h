@@ -8,8 +8,6 @@
 
 namespace radar::cpu {
 
-struct PairRule;
-
 /// Converts the times of an answer, fractions of a step, to distances of a sensor that moves by `distance`.
 void toDistances(Result& result, double distance);
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "scene/gpu_scene.h"
 #include "shaders/embed/interop.h"
 

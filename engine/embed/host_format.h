@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "shaders/embed/interop.h"
 
 namespace radar {

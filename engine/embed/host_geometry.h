@@ -11,7 +11,7 @@
 #include "contact/pass.h"
 #include "embed/geometry_list.h"
 #include "gpu/kernel.h"
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "scene/gpu_scene.h"
 #include "shaders/embed/interop.h"
 

@@ -1,10 +1,12 @@
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "embed/download.h"
 #include "embed/host_format.h"
+#include "gpu/barrier.h"
+#include "gpu/buffer.h"
+#include "gpu/submission.h"
 #include "math/float_environment.h"
 #include "scene/scene.h"
 
@@ -22,6 +24,20 @@ void validate(const HostMesh& mesh) {
   if (mesh.vertexCount == 0 || indexCount == 0) throw Error("addMesh: expected at least one triangle, got none");
 }
 
+/// A mapped copy of a part of the host's buffer.
+gpu::Buffer download(const Device::Impl& device, VkBuffer buffer, VkDeviceSize first, VkDeviceSize bytes) {
+  gpu::Buffer readback(device, "host mesh", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  readback.reserve(bytes);
+  gpu::Submission submission(device, false);
+  const gpu::Commands commands = submission.begin();
+  submission.stage("host mesh");
+  const VkBufferCopy region{.srcOffset = first, .size = bytes};
+  commands->CmdCopyBuffer(commands, buffer, readback.get(), 1, &region);
+  gpu::copyToHost(commands);
+  submission.submitAndWait();
+  return readback;
+}
+
 std::vector<uint32_t> indicesOf(const Device::Impl& device, const HostMesh& mesh) {
   std::vector<uint32_t> indices(mesh.indices == VK_NULL_HANDLE ? mesh.vertexCount : mesh.indexCount);
   if (mesh.indices == VK_NULL_HANDLE) {
@@ -29,11 +45,9 @@ std::vector<uint32_t> indicesOf(const Device::Impl& device, const HostMesh& mesh
     return indices;
   }
   const size_t size = mesh.indexType == VK_INDEX_TYPE_UINT16 ? 2 : 4;
-  Download download(device);
-  download.add(mesh.indices, mesh.firstIndex, size * indices.size());
-  download.run();
+  const gpu::Buffer copy = download(device, mesh.indices, mesh.firstIndex, size * indices.size());
   for (size_t i = 0; i < indices.size(); ++i) {
-    const std::byte* at = download.bytes(0) + size * i;
+    const std::byte* at = copy.mapped() + size * i;
     indices[i] = size == 2 ? loadAs<uint16_t>(at) : loadAs<uint32_t>(at);
     if (indices[i] < mesh.vertexCount) continue;
     throw Error("addMesh: indices: triangle " + std::to_string(i / 3) + " refers to vertex " +
@@ -55,16 +69,15 @@ MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh) {
   for (const uint32_t vertex : indices) places[vertex - least] = 1;
   const HostPositions& from = mesh.positions;
   const HostFormat format(from.format);
-  Download download(device.impl());
-  download.add(from.buffer, from.first + from.stride * least, spanOf(from, static_cast<uint32_t>(places.size())));
-  download.run();
+  const gpu::Buffer copy = download(device.impl(), from.buffer, from.first + from.stride * least,
+                                    spanOf(from, static_cast<uint32_t>(places.size())));
   std::vector<float> positions;
   std::vector<uint32_t> numbers;
   for (size_t v = 0; v < places.size(); ++v) {
     if (places[v] == 0) continue;
     places[v] = static_cast<uint32_t>(numbers.size());
     numbers.push_back(least + static_cast<uint32_t>(v));
-    for (int k = 0; k < 3; ++k) positions.push_back(format.load(download.bytes(0) + from.stride * v, k));
+    for (int k = 0; k < 3; ++k) positions.push_back(format.load(copy.mapped() + from.stride * v, k));
   }
   for (uint32_t& vertex : indices) vertex = places[vertex - least];
   const MeshId id = scene.addMesh(positions, indices, mesh.bounds);

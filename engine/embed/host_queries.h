@@ -6,7 +6,7 @@
 
 #include "contact/pass.h"
 #include "gpu/kernel.h"
-#include "radar/host_queries.h"
+#include "radar/host.h"
 #include "radar/query.h"
 #include "shaders/embed/interop.h"
 

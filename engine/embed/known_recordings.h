@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gpu/device.h"
-#include "radar/arithmetic.h"
 
 namespace radar {
 

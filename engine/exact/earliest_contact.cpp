@@ -45,6 +45,13 @@ bool EarliestContact::precedes(const EarliestContact& other) const {
   return order < 0 || (order == 0 && name_ < other.name_);
 }
 
+double EarliestContact::latest() const {
+  if (overlap_) return 0;
+  const bool rough = event_.error > 1e-12 * event_.s;
+  const double s = rough ? parameter(event_) : event_.s + event_.error;
+  return s * kept_.length * (1 + 8 * kUnit);
+}
+
 int EarliestContact::orderOf(const PairName& name, const Beginning& beginning) const {
   if (!beginning.overlap && compareToEnd(beginning.first, *motion_) > 0) return 1;
   if (!found_) return -1;

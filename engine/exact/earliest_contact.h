@@ -43,8 +43,8 @@ class EarliestContact {
   /// Whether the earliest contact is at the start.
   bool overlaps() const { return overlap_; }
   const PairName& name() const { return name_; }
-  /// Where contact of the pair begins; not after the start, or unknown, if overlaps().
-  const Event& event() const { return event_; }
+  /// A t a little beyond that of the earliest contact, by what the parameter, the length and the product may have lost.
+  double latest() const;
   /// Whether this contact comes before another one, by (time, name). Both are found, for the same query.
   bool precedes(const EarliestContact& other) const;
   /// The answer to a query for the first contact, or with `anyHit` for any, without the tier; clear if none was found.

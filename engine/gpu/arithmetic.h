@@ -1,8 +1,7 @@
-// The checks of radar/arithmetic.h, and the conclusions that the engine draws from them.
+// The checks of a device's arithmetic (radar/device.h), and the conclusions that the engine draws from them.
 #pragma once
 
 #include "gpu/device.h"
-#include "radar/arithmetic.h"
 #include "shaders/arithmetic/interop.h"
 
 namespace radar::gpu {

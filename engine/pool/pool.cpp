@@ -89,10 +89,6 @@ void Pool::edit(const std::function<void()>& change) {
   impl_->workQueue.edit(change);
 }
 
-void Pool::drain() {
-  impl_->workQueue.drain();
-}
-
 std::vector<PoolDevice> Pool::devices() const {
   return impl_->workQueue.devices();
 }

@@ -104,15 +104,6 @@ void WorkQueue::edit(const std::function<void()>& change) {
   change();
 }
 
-void WorkQueue::drain() {
-  Lock lock(mutex_);
-  const std::vector<std::shared_ptr<Job>> before = open_;
-  settled_.wait(lock, [&] {
-    return std::none_of(before.begin(), before.end(),
-                        [&](const auto& job) { return std::find(open_.begin(), open_.end(), job) != open_.end(); });
-  });
-}
-
 void WorkQueue::close() {
   {
     const Lock lock(mutex_);

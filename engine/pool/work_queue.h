@@ -41,7 +41,6 @@ class WorkQueue {
 
   std::future<PoolAnswers> post(std::vector<Query> queries, Mode mode, std::stop_token stop, const Scene& scene);
   void edit(const std::function<void()>& change);
-  void drain();
   /// Answers queries not yet taken as invalid, and lets workers end.
   void close();
   std::vector<PoolDevice> devices() const;

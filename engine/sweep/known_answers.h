@@ -6,7 +6,6 @@
 
 #include "gpu/device.h"
 #include "radar/answers.h"
-#include "radar/arithmetic.h"
 #include "radar/scene.h"
 
 namespace radar {

@@ -5,7 +5,7 @@
 #include "embed/on_device.h"
 #include "embed/renderer.h"
 #include "radar/cpu_sweeper.h"
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "radar/pool.h"
 #include "support/catch.h"
 #include "support/resident.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "embed/on_device.h"
-#include "radar/host_geometry.h"
+#include "radar/host.h"
 #include "support/catch.h"
 #include "support/test_device.h"
 

@@ -1,4 +1,4 @@
-// Cancelling, draining, and pools that end with work queued.
+// Cancelling, waiting, and pools that end with work queued.
 #include <malloc.h>
 
 #include <cstdlib>
@@ -79,14 +79,14 @@ TEST_CASE("cancelling a batch invalidates the queries that no device has taken a
   CHECK(countInvalid(other.get(), expected, "") == 0);
 }
 
-TEST_CASE("after drain, the futures of all earlier batches are ready") {
+TEST_CASE("after an edit, the futures of all earlier batches are ready") {
   const Boxes boxes(100);
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::vector<std::future<PoolAnswers>> futures(5);
   for (auto& future : futures) future = pool.submit(boxes.queries);
-  pool.drain();
+  pool.edit([] {});
   for (const auto& future : futures) CHECK(isReady(future));
-  pool.drain();
+  pool.edit([] {});
 }
 
 TEST_CASE("a pool that is destroyed with work queued fulfils every future, with answers or as invalid") {

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "radar/host_queries.h"
+#include "radar/host.h"
 #include "radar/radar.h"
 #include "shaders/arithmetic/interop.h"
 #include "shaders/contact/interop.h"

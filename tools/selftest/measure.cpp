@@ -7,7 +7,6 @@
 
 #include "bench/harness.h"
 #include "bench/statistics.h"
-#include "radar/arithmetic.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
 #include "stability/case_run.h"

@@ -31,7 +31,7 @@
   X(rounds, 4)     /* Capacity::rounds was too small */                                                        \
   X(range, 8)      /* floats cannot hold the scene, or the sensor or D relative to it */                       \
   X(bounds, 16)    /* something in HostGeometry has left its bounds */                                         \
-  X(query, 32)     /* no query, or an invalid one, in HostQueries (radar/host_queries.h) */
+  X(query, 32)     /* no query, or an invalid one, in HostQueries (radar/host.h) */
 
 // clang-format on
 

@@ -71,11 +71,9 @@ class RADAR_API Pool {
 
   /// While the pool lives, the scene may change only in `change`. Waits until all earlier batches are answered, then
   /// calls `change` on this thread; later batches see the change on every device. An exception from `change` is passed
-  /// on, and the pool continues with the scene as it then is. `change` must not call the pool.
+  /// on, and the pool continues with the scene as it then is. `change` must not call the pool. If it does nothing, this
+  /// only waits.
   void edit(const std::function<void()>& change);
-
-  /// Waits until all earlier batches are answered.
-  void drain();
 
   std::vector<PoolDevice> devices() const;
 

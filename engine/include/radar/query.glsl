@@ -1,4 +1,4 @@
-// The layout of the queries that a host's shader writes for radar::HostQueries (radar/host_queries.h, which explains the
+// The layout of the queries that a host's shader writes for radar::HostQueries (radar/host.h, which explains the
 // members): 80 bytes, the same in std430 and scalar layout.
 //
 //     #extension GL_GOOGLE_include_directive : require

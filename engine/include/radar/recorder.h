@@ -1,13 +1,12 @@
 // Records searches into a host's own command buffers; the answers stay on the device.
 //
 // The engine submits nothing and waits for nothing here, but for known queries when a device with a queue makes its
-// first Recorder (radar/arithmetic.h): HostDevice::queue may be null. radar/result.glsl declares the answers' layout
+// first Recorder (checkAnswers): HostDevice::queue may be null. radar/result.glsl declares the answers' layout
 // for shaders.
 #pragma once
 
 #include "radar/answers.h"
-#include "radar/host_geometry.h"
-#include "radar/host_queries.h"
+#include "radar/host.h"
 #include "radar/scene_copy.h"
 
 namespace radar {

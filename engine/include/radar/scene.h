@@ -75,7 +75,7 @@ class RADAR_API Scene {
   /// with `bounds`, also if a lower bound exceeds its upper bound, or a bound or position exceeds 2^120.
   ///
   /// `bounds`, mesh units: declares that a host that deforms the mesh on its device keeps it within them
-  /// (radar/host_geometry.h): see setBounds. `positions` are the rest pose: the closer they are to the deformed mesh,
+  /// (radar/host.h): see setBounds. `positions` are the rest pose: the closer they are to the deformed mesh,
   /// the faster the search. All other calls use these positions.
   MeshId addMesh(std::span<const float> positions, std::span<const uint32_t> indices,
                  const std::optional<Bounds>& bounds = std::nullopt);
@@ -95,7 +95,7 @@ class RADAR_API Scene {
   void setTransforms(std::span<const ObjectId> objects, std::span<const Transform> worldFromMesh);
   /// Sets Object::motion. The pose stays that at the start of the step.
   void setMotion(ObjectId object, const std::array<double, 3>& motion);
-  /// Declares that a host that moves the object on its device keeps it within `world` (radar/host_geometry.h). Larger
+  /// Declares that a host that moves the object on its device keeps it within `world` (radar/host.h). Larger
   /// bounds cost more time. All other calls use the object's pose. Replaces earlier bounds, which end with the object.
   /// Throws if the object does not exist, a lower bound exceeds its upper bound, or a bound exceeds 2^120.
   void setBounds(ObjectId object, const Bounds& world);
@@ -118,7 +118,7 @@ class RADAR_API Scene {
   const Impl& impl() const { return *impl_; }
 
  private:
-  friend RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);  // radar/host_geometry.h
+  friend RADAR_API MeshId addMesh(Scene& scene, const Device& device, const HostMesh& mesh);  // radar/host.h
   std::unique_ptr<Impl> impl_;
 };
 

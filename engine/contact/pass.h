@@ -27,8 +27,8 @@ class ContactPass {
  public:
   ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room);
 
-  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size, but
-  /// for changes of the scene.
+  /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size,
+  /// but for changes of the scene.
   void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
   /// given, they include placeholders for those of the batch. `next`: see GpuScene::stage. The device is idle.

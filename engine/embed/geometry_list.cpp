@@ -143,12 +143,14 @@ void update(DeformedList& list, const HostGeometry& geometry, std::span<const ui
                            static_cast<uint64_t>(deformed.positions.format)});
   }
   if (list.key == key) return;
-  list = {.key = std::move(key)};
+  list = {};
+  DeformedList next{.key = std::move(key)};
   for (size_t i = 0; i < geometry.meshes.size(); ++i) {
     const DeformedMesh& deformed = geometry.meshes[i];
-    addDeformed(list, deformed, firstBytes[i], scene.meshes[deformed.mesh]);
-    addLevels(list, deformed.mesh, scene.meshes[deformed.mesh].tree);
+    addDeformed(next, deformed, firstBytes[i], scene.meshes[deformed.mesh]);
+    addLevels(next, deformed.mesh, scene.meshes[deformed.mesh].tree);
   }
+  list = std::move(next);
 }
 
 void update(MovedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,

@@ -48,12 +48,12 @@ struct MovedList {
   bool isUploaded = false;
 };
 
-/// Lists valid geometry, or leaves `list` as it is if it would be the same. `firstBytes`: where the copied words have
-/// the positions of each mesh.
+/// Lists valid geometry, or leaves `list` as it is if it would be the same. If this throws, the list is empty.
+/// `firstBytes`: where the copied words have the positions of each mesh.
 void update(DeformedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
             const Scene::Impl& scene);
-/// The same; `firstBytes`: of the transforms of each group of objects; `meshes`: deformed without bounds. Throws Error,
-/// and empties the list, if an object does not exist or is named twice.
+/// The same; `firstBytes`: of the transforms of each group of objects; `meshes`: deformed without bounds. Throws Error
+/// if an object does not exist or is named twice.
 void update(MovedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
             std::span<const MeshId> meshes, const Scene::Impl& scene);
 

@@ -112,8 +112,8 @@ class Claim:
         return self.sources.literal(constant.owner, constant.text)
 
     def least_that_proves(self, constant):
-        """The least value of the constant with which the claim holds, from above, up to a part in 2^20; 0 if it is not
-        needed.
+        """The least value of the constant with which the claim holds, 0 if it is not needed: from above, up to a 256th
+        of the room, or a part in 2^20.
 
         Margins are affine in each constant, so two values give those for all others.
         """
@@ -137,7 +137,7 @@ class Claim:
         if holds(Fraction(0)):
             return Fraction(0)
         below, above = Fraction(0), value
-        while above - below > above / (1 << 20):
+        while above - below > max(above / (1 << 20), min(above, value - above) / 256):
             middle = (below + above) / 2
             below, above = (below, middle) if holds(middle) else (middle, above)
         return above

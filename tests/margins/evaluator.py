@@ -33,15 +33,25 @@ class Evaluator:
     names: by "function.variable", or by "function.call(...)" for a call in it, a Python function from the variable's
     value to the one to go on with.
     replaced: by token, other values of literals.
+    conversions: like contracts, but they need not be used.
     globals: by name, values of variables outside functions.
     """
 
     def __init__(
-        self, sources, arithmetic, *, contracts=None, assumptions=None, names=None, replaced=None, globals=None
+        self,
+        sources,
+        arithmetic,
+        *,
+        contracts=None,
+        assumptions=None,
+        names=None,
+        replaced=None,
+        globals=None,
+        conversions=None,
     ):
         self.sources, self.rounding = sources, Rounding(arithmetic)
         self.contracts, self.assumptions, self.names = contracts or {}, assumptions or {}, names or {}
-        self.replaced, self.globals = replaced or {}, globals or {}
+        self.replaced, self.globals, self.conversions = replaced or {}, globals or {}, conversions or {}
         self.used = set()
         self.compared = []  # comparisons of Numbers: text, left, right
         self.precise = False
@@ -77,8 +87,10 @@ class Evaluator:
             return base in ("float", "double", "Real") or base[0].isupper()
         return True
 
-    def run(self, function, arguments):
+    def run(self, function, arguments, members=None):
+        """The result of a function, and the values of its variables. `members`: those of its object."""
         scope = {p[1]: value for p, value in zip(function.parameters, arguments)}
+        scope |= members or {}
         scope["function"] = function.name
         for parameter in function.parameters:
             self._name(scope, parameter[1])
@@ -164,16 +176,14 @@ class Evaluator:
         if target.kind == "name":
             scope[target.name] = value
             self._name(scope, target.name)
-        elif target.kind == "member":
+            return
+        entry = f"{scope['function']}.{text_of(target)}"
+        if entry in self.names:
+            self.used.add(("name", entry))
+            value = self.names[entry](value)
+        if target.kind == "member":
             holder = self.evaluate(target.parts[0], scope)
-            if isinstance(holder, dict):
-                holder[target.name] = value
-            else:
-                holder[_SWIZZLES[target.name]] = value
-            entry = f"{scope['function']}.{text_of(target)}"
-            if entry in self.names:
-                self.used.add(("name", entry))
-                holder[target.name] = self.names[entry](holder[target.name])
+            holder[target.name if isinstance(holder, dict) else _SWIZZLES[target.name]] = value
         elif target.kind == "index":
             self.evaluate(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
         else:
@@ -218,6 +228,17 @@ class Evaluator:
         value = self.replaced.get(node.token, node.value)
         return value if isinstance(value, int) else exactly(value)
 
+    def _evaluate_closure(self, node, scope):
+        def call(*arguments):
+            inner = scope | dict(zip(node.value, arguments))
+            try:
+                self.execute(node.parts[0], inner)
+            except Returned as returned:
+                return self.settled(returned.value)
+            raise SourceError(f"{node.place}: nothing is returned")
+
+        return call
+
     def _evaluate_choose(self, node, scope):
         return self.evaluate(node.parts[1 if self.condition(node.parts[0], scope) else 2], scope)
 
@@ -244,6 +265,9 @@ class Evaluator:
         return holder[index]
 
     def _evaluate_unary(self, node, scope):
+        if node.name == "&" and node.parts[0].kind == "index":  # a pointer to an element, which is indexed
+            holder, index = (self.evaluate(part, scope) for part in node.parts[0].parts)
+            return holder[index:]
         value = self.evaluate(node.parts[0], scope)
         if node.name == "-":
             return -value if isinstance(value, int) else self._each(value, self.rounding.negated)
@@ -329,9 +353,13 @@ class Evaluator:
     def _evaluate_call(self, node, scope):
         name = node.name
         arguments = [self.evaluate(part, scope) for part in node.parts]
+        if name in scope and callable(scope[name]):
+            return scope[name](*arguments)
         if name in self.contracts:
             self.used.add(("contract", name))
             return self.contracts[name](self, *arguments)
+        if name in self.conversions:
+            return self.conversions[name](self, *arguments)
         if name in self.sources.structs:
             return self._struct(node, name, arguments)
         plain = name.removeprefix("std::").removeprefix("radar::")
@@ -348,6 +376,13 @@ class Evaluator:
             if parameter[2]:
                 self.assign(part, inner[parameter[1]], scope)
         return result
+
+    def _evaluate_method(self, node, scope):
+        """A call of an object's function: only contracts know any."""
+        if node.name not in self.contracts:
+            raise SourceError(f"{node.place}: no claim knows what '{node.name}' does")
+        self.used.add(("contract", node.name))
+        return self.contracts[node.name](self, *(self.evaluate(part, scope) for part in node.parts[1:]))
 
     def _struct(self, node, name, values):
         members = self.sources.structs[name]

@@ -3,6 +3,7 @@
 Flushing is left out here: 1e-18 is for that, and what is too large or too small is refused (by hand).
 """
 
+from dataclasses import replace
 from fractions import Fraction
 
 from claims import Claim, Constant, Inequality, Rule
@@ -10,10 +11,11 @@ from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial
 from reader import Sources, number_of
 from rounding import DEVICE_FLOATS, ZERO, Number, exactly
-from sizes import Kept, plain, symbol, times, total, without_flushing
+from sizes import Kept, plain, symbol, times, total
 
 FILES = ["shaders/shared/two_floats.glsl", "shaders/contact/nodes.glsl", "shaders/contact/node_pair.glsl"]
-UNIT, DIVISION, NEAREST = DEVICE_FLOATS.unit, DEVICE_FLOATS.division, Fraction(1, 1 << 24)
+FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
+UNIT, DIVISION, NEAREST = FLOATS.unit, FLOATS.division, Fraction(1, 1 << 24)
 # A rounding, relative to its result.
 ROUNDED = UNIT / (1 - UNIT)
 # The sum of |n_j| is rounded twice, but to no less than the greatest |n_j|. If the others are less than 2^-12 of that,
@@ -68,7 +70,7 @@ class Pair:
         self.kept = Kept()
         self.evaluator = Evaluator(
             sources,
-            DEVICE_FLOATS,
+            FLOATS,
             replaced=replaced,
             assumptions={"p.inRange": True},
             names=self._names(),
@@ -253,7 +255,7 @@ def along_axes(sources, host, replaced):
         }
         evaluator = Evaluator(
             sources,
-            DEVICE_FLOATS,
+            FLOATS,
             replaced=replaced,
             contracts={"addNormalSlab": lambda *_: None},
             assumptions={"meets": True},
@@ -303,7 +305,6 @@ def along_axis(pair, kept, k):
             pair.rules(k),
             clearance_paid_by(clearance, *((f"n{own}{k}{j}",) for j in range(3))),
             merged(within_reach("A") | within_reach("B")),
-            without_flushing,
         ],
     )
 
@@ -328,7 +329,7 @@ def along_normal(pair, negative):
 
     evaluator = Evaluator(
         pair.sources,
-        DEVICE_FLOATS,
+        FLOATS,
         replaced=pair.replaced,
         assumptions={"way < 0.0": negative},
         names={
@@ -393,13 +394,11 @@ def along_normal(pair, negative):
         kept["reach"].least,
         need,
         [
-            without_flushing,
             ends,
             clearance_paid_by(clearance, *factors),
             merged({"own middle": "own reach", "own slab": "own reach"}),
             bounds,
             merged(within_reach(other)),
-            without_flushing,
         ],
     )
 
@@ -421,7 +420,7 @@ def boxes_of_objects(sources, host, replaced):
     }
     evaluator = Evaluator(
         sources,
-        DEVICE_FLOATS,
+        FLOATS,
         replaced=replaced,
         names={
             "meetsBox.gap": kept.keep(
@@ -441,7 +440,7 @@ def boxes_of_objects(sources, host, replaced):
         need = symbol(f"size{k}") + symbol(f"half{k}") + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += only((ends[0].error + ends[1].error) * Fraction(1, 2), f"at{k}", f"extent{k}")
         rules = [Rule((f"at{k}",), at.size), Rule((f"extent{k}",), reach.size)]
-        inequalities.append(Inequality(f"axis {k} of the world", reach.least, need, [rules, without_flushing]))
+        inequalities.append(Inequality(f"axis {k} of the world", reach.least, need, [rules]))
     return inequalities
 
 

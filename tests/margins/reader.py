@@ -17,7 +17,7 @@ _TOKEN = re.compile(
   | (?P<number>0x[0-9a-fA-F.]+p[+-]?\d+(?:LF|f)?|0x[0-9a-fA-F]+u?|(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?(?:LF|lf|f|u)?)
   | (?P<name>[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*)
   | (?P<string>"[^"\n]*")
-  | (?P<mark>\+\+|--|\+=|-=|\*=|/=|<=|>=|==|!=|&&|\|\||<<|>>|\[\[|\]\]|->|::|[-+*/%<>=!&|^~?:;,.(){}\[\]])
+  | (?P<mark>\+\+|--|\+=|-=|\*=|/=|&=|<=|>=|==|!=|&&|\|\||<<|>>|\[\[|\]\]|->|::|[-+*/%<>=!&|^~?:;,.(){}\[\]])
 """,
     re.VERBOSE | re.DOTALL,
 )
@@ -61,7 +61,7 @@ class Function:
     name: str
     parameters: list  # (type, name, whether the caller sees changes)
     tokens: list  # of the body, braces included
-    template: bool
+    initialisers: list  # tokens of a constructor's members
     body: Node = None
 
     @property
@@ -258,7 +258,7 @@ class Parser:
     def assignment(self):
         target = self.expression()
         token = self.peek()
-        if token.text in ("=", "+=", "-=", "*=", "/="):
+        if token.text in ("=", "+=", "-=", "*=", "/=", "&="):
             self.next()
             return Node("assign", token, name=token.text, parts=[target, self.initialiser()])
         return Node("evaluate", token, parts=[target])
@@ -332,6 +332,19 @@ class Parser:
             else:
                 return node
 
+    def closure(self, token):
+        """C++'s [&](type name, ...) { ... }."""
+        self.accept("&")
+        self.expect("]")
+        self.expect("(")
+        parameters = []
+        while not self.accept(")"):
+            if not self.type_ahead():
+                raise SourceError(f"{self.peek().place}: expected a parameter")
+            parameters.append(self.name().text)
+            self.accept(",")
+        return Node("closure", token, value=parameters, parts=[self.statement()])
+
     def primary(self):
         token = self.next()
         if token.text == "(":
@@ -340,6 +353,8 @@ class Parser:
             return node
         if token.kind == "number":
             return Node("number", token, value=number_of(token))
+        if token.text == "[":
+            return self.closure(token)
         if token.text == "static_cast":
             self.skip_template_arguments()
             self.expect("(")
@@ -381,25 +396,10 @@ def text_of(node):
     return "{" + ", ".join(map(text_of, p)) + "}"
 
 
-_BUILT_IN_TYPES = {
-    "float",
-    "vec2",
-    "vec3",
-    "vec4",
-    "mat3",
-    "double",
-    "dvec3",
-    "bool",
-    "int",
-    "uint",
-    "uvec2",
-    "uvec3",
-    "uvec4",
-    "void",
-    "mat2",
-    "ivec3",
-    "size_t",
-}
+_BUILT_IN_TYPES = set(
+    "void bool int uint unsigned size_t float double vec2 vec3 vec4 dvec3 ivec3 uvec2 uvec3 uvec4 mat2 mat3 "
+    "Real Vector Lanes LaneVec".split()
+)
 
 
 class Sources:
@@ -423,21 +423,26 @@ class Sources:
             following = tokens[at + 1] if at + 1 < len(tokens) else None
             if text in ("struct", "class") and following and following.kind == "name" and tokens[at + 2].text == "{":
                 at = self._scan_struct(tokens, at)
-            elif (
-                token.kind == "name"
-                and following
-                and following.text == "("
-                and at > 0
-                and (tokens[at - 1].kind == "name" or tokens[at - 1].text in (">", "&", "]"))
-                and tokens[at - 1].text != "return"
-            ):
-                at = self._scan_function(tokens, at)
+            elif text == "operator" and [t.text for t in tokens[at + 1 : at + 4]] == ["(", ")", "("]:
+                at = self._scan_function(tokens, at, "operator()", at + 3)
+            elif text == "operator" and following.kind == "mark" and tokens[at + 2].text == "(":
+                at = self._scan_function(tokens, at, text + following.text, at + 2)
+            elif self._may_be_function(tokens, at):
+                at = self._scan_function(tokens, at, text, at + 1)
             elif text in ("const", "constexpr") and following.kind == "name":
                 at = self._scan_constant(tokens, at)
-            elif text == "namespace" or (text == "{" and tokens[at - 1].kind == "name"):
-                at += 1
             else:
                 at += 1
+
+    @staticmethod
+    def _may_be_function(tokens, at):
+        """Whether parameters follow a name, and before it stands a type, a scope or, for a constructor, an end."""
+        if tokens[at].kind != "name" or at + 1 >= len(tokens) or tokens[at + 1].text != "(":
+            return False
+        before = tokens[at - 1]
+        return before.text in (">", "&", "]", "::", ";", "}", "{") or (
+            before.kind == "name" and before.text != "return"
+        )
 
     @staticmethod
     def _closing(tokens, at):
@@ -468,33 +473,37 @@ class Sources:
         self.structs[name] = members
         return at + 3 if any(t.text == "(" for t in tokens[at:end]) else end
 
-    def _scan_function(self, tokens, at):
-        closed = self._closing(tokens, at + 1)
+    def _scan_function(self, tokens, at, name, opening):
+        """Steps over a definition with its parameters from `opening` on, or over the name if it is none."""
+        closed = self._closing(tokens, opening)
         body = closed
         while body < len(tokens) and tokens[body].text in ("const", "noexcept", "override"):
             body += 1
+        initialisers = body
+        if body < len(tokens) and tokens[body].text == ":":
+            while body < len(tokens) and tokens[body].text not in ("{", ";"):
+                body = self._closing(tokens, body) if tokens[body].text == "(" else body + 1
         if body >= len(tokens) or tokens[body].text != "{":
             return at + 1
         end = self._closing(tokens, body)
+        types = self.types | {t.text for t in tokens[opening + 1 : closed] if t.kind == "name"}
+        parser = Parser(tokens[opening + 1 : closed], types)
         parameters = []
-        parser = Parser(
-            tokens[at + 2 : closed], self.types | {t.text for t in tokens[at + 2 : closed] if t.kind == "name"}
-        )
         while parser.peek().text not in (")", ""):
             declared = parser.type_ahead()
             if not declared:
                 break
-            name = parser.name().text
             base, qualifiers = declared
+            parameter = parser.name().text
             while parser.accept("["):
                 parser.next()
                 parser.expect("]")
                 base += "[]"
-            parameters.append((base, name, bool(qualifiers & {"inout", "out"})))
+            parameters.append((base, parameter, bool(qualifiers & {"inout", "out"})))
             if not parser.accept(","):
                 break
-        function = Function(tokens[at].text, parameters, tokens[body:end], False)
-        self.functions.setdefault(tokens[at].text, []).append(function)
+        function = Function(name, parameters, tokens[body:end], tokens[initialisers:body])
+        self.functions.setdefault(name, []).append(function)
         return end
 
     def _scan_constant(self, tokens, at):
@@ -505,8 +514,10 @@ class Sources:
         parser = Parser(tokens[at + 1 : end], self.types)
         if end >= len(tokens) or tokens[end].text not in (";", "("):
             return at + 1
-        while tokens[end].text != ";":
-            end = self._closing(tokens, end) if tokens[end].text in "({[" else end + 1
+        while end < len(tokens) and tokens[end].text != ";":
+            end = self._closing(tokens, end) if tokens[end].text in ("(", "{", "[") else end + 1
+        if end == len(tokens):
+            return at + 1
         parser = Parser(tokens[at + 1 : end] + [tokens[end]], self.types)
         parser.next()
         parser.skip_template_arguments()
@@ -529,6 +540,20 @@ class Sources:
             places = ", ".join(f.place for f in self.functions.get(name, [])) or "no function of that name"
             raise SourceError(f"the function {name} is needed once, found {len(found)} times that fit: {places}")
         return found[0]
+
+    def initialisers(self, function):
+        """The members that a constructor initialises, with their expressions."""
+        if not function.initialisers:
+            return []
+        parser = Parser(function.initialisers + [Token("mark", ";", "", 0)], self.types)
+        parser.expect(":")
+        found = []
+        while not parser.accept(";"):
+            member = parser.name()
+            parser.expect("(")
+            found.append((member.text, Node("list", member, parts=parser.arguments(")"))))
+            parser.accept(",")
+        return found
 
     def body(self, function):
         if function.body is None:
@@ -554,7 +579,7 @@ class Sources:
     def _occurrence(self, owner, text):
         """The tokens of `text` in the function or constant `owner`, which contains it exactly once."""
         wanted = [t.text for t in tokens_of(text, owner)]
-        bodies = [f.tokens for f in self.functions.get(owner, [])] + self.constants.get(owner, [])
+        bodies = [f.initialisers + f.tokens for f in self.functions.get(owner, [])] + self.constants.get(owner, [])
         found = [
             body[i : i + len(wanted)]
             for body in bodies

@@ -29,7 +29,7 @@ ZERO = Polynomial()
 class Arithmetic:
     unit: Fraction  # of a sum or product
     division: Fraction  # of a division
-    flushed: Fraction  # the value of FLUSHED
+    flushed: Fraction  # the value of FLUSHED; 0: nothing is lost
     sums_lose: bool  # whether sums lose FLUSHED, too; they are exact where numbers below the normal range are kept
     ordered: bool = False  # sums have the order that is written
 
@@ -39,8 +39,7 @@ _ANY_DIRECTION = Fraction(2) ** -23
 DEVICE_FLOATS = Arithmetic(
     _ANY_DIRECTION, Fraction(5, 2) * _ANY_DIRECTION, Fraction(2) ** -126 * (1 + _ANY_DIRECTION), True
 )
-# Doubles on a device that rounds sums and products as the CPU does, where the order is fixed (`precise`); in bounds,
-# any.
+# Doubles on a device. One that does not round sums and products to nearest is not used for them (gpu/arithmetic.cpp).
 _NEAREST = Fraction(2) ** -53
 DEVICE_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1022, True)
 # The CPU: to nearest, with subnormal numbers.
@@ -115,6 +114,7 @@ class Rounding:
     def __init__(self, arithmetic):
         self.arithmetic = arithmetic
         self.any_order = not arithmetic.ordered
+        self.lost = FLUSHED if arithmetic.flushed else ZERO
 
     def add(self, p, q, precise=False):
         if p.constant == 0:
@@ -158,7 +158,7 @@ class Rounding:
 
     def _rounded_sum(self, terms):
         a, n = self._arithmetic_of(terms), len(terms) - 1
-        lost = FLUSHED * n if a.sums_lose else ZERO
+        lost = self.lost * n if a.sums_lose else ZERO
         grows, shrinks = (1 + a.unit) ** n, (1 - a.unit) ** n
         size = sum((t.size for t in terms), ZERO)
         inner = sum((t.error for t in terms), ZERO)
@@ -219,7 +219,7 @@ class Rounding:
         unit = 0 if p.scales or q.scales else self.arithmetic.unit
         if p.constant is not None and q.constant is not None and unit == 0:
             return exactly(p.constant * q.constant)
-        lost = ZERO if self._stays_normal(p, q) or self._stays_normal(q, p) else FLUSHED
+        lost = ZERO if self._stays_normal(p, q) or self._stays_normal(q, p) else self.lost
         size = p.size * q.size
         return Number(
             size * (1 + unit) + lost,
@@ -252,9 +252,9 @@ class Rounding:
         unit = 0 if q.scales else self.arithmetic.division
         size = p.size * inverse
         return Number(
-            size * (1 + unit) + FLUSHED,
-            p.error * inverse + size * unit + FLUSHED,
-            p.least * inverse * (1 - unit) - FLUSHED,
+            size * (1 + unit) + self.lost,
+            p.error * inverse + size * unit + self.lost,
+            p.least * inverse * (1 - unit) - self.lost,
             ideal=p.ideal * inverse,
             nonnegative=p.nonnegative and q.nonnegative,
             scales=p.scales and q.scales,
@@ -310,7 +310,7 @@ class Rounding:
         return Number(
             symbol,
             ZERO if exact else error,
-            symbol - (ZERO if exact else FLUSHED),
+            symbol - (ZERO if exact else self.lost),
             nonnegative=nonnegative or number.nonnegative,
             reciprocal=reciprocal,
         )

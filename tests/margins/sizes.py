@@ -33,9 +33,18 @@ class Kept(dict):
 
 
 def times(number, name):
-    """The number, all of which is divided by `name`, multiplied by it."""
+    """The number, most of which is divided by `name`, multiplied by it."""
 
     def multiplied(bound):
-        return Polynomial({tuple(s for s in m if s != f"1/{name}"): c for m, c in bound.terms.items()})
+        terms = {}
+        for monomial, c in bound.terms.items():
+            rest = list(monomial)
+            if f"1/{name}" in rest:
+                rest.remove(f"1/{name}")
+            else:
+                rest.append(name)
+            rest = tuple(sorted(rest))
+            terms[rest] = terms.get(rest, 0) + c
+        return Polynomial(terms)
 
     return Number(multiplied(number.size), multiplied(number.error), multiplied(number.least))

@@ -1,5 +1,6 @@
 """The margins of the tests of pairs of triangles in floats."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 from claims import Claim, Constant, Inequality, Rule
@@ -7,7 +8,7 @@ from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial
 from reader import SourceError, Sources, number_of
 from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, exactly, given
-from sizes import Kept, plain, symbol, total, without_flushing
+from sizes import Kept, plain, symbol, total
 
 FILES = [
     "shaders/shared/triangle_pair_bounds.glsl",
@@ -15,6 +16,8 @@ FILES = [
     "shaders/contact/triangle_pair.glsl",
     "shaders/contact/nodes.glsl",
 ]
+# Where flushing is left out.
+FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
 UNIT, NEAREST = DEVICE_FLOATS.unit, Fraction(1, 1 << 24)
 # A rounding, relative to its result.
 ROUNDED = UNIT / (1 - UNIT)
@@ -200,7 +203,7 @@ class Placed:
 
         framing = Evaluator(
             sources,
-            DEVICE_FLOATS,
+            FLOATS,
             replaced=replaced,
             contracts={
                 "sensorTexel": texel,
@@ -226,7 +229,7 @@ class Placed:
 
         placing = Evaluator(
             sources,
-            DEVICE_FLOATS,
+            FLOATS,
             replaced=replaced,
             contracts={"triangleAt": unknown, "vertexAt": unknown, "normalised": corner},
         )
@@ -248,7 +251,7 @@ def corner_error(sources, replaced):
             for k, value in enumerate(triangle["corners"][i]):
                 need = (value.error + value.size * UNIT) * (1 + 3 * UNIT)
                 what = f"corner {i} of {side}, component {k}"
-                inequalities.append(Inequality(what, triangle["error"].least, need, [without_flushing]))
+                inequalities.append(Inequality(what, triangle["error"].least, need))
     return inequalities
 
 
@@ -264,7 +267,7 @@ def boxes(sources, replaced):
         for value in triangle["corners"][0]:
             what = f"error of a corner of {side} against a coordinate"
             need = value.size * 23 * NEAREST
-            inequalities.append(Inequality(what, triangle["error"].least, need, [without_flushing]))
+            inequalities.append(Inequality(what, triangle["error"].least, need))
 
     def triangle_of(size, rest):
         error = rest + size * (23 * NEAREST)
@@ -275,7 +278,7 @@ def boxes(sources, replaced):
     kept = Kept()
     evaluator = Evaluator(
         sources,
-        DEVICE_FLOATS,
+        FLOATS,
         replaced=replaced,
         contracts={"faceOf": unknown, "signOf": sign, "edgeSeparates": unknown, "planeKeepsApart": unknown},
         # As computed, E is exact.
@@ -286,11 +289,12 @@ def boxes(sources, replaced):
     evaluator.call("mayMeet", triangle_of(a, symbol("A")), triangle_of(b, symbol("B")), clearance, limit)
     evaluator.check_used()
     if len(evaluator.compared) != 6:
-        raise SourceError("mayMeet has another number of comparisons than the claim knows")
+        place = sources.function("mayMeet").place
+        raise SourceError(f"{place}: mayMeet has another number of comparisons than the claim knows")
     rules = [Rule(("c",), (a + b) * (1 + Fraction(1, 10**6)))]
     for text, left, right in evaluator.compared:
         need = left.error + right.error
-        inequalities.append(Inequality(text, kept["E"].least, need, [without_flushing, rules]))
+        inequalities.append(Inequality(text, kept["E"].least, need, [rules]))
     return inequalities
 
 
@@ -324,7 +328,7 @@ def error_of_a_row(sources, replaced):
     low = Number(sizes * Fraction(1, 1 << 20), sizes * Fraction(1, 1 << 40))
     evaluator = Evaluator(
         sources,
-        DEVICE_FLOATS,
+        FLOATS,
         replaced=replaced,
         contracts={"addExactly": lambda *arguments: added.append(arguments)},
         names={"rowApart.high": lambda _: exactly(0), "rowApart.low": lambda _: low},
@@ -333,8 +337,9 @@ def error_of_a_row(sources, replaced):
     row = evaluator.call("rowApart", coarse, fine("A"), anchor("A"), coarse, fine("B"), anchor("B"))
     evaluator.check_used()
     if len(added) != 7:
-        raise SourceError("rowApart adds another number of exact terms than the claim knows")
-    return without_flushing(row.error)
+        place = sources.function("rowApart").place
+        raise SourceError(f"{place}: rowApart adds another number of exact terms than the claim knows")
+    return row.error
 
 
 def positions(sources, host, replaced):
@@ -362,7 +367,7 @@ def positions(sources, host, replaced):
 
     framing = Evaluator(
         sources,
-        DEVICE_FLOATS,
+        FLOATS,
         replaced=replaced,
         contracts={
             "sensorTexel": texel,
@@ -380,9 +385,7 @@ def positions(sources, host, replaced):
         of_position = error.coefficient((f"P{side}",)) * Fraction(17321, 10000)
         need = symbol("Z") * of_size + symbol("S") * of_position
         margin = frame[f"error{side}"].least
-        inequalities.append(
-            Inequality(f"position of {side}", margin - margin.coefficient(()), need, [without_flushing])
-        )
+        inequalities.append(Inequality(f"position of {side}", margin - margin.coefficient(()), need))
     known = {(f"m{side}{j}", f"r{side}{j}") for side in "AB" for j in range(3)} | {("PA",), ("PB",)}
     if error.terms.keys() - known:
         raise SourceError(f"the error of rowApart has terms that the claim does not know: {error}")

@@ -221,24 +221,6 @@ Workload makeWorkload(const Figure7& options) {
   return workload;
 }
 
-Workload makeWorkload(const Sheets& options) {
-  Random random(options.seed);
-  Workload workload;
-  workload.meshes = {makeBox(kFull), makeSheet(100, 0.05, random)};
-  Clearance clearance(3);
-  workload.scenes.push_back(randomBoxes(random, options.boxes, kCubeSide, 0.3, 1.5, clearance));
-  for (uint32_t i = 0; i < options.sensors; ++i) {
-    QuerySpec query = sensorQuery(i);
-    const Rotation rotation = random.rotation();
-    const Vec3 outwards = turned(rotation, {0, 0, 1});
-    query.sensor = {1, makePose(rotation, 0.5 * kCubeSide * kFull, kCubeSide * outwards)};
-    query.direction = -1 * outwards;
-    query.distance = 2 * kCubeSide;
-    workload.queries.push_back(std::move(query));
-  }
-  return workload;
-}
-
 Workload makeWorkload(const RandomPoses& options) {
   Workload workload;
   workload.meshes = options.meshes;

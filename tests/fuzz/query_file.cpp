@@ -48,11 +48,11 @@ Workload readText(const std::string& text) {
 }
 
 bool areSame(const QuerySpec& a, const QuerySpec& b) {
-  return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor && a.exclude == b.exclude &&
-         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion && a.mask == b.mask &&
-         a.anyHit == b.anyHit && a.ignoreLeaving == b.ignoreLeaving && a.skipOverlapping == b.skipOverlapping &&
-         a.slack == b.slack && a.hits == b.hits && a.clearance == b.clearance && a.mode == b.mode &&
-         a.speed == b.speed && a.tolerance == b.tolerance;
+  return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor() == b.sensor() &&
+         a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance && a.motion == b.motion &&
+         a.mask == b.mask && a.anyHit == b.anyHit && a.ignoreLeaving == b.ignoreLeaving &&
+         a.skipOverlapping == b.skipOverlapping && a.slack == b.slack && a.hits == b.hits &&
+         a.clearance == b.clearance && a.mode == b.mode && a.speed == b.speed && a.tolerance == b.tolerance;
 }
 
 /// Written and read again, a workload is the same.

@@ -87,7 +87,7 @@ TEST_CASE("all values of a query file are read") {
   CHECK(full.speed == 2.5);
   CHECK(full.anyHit);
   CHECK(full.tolerance == 0.25);
-  CHECK(full.sensor.worldFromMesh.m[11] == -2);
+  CHECK(full.worldFromMesh.m[11] == -2);
 }
 
 TEST_CASE("a value that breaks its contract is refused with its path, what was expected and what was found") {
@@ -286,7 +286,7 @@ TEST_CASE("a workload that is written and read back has the same bits") {
   REQUIRE(again.queries.size() == workload.queries.size());
   for (size_t i = 0; i < workload.queries.size(); ++i) {
     const QuerySpec &a = again.queries[i], &b = workload.queries[i];
-    CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor));
+    CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor() == b.sensor()));
     CHECK((a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance));
     CHECK((a.mask == b.mask && a.anyHit == b.anyHit && a.mode == b.mode && a.speed == b.speed));
     CHECK(a.tolerance == b.tolerance);

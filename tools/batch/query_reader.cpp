@@ -297,7 +297,7 @@ void Reader::readQuery(const JsonValue& query) {
   if (!queryIds_.insert(spec.id).second) id.expected("an id that no other query has");
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
-  spec.sensor = readInstance(query.member("sensor"));
+  spec.setSensor(readInstance(query.member("sensor")));
   query.ifHas("exclude", [&](const JsonValue& list) {
     const size_t objects = workload_.objectCount(spec.scene);
     list.forEach([&](const JsonValue& object) {

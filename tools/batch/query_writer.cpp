@@ -90,7 +90,7 @@ std::string queryText(const QuerySpec& query) {
   object.addString("id", query.id);
   object.add("scene", std::to_string(query.scene));
   object.add("batch", std::to_string(query.batch));
-  object.add("sensor", instanceText(query.sensor));
+  object.add("sensor", instanceText(query.sensor()));
   if (!query.exclude.empty()) {
     object.add("exclude",
                listOf(query.exclude, ",", [](std::string& text, uint32_t number) { text += std::to_string(number); }));

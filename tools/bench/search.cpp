@@ -143,7 +143,7 @@ void run(const Device& device, const Case& one, const Settings& settings, std::v
          int& status) {
   const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
   const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
   tools::ScenePlayer player(workload);
   const auto show = [&](uint32_t scene) { player.show(scene); };
   show(batches[0].scene);

@@ -162,7 +162,7 @@ Workload SweepOptions::load() const {
   }
   query.slack = slack;
   query.clearance = clearance.value_or(0);
-  query.sensor = {1, poseFrom(at, rotate)};
+  query.setSensor({1, poseFrom(at, rotate)});
 
   std::vector<std::string> warnings;
   Workload workload;

@@ -164,10 +164,10 @@ void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape 
     const Rotation rotation = random.rotation();
     const Vec3 edges = random.inBox(kFull, 3 * kFull);
     if (shape == SensorShape::box) {
-      query.sensor = {0, makePose(rotation, edges, placeFor(0.5 * lengthOf(edges)))};
+      query.setSensor({0, makePose(rotation, edges, placeFor(0.5 * lengthOf(edges)))});
     } else {
       const double scale = 3 / teapot.longest;
-      query.sensor = {1, poseAround(teapot, rotation, scale, placeFor(scale * teapot.radius))};
+      query.setSensor({1, poseAround(teapot, rotation, scale, placeFor(scale * teapot.radius))});
     }
     query.direction = random.direction();
     workload.queries.push_back(std::move(query));
@@ -207,12 +207,12 @@ Workload makeWorkload(const Figure7& options) {
       query.id = scene.id + "/teapot/" + std::to_string(i);
       query.scene = static_cast<uint32_t>(workload.scenes.size());
       query.batch = step;
-      query.sensor = {1, poseAround(teapot, flights[i].rotation, scale, flights[i].sphere.centre)};
+      query.setSensor({1, poseAround(teapot, flights[i].rotation, scale, flights[i].sphere.centre)});
       query.exclude = {options.boxes + i};
       query.direction = flights[i].heading;
       query.distance = kLookAhead;
       query.speed = kStep;
-      scene.instances.push_back(query.sensor);
+      scene.instances.push_back(query.sensor());
       workload.queries.push_back(std::move(query));
     }
     workload.scenes.push_back(std::move(scene));
@@ -247,7 +247,7 @@ Workload makeWorkload(const RandomPoses& options) {
   workload.scenes.push_back(std::move(scene));
   for (uint32_t i = 0; i < options.sensors; ++i) {
     QuerySpec query = sensorQuery(i);
-    query.sensor = instance(i, [&](double radius) { return freePlace(random, clearance, side, radius); });
+    query.setSensor(instance(i, [&](double radius) { return freePlace(random, clearance, side, radius); }));
     query.direction = random.direction();
     workload.queries.push_back(std::move(query));
   }

@@ -210,8 +210,9 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   query.clearance = given(clearance_, index).value_or(0);
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));
-    if (query.mode == AnswerMode::sampled && needsExactMode(world_, query)) {
-      refuse(mode_, index, std::string("expected ") + kExactModes);
+    const std::string reason = exactOnly(world_, query);
+    if (query.mode == AnswerMode::sampled && !reason.empty()) {
+      refuse(mode_, index, "expected contact or reference, as " + reason + " needs");
     }
   }
   return query;

@@ -21,9 +21,8 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
 
 Answering::Answering(const Workload& world, const ModesAsked& asked, const AnsweringOptions& options)
     : options_(options), player_(world) {
-  if (options.mode == AnswerMode::sampled && asked.exactOnly) {
-    throw InputError("--mode", "",
-                     std::string("expected ") + kExactModes + " (query \"" + *asked.exactOnly + "\"), got sampled");
+  if (options.mode == AnswerMode::sampled && !asked.exactOnly.empty()) {
+    throw InputError("--mode", "", "expected contact or reference, as " + asked.exactOnly + " needs, got sampled");
   }
   const bool needsDevice =
       asked.asks(AnswerMode::sampled, options.mode) || asked.asks(AnswerMode::contact, options.mode);

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "batch/columns.h"
 #include "batch/json_output.h"
-#include "batch/npz_file.h"
 
 namespace radar::tools {
 
@@ -60,7 +60,7 @@ std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries,
 }
 
 std::string startOf(AnswerFormat format, uint64_t queries) {
-  return format == AnswerFormat::lines ? "" : npyHeader(recordDescription(), {&queries, 1}, kRecordsStart);
+  return format == AnswerFormat::lines ? "" : npyHeader(recordDescription(), queries, kRecordsStart);
 }
 
 size_t rowLength(AnswerFormat format, std::string_view rows) {

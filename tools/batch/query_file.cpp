@@ -77,7 +77,7 @@ QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>
   if (json.queriesFile) {
     binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, json.listedMeshes);
     modes_ = check(*binary_, world_);
-    binary_->addTo(fingerprint);
+    fingerprint.add(std::as_bytes(std::span(binary_->bytes())));
   } else {
     modes_ = modesOf(world_);
     for (const QuerySpec& query : world_.queries) fingerprint.add(query);

@@ -65,7 +65,7 @@ class QueryFile {
 };
 
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
-/// instances as an instance file; makes the folder. `binary`: the queries as arrays in queries.npz. Reading it gives
+/// instances as an instance file; makes the folder. `binary`: the queries as an array in queries.npy. Reading it gives
 /// the same workload to the bit (a mesh's name is its file's then, and names of objects are not kept, nor, if binary,
 /// ids of queries). Returns the query file. Throws std::runtime_error if something cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder,

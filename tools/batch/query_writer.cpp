@@ -1,4 +1,3 @@
-#include <bit>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
@@ -12,12 +11,6 @@ namespace radar::tools {
 namespace {
 
 constexpr size_t kMostInline = 64;
-
-template <class Value>
-void appendBytes(std::string& bytes, const Value& value) {
-  static_assert(std::endian::native == std::endian::little);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::string plyOf(const MeshData& mesh) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertexCount()) +
@@ -155,8 +148,8 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, i, instanceFile);
   }
   if (binary) {
-    writeBinaryQueries(workload.queries, folder / "queries.npz");
-    text += "],\n \"queries_file\": \"queries.npz\"}\n";
+    writeBinaryQueries(workload.queries, folder / "queries.npy");
+    text += "],\n \"queries_file\": \"queries.npy\"}\n";
   } else {
     text += "],\n \"queries\": [";
     for (size_t i = 0; i < workload.queries.size(); ++i) {

@@ -26,10 +26,11 @@ struct Files {
 
 void run(std::string_view input) {
   static const Files files;
+  std::filesystem::remove("q.npy");  // to write over a file may wait for the disk
   std::ofstream("q.npy", std::ios::binary) << input;
   std::vector<std::string> warnings;
   try {
-    const tools::Workload workload = tools::readQueryFile("q.json", warnings);
+    const tools::Workload workload = tools::QueryFile("q.json", warnings).all();
     // In ranges, as the program reads it.
     const tools::QueryFile ranges("q.json", warnings);
     require(ranges.count() == workload.queries.size(), "another number of queries");

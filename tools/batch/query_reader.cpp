@@ -121,18 +121,19 @@ class Reader {
   const Assembly& assembly(const std::filesystem::path& file);
   void readQuery(const JsonValue& query);
   Instance readInstance(const JsonValue& list) const;
-  std::vector<Instance> readInstanceFile(const std::filesystem::path& file) const;
+  std::vector<Instance> readInstanceFile(const std::filesystem::path& file);
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
   std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
-  std::vector<Deformation> readDeforms(const JsonValue& list) const;
-  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh) const;
+  std::vector<Deformation> readDeforms(const JsonValue& list);
+  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh);
 
   std::filesystem::path file_;
   std::string name_;
   std::vector<std::string>& warnings_;
   const Outputs& outputs_;
   Workload workload_;
-  size_t listed_ = 0;  ///< of the meshes, those that the file lists; those of assemblies follow
+  Fingerprint fingerprint_;  ///< of what is read
+  size_t listed_ = 0;        ///< of the meshes, those that the file lists; those of assemblies follow
   std::map<std::filesystem::path, Assembly> assemblies_;
   std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
@@ -152,7 +153,9 @@ std::filesystem::path Reader::pathOf(const JsonValue& value) const {
 }
 
 JsonQueryFile Reader::read() {
-  const nlohmann::json document = parseJson(name_, content());
+  const std::string text = content();
+  fingerprint_.add(text);
+  const nlohmann::json document = parseJson(name_, text);
   const JsonValue root(name_, document);
   requireKnownKeys(root, {"format", "meshes", "scenes", "queries", "queries_file"});
   const JsonValue format = root.member("format");
@@ -168,7 +171,13 @@ JsonQueryFile Reader::read() {
   } else {
     root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
   }
+  // A mesh decides, whatever its file looks like.
+  for (const MeshData& mesh : workload_.meshes) {
+    fingerprint_.add(mesh.positions);
+    fingerprint_.add(mesh.indices);
+  }
   result.workload = std::move(workload_);
+  result.fingerprint = fingerprint_;
   result.listedMeshes = listed_;
   return result;
 }
@@ -225,6 +234,9 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
     for (const Assembly::Part& part : parts.parts) {
       spec.instances.push_back({first->second + part.mesh, part.fileFromMesh});
       spec.names.push_back(part.name);
+      fingerprint_.add(part.name);
+      fingerprint_.add(std::array{part.mesh});
+      fingerprint_.add(part.fileFromMesh.m);
     }
   } else {
     scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
@@ -253,7 +265,7 @@ std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t obje
   return motions;
 }
 
-std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
+std::vector<Deformation> Reader::readDeforms(const JsonValue& list) {
   std::vector<Deformation> deforms;
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& pair) {
@@ -266,9 +278,10 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
   return deforms;
 }
 
-std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) const {
+std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) {
   static_assert(std::endian::native == std::endian::little);
   const std::string bytes = readRegularFile(file, "a file of vertex positions");
+  fingerprint_.add(bytes);
   std::vector<float> positions(mesh.positions.size());
   const size_t expected = positions.size() * sizeof(float);
   if (bytes.size() != expected) {
@@ -295,8 +308,9 @@ Instance Reader::readInstance(const JsonValue& list) const {
   return instance;
 }
 
-std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) const {
+std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) {
   const std::string content = readRegularFile(file, "an instance file");
+  fingerprint_.add(content);
   std::string_view rest = content;
   std::vector<Instance> instances;
   // Only the last line may be blank.

@@ -5,6 +5,7 @@
 #include <cereal/types/array.hpp>
 #include <cereal/types/common.hpp>
 #include <cereal/types/optional.hpp>
+#include <cereal/types/set.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/utility.hpp>
 #include <cereal/types/vector.hpp>
@@ -53,7 +54,7 @@ void serialize(Archive& archive, QuerySpec& query) {
 
 template <class Archive>
 void serialize(Archive& archive, ModesAsked& modes) {
-  archive(modes.chosen, modes.byCommand, modes.exactOnly, modes.listed);
+  archive(modes.modes, modes.exactOnly, modes.listed);
 }
 
 /// What every rank needs before the first chunk: meshes and scenes, with all that changes between batches.

@@ -30,57 +30,7 @@ std::string among(size_t count, const char* what) {
   return "a whole number that names one of the " + std::to_string(count) + " " + what + ", from 0";
 }
 
-/// The kinds of numbers of a field's column.
-const char* kindsOf(const QueryField& field) {
-  constexpr const char* kKinds[] = {"b", "iu", "f", "f", "iu"};
-  return kKinds[field.member.index()];
-}
-
 }  // namespace
-
-/// Reads a field's value.
-struct BinaryQueries::FieldReader {
-  const BinaryQueries& from;
-  const QueryField& field;
-  const Column& column;
-  uint64_t index;
-  uint32_t objects;  ///< of the query's scene
-
-  void operator()(bool& to) const { to = column.flag(index); }
-  void operator()(double& to) const {
-    const double value = column.real(index);
-    if (std::isnan(value)) return;
-    if (!takes(field, value)) {
-      from.refuse(column, index, "expected " + expectedFor(field) + ", or nan for none, got " + text(value));
-    }
-    to = value;
-  }
-  void operator()(std::optional<double>& to) const {
-    double value = std::nan("");
-    (*this)(value);
-    if (!std::isnan(value)) to = value;
-  }
-  void operator()(uint32_t& to) const {
-    const uint64_t value = column.whole(index);
-    if (field.word && value == 0) {
-      to = static_cast<uint32_t>(field.most) + 1;
-    } else if (takes(field, static_cast<double>(value))) {
-      to = static_cast<uint32_t>(value);
-    } else {
-      from.refuse(column, index, "expected " + expectedFor(field) + (field.word ? ", which is 0" : ""));
-    }
-  }
-  void operator()(std::vector<ObjectId>& to) const {
-    for (uint64_t k = 0; k < column.width(); ++k) {
-      const uint64_t object = column.whole(index, k);
-      if (object == ~uint64_t{0}) continue;
-      if (object >= objects) {
-        from.refuse(column, index, "expected -1 or " + among(objects, "objects of the query's scene"));
-      }
-      to.push_back(static_cast<ObjectId>(object));
-    }
-  }
-};
 
 BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& world, size_t meshes)
     : name_(file.string()), world_(world), meshes_(meshes), columns_(file) {
@@ -97,9 +47,11 @@ BinaryQueries::BinaryQueries(const std::filesystem::path& file, const Workload& 
   mode_ = column("mode", "iu", {}, false);
   for (const QueryField& field : queryFields()) {
     const Column* const found = columns_.find(field.name);
-    const bool isList = std::holds_alternative<std::vector<ObjectId> QuerySpec::*>(field.member);
-    fields_.push_back(
-        column(field.name, kindsOf(field), isList && found ? found->shape : std::vector<uint64_t>(), false));
+    fields_.push_back(column(field.name,
+                             field.kind() == 'b'   ? "b"
+                             : field.kind() == 'f' ? "f"
+                                                   : "iu",
+                             field.kind() == 'o' && found ? found->shape : std::vector<uint64_t>(), false));
   }
   for (const Column& given : columns_.all()) {
     if (std::ranges::count(known_, given.name) > 0) continue;
@@ -160,6 +112,27 @@ void BinaryQueries::readMove(QuerySpec& query, uint64_t index) const {
   }
 }
 
+void BinaryQueries::readField(const QueryField& field, const Column& column, uint64_t index, QuerySpec& query) const {
+  if (field.kind() == 'o') {
+    const uint32_t objects = world_.objectCount(query.scene);
+    for (uint64_t k = 0; k < column.width(); ++k) {
+      const uint64_t object = column.whole(index, k);
+      if (object == ~uint64_t{0}) continue;
+      if (object >= objects) refuse(column, index, "expected -1 or " + among(objects, "objects of the query's scene"));
+      query.exclude.push_back(static_cast<ObjectId>(object));
+    }
+    return;
+  }
+  const bool isWhole = field.kind() == 'u', isReal = field.kind() == 'f';
+  const double given = isReal ? column.real(index) : isWhole ? double(column.whole(index)) : column.flag(index);
+  if (std::isnan(given) || setValue(query, field, field.word && given == 0 ? HUGE_VAL : given)) return;
+  refuse(column, index,
+         "expected " + expectedFor(field) +
+             (isReal       ? ", or nan for none, got " + text(given)
+              : field.word ? ", which is 0"
+                           : ""));
+}
+
 QuerySpec BinaryQueries::read(uint64_t index) const {
   QuerySpec query;
   query.id = std::to_string(index);
@@ -173,9 +146,8 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) refuse(*pose_, index, wrong);
   readMove(query, index);
   for (size_t i = 0; i < fields_.size(); ++i) {
-    const QueryField& field = queryFields()[i];
     if (!fields_[i]) continue;
-    withMember(field, query, FieldReader{*this, field, *fields_[i], index, world_.objectCount(query.scene)});
+    readField(queryFields()[i], *fields_[i], index, query);
     if (query.hits > 1 && query.anyHit) refuse(*fields_[i], index, "expected 1 beside \"decide\"");
   }
   if (mode_) {
@@ -225,21 +197,25 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
   size_t width = 0;
   for (const QuerySpec& query : queries) width = std::max(width, query.exclude.size());
   for (const QueryField& field : queryFields()) {
-    if (!some([&](const QuerySpec& query) { return isGiven(field, query); })) continue;
-    const std::string types[] = {"'|b1'", "'<u4'", "'<f8'", "'<f8'", "'<i8', (" + std::to_string(width) + ",)"};
-    add(field.name, types[field.member.index()], [&, width](const QuerySpec& query) {
-      withMember(field, query, [&]<class Value>(const Value& value) {
-        if constexpr (std::is_same_v<Value, uint32_t>) {
-          put(field.word && value > field.most ? 0 : value);
-        } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-          put(value.value_or(std::nan("")));
-        } else if constexpr (std::is_same_v<Value, std::vector<ObjectId>>) {
-          for (size_t k = 0; k < width; ++k) put(k < value.size() ? int64_t{value[k]} : int64_t{-1});
-        } else {
-          put(value);
-        }
-      });
-    });
+    if (!some([&](const QuerySpec& query) { return isGiven(query, field); })) continue;
+    switch (field.kind()) {
+      case 'b':
+        add(field.name, "'|b1'", [&](const QuerySpec& query) { put(valueIn(query, field) != 0); });
+        break;
+      case 'u':
+        add(field.name, "'<u4'", [&](const QuerySpec& query) {
+          const double value = valueIn(query, field);
+          put(std::isinf(value) ? 0u : static_cast<uint32_t>(value));
+        });
+        break;
+      case 'f':
+        add(field.name, "'<f8'", [&](const QuerySpec& query) { put(valueIn(query, field)); });
+        break;
+      default:
+        add(field.name, "'<i8', (" + std::to_string(width) + ",)", [&](const QuerySpec& query) {
+          for (size_t k = 0; k < width; ++k) put(k < query.exclude.size() ? int64_t{query.exclude[k]} : int64_t{-1});
+        });
+    }
   }
   for (const QuerySpec& query : queries) {
     for (const auto& append : parts) append(query);

@@ -25,11 +25,11 @@ class BinaryQueries {
   std::string_view bytes() const { return columns_.bytes(); }
 
  private:
-  struct FieldReader;
   const Column* column(const char* name, const char* kinds, const std::vector<uint64_t>& shape, bool required);
   uint64_t whole(const Column& column, uint64_t index, uint64_t most, const std::string& expected) const;
   double finite(const Column& column, uint64_t index, uint64_t part = 0) const;
   void readMove(QuerySpec& query, uint64_t index) const;
+  void readField(const QueryField& field, const Column& column, uint64_t index, QuerySpec& query) const;
   [[noreturn]] void refuse(const Column& column, uint64_t index, const std::string& problem) const;
 
   std::string name_;

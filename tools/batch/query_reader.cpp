@@ -71,36 +71,26 @@ std::array<double, 3> readVector(const JsonValue& list) {
   return {list[0].number(), list[1].number(), list[2].number()};
 }
 
-/// A field's value.
-struct FieldReader {
-  const JsonValue& value;
-  const QueryField& field;
-  uint32_t objects;  ///< of the query's scene
-
-  void operator()(bool& to) const { to = value.boolean(); }
-  void operator()(double& to) const {
-    to = value.number();
-    if (!takes(field, to)) value.expected(expectedFor(field));
+void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
+  const nlohmann::json& json = value.json();
+  double number = HUGE_VAL;
+  bool fits = true;
+  if (field.kind() == 'b') {
+    number = value.boolean();
+  } else if (!field.word || json != field.word) {
+    fits = field.kind() == 'u' ? json.is_number_unsigned() : json.is_number();
+    number = fits ? json.get<double>() : 0;
   }
-  void operator()(std::optional<double>& to) const { (*this)(to.emplace()); }
-  void operator()(uint32_t& to) const {
-    const nlohmann::json& json = value.json();
-    if (field.word && json == field.word) {
-      to = static_cast<uint32_t>(field.most) + 1;
-    } else if (json.is_number_unsigned() && takes(field, json.get<double>())) {
-      to = json.get<uint32_t>();
-    } else {
-      value.expected(expectedFor(field));
-    }
-  }
-  void operator()(std::vector<ObjectId>& to) const {
-    value.forEach([&](const JsonValue& id) { to.push_back(id.index(objects, "objects of the query's scene")); });
-  }
-};
+  if (!fits || !setValue(to, field, number)) value.expected(expectedFor(field));
+}
 
 void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
   for (const QueryField& field : queryFields()) {
-    query.ifHas(field.name, [&](const JsonValue& value) { withMember(field, to, FieldReader{value, field, objects}); });
+    query.ifHas(field.name, [&](const JsonValue& value) {
+      if (field.kind() != 'o') return readField(value, field, to);
+      value.forEach(
+          [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
+    });
   }
   if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
 }

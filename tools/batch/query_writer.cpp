@@ -1,3 +1,4 @@
+#include <cmath>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
@@ -79,21 +80,18 @@ std::string sceneText(const SceneSpec& scene, size_t number, const std::string& 
   return object.text();
 }
 
-/// Adds a field's value to an object.
-struct FieldWriter {
-  const QueryField& field;
-  JsonObject& to;
-
-  void operator()(bool) const { to.add(field.name, "true"); }
-  void operator()(double value) const { to.addNumber(field.name, value); }
-  void operator()(const std::optional<double>& value) const { to.addNumber(field.name, *value); }
-  void operator()(uint32_t value) const {
-    to.add(field.name, field.word && value > field.most ? quoted(field.word) : std::to_string(value));
+void addField(JsonObject& to, const QueryField& field, const QuerySpec& query) {
+  const double value = valueIn(query, field);
+  if (field.kind() == 'o') {
+    to.add(field.name, listOf(query.exclude, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+  } else if (field.kind() == 'b') {
+    to.add(field.name, "true");
+  } else if (field.kind() == 'f') {
+    to.addNumber(field.name, value);
+  } else {
+    to.add(field.name, std::isinf(value) ? quoted(field.word) : std::to_string(static_cast<uint32_t>(value)));
   }
-  void operator()(const std::vector<ObjectId>& ids) const {
-    to.add(field.name, listOf(ids, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
-  }
-};
+}
 
 std::string queryText(const QuerySpec& query) {
   JsonObject object;
@@ -109,7 +107,7 @@ std::string queryText(const QuerySpec& query) {
   }
   if (query.mode) object.addString("mode", nameOf(*query.mode));
   for (const QueryField& field : queryFields()) {
-    if (isGiven(field, query)) withMember(field, query, FieldWriter{field, object});
+    if (isGiven(query, field)) addField(object, field, query);
   }
   return object.text();
 }

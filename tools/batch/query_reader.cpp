@@ -15,6 +15,7 @@
 #include "batch/query_reader.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -23,7 +24,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kLater[] = {"rotation"};
 
-void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
+void requireKnownKeys(const JsonValue& object, std::span<const std::string_view> known) {
   object.requireObject();
   for (const auto& [key, value] : object.json().items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
@@ -34,6 +35,10 @@ void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string
         .refuse("expected one of the keys " + list + ", got \"" + printable(key, 60) + "\"" +
                 (isLater ? ", which is reserved for a later version" : ""));
   }
+}
+
+void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
+  requireKnownKeys(object, std::span(known.begin(), known.size()));
 }
 
 /// One line of an instance file; `numbers` holds 13 at most. Returns how many there are, 0 if one is none.
@@ -66,6 +71,30 @@ std::array<double, 3> readVector(const JsonValue& list) {
   return {list[0].number(), list[1].number(), list[2].number()};
 }
 
+void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
+  const nlohmann::json& json = value.json();
+  double number = HUGE_VAL;
+  bool fits = true;
+  if (field.kind() == 'b') {
+    number = value.boolean();
+  } else if (!field.word || json != field.word) {
+    fits = field.kind() == 'u' ? json.is_number_unsigned() : json.is_number();
+    number = fits ? json.get<double>() : 0;
+  }
+  if (!fits || !setValue(to, field, number)) value.expected(expectedFor(field));
+}
+
+void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
+  for (const QueryField& field : queryFields()) {
+    query.ifHas(field.name, [&](const JsonValue& value) {
+      if (field.kind() != 'o') return readField(value, field, to);
+      value.forEach(
+          [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
+    });
+  }
+  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
+}
+
 class Reader {
  public:
   Reader(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs)
@@ -82,18 +111,19 @@ class Reader {
   const Assembly& assembly(const std::filesystem::path& file);
   void readQuery(const JsonValue& query);
   Instance readInstance(const JsonValue& list) const;
-  std::vector<Instance> readInstanceFile(const std::filesystem::path& file) const;
+  std::vector<Instance> readInstanceFile(const std::filesystem::path& file);
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
   std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
-  std::vector<Deformation> readDeforms(const JsonValue& list) const;
-  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh) const;
+  std::vector<Deformation> readDeforms(const JsonValue& list);
+  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh);
 
   std::filesystem::path file_;
   std::string name_;
   std::vector<std::string>& warnings_;
   const Outputs& outputs_;
   Workload workload_;
-  size_t listed_ = 0;  ///< of the meshes, those that the file lists; those of assemblies follow
+  Fingerprint fingerprint_;  ///< of what is read
+  size_t listed_ = 0;        ///< of the meshes, those that the file lists; those of assemblies follow
   std::map<std::filesystem::path, Assembly> assemblies_;
   std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
@@ -113,7 +143,9 @@ std::filesystem::path Reader::pathOf(const JsonValue& value) const {
 }
 
 JsonQueryFile Reader::read() {
-  const nlohmann::json document = parseJson(name_, content());
+  const std::string text = content();
+  fingerprint_.add(text);
+  const nlohmann::json document = parseJson(name_, text);
   const JsonValue root(name_, document);
   requireKnownKeys(root, {"format", "meshes", "scenes", "queries", "queries_file"});
   const JsonValue format = root.member("format");
@@ -129,7 +161,13 @@ JsonQueryFile Reader::read() {
   } else {
     root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
   }
+  // A mesh decides, whatever its file looks like.
+  for (const MeshData& mesh : workload_.meshes) {
+    fingerprint_.add(mesh.positions);
+    fingerprint_.add(mesh.indices);
+  }
   result.workload = std::move(workload_);
+  result.fingerprint = fingerprint_;
   result.listedMeshes = listed_;
   return result;
 }
@@ -186,6 +224,9 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
     for (const Assembly::Part& part : parts.parts) {
       spec.instances.push_back({first->second + part.mesh, part.fileFromMesh});
       spec.names.push_back(part.name);
+      fingerprint_.add(part.name);
+      fingerprint_.add(std::array{part.mesh});
+      fingerprint_.add(part.fileFromMesh.m);
     }
   } else {
     scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
@@ -214,7 +255,7 @@ std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t obje
   return motions;
 }
 
-std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
+std::vector<Deformation> Reader::readDeforms(const JsonValue& list) {
   std::vector<Deformation> deforms;
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& pair) {
@@ -227,9 +268,10 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
   return deforms;
 }
 
-std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) const {
+std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) {
   static_assert(std::endian::native == std::endian::little);
   const std::string bytes = readRegularFile(file, "a file of vertex positions");
+  fingerprint_.add(bytes);
   std::vector<float> positions(mesh.positions.size());
   const size_t expected = positions.size() * sizeof(float);
   if (bytes.size() != expected) {
@@ -256,8 +298,9 @@ Instance Reader::readInstance(const JsonValue& list) const {
   return instance;
 }
 
-std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) const {
+std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) {
   const std::string content = readRegularFile(file, "an instance file");
+  fingerprint_.add(content);
   std::string_view rest = content;
   std::vector<Instance> instances;
   // Only the last line may be blank.
@@ -289,21 +332,19 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 void Reader::readQuery(const JsonValue& query) {
-  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "motion", "mask", "decide", "mode",
-                           "speed", "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits", "clearance"});
+  static const std::vector<std::string_view> kKnown = [] {
+    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "mode"};
+    for (const QueryField& field : queryFields()) known.emplace_back(field.name);
+    return known;
+  }();
+  requireKnownKeys(query, kKnown);
   QuerySpec spec;
   const JsonValue id = query.member("id");
   spec.id = id.string();
   if (!queryIds_.insert(spec.id).second) id.expected("an id that no other query has");
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
-  spec.sensor = readInstance(query.member("sensor"));
-  query.ifHas("exclude", [&](const JsonValue& list) {
-    const size_t objects = workload_.objectCount(spec.scene);
-    list.forEach([&](const JsonValue& object) {
-      spec.exclude.push_back(object.index(objects, "objects of the query's scene"));
-    });
-  });
+  spec.setSensor(readInstance(query.member("sensor")));
   if (query.has("motion")) {
     for (const char* other : {"dir", "D"}) {
       if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
@@ -321,26 +362,14 @@ void Reader::readQuery(const JsonValue& query) {
       distance.expected("at most 2^1000 in a scene with motions");
     }
   }
-  query.ifHas("mask", [&](const JsonValue& mask) { spec.mask = mask.wholeNumber<uint32_t>(); });
-  query.ifHas("decide", [&](const JsonValue& decide) { spec.anyHit = decide.boolean(); });
-  query.ifHas("ignore_leaving", [&](const JsonValue& ignore) { spec.ignoreLeaving = ignore.boolean(); });
-  query.ifHas("slack", [&](const JsonValue& slack) { spec.slack = slack.numberFrom0(); });
-  query.ifHas("skip_overlapping", [&](const JsonValue& skip) { spec.skipOverlapping = skip.boolean(); });
-  query.ifHas("hits", [&](const JsonValue& hits) {
-    spec.hits = hits.json() == "all" ? kAllHits : hits.wholeNumberFrom1("\"all\"");
-    if (spec.hits > 1 && spec.anyHit) hits.expected("1 beside \"decide\"");
-  });
-  query.ifHas("clearance", [&](const JsonValue& clearance) { spec.clearance = clearance.numberFrom0(); });
+  readFields(query, workload_.objectCount(spec.scene), spec);
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
-    if (spec.mode == AnswerMode::sampled && needsExactMode(workload_, spec)) mode.expected(kExactModes);
+    const std::string reason = exactOnly(workload_, spec);
+    if (spec.mode == AnswerMode::sampled && !reason.empty())
+      mode.expected("contact or reference, as " + reason + " needs");
   });
-  query.ifHas("speed", [&](const JsonValue& speed) {
-    spec.speed = speed.number();
-    if (*spec.speed <= 0) speed.expected("a number above 0");
-  });
-  query.ifHas("tolerance", [&](const JsonValue& tolerance) { spec.tolerance = tolerance.numberFrom0(); });
   workload_.queries.push_back(std::move(spec));
 }
 
@@ -351,9 +380,11 @@ JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<s
   return Reader(file, warnings, outputs).read();
 }
 
-bool needsExactMode(const Workload& workload, const QuerySpec& query) {
-  return query.motion || !workload.scenes[query.scene].motions.empty() || query.ignoreLeaving ||
-         query.skipOverlapping || query.hits > 1 || query.clearance > 0;
+std::string exactOnly(const Workload& workload, const QuerySpec& query) {
+  if (query.motion) return "\"motion\"";
+  if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";
+  const QueryField* const field = exactOnly(query);
+  return field ? "\"" + std::string(field->name) + "\"" : "";
 }
 
 const char* nameOf(AnswerMode mode) {

@@ -1,22 +1,17 @@
-#include <bit>
+#include <cmath>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
 #include "batch/binary_queries.h"
 #include "batch/json_output.h"
 #include "batch/query_file.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
 namespace {
 
 constexpr size_t kMostInline = 64;
-
-template <class Value>
-void appendBytes(std::string& bytes, const Value& value) {
-  static_assert(std::endian::native == std::endian::little);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::string plyOf(const MeshData& mesh) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertexCount()) +
@@ -85,32 +80,35 @@ std::string sceneText(const SceneSpec& scene, size_t number, const std::string& 
   return object.text();
 }
 
+void addField(JsonObject& to, const QueryField& field, const QuerySpec& query) {
+  const double value = valueIn(query, field);
+  if (field.kind() == 'o') {
+    to.add(field.name, listOf(query.exclude, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+  } else if (field.kind() == 'b') {
+    to.add(field.name, "true");
+  } else if (field.kind() == 'f') {
+    to.addNumber(field.name, value);
+  } else {
+    to.add(field.name, std::isinf(value) ? quoted(field.word) : std::to_string(static_cast<uint32_t>(value)));
+  }
+}
+
 std::string queryText(const QuerySpec& query) {
   JsonObject object;
   object.addString("id", query.id);
   object.add("scene", std::to_string(query.scene));
   object.add("batch", std::to_string(query.batch));
-  object.add("sensor", instanceText(query.sensor));
-  if (!query.exclude.empty()) {
-    object.add("exclude",
-               listOf(query.exclude, ",", [](std::string& text, uint32_t number) { text += std::to_string(number); }));
-  }
+  object.add("sensor", instanceText(query.sensor()));
   if (query.motion) {
     object.add("motion", listOf(*query.motion, ",", appendNumber));
   } else {
     object.add("dir", listOf(query.direction, ",", appendNumber));
     object.addNumber("D", query.distance);
   }
-  if (query.mask != ~0u) object.add("mask", std::to_string(query.mask));
-  if (query.anyHit) object.add("decide", "true");
   if (query.mode) object.addString("mode", nameOf(*query.mode));
-  if (query.speed) object.addNumber("speed", *query.speed);
-  if (query.ignoreLeaving) object.add("ignore_leaving", "true");
-  if (query.slack) object.addNumber("slack", *query.slack);
-  if (query.skipOverlapping) object.add("skip_overlapping", "true");
-  if (query.hits != 1) object.add("hits", query.hits == kAllHits ? "\"all\"" : std::to_string(query.hits));
-  if (query.clearance > 0) object.addNumber("clearance", query.clearance);
-  if (query.tolerance) object.addNumber("tolerance", *query.tolerance);
+  for (const QueryField& field : queryFields()) {
+    if (isGiven(query, field)) addField(object, field, query);
+  }
   return object.text();
 }
 
@@ -148,8 +146,8 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, i, instanceFile);
   }
   if (binary) {
-    writeBinaryQueries(workload.queries, folder / "queries.npz");
-    text += "],\n \"queries_file\": \"queries.npz\"}\n";
+    writeBinaryQueries(workload.queries, folder / "queries.npy");
+    text += "],\n \"queries_file\": \"queries.npy\"}\n";
   } else {
     text += "],\n \"queries\": [";
     for (size_t i = 0; i < workload.queries.size(); ++i) {

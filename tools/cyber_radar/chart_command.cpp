@@ -67,7 +67,7 @@ std::vector<Case> casesOf(const Options& options, Extent extent) {
   for (const std::string& file : options.meshes) meshes.push_back(readMesh(file, warnings));
   if (!meshes.empty()) cases.push_back(meshesCase(extent, std::move(meshes)));
   for (const std::string& file : options.files) {
-    Workload workload = readQueryFile(file, warnings);
+    Workload workload = QueryFile(file, warnings).all();
     if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
     cases.push_back({"front", nameFor(file, cases), "Queries of " + file, 0, std::move(workload)});
   }

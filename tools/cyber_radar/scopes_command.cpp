@@ -50,7 +50,7 @@ Workload load(Options& options) {
   std::vector<std::string> warnings;
   Outputs outputs;
   outputs.addIn("--out", options.out, {"scopes.json", "R.f32", "M.f32", "L.f32"});
-  Workload workload = readQueryFile(options.files[0], warnings, outputs);
+  Workload workload = QueryFile(options.files[0], warnings, outputs).all();
   printWarnings(warnings);
   return workload;
 }
@@ -95,7 +95,8 @@ void drawScopes(Options& options) {
   player.show(query.scene);
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
-  Query asked = toQuery(query, engine.resolution);
+  Query asked = query;
+  asked.resolution = engine.resolution;
   // The text below needs the whole answer, and the pictures are of mode sampled.
   asked.anyHit = asked.ignoreLeaving = asked.skipOverlapping = false;
   asked.hits = 1;

@@ -5,6 +5,7 @@
 #include <cereal/types/array.hpp>
 #include <cereal/types/common.hpp>
 #include <cereal/types/optional.hpp>
+#include <cereal/types/set.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/utility.hpp>
 #include <cereal/types/vector.hpp>
@@ -46,14 +47,14 @@ void serialize(Archive& archive, SceneSpec& scene) {
 
 template <class Archive>
 void serialize(Archive& archive, QuerySpec& query) {
-  archive(query.id, query.scene, query.batch, query.sensor, query.exclude, query.direction, query.distance,
-          query.motion, query.mask, query.anyHit, query.ignoreLeaving, query.skipOverlapping, query.slack, query.hits,
-          query.clearance, query.mode, query.speed, query.tolerance);
+  archive(query.id, query.scene, query.batch, query.mode, query.speed, query.mesh, query.worldFromMesh, query.exclude,
+          query.direction, query.distance, query.motion, query.mask, query.anyHit, query.ignoreLeaving,
+          query.skipOverlapping, query.slack, query.hits, query.clearance, query.tolerance);
 }
 
 template <class Archive>
 void serialize(Archive& archive, ModesAsked& modes) {
-  archive(modes.chosen, modes.byCommand, modes.exactOnly, modes.listed);
+  archive(modes.modes, modes.exactOnly, modes.listed);
 }
 
 /// What every rank needs before the first chunk: meshes and scenes, with all that changes between batches.

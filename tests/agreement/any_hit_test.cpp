@@ -27,8 +27,7 @@ TEST_CASE("in mode sampled a decision is that of the whole answer") {
   const tools::Workload workload = tools::hardScene(tools::hardFamily(family), 3, 0, 64, tools::Company::mixed);
   Scene scene;
   tools::replaceBy(workload, 0, scene);
-  std::vector<Query> queries;
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 64));
+  std::vector<Query> queries = tools::queriesOf(workload.queries, 64);
   Sweeper sweeper(test::device(), scene);
   const std::vector<Result> whole = sweeper.run(queries, Mode::sampled).results;
   queries = deciding(std::move(queries));

@@ -44,7 +44,7 @@ class Asker {
   std::string ask(const HardCase& hard, Count& count) {
     const Workload workload = sceneOf({hard}, Company::isolated);
     replaceBy(workload, 0, scene_);
-    Query query = toQuery(workload.queries[0]);
+    Query query = workload.queries[0];
     const oracle::Truth truth = oracle::truthOf(scene_, query);
     const Status status = truth.contacts.empty()            ? Status::clear
                           : truth.contacts[0].s.sign() == 0 ? Status::overlap

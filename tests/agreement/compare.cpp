@@ -88,10 +88,8 @@ Compared compare(const tools::Workload& workload, const tools::Approach& asked) 
   Compared compared;
   for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
     player.show(batch.scene);
-    std::vector<Query> queries;
-    for (const uint32_t i : batch.queries) queries.push_back(tools::toQuery(workload.queries[i]));
-    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, std::move(queries)),
-                 tools::modeOf(asked.method), compared);
+    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, batch.queries), tools::modeOf(asked.method),
+                 compared);
   }
   return compared;
 }

@@ -16,8 +16,8 @@ using tools::Company;
 
 std::vector<Query> withDistances(const Scene& scene, const tools::Workload& workload) {
   CpuSweeper cpu(scene);
-  std::vector<Query> first, queries;
-  for (const tools::QuerySpec& spec : workload.queries) first.push_back(tools::toQuery(spec));
+  const std::vector<Query> first = tools::queriesOf(workload.queries);
+  std::vector<Query> queries;
   const std::vector<Result> exact = cpu.run(first).results;
   for (size_t i = 0; i < first.size(); ++i) {
     queries.push_back(first[i]);

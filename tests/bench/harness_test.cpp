@@ -28,7 +28,7 @@ TEST_CASE("methods take turns, the warm-up does not count, and one pass counts w
 
 TEST_CASE("every method answers every batch in its scene, and answers that differ from the first's are counted") {
   const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 3, .boxes = 10, .steps = 2});
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
   REQUIRE(batches.size() == 2);
   uint32_t shown = kNone;
   const auto method = [&](double t) {

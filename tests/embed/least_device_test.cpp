@@ -99,8 +99,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
     const tools::Workload workload = tools::hardScene(family, 17, 0, 24, tools::Company::mixed);
     Scene scene;
     tools::replaceBy(workload, 0, scene);
-    std::vector<Query> queries;
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec));
+    const std::vector<Query> queries = tools::queriesOf(workload.queries);
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
     const Answers found = sweeper.run(queries);
     checkSame(found.results, CpuSweeper(scene).run(queries).results);

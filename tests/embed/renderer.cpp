@@ -66,9 +66,7 @@ Row::Row(uint32_t sensors) {
 }
 
 std::vector<Query> queriesOf(const tools::Workload& workload) {
-  std::vector<Query> queries;
-  for (const tools::QuerySpec& query : workload.queries) queries.push_back(tools::toQuery(query, 0));
-  return queries;
+  return tools::queriesOf(workload.queries);
 }
 
 }  // namespace radar::test

@@ -17,7 +17,8 @@ tools::Workload soups(uint32_t sensors) {
 
 // Aims a query at one object after the other, so that most meet something.
 Query aimed(const tools::Workload& workload, size_t i) {
-  Query query = tools::toQuery(workload.queries[i], 16);
+  Query query = workload.queries[i];
+  query.resolution = 16;
   const std::vector<tools::Instance>& objects = workload.scenes[0].instances;
   const Transform& target = objects[i % objects.size()].worldFromMesh;
   double squares = 0;

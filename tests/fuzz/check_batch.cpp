@@ -24,19 +24,17 @@ void checkBatch(const tools::Workload& workload) {
   CpuSweeper sweeper(player.scene(), 1);
   for (const Batch& batch : batchesOf(workload.queries)) {
     player.show(batch.scene);
-    std::vector<Query> queries;
-    for (const uint32_t number : batch.queries) {
+    for (const uint32_t number : batch.numbers) {
       const QuerySpec& spec = workload.queries[number];
       const Mode mode = spec.mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
-      queries.push_back(toQuery(spec));
-      const std::string wrong = validate(queries.back(), player.scene(), mode);
+      const std::string wrong = validate(spec, player.scene(), mode);
       require(wrong.empty(), "a query that breaks its contract: " + wrong);
     }
-    const Answers answers = sweeper.run(queries);
-    checkAnswers(player.scene(), queries, answers);
+    const Answers answers = sweeper.run(batch.queries);
+    checkAnswers(player.scene(), batch.queries, answers);
     const std::vector<std::string> names = workload.objectNames(batch.scene);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      const QuerySpec& spec = workload.queries[batch.queries[i]];
+    for (size_t i = 0; i < batch.queries.size(); ++i) {
+      const QuerySpec& spec = workload.queries[batch.numbers[i]];
       const Answer answer{answers.results[i], AnswerMode::reference, "", test::listedBy(answers, i)};
       const std::string line = answerLine(spec, answer, names);
       const nlohmann::json read = nlohmann::json::parse(line);

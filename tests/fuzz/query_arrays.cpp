@@ -61,7 +61,7 @@ void run(std::string_view input) {
     require(ranges.count() == workload.queries.size(), "another number of queries");
     std::vector<tools::QuerySpec> room;
     for (uint64_t i = 0; i < ranges.count(); ++i) {
-      require(ranges.read(i, 1, room)[0].sensor == workload.queries[i].sensor, "another query");
+      require(ranges.read(i, 1, room)[0].sensor() == workload.queries[i].sensor(), "another query");
     }
     if (workload.queries.size() <= 16) checkBatch(workload);
   } catch (const tools::InputError& error) {

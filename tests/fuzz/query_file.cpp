@@ -8,6 +8,7 @@
 #include "fuzz/check_batch.h"
 #include "fuzz/target.h"
 #include "support/scratch_folder.h"
+#include "workloads/query_fields.h"
 
 namespace radar::fuzz {
 
@@ -48,11 +49,12 @@ Workload readText(const std::string& text) {
 }
 
 bool areSame(const QuerySpec& a, const QuerySpec& b) {
-  return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor && a.exclude == b.exclude &&
-         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion && a.mask == b.mask &&
-         a.anyHit == b.anyHit && a.ignoreLeaving == b.ignoreLeaving && a.skipOverlapping == b.skipOverlapping &&
-         a.slack == b.slack && a.hits == b.hits && a.clearance == b.clearance && a.mode == b.mode &&
-         a.speed == b.speed && a.tolerance == b.tolerance;
+  const auto same = [&](const QueryField& field) {
+    return std::visit([&](auto member) { return a.*member == b.*member; }, field.member);
+  };
+  return a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor() == b.sensor() && a.mode == b.mode &&
+         a.direction == b.direction && a.distance == b.distance && a.motion == b.motion &&
+         std::ranges::all_of(queryFields(), same);
 }
 
 /// Written and read again, a workload is the same.

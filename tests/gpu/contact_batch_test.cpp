@@ -14,7 +14,7 @@ using namespace radar;
 struct LoadedWorkload {
   explicit LoadedWorkload(tools::Workload w) : workload(std::move(w)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec));
+    queries = tools::queriesOf(workload.queries);
   }
   tools::Workload workload;
   tools::ScenePlayer player;

@@ -60,10 +60,8 @@ struct FamilyQueries {
   FamilyQueries(const char* family, uint32_t count, uint64_t seed, tools::Company company)
       : workload(tools::hardScene(tools::hardFamily(family), seed, 0, count, company)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) {
-      queries.push_back(tools::toQuery(spec));
-      queries.back().anyHit = queries.size() % 4 == 0;
-    }
+    queries = tools::queriesOf(workload.queries);
+    for (size_t i = 3; i < queries.size(); i += 4) queries[i].anyHit = true;
   }
   tools::Workload workload;
   tools::ScenePlayer player;

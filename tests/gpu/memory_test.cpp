@@ -55,7 +55,7 @@ struct Teapots {
         workload(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = sensors})),
         player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 128));
+    queries = tools::queriesOf(workload.queries, 128);
     answers = Sweeper(test::device(), player.scene(), kOnDevice).run(queries, mode).results;
   }
   Mode mode;

@@ -181,11 +181,11 @@ ComparedPixels checkWorkload(const tools::Workload& workload, uint32_t resolutio
   ComparedPixels count;
   tools::ScenePlayer player(workload);
   Sweeper sweeper(test::device(), player.scene());
-  for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
+  for (const tools::Batch& batch : tools::batchesOf(workload.queries, resolution)) {
     player.show(batch.scene);
-    for (uint32_t i : batch.queries) {
-      INFO("query " << workload.queries[i].id << " at " << resolution);
-      const Query query = tools::toQuery(workload.queries[i], resolution);
+    for (size_t i = 0; i < batch.queries.size(); ++i) {
+      const Query& query = batch.queries[i];
+      INFO("query " << workload.queries[batch.numbers[i]].id << " at " << resolution);
       checkScopes(player.scene(), query, sweeper.scopes(query), count);
     }
   }

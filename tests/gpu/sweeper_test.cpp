@@ -16,7 +16,7 @@ using namespace radar;
 struct LoadedWorkload {
   explicit LoadedWorkload(tools::Workload w, uint32_t resolution) : workload(std::move(w)), player(workload) {
     player.show(0);
-    for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, resolution));
+    queries = tools::queriesOf(workload.queries, resolution);
   }
   tools::Workload workload;
   tools::ScenePlayer player;

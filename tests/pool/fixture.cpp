@@ -113,7 +113,7 @@ Boxes::Boxes(uint32_t sensors, uint32_t boxes)
           tools::Table1{.boxes = boxes, .sensors = sensors, .shape = tools::SensorShape::box, .seed = 31})),
       player(workload) {
   player.show(0);
-  for (const tools::QuerySpec& spec : workload.queries) queries.push_back(tools::toQuery(spec, 16));
+  queries = tools::queriesOf(workload.queries, 16);
 }
 
 std::vector<Result> Boxes::answers(Mode mode) const {

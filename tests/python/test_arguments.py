@@ -40,9 +40,9 @@ def test_messages_name_the_argument_and_the_shape(boxes):
         (lambda: cast(mesh, None, DOWN, mode="fast"), 'mode: expected "contact", "sampled" or "reference"'),
         (lambda: cast(mesh, None, DOWN, slack=-1), "slack: expected a finite number of 0 or more, got -1"),
         (lambda: cast(mesh, None, DOWN, clearance=np.inf), "clearance: expected a finite number of 0 or more"),
-        (lambda: cast(mesh, None, DOWN, tolerance=[1]), "tolerance: expected a finite number of 0 or more"),
-        (lambda: cast(mesh, None, DOWN, hits=0), "hits: expected whole numbers from 1 to"),
-        (lambda: cast(mesh, None, DOWN, hits="al"), "hits: expected a whole number of 1 or more, or \"all\", got 'al'"),
+        (lambda: cast(mesh, None, DOWN, tolerance=[1]), "tolerance: expected one number, got shape (1,)"),
+        (lambda: cast(mesh, None, DOWN, hits=0), "hits: expected a whole number from 1 to"),
+        (lambda: cast(mesh, None, DOWN, hits="al"), "hits: expected a whole number from 1 to 4294967294, or \"all\", got 'al'"),
         (lambda: cast(mesh, None, DOWN, hits=2, any_hit=True), "hits: expected 1 with any_hit"),
         (lambda: cast(mesh, None, DOWN, hits=2, mode="sampled"), 'mode: expected "contact" or "reference" with'),
         (lambda: cast(mesh, None, DOWN, resolution=2049), "resolution: expected whole numbers from 0 to 2048"),
@@ -184,9 +184,8 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
         engine.add(np.zeros(2, np.uint32), np.zeros((1, 4, 4)), np.zeros(2, np.uint32))
     with pytest.raises((TypeError, ValueError)):
         engine.set_transforms(np.zeros(2, np.uint32), np.zeros((1, 4, 4)))
-    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, np.zeros(0, int), 1, {"sampled": False}, None)
-    options = dict.fromkeys(("sampled", "on_cpu", "any_hit", "ignore_leaving", "skip_overlapping"), False)
-    options |= {"slack": None, "clearance": 0.0, "tolerance": None, "hits": 1, "resolution": 0}
+    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, np.zeros(0, int), 1, {"mode": "contact"}, None)
+    options = dict.fromkeys(cyber_radar._engine.OPTIONS, 1.0) | {"any_hit": False, "mode": "contact", "resolution": 0}
     for wrong in itertools.chain(batch.arguments, batch.results):
         if wrong == "distances":
             continue

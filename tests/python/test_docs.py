@@ -68,6 +68,17 @@ def test_everything_public_has_a_docstring_and_types():
     assert (PACKAGE / "py.typed").exists()
 
 
+def test_cast_has_every_option_of_a_query():
+    keywords = inspect.signature(cyber_radar.Scene.cast).parameters
+    assert set(_engine.OPTIONS) <= set(keywords)
+    assert all(keywords[name].kind == inspect.Parameter.KEYWORD_ONLY for name in _engine.OPTIONS)
+
+
+def test_the_page_of_query_files_has_the_table_of_options():
+    run = subprocess.run([os.environ["RADAR_PROGRAM"], "query", "--fields"], capture_output=True, text=True, check=True)
+    assert run.stdout in (ROOT / "docs/query-file.md").read_text()
+
+
 def test_help_shows_the_arguments_of_cast():
     text = subprocess.run(
         [sys.executable, "-c", "import cyber_radar; help(cyber_radar.Scene.cast)"],

@@ -65,10 +65,8 @@ class HardWorld : public World {
     if (isMoving_) tools::setMotions(workload, random_, scene_);
     model_ = Model::of(scene_);
     ownMeshes_ = static_cast<uint32_t>(workload.meshes.size());
-    for (const tools::QuerySpec& spec : workload.queries) {
-      asked_.push_back(tools::toQuery(spec));
-      sizes_.push_back(tools::sensorSize(scene_, asked_.back()));
-    }
+    asked_ = tools::queriesOf(workload.queries);
+    for (const Query& query : asked_) sizes_.push_back(tools::sensorSize(scene_, query));
   }
   const Scene& scene() const override { return scene_; }
   void edit() override {

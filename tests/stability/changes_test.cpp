@@ -20,7 +20,7 @@ Result exactAnswer(const HardCase& hard) {
   const Workload workload = sceneOf({hard}, Company::isolated);
   Scene scene;
   replaceBy(workload, 0, scene);
-  return test::answer(scene, toQuery(workload.queries[0]));
+  return test::answer(scene, workload.queries[0]);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct Boxes {
         {makeBox({1, 1, 1}), {}}, {{makeBox({1, 1, 1}), {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 3}}}}, {0, 0, 1}, 5};
     const Workload workload = sceneOf({hard}, Company::isolated);
     replaceBy(workload, 0, scene);
-    query = toQuery(workload.queries[0]);
+    query = workload.queries[0];
     exact = test::answer(scene, query);
   }
   Scene scene;

@@ -52,7 +52,7 @@ class ThreadedSweepers {
 inline std::vector<radar::Query> queriesOf(const radar::tools::Workload& workload, uint32_t scene = 0) {
   std::vector<radar::Query> queries;
   for (const radar::tools::QuerySpec& spec : workload.queries) {
-    if (spec.scene == scene) queries.push_back(radar::tools::toQuery(spec));
+    if (spec.scene == scene) queries.push_back(spec);
   }
   return queries;
 }

@@ -50,7 +50,7 @@ TEST_CASE("the CPU's answers equal brute force for hard cases") {
       const Workload workload = workloadOf(hard);
       Scene scene;
       replaceBy(workload, 0, scene);
-      const Query query = toQuery(workload.queries[0]);
+      const Query query = workload.queries[0];
       soups::check(scene, query, test::answer(scene, query));
       ++checked;
     }
@@ -71,7 +71,7 @@ TEST_CASE("all contacts and skipped objects among bodies at rest equal brute for
       const Workload workload = workloadOf(hard);
       Scene scene;
       replaceBy(workload, 0, scene);
-      Query query = toQuery(workload.queries[0]);
+      Query query = workload.queries[0];
       query.hits = kAllHits;
       const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
       ++cases;

@@ -87,7 +87,7 @@ TEST_CASE("all values of a query file are read") {
   CHECK(full.speed == 2.5);
   CHECK(full.anyHit);
   CHECK(full.tolerance == 0.25);
-  CHECK(full.sensor.worldFromMesh.m[11] == -2);
+  CHECK(full.worldFromMesh.m[11] == -2);
 }
 
 TEST_CASE("a value that breaks its contract is refused with its path, what was expected and what was found") {
@@ -130,18 +130,18 @@ TEST_CASE("a value that breaks its contract is refused with its path, what was e
       {"/queries/1/mode", "\"fast\"", "queries[1].mode: ", "got \"fast\""},
       {"/queries/1/mode", "\"bounded\"", "queries[1].mode: ", "sampled, contact or reference, got \"bounded\""},
       {"/queries/1/decide", "1", "queries[1].decide: ", "true or false"},
-      {"/queries/1/tolerance", "-1", "queries[1].tolerance: ", "a number of 0 or more"},
+      {"/queries/1/tolerance", "-1", "queries[1].tolerance: ", "a finite number of 0 or more"},
       {"/queries/1/tolerance", "null", "queries[1].tolerance: ", "a finite number"},
       {"/queries/1/speed", "0", "queries[1].speed: ", "above 0"},
       {"/queries/0/ignore_leaving", "1", "queries[0].ignore_leaving: ", "true or false"},
       {"/queries/0/skip_overlapping", "\"yes\"", "queries[0].skip_overlapping: ", "true or false"},
-      {"/queries/0/slack", "-1e-12", "queries[0].slack: ", "a number of 0 or more"},
+      {"/queries/0/slack", "-1e-12", "queries[0].slack: ", "a finite number of 0 or more"},
       {"/queries/0/hits", "0", "queries[0].hits: ", "from 1 to 4294967294, or \"all\", got 0"},
       {"/queries/0/hits", "1e300", "queries[0].hits: ", "or \"all\""},
       {"/queries/0/hits", "\"some\"", "queries[0].hits: ", "or \"all\""},
       {"/queries/1/hits", "2", "queries[1].hits: ", "1 beside \"decide\""},
-      {"/queries/1/ignore_leaving", "true", "queries[1].mode: ", "contact or reference"},
-      {"/queries/0/clearance", "-1", "queries[0].clearance: ", "a number of 0 or more"},
+      {"/queries/1/ignore_leaving", "true", "queries[1].mode: ", "contact or reference, as \"ignore_leaving\" needs"},
+      {"/queries/0/clearance", "-1", "queries[0].clearance: ", "a finite number of 0 or more"},
       {"/queries/1/clearance", "1", "queries[1].mode: ", "contact or reference"},
   };
   for (const auto& c : cases) {
@@ -286,7 +286,7 @@ TEST_CASE("a workload that is written and read back has the same bits") {
   REQUIRE(again.queries.size() == workload.queries.size());
   for (size_t i = 0; i < workload.queries.size(); ++i) {
     const QuerySpec &a = again.queries[i], &b = workload.queries[i];
-    CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor == b.sensor));
+    CHECK((a.id == b.id && a.scene == b.scene && a.batch == b.batch && a.sensor() == b.sensor()));
     CHECK((a.exclude == b.exclude && a.direction == b.direction && a.distance == b.distance));
     CHECK((a.mask == b.mask && a.anyHit == b.anyHit && a.mode == b.mode && a.speed == b.speed));
     CHECK(a.tolerance == b.tolerance);
@@ -357,7 +357,7 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   CHECK_THAT(refused("/queries/0/motion", "[0, 1e305, 0]"), StartsWith("queries[0].motion[1]: ") && Contains("2^1000"));
   CHECK_THAT(refused("/scenes/1/motions/0", "[2, 0, 0, -1e305]"), StartsWith("scenes[1].motions[0][3]: "));
   CHECK_THAT(refused("/queries/1/D", "1e305"), StartsWith("queries[1].D: "));
-  CHECK_THAT(refused("/queries/1/mode", R"("sampled")"), Contains("motions need"));
+  CHECK_THAT(refused("/queries/1/mode", R"("sampled")"), Contains("\"motions\" needs"));
 }
 
 TEST_CASE("scenes without an id are written without one and read again") {

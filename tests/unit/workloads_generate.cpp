@@ -40,7 +40,7 @@ uint64_t fingerprintOf(const Workload& workload) {
     for (const Instance& instance : scene.instances) print.add(instance);
   }
   for (const QuerySpec& query : workload.queries) {
-    print.add(query.sensor);
+    print.add(query.sensor());
     for (double value : query.direction) print.add(value);
     print.add(query.distance);
   }
@@ -136,7 +136,7 @@ TEST_CASE("sensors over one mesh begin above all geometry below them") {
   const MeshData& city = workload.meshes[2];
   CHECK(city.triangleCount() == 20'000);
   for (const QuerySpec& query : workload.queries) {
-    const auto& m = query.sensor.worldFromMesh.m;
+    const auto& m = query.worldFromMesh.m;
     double radius = 0;  // of the sphere around a unit box, placed
     for (int k = 0; k < 3; ++k) radius += 0.25 * (m[k] * m[k] + m[4 + k] * m[4 + k] + m[8 + k] * m[8 + k]);
     radius = std::sqrt(radius);
@@ -161,7 +161,7 @@ TEST_CASE(
       CHECK(query.scene == step + 1);
       CHECK(query.batch == step);
       CHECK(query.exclude == std::vector<uint32_t>{50 + teapot});
-      CHECK(query.sensor == scene.instances[teapot]);
+      CHECK(query.sensor() == scene.instances[teapot]);
     }
   }
 }
@@ -174,7 +174,7 @@ TEST_CASE("every generated workload keeps the contracts of Scene and Query") {
     ScenePlayer player(workload);
     for (const QuerySpec& query : workload.queries) {
       player.show(query.scene);
-      CHECK(validate(toQuery(query), player.scene(), radar::Mode::sampled).empty());
+      CHECK(validate(query, player.scene(), radar::Mode::sampled).empty());
     }
   }
 }
@@ -191,7 +191,7 @@ TEST_CASE("hard cases keep the contracts of Scene and Query and have the same bi
       Scene scene;
       replaceBy(workload, 0, scene);
       for (const QuerySpec& query : workload.queries) {
-        CHECK(validate(toQuery(query), scene).empty());
+        CHECK(validate(query, scene).empty());
       }
     }
   }

@@ -60,11 +60,11 @@ TEST_CASE("queries with the same scene and batch number form one batch, wherever
   const std::vector<Batch> batches = batchesOf(workload.queries);
   REQUIRE(batches.size() == 4);
   CHECK(batches[0].scene == 0);
-  CHECK(batches[0].queries == std::vector<uint32_t>{0, 2});
+  CHECK(batches[0].numbers == std::vector<uint32_t>{0, 2});
   CHECK(batches[1].scene == 1);
-  CHECK(batches[1].queries == std::vector<uint32_t>{1});
-  CHECK(batches[2].queries == std::vector<uint32_t>{3});
-  CHECK(batches[3].queries == std::vector<uint32_t>{4});
+  CHECK(batches[1].numbers == std::vector<uint32_t>{1});
+  CHECK(batches[2].numbers == std::vector<uint32_t>{3});
+  CHECK(batches[3].numbers == std::vector<uint32_t>{4});
 }
 
 TEST_CASE("a player moves objects and deforms meshes only in the scenes that say so") {

@@ -182,9 +182,9 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   if (scene_) query.scene = static_cast<uint32_t>(whole(scene_, index, scenes - 1, among(scenes, "scenes")));
   if (batch_) query.batch = whole(batch_, index, ~uint64_t{0}, "a whole number from 0");
   if (meshes_ == 0) throw InputError(name_, "mesh", "expected a query file with a mesh");
-  query.sensor.mesh = static_cast<uint32_t>(whole(mesh_, index, meshes_ - 1, among(meshes_, "meshes")));
-  for (uint64_t k = 0; k < 12; ++k) query.sensor.worldFromMesh.m[k] = number(pose_, index, k);
-  if (std::string wrong = validate(query.sensor.worldFromMesh); !wrong.empty()) refuse(pose_, index, wrong);
+  query.mesh = static_cast<uint32_t>(whole(mesh_, index, meshes_ - 1, among(meshes_, "meshes")));
+  for (uint64_t k = 0; k < 12; ++k) query.worldFromMesh.m[k] = number(pose_, index, k);
+  if (std::string wrong = validate(query.worldFromMesh); !wrong.empty()) refuse(pose_, index, wrong);
   readMove(query, index);
   for (uint64_t k = 0; exclude_ && k < exclude_.width; ++k) {
     const uint64_t object = integerAt(*exclude_.array, index * exclude_.width + k);
@@ -210,8 +210,9 @@ QuerySpec BinaryQueries::read(uint64_t index) const {
   query.clearance = given(clearance_, index).value_or(0);
   if (mode_) {
     query.mode = static_cast<AnswerMode>(whole(mode_, index, 2, "0 for sampled, 1 for contact or 2 for reference"));
-    if (query.mode == AnswerMode::sampled && needsExactMode(world_, query)) {
-      refuse(mode_, index, std::string("expected ") + kExactModes);
+    const std::string reason = exactOnly(world_, query);
+    if (query.mode == AnswerMode::sampled && !reason.empty()) {
+      refuse(mode_, index, "expected contact or reference, as " + reason + " needs");
     }
   }
   return query;
@@ -256,10 +257,9 @@ void writeBinaryQueries(std::span<const QuerySpec> queries, const std::filesyste
     throw std::runtime_error(file.string() + ": expected either motions or directions in all queries, got both");
   }
   const QuerySpec usual;
-  add("mesh", "'<u4'", {}, uint32_t{0},
-      [](auto& values, const QuerySpec& query) { values.push_back(query.sensor.mesh); });
+  add("mesh", "'<u4'", {}, uint32_t{0}, [](auto& values, const QuerySpec& query) { values.push_back(query.mesh); });
   add("pose", "'<f8'", {3, 4}, 0.0,
-      [&](auto& values, const QuerySpec& query) { appendAll(values, query.sensor.worldFromMesh.m); });
+      [&](auto& values, const QuerySpec& query) { appendAll(values, query.worldFromMesh.m); });
   if (steps) {
     add("motion", "'<f8'", {3}, 0.0, [&](auto& values, const QuerySpec& query) { appendAll(values, *query.motion); });
   } else {

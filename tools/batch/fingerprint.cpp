@@ -83,7 +83,7 @@ void Fingerprint::add(const QuerySpec& query) {
   };
   add(query.id);
   addValue(query.scene);
-  add(query.sensor);
+  add(query.sensor());
   addList(query.exclude);
   addValue(query.motion.has_value());
   if (query.motion) {

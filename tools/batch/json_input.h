@@ -122,14 +122,6 @@ class JsonValue {
     }
     return json_.get<Whole>();
   }
-  /// A whole number from 1 to 2^32 - 2; `other`: what else is allowed here.
-  uint32_t wholeNumberFrom1(const char* other) const {
-    constexpr uint32_t kMost = std::numeric_limits<uint32_t>::max() - 1;
-    if (!json_.is_number_unsigned() || json_.get<uint64_t>() == 0 || json_.get<uint64_t>() > kMost) {
-      expected("a whole number from 1 to " + std::to_string(kMost) + ", or " + other);
-    }
-    return json_.get<uint32_t>();
-  }
   /// A whole number below `count`; `what` says what there are `count` of.
   uint32_t index(size_t count, const char* what) const {
     if (!json_.is_number_unsigned() || json_.get<uint64_t>() >= count) {

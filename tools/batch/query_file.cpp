@@ -17,13 +17,15 @@ void ModesAsked::add(const Workload& world, const QuerySpec& query) {
     return;
   }
   byCommand = true;
-  if (!exactOnly && needsExactMode(world, query)) exactOnly = query.id;
+  if (!exactOnly.empty()) return;
+  const std::string reason = tools::exactOnly(world, query);
+  if (!reason.empty()) exactOnly = reason + " of query \"" + query.id + "\"";
 }
 
 void ModesAsked::add(const ModesAsked& later) {
   for (size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] || later.chosen[i];
   byCommand = byCommand || later.byCommand;
-  if (!exactOnly) exactOnly = later.exactOnly;
+  if (exactOnly.empty()) exactOnly = later.exactOnly;
   if (!listed) listed = later.listed;
 }
 

@@ -27,10 +27,10 @@ class BinaryQueries;
 
 /// The modes that queries ask for.
 struct ModesAsked {
-  std::array<bool, 3> chosen{};          ///< by a query, indexed by AnswerMode
-  bool byCommand = false;                ///< a query leaves the choice to the command
-  std::optional<std::string> exactOnly;  ///< the id of one that does, and needsExactMode()
-  std::optional<std::string> listed;     ///< the id of one whose answer has lists: of hits, or of what overlaps
+  std::array<bool, 3> chosen{};       ///< by a query, indexed by AnswerMode
+  bool byCommand = false;             ///< a query leaves the choice to the command
+  std::string exactOnly;              ///< what of one that does mode sampled does not offer; or empty
+  std::optional<std::string> listed;  ///< the id of one whose answer has lists: of hits, or of what overlaps
   void add(const Workload& world, const QuerySpec& query);
   /// Those of later queries.
   void add(const ModesAsked& later);
@@ -71,11 +71,8 @@ class QueryFile {
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder,
                                      bool binary = false);
 
-/// Whether a query asks for what mode sampled does not offer; and what to use instead.
-bool needsExactMode(const Workload& workload, const QuerySpec& query);
-inline constexpr const char* kExactModes =
-    "contact or reference, as \"ignore_leaving\", \"skip_overlapping\", \"clearance\", several \"hits\" and motions "
-    "need";
+/// What of a query mode sampled does not offer, as a query file says it; empty if it answers the query.
+std::string exactOnly(const Workload& workload, const QuerySpec& query);
 
 /// The words of a mode in files and options. modeFrom throws std::invalid_argument that lists them.
 const char* nameOf(AnswerMode mode);

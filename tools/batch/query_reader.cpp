@@ -15,6 +15,7 @@
 #include "batch/query_reader.h"
 #include "import/mesh_import.h"
 #include "import/regular_file.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -23,7 +24,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kLater[] = {"rotation"};
 
-void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
+void requireKnownKeys(const JsonValue& object, std::span<const std::string_view> known) {
   object.requireObject();
   for (const auto& [key, value] : object.json().items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
@@ -34,6 +35,10 @@ void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string
         .refuse("expected one of the keys " + list + ", got \"" + printable(key, 60) + "\"" +
                 (isLater ? ", which is reserved for a later version" : ""));
   }
+}
+
+void requireKnownKeys(const JsonValue& object, std::initializer_list<std::string_view> known) {
+  requireKnownKeys(object, std::span(known.begin(), known.size()));
 }
 
 /// One line of an instance file; `numbers` holds 13 at most. Returns how many there are, 0 if one is none.
@@ -64,6 +69,40 @@ std::array<double, 3> readMotion(const JsonValue& list, size_t first) {
 std::array<double, 3> readVector(const JsonValue& list) {
   if (list.size() != 3) list.expected("3 numbers");
   return {list[0].number(), list[1].number(), list[2].number()};
+}
+
+/// A field's value.
+struct FieldReader {
+  const JsonValue& value;
+  const QueryField& field;
+  uint32_t objects;  ///< of the query's scene
+
+  void operator()(bool& to) const { to = value.boolean(); }
+  void operator()(double& to) const {
+    to = value.number();
+    if (!takes(field, to)) value.expected(expectedFor(field));
+  }
+  void operator()(std::optional<double>& to) const { (*this)(to.emplace()); }
+  void operator()(uint32_t& to) const {
+    const nlohmann::json& json = value.json();
+    if (field.word && json == field.word) {
+      to = static_cast<uint32_t>(field.most) + 1;
+    } else if (json.is_number_unsigned() && takes(field, json.get<double>())) {
+      to = json.get<uint32_t>();
+    } else {
+      value.expected(expectedFor(field));
+    }
+  }
+  void operator()(std::vector<ObjectId>& to) const {
+    value.forEach([&](const JsonValue& id) { to.push_back(id.index(objects, "objects of the query's scene")); });
+  }
+};
+
+void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
+  for (const QueryField& field : queryFields()) {
+    query.ifHas(field.name, [&](const JsonValue& value) { withMember(field, to, FieldReader{value, field, objects}); });
+  }
+  if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
 }
 
 class Reader {
@@ -289,21 +328,19 @@ std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file
 }
 
 void Reader::readQuery(const JsonValue& query) {
-  requireKnownKeys(query, {"id", "scene", "batch", "sensor", "exclude", "dir", "D", "motion", "mask", "decide", "mode",
-                           "speed", "tolerance", "ignore_leaving", "slack", "skip_overlapping", "hits", "clearance"});
+  static const std::vector<std::string_view> kKnown = [] {
+    std::vector<std::string_view> known{"id", "scene", "batch", "sensor", "dir", "D", "motion", "mode"};
+    for (const QueryField& field : queryFields()) known.emplace_back(field.name);
+    return known;
+  }();
+  requireKnownKeys(query, kKnown);
   QuerySpec spec;
   const JsonValue id = query.member("id");
   spec.id = id.string();
   if (!queryIds_.insert(spec.id).second) id.expected("an id that no other query has");
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
-  spec.sensor = readInstance(query.member("sensor"));
-  query.ifHas("exclude", [&](const JsonValue& list) {
-    const size_t objects = workload_.objectCount(spec.scene);
-    list.forEach([&](const JsonValue& object) {
-      spec.exclude.push_back(object.index(objects, "objects of the query's scene"));
-    });
-  });
+  spec.setSensor(readInstance(query.member("sensor")));
   if (query.has("motion")) {
     for (const char* other : {"dir", "D"}) {
       if (query.has(other)) query.member(other).refuse("expected either \"dir\" and \"D\" or \"motion\", got both");
@@ -321,26 +358,14 @@ void Reader::readQuery(const JsonValue& query) {
       distance.expected("at most 2^1000 in a scene with motions");
     }
   }
-  query.ifHas("mask", [&](const JsonValue& mask) { spec.mask = mask.wholeNumber<uint32_t>(); });
-  query.ifHas("decide", [&](const JsonValue& decide) { spec.anyHit = decide.boolean(); });
-  query.ifHas("ignore_leaving", [&](const JsonValue& ignore) { spec.ignoreLeaving = ignore.boolean(); });
-  query.ifHas("slack", [&](const JsonValue& slack) { spec.slack = slack.numberFrom0(); });
-  query.ifHas("skip_overlapping", [&](const JsonValue& skip) { spec.skipOverlapping = skip.boolean(); });
-  query.ifHas("hits", [&](const JsonValue& hits) {
-    spec.hits = hits.json() == "all" ? kAllHits : hits.wholeNumberFrom1("\"all\"");
-    if (spec.hits > 1 && spec.anyHit) hits.expected("1 beside \"decide\"");
-  });
-  query.ifHas("clearance", [&](const JsonValue& clearance) { spec.clearance = clearance.numberFrom0(); });
+  readFields(query, workload_.objectCount(spec.scene), spec);
   query.ifHas("mode", [&](const JsonValue& mode) {
     const std::string name = mode.string();
     spec.mode = mode.guard([&] { return modeFrom(name); });
-    if (spec.mode == AnswerMode::sampled && needsExactMode(workload_, spec)) mode.expected(kExactModes);
+    const std::string reason = exactOnly(workload_, spec);
+    if (spec.mode == AnswerMode::sampled && !reason.empty())
+      mode.expected("contact or reference, as " + reason + " needs");
   });
-  query.ifHas("speed", [&](const JsonValue& speed) {
-    spec.speed = speed.number();
-    if (*spec.speed <= 0) speed.expected("a number above 0");
-  });
-  query.ifHas("tolerance", [&](const JsonValue& tolerance) { spec.tolerance = tolerance.numberFrom0(); });
   workload_.queries.push_back(std::move(spec));
 }
 
@@ -351,9 +376,11 @@ JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<s
   return Reader(file, warnings, outputs).read();
 }
 
-bool needsExactMode(const Workload& workload, const QuerySpec& query) {
-  return query.motion || !workload.scenes[query.scene].motions.empty() || query.ignoreLeaving ||
-         query.skipOverlapping || query.hits > 1 || query.clearance > 0;
+std::string exactOnly(const Workload& workload, const QuerySpec& query) {
+  if (query.motion) return "\"motion\"";
+  if (!workload.scenes[query.scene].motions.empty()) return "a scene with \"motions\"";
+  const QueryField* const field = exactOnly(query);
+  return field ? "\"" + std::string(field->name) + "\"" : "";
 }
 
 const char* nameOf(AnswerMode mode) {

@@ -5,6 +5,7 @@
 #include "batch/binary_queries.h"
 #include "batch/json_output.h"
 #include "batch/query_file.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -85,32 +86,38 @@ std::string sceneText(const SceneSpec& scene, size_t number, const std::string& 
   return object.text();
 }
 
+/// Adds a field's value to an object.
+struct FieldWriter {
+  const QueryField& field;
+  JsonObject& to;
+
+  void operator()(bool) const { to.add(field.name, "true"); }
+  void operator()(double value) const { to.addNumber(field.name, value); }
+  void operator()(const std::optional<double>& value) const { to.addNumber(field.name, *value); }
+  void operator()(uint32_t value) const {
+    to.add(field.name, field.word && value > field.most ? quoted(field.word) : std::to_string(value));
+  }
+  void operator()(const std::vector<ObjectId>& ids) const {
+    to.add(field.name, listOf(ids, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+  }
+};
+
 std::string queryText(const QuerySpec& query) {
   JsonObject object;
   object.addString("id", query.id);
   object.add("scene", std::to_string(query.scene));
   object.add("batch", std::to_string(query.batch));
-  object.add("sensor", instanceText(query.sensor));
-  if (!query.exclude.empty()) {
-    object.add("exclude",
-               listOf(query.exclude, ",", [](std::string& text, uint32_t number) { text += std::to_string(number); }));
-  }
+  object.add("sensor", instanceText(query.sensor()));
   if (query.motion) {
     object.add("motion", listOf(*query.motion, ",", appendNumber));
   } else {
     object.add("dir", listOf(query.direction, ",", appendNumber));
     object.addNumber("D", query.distance);
   }
-  if (query.mask != ~0u) object.add("mask", std::to_string(query.mask));
-  if (query.anyHit) object.add("decide", "true");
   if (query.mode) object.addString("mode", nameOf(*query.mode));
-  if (query.speed) object.addNumber("speed", *query.speed);
-  if (query.ignoreLeaving) object.add("ignore_leaving", "true");
-  if (query.slack) object.addNumber("slack", *query.slack);
-  if (query.skipOverlapping) object.add("skip_overlapping", "true");
-  if (query.hits != 1) object.add("hits", query.hits == kAllHits ? "\"all\"" : std::to_string(query.hits));
-  if (query.clearance > 0) object.addNumber("clearance", query.clearance);
-  if (query.tolerance) object.addNumber("tolerance", *query.tolerance);
+  for (const QueryField& field : queryFields()) {
+    if (isGiven(field, query)) withMember(field, query, FieldWriter{field, object});
+  }
   return object.text();
 }
 

@@ -11,15 +11,14 @@ namespace radar::bench {
 /// Each adds its subcommand, which sets `status` to 1 where methods give different answers.
 void addSearch(CLI::App& app, int& status);
 void addRecorded(CLI::App& app, int& status);
-void addPool(CLI::App& app, int& status);
 void addChanges(CLI::App& app, int& status);
 void addDeform(CLI::App& app, int& status);
 
 /// What the figures are measured on, as lines that begin with #, and the names of the columns.
 void printHead(std::span<const Device> devices);
 
-/// Measures and prints a line for each method. Returns the microseconds a query of each, `prepare` not included.
-std::vector<double> printRows(const std::string& workload, const std::vector<Method>& methods,
-                              std::span<const Batch> batches, const Repetition& repetition, int& status);
+/// Measures and prints a line for each method.
+void printRows(const std::string& workload, const std::vector<Method>& methods, std::span<const Batch> batches,
+               const Repetition& repetition, int& status);
 
 }  // namespace radar::bench

@@ -94,7 +94,7 @@ void run(uint32_t boxes, int& status) {
                        submission.submitAndWait();
                      }});
   addMethods(methods, "CPU", onCpu, cpu);
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
   printRows("changes-" + std::to_string(boxes), methods, {&batches.front(), 1}, {.least = 9, .most = 9}, status);
 }
 

@@ -1,5 +1,4 @@
-// A mesh that deforms at every step, and a batch of 64 about it: its tree refitted or built anew, and Embree refitting
-// its own.
+// A mesh that deforms at every step, and a batch of 64 about it: its tree refitted or built anew.
 #include <cmath>
 #include <memory>
 
@@ -7,9 +6,6 @@
 #include "radar/cpu_sweeper.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"
-#ifdef RADAR_EMBREE
-#include "baselines/rtcore.h"
-#endif
 
 namespace radar::bench {
 
@@ -55,45 +51,6 @@ struct Sea {
   size_t step = 0;
 };
 
-#ifdef RADAR_EMBREE
-/// The mesh in a scene of Embree's.
-class EmbreeMesh {
- public:
-  explicit EmbreeMesh(const Waves& waves)
-      : waves_(waves),
-        device_(rtcNewDevice(nullptr), rtcReleaseDevice),
-        scene_(rtcNewScene(device_.get()), rtcReleaseScene) {
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_DYNAMIC);
-    geometry_ = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(geometry_, RTC_BUILD_QUALITY_REFIT);
-    const tools::MeshData& sphere = waves.sphere;
-    vertices_ = static_cast<float*>(rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                            3 * sizeof(float), sphere.vertexCount()));
-    void* indices = rtcSetNewGeometryBuffer(geometry_, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                            sphere.triangleCount());
-    std::copy(sphere.indices.begin(), sphere.indices.end(), static_cast<uint32_t*>(indices));
-    rtcAttachGeometry(scene_.get(), geometry_);
-    rtcReleaseGeometry(geometry_);
-    refit();
-  }
-  void refit() {
-    const std::vector<float>& shape = waves_.shapes[++step_ % 2];
-    std::copy(shape.begin(), shape.end(), vertices_);
-    rtcUpdateGeometryBuffer(geometry_, RTC_BUFFER_TYPE_VERTEX, 0);
-    rtcCommitGeometry(geometry_);
-    rtcCommitScene(scene_.get());
-  }
-
- private:
-  const Waves& waves_;
-  std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
-  std::unique_ptr<RTCSceneTy, void (*)(RTCScene)> scene_;
-  RTCGeometry geometry_;
-  float* vertices_;
-  size_t step_ = 0;
-};
-#endif
-
 std::vector<Query> queriesOf(MeshId sensor) {
   tools::Random random(1);
   std::vector<Query> queries(64);
@@ -128,10 +85,6 @@ void run(int& status) {
                                  onDevice.refit();
                                  sweeper.sync();
                                }}};
-#ifdef RADAR_EMBREE
-  EmbreeMesh embree(waves);
-  methods.push_back({"Embree refits, queries as above", methods[0].answer, [&](uint32_t) { embree.refit(); }});
-#endif
   const Batch batch{.queries = queriesOf(refitted.sensor)};
   printRows("deform", methods, {&batch, 1}, {.least = 15, .most = 15}, status);
 }

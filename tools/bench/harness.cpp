@@ -7,18 +7,6 @@
 
 namespace radar::bench {
 
-std::vector<Batch> batchesOf(const tools::Workload& workload, uint32_t resolution) {
-  std::vector<Batch> batches;
-  for (const tools::Batch& one : tools::batchesOf(workload.queries)) {
-    Batch& batch = batches.emplace_back();
-    batch.scene = one.scene;
-    for (const uint32_t i : one.queries) {
-      batch.queries.push_back(tools::toQuery(workload.queries[i], resolution));
-    }
-  }
-  return batches;
-}
-
 void inTurns(const Repetition& repetition, size_t methods, const std::function<void(size_t, bool)>& run) {
   const auto round = [&](bool counts) {
     for (size_t method = 0; method < methods; ++method) run(method, counts);

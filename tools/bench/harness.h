@@ -12,12 +12,7 @@
 
 namespace radar::bench {
 
-/// Queries of one scene, answered in one call.
-struct Batch {
-  uint32_t scene = 0;
-  std::vector<Query> queries;
-};
-std::vector<Batch> batchesOf(const tools::Workload& workload, uint32_t resolution = 0);
+using tools::Batch;  // answered in one call
 
 /// A way of answering queries.
 struct Method {

@@ -23,25 +23,23 @@ void printHead(std::span<const Device> devices) {
   std::printf("workload,batch,method,prepare us,answer us,host us,times the first,differ\n");
 }
 
-std::vector<double> printRows(const std::string& workload, const std::vector<Method>& methods,
-                              std::span<const Batch> batches, const Repetition& repetition, int& status) {
+void printRows(const std::string& workload, const std::vector<Method>& methods, std::span<const Batch> batches,
+               const Repetition& repetition, int& status) {
   const std::vector<Series> all = measure(methods, batches, repetition);
-  std::vector<double> answers;
   double first = 0;
   for (size_t i = 0; i < all.size(); ++i) {
     const double perQuery = 1e6 / static_cast<double>(all[i].answers.size());
     const double prepare = perQuery * tools::median(secondsOf(all[i].prepare));
     const double host = perQuery * tools::median(secondsOf(all[i].answer, &Lap::thread));
-    answers.push_back(perQuery * tools::median(secondsOf(all[i].answer)));
-    if (i == 0) first = prepare + answers[0];
-    const std::string line = tools::csvLine({workload, batches[0].queries.size(), methods[i].name, hundredths(prepare),
-                                             hundredths(answers[i]), hundredths(host),
-                                             hundredths((prepare + answers[i]) / first), all[i].differ});
+    const double answer = perQuery * tools::median(secondsOf(all[i].answer));
+    if (i == 0) first = prepare + answer;
+    const std::string line =
+        tools::csvLine({workload, batches[0].queries.size(), methods[i].name, hundredths(prepare), hundredths(answer),
+                        hundredths(host), hundredths((prepare + answer) / first), all[i].differ});
     std::fputs(line.c_str(), stdout);
     std::fflush(stdout);
     if (all[i].differ > 0) status = 1;
   }
-  return answers;
 }
 
 }  // namespace radar::bench
@@ -52,7 +50,6 @@ int main(int argc, char** argv) try {
   int status = 0;
   radar::bench::addSearch(app, status);
   radar::bench::addRecorded(app, status);
-  radar::bench::addPool(app, status);
   radar::bench::addChanges(app, status);
   radar::bench::addDeform(app, status);
   try {

@@ -23,7 +23,7 @@ constexpr Capacity kCapacity{.queries = 64, .candidates = 1u << 16, .unresolvedP
 struct Flight {
   Flight()
       : workload(tools::makeWorkload(tools::Figure7{.teapots = 30, .steps = 1})),
-        batch(batchesOf(workload).front()),
+        batch(tools::batchesOf(workload.queries).front()),
         teapot(batch.queries[0].mesh) {
     tools::replaceBy(workload, batch.scene, standing);
     tools::replaceBy(workload, batch.scene, moving);
@@ -105,7 +105,7 @@ void runAllMoved(const Device& device, uint32_t boxes, int& status) {
   std::iota(objects.begin(), objects.end(), 0);
   const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
   Recorder still(device, standing, kCapacity), all(device, moving, kCapacity), far(device, exchanged, kCapacity);
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
   const auto method = [&](const char* name, Recorder& recorder, bool copies, HostGeometry geometry) {
     return Method{name,
                   [&](auto) {

@@ -67,7 +67,6 @@ std::vector<Case> allCases() {
                      return tools::makeWorkload(tools::RandomPoses{.meshes = meshes, .sensors = n});
                    },
                    heavy});
-  cases.push_back({"sheets", [](uint32_t n) { return tools::makeWorkload(tools::Sheets{.sensors = n}); }, {1, 4}});
   cases.push_back(
       {"drop-cutter", [](uint32_t) { return tools::makeWorkload(tools::DropCutter()); }, {1, 64, 1024, 42'000}});
   for (const uint32_t boxes : {1'000u, 10'000u, 100'000u, 1'000'000u}) {
@@ -144,7 +143,7 @@ void run(const Device& device, const Case& one, const Settings& settings, std::v
          int& status) {
   const std::vector<uint32_t>& sizes = settings.batches.empty() ? one.batches : settings.batches;
   const tools::Workload workload = one.make(*std::max_element(sizes.begin(), sizes.end()));
-  const std::vector<Batch> batches = batchesOf(workload);
+  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
   tools::ScenePlayer player(workload);
   const auto show = [&](uint32_t scene) { player.show(scene); };
   show(batches[0].scene);

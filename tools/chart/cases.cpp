@@ -20,7 +20,7 @@ void append(Workload& workload, Workload more) {
   }
   for (QuerySpec& query : more.queries) {
     query.scene += scenes;
-    query.sensor.mesh += meshes;
+    query.mesh += meshes;
     workload.queries.push_back(std::move(query));
   }
   std::move(more.meshes.begin(), more.meshes.end(), std::back_inserter(workload.meshes));

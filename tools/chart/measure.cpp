@@ -56,8 +56,8 @@ std::vector<Instance> objectsOf(const Workload& workload, uint32_t scene) {
 }
 
 // What the queries' masks leave out is excluded by name.
-void unmask(std::vector<bench::Batch>& batches, const Workload& workload) {
-  for (bench::Batch& batch : batches) {
+void unmask(std::vector<Batch>& batches, const Workload& workload) {
+  for (Batch& batch : batches) {
     for (Query& query : batch.queries) {
       for (const auto& [object, bits] : workload.scenes[batch.scene].masks) {
         if ((bits & query.mask) == 0) query.exclude.push_back(object);
@@ -81,16 +81,16 @@ std::array<double*, 6> timesOf(Cell& cell) {
 }
 
 // The whole question, whatever the file says of modes.
-std::vector<bench::Batch> batchesOf(const Workload& workload, uint32_t resolution = 0) {
-  std::vector<bench::Batch> batches = bench::batchesOf(workload, resolution);
-  for (bench::Batch& batch : batches) {
+std::vector<Batch> batchesOf(const Workload& workload, uint32_t resolution = 0) {
+  std::vector<Batch> batches = tools::batchesOf(workload.queries, resolution);
+  for (Batch& batch : batches) {
     for (Query& query : batch.queries) query.anyHit = false;
   }
   return batches;
 }
 
 // Fills the columns of time; returns the answers in the order of the batches.
-std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::span<const bench::Batch> batches,
+std::vector<Result> timePasses(Cell& cell, const bench::Method& method, std::span<const Batch> batches,
                                bench::Repetition repetition) {
   repetition.deadline = bench::Deadline(kPatience * repetition.seconds);
   const bench::Series series = bench::measure({&method, 1}, batches, repetition).front();
@@ -143,7 +143,7 @@ std::vector<Result> searchOnDevice(Cell& cell, const Workload& workload, const b
 // In cell.threads threads, each with a Baseline of its own.
 std::vector<Result> cast(Cell& cell, const Workload& workload, const BaselineRow& row,
                          const bench::Repetition& repetition) {
-  std::vector<bench::Batch> batches = batchesOf(workload);
+  std::vector<Batch> batches = batchesOf(workload);
   unmask(batches, workload);
   const bench::Stopwatch stopwatch;
   std::vector<std::unique_ptr<Baseline>> baselines;
@@ -195,7 +195,7 @@ std::vector<Result> castInChild(Cell& cell, const Workload& workload, const Base
 std::vector<double> sizesOf(const Workload& workload) {
   ScenePlayer player(workload);
   std::vector<double> sizes;
-  for (const bench::Batch& batch : batchesOf(workload)) {
+  for (const Batch& batch : batchesOf(workload)) {
     for (const Query& query : batch.queries) {
       const double size = sensorSize(player.scene(), query);
       sizes.push_back(size > 0 ? size : 1);

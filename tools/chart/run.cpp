@@ -33,8 +33,8 @@ void appendWorkload(std::string& bytes, const Workload& workload) {
     appendAll(bytes, scene.masks);
   }
   for (const QuerySpec& query : workload.queries) {
-    append(bytes, query.scene, query.batch, query.sensor.mesh, query.sensor.worldFromMesh.m, query.direction,
-           query.distance, query.mask);
+    append(bytes, query.scene, query.batch, query.mesh, query.worldFromMesh.m, query.direction, query.distance,
+           query.mask);
     appendAll(bytes, query.exclude);
   }
 }

@@ -21,9 +21,8 @@ void addStage(std::vector<StageTime>& stages, const StageTime& stage) {
 
 Answering::Answering(const Workload& world, const ModesAsked& asked, const AnsweringOptions& options)
     : options_(options), player_(world) {
-  if (options.mode == AnswerMode::sampled && asked.exactOnly) {
-    throw InputError("--mode", "",
-                     std::string("expected ") + kExactModes + " (query \"" + *asked.exactOnly + "\"), got sampled");
+  if (options.mode == AnswerMode::sampled && !asked.exactOnly.empty()) {
+    throw InputError("--mode", "", "expected contact or reference, as " + asked.exactOnly + " needs, got sampled");
   }
   const bool needsDevice =
       asked.asks(AnswerMode::sampled, options.mode) || asked.asks(AnswerMode::contact, options.mode);
@@ -57,15 +56,14 @@ double Answering::setUp(uint32_t scene) {
 
 std::vector<Answering::Group> Answering::groupsOf(std::span<const QuerySpec> queries) const {
   std::vector<Group> groups;
-  for (const Batch& batch : batchesOf(queries)) {
+  for (Batch& batch : batchesOf(queries, options_.resolution)) {
     Group& group = groups.emplace_back();
     group.scene = batch.scene;
-    for (const uint32_t number : batch.queries) {
-      const QuerySpec& spec = queries[number];
-      const AnswerMode mode = spec.mode.value_or(options_.mode);
+    for (size_t i = 0; i < batch.numbers.size(); ++i) {
+      const AnswerMode mode = queries[batch.numbers[i]].mode.value_or(options_.mode);
       Part& part = group.parts[static_cast<size_t>(mode)];
-      part.numbers.push_back(number);
-      part.queries.push_back(toQuery(spec, options_.resolution));
+      part.numbers.push_back(batch.numbers[i]);
+      part.queries.push_back(std::move(batch.queries[i]));
     }
   }
   return groups;

@@ -62,7 +62,7 @@ std::vector<Answer> answersIn(const Workload& workload, AnswerMode mode, Answeri
 
 /// A line as long as a teapot can fly, with a dot where it touches something.
 void drawWay(const Canvas& canvas, const Scopes& view, const MeshData& teapot, const Row& row) {
-  const Transform& pose = row.query.sensor.worldFromMesh;
+  const Transform& pose = row.query.worldFromMesh;
   const Vec3 start = turned(linearPart(pose), extentOf(teapot).middle) + Vec3{pose.m[3], pose.m[7], pose.m[11]};
   const bool touches = row.exact.result.status != Status::clear;
   const double distance = touches ? row.exact.result.t : row.query.distance;
@@ -95,7 +95,7 @@ void drawScene(const std::filesystem::path& file, const Workload& workload, cons
 
   const Canvas canvas(2 * kMargin + all.width, 2 * kMargin + all.height + kCaption);
   drawSurfaces(canvas, kMargin, kCubeSide, all, movers);
-  for (const Row& row : rows) drawWay(canvas, all, workload.meshes[row.query.sensor.mesh], row);
+  for (const Row& row : rows) drawWay(canvas, all, workload.meshes[row.query.mesh], row);
   canvas.text(kMargin, kMargin + all.height + 20, 15,
               "The scene as the method sees it: the depth picture R of a disc that looks in from a corner, shaded.");
   canvas.text(kMargin, kMargin + all.height + 40, 15,
@@ -112,7 +112,7 @@ std::string drawHits(const std::filesystem::path& folder, const Workload& worklo
   std::string files;
   for (uint32_t i = 0, drawn = 0; i < rows.size() && drawn < kPictures; ++i) {
     if (rows[i].sampled.result.status != Status::hit) continue;
-    const Scopes scopes = sweeper.scopes(toQuery(rows[i].query));
+    const Scopes scopes = sweeper.scopes(rows[i].query);
     const std::string name = "teapot-" + std::to_string(i) + ".png";
     const std::string title = rows[i].query.id + ":  d = " + inDigits(scopes.d) + ",  t = " + inDigits(scopes.result.t);
     writeScopePicture(folder / name, title + ",  min(L) = " + leastFreeDistance(scopes), scopes);

@@ -27,7 +27,7 @@ void draw(const Device& device, const Shown& shown, const std::filesystem::path&
   Scene scene;
   replaceBy(workload, 0, scene);
   Sweeper sweeper(device, scene);
-  const Query query = toQuery(workload.queries[0], kResolution);
+  const Query query = queriesOf(workload.queries, kResolution).front();
   const Scopes scopes = sweeper.scopes(query);
   const Result exact = CpuSweeper(scene).run({&query, 1}).results[0];
   const double value = family.values[shown.number % family.values.size()];

@@ -1,11 +1,13 @@
 #include "cyber_radar/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 
 #include "batch/query_file.h"
 #include "import/mesh_import.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -134,6 +136,27 @@ void SweepOptions::addMotionTo(CLI::App& command) {
       ->type_name("X Y Z ANGLE");
 }
 
+void SweepOptions::addFieldsTo(CLI::App& command) {
+  for (const QueryField& field : queryFields()) {
+    if (!field.option) continue;
+    std::string name = std::string("--") + field.name;
+    std::ranges::replace(name, '_', '-');
+    withMember(field, fields, [&]<class Value>(Value& to) {
+      if constexpr (std::is_same_v<Value, bool>) {
+        command.add_flag(name, to, field.about);
+      } else if constexpr (std::is_assignable_v<Value&, double>) {
+        const auto take = [&, name](double value) {
+          if (!takes(field, value)) {
+            throw InputError(name, "", "expected " + expectedFor(field) + ", got " + std::to_string(value));
+          }
+          to = value;
+        };
+        command.add_option_function<double>(name, take, field.about)->type_name("X");
+      }
+    });
+  }
+}
+
 Workload SweepOptions::load() const {
   if (direction.empty()) throw InputError("--direction", "", "expected three numbers, got none");
   if (!distance) throw InputError("--distance", "", "expected a number, got none");
@@ -141,7 +164,7 @@ Workload SweepOptions::load() const {
   requireFinite("--distance", {*distance});
   requireFinite("--at", at);
   requireFinite("--rotate", rotate);
-  QuerySpec query;
+  QuerySpec query = fields;
   query.id = "sweep";
   std::copy(direction.begin(), direction.end(), query.direction.begin());
   if (query.direction == std::array<double, 3>{}) {
@@ -149,20 +172,7 @@ Workload SweepOptions::load() const {
   }
   query.distance = *distance;
   if (query.distance < 0) throw InputError("--distance", "", "expected a number of 0 or more");
-  if (speed && !(*speed > 0 && std::isfinite(*speed))) {
-    throw InputError("--speed", "", "expected a finite number above 0, got " + std::to_string(*speed));
-  }
-  query.speed = speed;
-  query.ignoreLeaving = ignoreLeaving;
-  query.skipOverlapping = skipOverlapping;
-  for (const auto& [option, value] : {std::pair{"--slack", slack}, std::pair{"--clearance", clearance}}) {
-    if (value && !(*value >= 0 && std::isfinite(*value))) {
-      throw InputError(option, "", "expected a finite number of 0 or more, got " + std::to_string(*value));
-    }
-  }
-  query.slack = slack;
-  query.clearance = clearance.value_or(0);
-  query.sensor = {1, poseFrom(at, rotate)};
+  query.setSensor({1, poseFrom(at, rotate)});
 
   std::vector<std::string> warnings;
   Workload workload;

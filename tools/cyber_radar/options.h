@@ -28,11 +28,13 @@ struct EngineOptions {
 struct SweepOptions {
   std::string scene, sensor;
   std::vector<double> direction, at, rotate;
-  std::optional<double> distance, speed, slack, clearance;
-  bool ignoreLeaving = false, skipOverlapping = false;
+  std::optional<double> distance;
+  QuerySpec fields;
 
-  /// All but the two files.
+  /// All but the two files and the fields.
   void addMotionTo(CLI::App& command);
+  /// Those of queryFields() that are options.
+  void addFieldsTo(CLI::App& command);
   /// Reads both files: mesh 0 and object 0 are the scene's, mesh 1 the sensor's. Prints warnings to standard error.
   /// Throws InputError that names the option or file.
   Workload load() const;

@@ -8,6 +8,7 @@
 #include "cyber_radar/commands.h"
 #include "cyber_radar/query_run.h"
 #include "cyber_radar/words.h"
+#include "workloads/query_fields.h"
 
 namespace radar::tools {
 
@@ -194,6 +195,13 @@ void addQueryCommand(CLI::App& app, int& status) {
           ->check(CLI::Range(1u, 1'000'000u))
           ->type_name("N")
           ->capture_default_str();
+  command->add_flag_callback(
+      "--fields",
+      [] {
+        std::cout << queryFieldTable();
+        throw CLI::Success();
+      },
+      "Prints what a query may ask for, as a table in Markdown, and ends");
   command->callback([=, &status] {
     options->repeated = repeat->count() > 0;
     status = query(*options);

@@ -62,7 +62,7 @@ ScalePoint firstOf(const Workload& whole, uint32_t most) {
   const std::vector<Batch> batches = batchesOf(whole.queries);
   for (const Batch& batch : batches) {
     const size_t count = most == 0 ? batch.queries.size() : std::min<size_t>(most, batch.queries.size());
-    for (size_t i = 0; i < count; ++i) point.workload.queries.push_back(whole.queries[batch.queries[i]]);
+    for (size_t i = 0; i < count; ++i) point.workload.queries.push_back(whole.queries[batch.numbers[i]]);
   }
   point.sensors = static_cast<double>(point.workload.queries.size()) / static_cast<double>(batches.size());
   return point;

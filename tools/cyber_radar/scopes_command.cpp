@@ -95,7 +95,8 @@ void drawScopes(Options& options) {
   player.show(query.scene);
   const Device device = Device::open({.index = engine.device});
   Sweeper sweeper(device, player.scene());
-  Query asked = toQuery(query, engine.resolution);
+  Query asked = query;
+  asked.resolution = engine.resolution;
   // The text below needs the whole answer, and the pictures are of mode sampled.
   asked.anyHit = asked.ignoreLeaving = asked.skipOverlapping = false;
   asked.hits = 1;

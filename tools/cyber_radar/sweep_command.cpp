@@ -62,20 +62,7 @@ void addSweepCommand(CLI::App& app, int& status) {
   command->add_option("SCENE", options->sweep.scene, "Mesh file of what stands still")->required();
   command->add_option("SENSOR", options->sweep.sensor, "Mesh file of what moves")->required();
   options->sweep.addMotionTo(*command);
-  command->add_option("--speed", options->sweep.speed, "Units per second; the answer then says when")->type_name("S");
-  command->add_flag("--ignore-leaving", options->sweep.ignoreLeaving,
-                    "Counts only what blocks: the sensor may leave what it rests on, or slide along it");
-  command->add_flag("--skip-overlapping", options->sweep.skipOverlapping,
-                    "Leaves the scene out, and says so, if its surface crosses the sensor's at the start");
-  command
-      ->add_option("--slack", options->sweep.slack,
-                   "With these two: how far surfaces that touch may sink into each other, for rounding; else derived "
-                   "from the coordinates")
-      ->type_name("W");
-  command
-      ->add_option("--clearance", options->sweep.clearance,
-                   "Counts as contact when the surfaces come within this distance of each other")
-      ->type_name("C");
+  options->sweep.addFieldsTo(*command);
   options->engine.addTo(*command);
   command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
   command->callback([options, &status] { status = sweep(*options); });

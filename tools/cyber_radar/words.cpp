@@ -17,10 +17,10 @@ std::string contactInWords(const Workload& workload, const QuerySpec& query, con
   const Instance& touched = workload.instance(query.scene, result.object);
   const std::vector<std::string> names = workload.objectNames(query.scene);
   const std::string name = names.empty() ? "" : names[result.object];
-  std::string text =
-      "  what    " + triangleInWords(result.triB, result.featureB) + " of object " + std::to_string(result.object) +
-      (name.empty() ? "" : " \"" + name + "\"") + " (" + workload.meshes[touched.mesh].name + "), by the sensor's " +
-      triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.sensor.mesh].name + ")\n";
+  std::string text = "  what    " + triangleInWords(result.triB, result.featureB) + " of object " +
+                     std::to_string(result.object) + (name.empty() ? "" : " \"" + name + "\"") + " (" +
+                     workload.meshes[touched.mesh].name + "), by the sensor's " +
+                     triangleInWords(result.triA, result.featureA) + " (" + workload.meshes[query.mesh].name + ")\n";
   if (!std::isnan(result.point[0])) text += "  where   " + inDigits(result.point) + "\n";
   if (!std::isnan(result.normal[0])) {
     text += "  normal  " + inDigits(result.normal) + ", from the touched surface towards the sensor\n";

@@ -46,9 +46,9 @@ void serialize(Archive& archive, SceneSpec& scene) {
 
 template <class Archive>
 void serialize(Archive& archive, QuerySpec& query) {
-  archive(query.id, query.scene, query.batch, query.sensor, query.exclude, query.direction, query.distance,
-          query.motion, query.mask, query.anyHit, query.ignoreLeaving, query.skipOverlapping, query.slack, query.hits,
-          query.clearance, query.mode, query.speed, query.tolerance);
+  archive(query.id, query.scene, query.batch, query.mode, query.speed, query.mesh, query.worldFromMesh, query.exclude,
+          query.direction, query.distance, query.motion, query.mask, query.anyHit, query.ignoreLeaving,
+          query.skipOverlapping, query.slack, query.hits, query.clearance, query.tolerance);
 }
 
 template <class Archive>

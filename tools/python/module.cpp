@@ -8,6 +8,7 @@
 #include "commit/commit.h"
 #include "import/mesh_import.h"
 #include "python/batch.h"
+#include "workloads/query_fields.h"
 
 namespace py = pybind11;
 
@@ -211,33 +212,68 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
   return to;
 }
 
+/// A field's value for all casts, as cast_option() gives it.
+struct FieldReader {
+  const tools::QueryField& field;
+  py::object value;
+
+  [[noreturn]] void refuse() const {
+    throw py::value_error(std::string(field.python) + ": expected " + expectedFor(field) + ", got " +
+                          std::string(py::repr(value)));
+  }
+  double number() const {
+    if (!py::isinstance<py::float_>(value) || !takes(field, value.cast<double>())) refuse();
+    return value.cast<double>();
+  }
+  void operator()(bool& to) const { to = py::bool_(value); }
+  void operator()(double& to) const { to = number(); }
+  void operator()(std::optional<double>& to) const {
+    if (!value.is_none()) to = number();
+  }
+  void operator()(uint32_t& to) const {
+    if (field.word && value.equal(py::str(field.word))) {
+      to = static_cast<uint32_t>(field.most) + 1;
+    } else if ((to = static_cast<uint32_t>(number())) != number()) {
+      refuse();
+    }
+  }
+  void operator()(std::vector<ObjectId>&) const {}  // of each cast
+};
+
 Query optionsFrom(const py::dict& options) {
-  Query query;
-  query.anyHit = options["any_hit"].cast<bool>();
-  query.ignoreLeaving = options["ignore_leaving"].cast<bool>();
-  query.skipOverlapping = options["skip_overlapping"].cast<bool>();
-  query.slack = options["slack"].cast<std::optional<double>>();
-  query.clearance = options["clearance"].cast<double>();
-  query.tolerance = options["tolerance"].cast<std::optional<double>>();
-  query.hits = options["hits"].cast<uint32_t>();
+  tools::QuerySpec query;
+  for (const tools::QueryField& field : tools::queryFields()) {
+    if (*field.python != 0) withMember(field, query, FieldReader{field, options[field.python]});
+  }
   query.resolution = options["resolution"].cast<uint32_t>();
+  if (query.hits > 1 && query.anyHit) throw py::value_error("hits: expected 1 with any_hit");
+  const tools::QueryField* const exact = exactOnly(query);
+  if (exact && options["mode"].cast<std::string>() == "sampled") {
+    throw py::value_error("mode: expected \"contact\" or \"reference\" with " + std::string(exact->python) +
+                          ", got \"sampled\"");
+  }
   return query;
 }
 
-/// Offsets of the queries' hits; how many there are; a function that writes them to arrays. Offsets and objects of what
-/// overlaps. Reasons.
-py::tuple listsFor(BatchLists&& found, const py::function& makeArrays) {
-  const size_t count = found.hits.size();
-  const py::dict arrays = makeArrays(count);
-  const BatchOutput to = outputFrom(arrays, count);
-  for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i], false);
+/// What _engine.pyi says of cast().
+py::tuple listsFor(const Query& options, BatchLists&& found, const py::function& makeArrays) {
+  py::object hits = py::none(), overlapping = py::none();
+  const auto whole = [](const std::vector<int64_t>& values) { return arrayOf(values, {py::ssize_t(values.size())}); };
+  if (options.hits > 1) {
+    const size_t count = found.hits.size();
+    const py::dict arrays = makeArrays(count);
+    const BatchOutput to = outputFrom(arrays, count);
+    for (size_t i = 0; i < count; ++i) to.write(i, found.hits[i], false);
+    hits = py::make_tuple(arrays, whole(found.hitOffsets));
+  }
+  if (options.skipOverlapping) {
+    overlapping = py::make_tuple(whole(found.overlapping), whole(found.overlappingOffsets));
+  }
   py::dict reasons;
   for (const auto& [reason, which] : found.reasons) {
     reasons[py::str(reason)] = arrayOf(which, {py::ssize_t(which.size())});
   }
-  const auto whole = [](const std::vector<int64_t>& values) { return arrayOf(values, {py::ssize_t(values.size())}); };
-  return py::make_tuple(whole(found.hitOffsets), arrays, whole(found.overlappingOffsets), whole(found.overlapping),
-                        reasons);
+  return py::make_tuple(hits, overlapping, reasons);
 }
 
 py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, const py::dict& arguments,
@@ -259,8 +295,8 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
     input.distances = perQuery<double>(distances, shape, 1, "distances");
   }
   input.options = optionsFrom(options);
-  input.mode = options["sampled"].cast<bool>() ? Mode::sampled : Mode::contact;
-  input.onCpu = options["on_cpu"].cast<bool>();
+  input.mode = options["mode"].cast<std::string>() == "sampled" ? Mode::sampled : Mode::contact;
+  input.onCpu = options["mode"].cast<std::string>() == "reference";
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;
   {
@@ -271,7 +307,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
       if (!afterChunk.is_none()) afterChunk(done);
     });
   }
-  return listsFor(std::move(found), makeArrays);
+  return listsFor(input.options, std::move(found), makeArrays);
 }
 
 // ------------------------------------------------------------------------------------------------- devices and files
@@ -350,7 +386,11 @@ PYBIND11_MODULE(_engine, module) {
   module.attr("version") = std::to_string(radar::kVersionMajor) + "." + std::to_string(radar::kVersionMinor) + "." +
                            std::to_string(radar::kVersionPatch);
   module.attr("commit") = radar::tools::commit();
-  module.attr("ALL_HITS") = radar::kAllHits;
+  py::list options;
+  for (const radar::tools::QueryField& field : radar::tools::queryFields()) {
+    if (*field.python != 0) options.append(field.python);
+  }
+  module.attr("OPTIONS") = options;
   module.attr("MAX_RESOLUTION") = radar::kMaxResolution;
   py::class_<CastingScene>(module, "Scene")
       .def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))

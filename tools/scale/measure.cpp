@@ -46,7 +46,7 @@ class Pools {
   // No batch is with any pool.
   void load(const Workload& workload) {
     player_.emplace(workload);  // the same place: the pools' scene
-    batches_ = bench::batchesOf(workload, settings_.resolution);
+    batches_ = batchesOf(workload.queries, settings_.resolution);
   }
 
   Pass run(size_t set, bool profile) {
@@ -72,7 +72,7 @@ class Pools {
   const ScaleSettings& settings_;
   std::optional<ScenePlayer> player_;
   std::vector<std::unique_ptr<Pool>> pools_, profiled_;
-  std::vector<bench::Batch> batches_;
+  std::vector<Batch> batches_;
 };
 
 // The chunks of one device in one batch, by the time of their submission.

@@ -30,12 +30,12 @@ Workload heavyWorkload() {
 
 // A scene that stands, and a batch of queries in it.
 struct Standing {
-  explicit Standing(const Workload& workload) : player(workload), batch(bench::batchesOf(workload).front()) {
+  explicit Standing(const Workload& workload) : player(workload), batch(batchesOf(workload.queries).front()) {
     player.show(batch.scene);
   }
   // So many queries: the first ones, over and over where there are fewer.
-  bench::Batch repeated(uint64_t count) const {
-    bench::Batch many{batch.scene, {}};
+  Batch repeated(uint64_t count) const {
+    Batch many{.scene = batch.scene};
     many.queries.reserve(count);
     for (uint64_t i = 0; i < count; ++i) many.queries.push_back(batch.queries[i % batch.queries.size()]);
     return many;
@@ -43,7 +43,7 @@ struct Standing {
   const Scene& scene() const { return player.scene(); }
 
   ScenePlayer player;
-  bench::Batch batch;
+  Batch batch;
 };
 
 double medianUs(const std::vector<bench::Lap>& laps, uint64_t queries) {
@@ -64,7 +64,7 @@ class Race {
   /// At least one pass, and as many as fit into half a second, up to nine. `batches` are played by showing their scenes
   /// with `show`, which is part of the time. Returns the microseconds that a query took on both together.
   double measure(
-      const char* workload, std::span<const bench::Batch> batches, const Deadline& deadline, Json& rows,
+      const char* workload, std::span<const Batch> batches, const Deadline& deadline, Json& rows,
       const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
     const std::vector<bench::Method> methods{
         {"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
@@ -103,7 +103,7 @@ bool measureStanding(const Device& device, const char* name, const Workload& wor
   double us = 0;
   for (uint64_t size = 1; size <= 1'000'000; size *= 10) {
     if (!fits(rows, us, size, deadline)) return false;
-    const bench::Batch batch = standing.repeated(size);
+    const Batch batch = standing.repeated(size);
     us = race.measure(name, {&batch, 1}, deadline, rows);
   }
   return true;
@@ -116,7 +116,7 @@ bool measureMoving(const Device& device, const Deadline& deadline, Json& rows) {
     // The more there are, the more each meets: three times as many cost each up to three times as much.
     if (!fits(rows, us, uint64_t{3} * kSteps * teapots, deadline)) return false;
     const Workload workload = makeWorkload(Figure7{.teapots = teapots, .boxes = 10'000, .steps = kSteps});
-    const std::vector<bench::Batch> batches = bench::batchesOf(workload);
+    const std::vector<Batch> batches = batchesOf(workload.queries);
     ScenePlayer player(workload);
     player.show(batches[0].scene);
     us = Race(device, player.scene(), batches[0].queries)
@@ -163,8 +163,7 @@ bench::Method laneOf(const std::string& name, Pool& pool) {
           }};
 }
 
-bool addLanes(const std::vector<bench::Method>& lanes, const bench::Batch& batch, const Deadline& deadline,
-              Json& rows) {
+bool addLanes(const std::vector<bench::Method>& lanes, const Batch& batch, const Deadline& deadline, Json& rows) {
   double first = 0;
   const std::vector<bench::Series> all =
       bench::measure(lanes, {&batch, 1}, {.least = 3, .most = 3, .deadline = deadline});

@@ -132,7 +132,7 @@ struct CaseRun::Stage {
     cpu.sync();
     const uint64_t end = std::min(range.first + range.cases, (next / size + 1) * size);
     std::vector<Query> queries;
-    for (uint64_t i = next; i < end; ++i) queries.push_back(toQuery(workload.queries[i % size]));
+    for (uint64_t i = next; i < end; ++i) queries.push_back(workload.queries[i % size]);
     for (Query& query : queries) {
       if (range.ignoreLeaving) query.ignoreLeaving = true;
       if (range.allHits) query.hits = kAllHits;

@@ -53,8 +53,7 @@ class Comparing {
   Answers answer(const std::vector<HardCase>& cases) {
     const Workload workload = sceneOf(cases, Company::isolated);
     replaceBy(workload, 0, scene_);
-    std::vector<Query> queries;
-    for (const QuerySpec& spec : workload.queries) queries.push_back(toQuery(spec));
+    const std::vector<Query> queries = queriesOf(workload.queries);
     Answers answers;
     answers[0] = answersBy({Method::sampled, settings_.resolution}, sweeper_, queries);
     answers[1] = answersBy({Method::contact, 0}, sweeper_, queries);

@@ -48,8 +48,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       replaceBy(workload, 0, scene);
       Random random(settings.seed * 7'919 + next);
       std::vector<Query> queries;
-      for (const QuerySpec& spec : workload.queries) {
-        const Query query = toQuery(spec);
+      for (const Query& query : workload.queries) {
         const Vec3 step = settings.size * sensorSize(scene, query) * random.direction();
         appendSteps(queries, query, step, settings.steps);
       }

@@ -164,10 +164,10 @@ void addSensors(Workload& workload, Random& random, uint32_t count, SensorShape 
     const Rotation rotation = random.rotation();
     const Vec3 edges = random.inBox(kFull, 3 * kFull);
     if (shape == SensorShape::box) {
-      query.sensor = {0, makePose(rotation, edges, placeFor(0.5 * lengthOf(edges)))};
+      query.setSensor({0, makePose(rotation, edges, placeFor(0.5 * lengthOf(edges)))});
     } else {
       const double scale = 3 / teapot.longest;
-      query.sensor = {1, poseAround(teapot, rotation, scale, placeFor(scale * teapot.radius))};
+      query.setSensor({1, poseAround(teapot, rotation, scale, placeFor(scale * teapot.radius))});
     }
     query.direction = random.direction();
     workload.queries.push_back(std::move(query));
@@ -207,34 +207,16 @@ Workload makeWorkload(const Figure7& options) {
       query.id = scene.id + "/teapot/" + std::to_string(i);
       query.scene = static_cast<uint32_t>(workload.scenes.size());
       query.batch = step;
-      query.sensor = {1, poseAround(teapot, flights[i].rotation, scale, flights[i].sphere.centre)};
+      query.setSensor({1, poseAround(teapot, flights[i].rotation, scale, flights[i].sphere.centre)});
       query.exclude = {options.boxes + i};
       query.direction = flights[i].heading;
       query.distance = kLookAhead;
       query.speed = kStep;
-      scene.instances.push_back(query.sensor);
+      scene.instances.push_back(query.sensor());
       workload.queries.push_back(std::move(query));
     }
     workload.scenes.push_back(std::move(scene));
     for (size_t i = 0; i < flights.size(); ++i) fly(flights, i, clearance, random);
-  }
-  return workload;
-}
-
-Workload makeWorkload(const Sheets& options) {
-  Random random(options.seed);
-  Workload workload;
-  workload.meshes = {makeBox(kFull), makeSheet(100, 0.05, random)};
-  Clearance clearance(3);
-  workload.scenes.push_back(randomBoxes(random, options.boxes, kCubeSide, 0.3, 1.5, clearance));
-  for (uint32_t i = 0; i < options.sensors; ++i) {
-    QuerySpec query = sensorQuery(i);
-    const Rotation rotation = random.rotation();
-    const Vec3 outwards = turned(rotation, {0, 0, 1});
-    query.sensor = {1, makePose(rotation, 0.5 * kCubeSide * kFull, kCubeSide * outwards)};
-    query.direction = -1 * outwards;
-    query.distance = 2 * kCubeSide;
-    workload.queries.push_back(std::move(query));
   }
   return workload;
 }
@@ -265,7 +247,7 @@ Workload makeWorkload(const RandomPoses& options) {
   workload.scenes.push_back(std::move(scene));
   for (uint32_t i = 0; i < options.sensors; ++i) {
     QuerySpec query = sensorQuery(i);
-    query.sensor = instance(i, [&](double radius) { return freePlace(random, clearance, side, radius); });
+    query.setSensor(instance(i, [&](double radius) { return freePlace(random, clearance, side, radius); }));
     query.direction = random.direction();
     workload.queries.push_back(std::move(query));
   }

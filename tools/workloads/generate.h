@@ -62,15 +62,6 @@ struct OneMesh {
 };
 Workload makeWorkload(const OneMesh& options);
 
-/// Few large sensors: wavy sheets of 20,000 triangles, as wide as the cube of Table 1, that come at its `boxes` boxes
-/// from outside, each from its own side. One batch.
-struct Sheets {
-  uint32_t boxes = 30'000;
-  uint32_t sensors = 4;
-  uint64_t seed = 31;
-};
-Workload makeWorkload(const Sheets& options);
-
 /// Random triangle soups of each kind in turn, in random affine poses with scales of 0.3 to 2 and with mirrors, that
 /// overlap, interlock and miss: one scene, one batch. `origin` moves everything along x, y and z.
 struct Soups {

@@ -93,7 +93,7 @@ Workload sceneOf(const std::vector<HardCase>& cases, Company company) {
     }
     QuerySpec query;
     query.id = std::to_string(i);
-    query.sensor = {meshIn(workload, hard.sensor.mesh), hard.sensor.worldFromMesh};
+    query.setSensor({meshIn(workload, hard.sensor.mesh), hard.sensor.worldFromMesh});
     query.direction = hard.direction;
     query.distance = hard.distance;
     query.mask = mask;

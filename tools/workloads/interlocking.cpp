@@ -64,7 +64,7 @@ Workload makeWorkload(const InterlockingPairs& options) {
     const Vec3 towards = random.inCube(0.3) + Vec3{0, 0, 1};
     QuerySpec query;
     query.id = std::to_string(i);
-    query.sensor = {0, makePose(frame, kFull, home)};
+    query.setSensor({0, makePose(frame, kFull, home)});
     query.direction = turned(frame, towards);
     query.distance = random.uniform(1, 8);
     workload.queries.push_back(std::move(query));

@@ -61,7 +61,7 @@ Workload makeWorkload(const Soups& options) {
     QuerySpec query;
     query.id = "sensor/" + std::to_string(i);
     // Sensors and objects of all kKinds meet, not only those of one kind.
-    query.sensor = instance(i + i / kKinds, 10);
+    query.setSensor(instance(i + i / kKinds, 10));
     const Vec3 direction = random.direction();
     query.direction = random.uniform(0.01, 100) * direction;
     query.distance = random.uniform(0, 12);

@@ -129,7 +129,7 @@ Workload makeWorkload(const DropCutter& options) {
       query.id = "point/" + std::to_string(row) + "/" + std::to_string(column);
       const double x = kReliefWidth * ((column + 0.5) / options.columns - 0.5),
                    y = kReliefWidth * ((row + 0.5) / options.rows - 0.5);
-      query.sensor = {0, makePose(kUpright, kBallRadius * kFull, {x, y, 20})};
+      query.setSensor({0, makePose(kUpright, kBallRadius * kFull, {x, y, 20})});
       query.direction = {0, 0, -1};
       query.distance = 20;
       workload.queries.push_back(std::move(query));

@@ -60,38 +60,26 @@ std::vector<std::string> Workload::objectNames(uint32_t scene) const {
   return names;
 }
 
-Query toQuery(const QuerySpec& spec, uint32_t resolution) {
-  Query query;
-  query.mesh = spec.sensor.mesh;
-  query.worldFromMesh = spec.sensor.worldFromMesh;
-  query.direction = spec.direction;
-  query.distance = spec.distance;
-  query.motion = spec.motion;
-  query.exclude = spec.exclude;
-  query.mask = spec.mask;
-  query.anyHit = spec.anyHit;
-  query.ignoreLeaving = spec.ignoreLeaving;
-  query.skipOverlapping = spec.skipOverlapping;
-  query.slack = spec.slack;
-  query.hits = spec.hits;
-  query.clearance = spec.clearance;
-  query.tolerance = spec.tolerance;
-  query.resolution = resolution;
-  return query;
+std::vector<Query> queriesOf(std::span<const QuerySpec> specs, uint32_t resolution) {
+  std::vector<Query> queries(specs.begin(), specs.end());
+  for (Query& query : queries) query.resolution = resolution;
+  return queries;
 }
 
 double sensorSize(const Scene& scene, const Query& query) {
   return boundsOf(scene.mesh(query.mesh), query.worldFromMesh).longest();
 }
 
-std::vector<Batch> batchesOf(std::span<const QuerySpec> queries) {
+std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution) {
   std::vector<Batch> batches;
   std::map<std::pair<uint32_t, uint64_t>, size_t> places;
-  for (uint32_t i = 0; i < queries.size(); ++i) {
-    const QuerySpec& query = queries[i];
-    const auto [place, isNew] = places.try_emplace({query.scene, query.batch}, batches.size());
-    if (isNew) batches.push_back({query.scene, {}});
-    batches[place->second].queries.push_back(i);
+  for (uint32_t i = 0; i < specs.size(); ++i) {
+    const auto [place, isNew] = places.try_emplace({specs[i].scene, specs[i].batch}, batches.size());
+    if (isNew) batches.push_back({.scene = specs[i].scene});
+    Batch& batch = batches[place->second];
+    batch.queries.push_back(specs[i]);
+    batch.queries.back().resolution = resolution;
+    batch.numbers.push_back(i);
   }
   return batches;
 }

@@ -1,5 +1,5 @@
 // A workload: meshes, scenes that place them, and queries. It is what a query file says, in memory: the generators make
-// one, tools/batch reads and writes one. Numbers are as in radar.h.
+// one, tools/batch reads and writes one. Mesh and object ids are numbers in it.
 #pragma once
 
 #include <array>
@@ -53,24 +53,16 @@ struct SceneSpec {
 /// How an answer is found.
 enum class AnswerMode { sampled, contact, reference };
 
-struct QuerySpec {
+/// A query with what only files say of it.
+struct QuerySpec : Query {
   std::string id;
   uint32_t scene = 0;
-  uint64_t batch = 0;  ///< queries of one scene and one batch number are answered in one submission
-  Instance sensor;
-  std::vector<uint32_t> exclude;
-  std::array<double, 3> direction{};
-  double distance = 0;
-  std::optional<std::array<double, 3>> motion;  ///< instead of both
-  uint32_t mask = ~0u;
-  bool anyHit = false;
-  bool ignoreLeaving = false, skipOverlapping = false;
-  std::optional<double> slack;
-  uint32_t hits = 1;
-  double clearance = 0;
-  std::optional<AnswerMode> mode;   ///< overrides the command's
-  std::optional<double> speed;      ///< units per second
-  std::optional<double> tolerance;  ///< world units; without a clearance every exact answer meets it
+  uint64_t batch = 0;              ///< queries of one scene and one batch number are answered in one submission
+  std::optional<AnswerMode> mode;  ///< overrides the command's
+  std::optional<double> speed;     ///< units per second
+
+  Instance sensor() const { return {mesh, worldFromMesh}; }
+  void setSensor(const Instance& placed) { mesh = placed.mesh, worldFromMesh = placed.worldFromMesh; }
 };
 
 struct Workload {
@@ -87,18 +79,20 @@ struct Workload {
   std::vector<std::string> objectNames(uint32_t scene) const;
 };
 
-/// The query as the library takes it, for a Scene whose mesh and object ids are the workload's numbers.
-Query toQuery(const QuerySpec& spec, uint32_t resolution = 0);
+/// The queries alone, to be drawn with that resolution.
+std::vector<Query> queriesOf(std::span<const QuerySpec> specs, uint32_t resolution = 0);
 
 /// Greatest extent of the placed sensor's box.
 double sensorSize(const Scene& scene, const Query& query);
 
-/// The queries of one scene and one batch number, as positions among the given ones, in the order of first appearance.
+/// The queries of one scene and one batch number.
 struct Batch {
   uint32_t scene = 0;
-  std::vector<uint32_t> queries;
+  std::vector<Query> queries;
+  std::vector<uint32_t> numbers;  ///< where they stand among the given ones
 };
-std::vector<Batch> batchesOf(std::span<const QuerySpec> queries);
+/// In the order of first appearance.
+std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution = 0);
 
 /// Makes `to` hold the workload's meshes and one of its scenes, under the workload's numbers, and nothing else.
 void replaceBy(const Workload& workload, uint32_t scene, Scene& to);

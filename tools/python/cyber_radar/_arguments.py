@@ -15,50 +15,13 @@ Mode = Literal["contact", "sampled", "reference"]
 MOST_ID = 2**32 - 2
 
 
-def cast_options(
-    mode: Mode,
-    any_hit: bool,
-    ignore_leaving: bool,
-    skip_overlapping: bool,
-    slack: float | None,
-    clearance: float,
-    tolerance: float | None,
-    hits: int | str,
-    resolution: int,
-) -> dict[str, Any]:
-    if mode not in ("contact", "sampled", "reference"):
-        raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
-    if isinstance(hits, str) and hits != "all":
-        raise ValueError(f'hits: expected a whole number of 1 or more, or "all", got {hits!r}')
-    count = one_whole_number(_engine.ALL_HITS if isinstance(hits, str) else hits, "hits", 1, _engine.ALL_HITS)
-    least = _length(clearance, "clearance") or 0.0
-    if count > 1 and any_hit:
-        raise ValueError(f"hits: expected 1 with any_hit, got {hits}")
-    if mode == "sampled" and (ignore_leaving or skip_overlapping or count > 1 or least > 0):
-        raise ValueError(
-            'mode: expected "contact" or "reference" with ignore_leaving, skip_overlapping, clearance or several hits, '
-            'got "sampled"'
-        )
-    return {
-        "sampled": mode == "sampled",
-        "on_cpu": mode == "reference",
-        "any_hit": bool(any_hit),
-        "ignore_leaving": bool(ignore_leaving),
-        "skip_overlapping": bool(skip_overlapping),
-        "slack": _length(slack, "slack"),
-        "clearance": least,
-        "tolerance": _length(tolerance, "tolerance"),
-        "hits": count,
-        "resolution": one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION),
-    }
-
-
-def _length(value: float | None, name: str) -> float | None:
-    if value is None:
-        return None
+def cast_option(value: Any, name: str) -> bool | float | str | None:
+    """One value for all casts, whose range the compiled half checks."""
+    if value is None or isinstance(value, (bool, np.bool_, str)):
+        return value
     number = reals(value, name)
-    if number.ndim or not (np.isfinite(number) and number >= 0):
-        raise ValueError(f"{name}: expected a finite number of 0 or more, got {value}")
+    if number.ndim:
+        raise ValueError(f"{name}: expected one number, got shape {number.shape}")
     return float(number)
 
 

@@ -13,7 +13,7 @@ _Mesh = tuple[npt.NDArray[np.float32], _U32]
 
 version: str
 commit: str
-ALL_HITS: int
+OPTIONS: list[str]
 MAX_RESOLUTION: int
 
 class Error(RuntimeError):
@@ -41,8 +41,8 @@ class Scene:
         out: dict[str, npt.NDArray[Any]],
         make_arrays: Callable[[int], dict[str, npt.NDArray[Any]]],
         after_chunk: Callable[[int], object] | None,
-    ) -> tuple[_Ids, dict[str, Any], _Ids, _Ids, dict[str, _Ids]]:
-        """Offsets of the hits and their arrays, offsets of what overlaps and its objects, positions by reason."""
+    ) -> tuple[tuple[dict[str, Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
+        """The hits' arrays and offsets, if any are asked for; what overlaps, likewise; positions by reason."""
 
 def first_singular(matrices: _Doubles) -> tuple[int, str] | None: ...
 def devices() -> list[dict[str, Any]]: ...

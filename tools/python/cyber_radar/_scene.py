@@ -16,7 +16,7 @@ from . import _engine
 from ._arguments import (
     MOST_ID,
     Mode,
-    cast_options,
+    cast_option,
     device_choice,
     mesh_arrays,
     mesh_vertices,
@@ -280,9 +280,11 @@ class Scene:
         A cast whose own numbers are wrong, such as a NaN in its pose, has status INVALID and a reason, and the others
         are answered. Raises ValueError for arguments of a wrong type or shape, and Error if no device is usable.
         """
-        options = cast_options(
-            mode, any_hit, ignore_leaving, skip_overlapping, slack, clearance, tolerance, hits, resolution
-        )
+        options = {name: cast_option(value, name) for name, value in locals().items() if name in _engine.OPTIONS}
+        if mode not in ("contact", "sampled", "reference"):
+            raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
+        options["mode"] = mode
+        options["resolution"] = one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION)
         excluded = self._excluded(exclude_from_all, exclude_from_each)
         batch = self._batch(mesh, poses, displacements, distances, excluded, mask, options, out)
         if exclude_from_each is not None:
@@ -377,7 +379,7 @@ class Scene:
         arguments: dict[str, Any] = {"distances": None}
         for name, (array, inner) in arrays.items():
             arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
-        sampled = options["sampled"]
+        sampled = options["mode"] == "sampled"
         results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
         return _Batch(shape, arguments, options, results, out)
 
@@ -406,12 +408,11 @@ class Scene:
         batch: _Batch,
         after_chunk: Callable[[int], object] | None,
     ) -> Casts:
-        options = batch.options
         try:
-            hit_offsets, hit_arrays, overlapping_offsets, overlapping, reasons = engine.cast(
+            hits, overlapping, reasons = engine.cast(
                 batch.shape,
                 batch.arguments,
-                options,
+                batch.options,
                 batch.results,
                 lambda count: _new_arrays((count,), False),
                 after_chunk,
@@ -419,14 +420,11 @@ class Scene:
         finally:
             warn_of(_engine.take_validation_messages(), ValidationWarning)
         casts = Casts(**batch.results) if batch.out is None else batch.out
-        if not options["sampled"]:
+        if batch.options["mode"] != "sampled":
             casts.paper_min_l = casts.resolution = None
-        casts.hits = casts.overlapping = None
+        casts.hits = None if hits is None else Hits(**hits[0], offsets=hits[1], of_shape=batch.shape)
+        casts.overlapping = None if overlapping is None else Overlapping(*overlapping, batch.shape)
         casts.reasons = reasons
-        if options["hits"] > 1:
-            casts.hits = Hits(**hit_arrays, offsets=hit_offsets, of_shape=batch.shape)
-        if options["skip_overlapping"]:
-            casts.overlapping = Overlapping(overlapping, overlapping_offsets, batch.shape)
         return casts
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:

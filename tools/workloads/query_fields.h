@@ -1,0 +1,50 @@
+// What a query may ask for beside its course, one row for each: JSON, arrays, options of commands, Python and the table
+// in docs/query-file.md go by these rows.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "workloads/workload.h"
+
+namespace radar::tools {
+
+struct QueryField {
+  using Member = std::variant<bool QuerySpec::*, uint32_t QuerySpec::*, double QuerySpec::*,
+                              std::optional<double> QuerySpec::*, std::vector<ObjectId> QuerySpec::*>;
+  const char* name;  ///< the key in JSON and the column; the option is this with dashes
+  Member member;
+  const char* about;
+  double least = 0, most = std::numeric_limits<double>::max();  ///< of numbers
+  const char* word = nullptr;  ///< stands for the number after `most`; in a column, 0 does
+  const char* python = "";     ///< the keyword of Scene.cast that takes one value for all casts, if there is one
+  bool sampled = true;         ///< mode sampled offers it
+  bool option = false;         ///< of the command sweep
+};
+
+std::span<const QueryField> queryFields();
+
+/// Calls `use` with the member of `query` that a field stands for.
+template <class Spec, class Use>
+void withMember(const QueryField& field, Spec& query, const Use& use) {
+  std::visit([&](auto member) { use(query.*member); }, field.member);
+}
+
+/// Whether the query gives a value that is not the default.
+bool isGiven(const QueryField& field, const QuerySpec& query);
+/// Whether a number is one of the field's.
+bool takes(const QueryField& field, double value);
+/// Words for messages: what the field takes.
+std::string expectedFor(const QueryField& field);
+
+/// The first field given that mode sampled does not offer, or null.
+const QueryField* exactOnly(const QuerySpec& query);
+
+/// The rows as a table in Markdown.
+std::string queryFieldTable();
+
+}  // namespace radar::tools

@@ -81,14 +81,14 @@ Compared compare(const Scene& scene, const std::vector<Query>& queries) {
   return compared;
 }
 
-Compared compare(const tools::Workload& workload, const tools::Approach& asked) {
+Compared compare(const tools::Workload& workload, uint32_t resolution) {
   tools::ScenePlayer player(workload);
   Sweeper sweeper(device(), player.scene(), {.cpuBatch = 0});
   CpuSweeper cpu(player.scene());
   Compared compared;
-  for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
+  for (const tools::Batch& batch : tools::batchesOf(workload.queries, resolution)) {
     player.show(batch.scene);
-    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, batch.queries), tools::modeOf(asked.method),
+    compareBatch(player.scene(), sweeper, cpu, batch.queries, resolution == 0 ? Mode::contact : Mode::sampled,
                  compared);
   }
   return compared;

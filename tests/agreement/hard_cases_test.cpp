@@ -88,11 +88,11 @@ TEST_CASE("hard cases of every family, each alone, keep every promise of modes s
       tools::measureStability(test::device(), settings, onWrong, [](uint64_t) {});
   size_t expected = 0;
   for (const tools::HardFamily& family : families) {
-    expected += tools::canAnswer(tools::Method::sampled, family) ? 5 : 1;
+    expected += tools::offersSampled(family) ? 5 : 1;
   }
   CHECK(rows.size() == expected);
   for (const tools::StabilityRow& row : rows) {
-    CAPTURE(row.family, row.asked.name());
+    CAPTURE(row.family, row.asked.tier(), row.asked.resolution);
     CHECK(row.right());
     CHECK(row.tally.queries == tools::kIsolatedCases);
     CHECK(row.tally.contacts() >= 5);
@@ -110,8 +110,8 @@ TEST_CASE("with D at the contact and a rounding beside it, answers and decisions
     for (const bool decide : {false, true}) {
       for (Query& query : queries) query.anyHit = decide;
       test::compare(scene, queries);
-      if (!tools::canAnswer(tools::Method::sampled, family)) continue;
-      test::compare(scene, tools::queriesFor({tools::Method::sampled, 32}, queries));
+      if (!tools::offersSampled(family)) continue;
+      test::compare(scene, tools::queriesFor({32}, queries));
     }
   }
 }

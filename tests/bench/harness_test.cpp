@@ -1,11 +1,12 @@
-#include "bench/harness.h"
+#include "measure/timing.h"
 
-#include "bench/statistics.h"
+#include <cmath>
+
 #include "support/catch.h"
 #include "workloads/generate.h"
 
 using namespace radar;
-using namespace radar::bench;
+using namespace radar::tools;
 
 namespace {
 
@@ -27,23 +28,23 @@ TEST_CASE("methods take turns, the warm-up does not count, and one pass counts w
 }
 
 TEST_CASE("every method answers every batch in its scene, and answers that differ from the first's are counted") {
-  const tools::Workload workload = tools::makeWorkload(tools::Figure7{.teapots = 3, .boxes = 10, .steps = 2});
-  const std::vector<Batch> batches = tools::batchesOf(workload.queries);
+  const Workload workload = makeWorkload(Figure7{.teapots = 3, .boxes = 10, .steps = 2});
+  const std::vector<Batch> batches = batchesOf(workload.queries);
   REQUIRE(batches.size() == 2);
   uint32_t shown = kNone;
   const auto method = [&](double t) {
-    return Method{"",
-                  [&, t](std::span<const Query> queries) {
-                    std::vector<Result> results(queries.size());
-                    for (Result& result : results) result.t = shown + t;
-                    return results;
-                  },
-                  [&](uint32_t scene) { shown = scene; }};
+    return Session{"",
+                   [&, t](std::span<const Query> queries) {
+                     std::vector<Result> results(queries.size());
+                     for (Result& result : results) result.t = shown + t;
+                     return results;
+                   },
+                   [&](uint32_t scene) { shown = scene; }};
   };
   const std::vector<Series> all =
       measure(std::vector{method(0), method(0), method(1)}, batches, {.least = 2, .most = 2});
   for (const Series& series : all) {
-    CHECK(series.prepare.size() == 2);
+    CHECK(series.show.size() == 2);
     CHECK(series.answer.size() == 2);
     REQUIRE(series.answers.size() == 6);
     CHECK(series.answers[3].t - series.answers[2].t == 1);
@@ -54,11 +55,11 @@ TEST_CASE("every method answers every batch in its scene, and answers that diffe
 
 TEST_CASE("quantiles are values at or above their rank, and the median lies in the middle") {
   const std::vector<double> values{3, 1, 2, 4};
-  CHECK(tools::quantile(values, 0.25) == 1);
-  CHECK(tools::quantile(values, 0.5) == 2);
-  CHECK(tools::quantile(values, 0.99) == 4);
-  CHECK(tools::quantile(values, 1) == 4);
-  CHECK(std::isnan(tools::quantile({}, 0.5)));
-  CHECK(tools::median(values) == 2.5);
-  CHECK(tools::median({5, 1, 2}) == 2);
+  CHECK(quantile(values, 0.25) == 1);
+  CHECK(quantile(values, 0.5) == 2);
+  CHECK(quantile(values, 0.99) == 4);
+  CHECK(quantile(values, 1) == 4);
+  CHECK(std::isnan(quantile({}, 0.5)));
+  CHECK(median(values) == 2.5);
+  CHECK(median({5, 1, 2}) == 2);
 }

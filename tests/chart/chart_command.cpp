@@ -9,7 +9,7 @@ using radar::test::Run;
 using radar::test::runProgram;
 using radar::test::ScratchFolder;
 
-TEST_CASE("chart leaves numbers, charts and tables, and does not measure again what it has measured") {
+TEST_CASE("chart leaves numbers, charts and tables, and draws them again from its numbers") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload table1 --boxes 200 --sensors 4 --out own").status == 0);
   std::filesystem::copy(folder.path() / "own/queries.json", folder.path() / "own/It's thin.json");
@@ -31,9 +31,6 @@ TEST_CASE("chart leaves numbers, charts and tables, and does not measure again w
   }
   CHECK_THAT(folder.read("c/front-it-s-thin.svg"), Contains("Queries of own/It's thin.json"));
   CHECK_THAT(folder.read("c/points.csv"), Contains("front-queries-2,contact,3,"));
-  // Nothing is measured a second time: times would differ.
-  CHECK(runProgram(folder, command).status == 0);
-  CHECK(folder.read("c/chart.csv") == csv);
   const std::string chart = folder.read("c/front-thin.svg"), table = folder.read("c/workloads.csv");
   CHECK_THAT(table, Contains("\nit-s-thin,4,"));
   std::filesystem::remove(folder.path() / "c/front-thin.svg");

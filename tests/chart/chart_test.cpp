@@ -46,6 +46,7 @@ Result truthAt(double t) {
 RunSettings smallRun() {
   RunSettings settings;
   settings.extent = Extent::least;
+  settings.methods = [](const std::string& section) { return ours(test::device(), section, Extent::least, 2); };
   settings.cases.push_back({"front", "locked", "Interlocking shapes", 0,
                             hardScene(hardFamily("interlocking"), 1, 0, 12, Company::isolated)});
   settings.cases.push_back(
@@ -53,18 +54,11 @@ RunSettings smallRun() {
   return settings;
 }
 
-struct Ran {
-  Record record;
+Record run(const RunSettings& settings, const test::ScratchFolder& folder) {
   size_t steps = 0;
-};
-
-Ran run(const RunSettings& settings, const std::string& origin, const test::ScratchFolder& folder) {
-  Record start;
-  start.add("run", fingerprintOf(settings, origin));
-  Ran ran;
-  ran.record = measureAll(settings, start, test::device(), folder.path(), [&] { ++ran.steps; });
-  CHECK(ran.steps == ran.record.cells.size());
-  return ran;
+  Record record = measureAll(settings, {}, folder.path(), [&] { ++steps; });
+  CHECK(steps == record.cells.size());
+  return record;
 }
 
 // Every column but those of time.
@@ -98,16 +92,16 @@ TEST_CASE("of one method's rows the fastest number of threads is shown, and none
 }
 
 TEST_CASE("answers are judged against the truth: errors, misses, inventions and broken promises") {
-  const std::vector<Result> truth{truthAt(2), truthAt(2), truthAt(NAN), truthAt(4), truthAt(4), truthAt(2)};
-  const std::vector<double> sizes(6, 2);
+  Truth truth;
+  truth.answers = {truthAt(2), truthAt(2), truthAt(NAN), truthAt(4), truthAt(4), truthAt(2)};
+  truth.sizes.assign(6, 2);
   const std::vector<Result> answers{
       test::madeUpAnswer(Status::hit, 2.5, 1.5, 2.5),     truthAt(NAN),
       test::madeUpAnswer(Status::hit, 1, 0, 1),           test::madeUpAnswer(Status::hit, 3, 3, 4),
       test::madeUpAnswer(Status::undecided, NAN, 0, NAN), test::madeUpAnswer(Status::hit, 2.5, 2.25, 2.75)};
   Cell cell;
-  cell.certified = true;
   cell.queries = 6;
-  judge(cell, answers, truth, sizes);
+  static_cast<Accuracy&>(cell) = accuracyOf(answers, truth, true);
   CHECK(cell.contacts == 5);
   CHECK(cell.found == 3);
   CHECK(cell.misses == 2);
@@ -151,31 +145,10 @@ TEST_CASE("a record read is the record written, and a damaged one is refused wit
   refused(csv, "2\",", "2,", "expected a closing quote");
 }
 
-TEST_CASE("a run that was interrupted measures only what is missing, and all of it for another program") {
-  const test::ScratchFolder folder;
-  const RunSettings settings = smallRun();
-  Record first = run(settings, "origin", folder).record;
-  REQUIRE(first.cells.size() > 3);
-  constexpr double kMark = 12'345;
-  for (Cell& cell : first.cells) cell.us = kMark;
-  const Cell lost = first.cells.back();
-  first.cells.pop_back();
-  writeRecord(folder.path(), first);
-  const Record second = run(settings, "origin", folder).record;
-  REQUIRE(second.cells.size() == first.cells.size() + 1);
-  for (const Cell& cell : second.cells) CHECK((cell.us == kMark) == (&cell != &second.cells.back()));
-  CHECK(second.cells.back().method == lost.method);
-  RunSettings longer = settings;
-  longer.cases[1].workload.queries[0].distance *= 2;
-  for (const Cell& cell : run(longer, "origin", folder).record.cells) CHECK(cell.us != kMark);
-  writeRecord(folder.path(), first);
-  for (const Cell& cell : run(settings, "another", folder).record.cells) CHECK(cell.us != kMark);
-}
-
 TEST_CASE("the accuracy columns of two runs are the same to the last digit, and every certificate holds") {
   const test::ScratchFolder folder, other;
-  const Record first = run(smallRun(), "origin", folder).record;
-  CHECK(accuracyOf(first) == accuracyOf(run(smallRun(), "origin", other).record));
+  const Record first = run(smallRun(), folder);
+  CHECK(accuracyOf(first) == accuracyOf(run(smallRun(), other)));
   for (const Cell& cell : first.cells) {
     CAPTURE(cell.workload, cell.method);
     CHECK(cell.violations == 0);

@@ -61,7 +61,7 @@ TEST_CASE("moving, swapping, cutting, adding far objects and splitting D change 
       measureChanges(test::device(), {.cases = 64, .seed = 5}, onBroken, [](uint64_t) {});
   CHECK(rows.size() == 2 * 5);
   for (const ChangeRow& row : rows) {
-    CAPTURE(row.change, nameOf(row.method));
+    CAPTURE(row.change, row.asked.tier());
     CHECK(row.cases == 64);
     CHECK(row.contacts >= 16);
     CHECK(row.broken == 0);

@@ -1,4 +1,4 @@
-#include "stability/judge.h"
+#include "measure/judge.h"
 
 #include <cmath>
 

@@ -4,9 +4,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bench/harness.h"
+#include "measure/timing.h"
 
 namespace radar::bench {
+
+using tools::Batch, tools::measure, tools::Repetition, tools::Series, tools::secondsOf;
+using Method = tools::Session;
 
 /// Each adds its subcommand, which sets `status` to 1 where methods give different answers.
 void addSearch(CLI::App& app, int& status);

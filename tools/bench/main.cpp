@@ -3,7 +3,6 @@
 #include <thread>
 
 #include "bench/benchmarks.h"
-#include "bench/statistics.h"
 #include "commit/commit.h"
 #include "report/tables.h"
 
@@ -29,7 +28,7 @@ void printRows(const std::string& workload, const std::vector<Method>& methods, 
   double first = 0;
   for (size_t i = 0; i < all.size(); ++i) {
     const double perQuery = 1e6 / static_cast<double>(all[i].answers.size());
-    const double prepare = perQuery * tools::median(secondsOf(all[i].prepare));
+    const double prepare = perQuery * tools::median(secondsOf(all[i].show));
     const double host = perQuery * tools::median(secondsOf(all[i].answer, &Lap::thread));
     const double answer = perQuery * tools::median(secondsOf(all[i].answer));
     if (i == 0) first = prepare + answer;

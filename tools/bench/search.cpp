@@ -149,7 +149,7 @@ void run(const Device& device, const Case& one, const Settings& settings, std::v
   show(batches[0].scene);
   Searches searches(device, player.scene(), settings.threads);
   std::vector<Method> methods = methodsOf(searches);
-  for (Method& method : methods) method.prepare = show;
+  for (Method& method : methods) method.show = show;
   const Repetition repetition{.seconds = settings.seconds};
   if (batches.size() > 1) {
     printRows(one.name, methods, batches, repetition, status);

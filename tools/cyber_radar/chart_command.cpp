@@ -5,6 +5,7 @@
 #include <iostream>
 #include <thread>
 
+#include "baselines/baseline.h"
 #include "batch/query_file.h"
 #include "chart/charts.h"
 #include "chart/run.h"
@@ -26,9 +27,8 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --out docs/chart --render       measures nothing: draws the charts again
 
 DIR receives chart.csv with all measurements; methods.csv, workloads.csv and growth.csv, which sum them up; points.csv with
-what the charts show; and the charts as SVG files. Every measurement is saved at once: the same command continues where it
-was interrupted, if program and device are the same. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart)
-also measures other libraries.)";
+what the charts show; and the charts as SVG files. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also
+measures other libraries.)";
 
 struct Options {
   std::vector<std::string> files, meshes;
@@ -93,29 +93,30 @@ Record measure(const Options& options) {
   const uint32_t number = engine.checked().device;
   RunSettings settings;
   settings.extent = options.extent == "full" ? Extent::full : options.extent == "quick" ? Extent::quick : Extent::least;
-  settings.threads = std::max(1u, std::thread::hardware_concurrency());
   settings.cases = casesOf(options, settings.extent);
   const Device device = Device::open({.index = number});
+  settings.methods = [&, extent = settings.extent](const std::string& section) {
+    const uint32_t threads = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<Method> methods = ours(device, section, extent, threads);
+    for (Method& method : others(section, extent, threads)) methods.push_back(std::move(method));
+    return methods;
+  };
   Record record;
   record.add("command", commandOf(options));
   record.add("machine", processorInWords());
   record.add("device", device.name() + ", " + device.driver());
   record.add("commit", commit());
-  settings.baselines = peerRows();
-  for (const BaselineRow& row : settings.baselines) {
+  for (const BaselineRow& row : peerRows()) {
     record.add("library", row.family + " (" + row.product + "): " + row.limits);
   }
   for (const Case& which : settings.cases) {
     if (which.section == "front") record.add("workload", which.name + ": " + which.about);
   }
-  std::string origin;
-  for (const std::string& line : record.head) origin += line;
-  record.add("run", fingerprintOf(settings, origin));
   record.add("date", today());
   size_t cells = 0;
-  for (const Case& which : settings.cases) cells += methodsOf(which.section, settings).size();
+  for (const Case& which : settings.cases) cells += settings.methods(which.section).size();
   Progress progress("measuring", cells);
-  return measureAll(settings, record, device, options.out, [&] { progress.add(1); });
+  return measureAll(settings, record, options.out, [&] { progress.add(1); });
 }
 
 void chart(Options options) {

@@ -3,11 +3,11 @@
 
 #include "batch/atomic_file.h"
 #include "bench/clock.h"
-#include "bench/statistics.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/query_run.h"
 #include "cyber_radar/words.h"
+#include "measure/timing.h"
 #include "workloads/query_fields.h"
 
 namespace radar::tools {

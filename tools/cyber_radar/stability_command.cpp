@@ -40,7 +40,7 @@ struct Findings {
 };
 
 bool isRight(const StepRow& row) {
-  return row.method != Method::contact || (row.flips == 0 && row.excess <= kRounding);
+  return row.asked.resolution > 0 || (row.flips == 0 && row.excess <= kRounding);
 }
 
 bool isRight(const Findings& findings) {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "bench/harness.h"
+#include "measure/timing.h"
 
 namespace radar::tools {
 
@@ -23,8 +23,8 @@ std::vector<std::vector<uint32_t>> setsOf(size_t devices) {
   return sets;
 }
 
-struct Pass {
-  bench::Lap lap;
+struct Timed {
+  Lap lap;
   std::vector<Result> results;
   std::vector<PoolAnswers> batches;  // without results
 };
@@ -49,9 +49,9 @@ class Pools {
     batches_ = batchesOf(workload.queries, settings_.resolution);
   }
 
-  Pass run(size_t set, bool profile) {
+  Timed run(size_t set, bool profile) {
     Pool& pool = *(profile ? profiled_ : pools_)[set];
-    Pass pass;
+    Timed pass;
     const auto answer = [&](std::span<const Query> queries) {
       PoolAnswers& answers =
           pass.batches.emplace_back(pool.submit({queries.begin(), queries.end()}, settings_.mode).get());
@@ -60,8 +60,8 @@ class Pools {
       return std::move(answers.results);
     };
     const auto show = [&](uint32_t scene) { pool.edit([&] { player_->show(scene); }); };
-    bench::Pass played = bench::play({"", answer, show}, batches_);
-    (pass.lap = played.prepare) += played.answer;
+    Pass played = play({"", answer, show}, batches_);
+    (pass.lap = played.show) += played.answer;
     pass.results = std::move(played.answers);
     return pass;
   }
@@ -99,14 +99,14 @@ void addShare(DeviceShare& share, const PoolAnswers& batch, uint32_t device) {
   share.tail += std::max(0.0, batch.answered - idleSince);
 }
 
-void summarize(ScaleRun& run, std::vector<Pass> passes) {
-  bench::Lap all;
-  for (const Pass& pass : passes) all += pass.lap;
+void summarize(ScaleRun& run, std::vector<Timed> passes) {
+  Lap all;
+  for (const Timed& pass : passes) all += pass.lap;
   run.cores = all.process / all.wall;
-  std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.lap.wall < b.lap.wall; });
+  std::sort(passes.begin(), passes.end(), [](const Timed& a, const Timed& b) { return a.lap.wall < b.lap.wall; });
   run.least = 1e3 * passes.front().lap.wall;
   run.most = 1e3 * passes.back().lap.wall;
-  Pass& median = passes[passes.size() / 2];
+  Timed& median = passes[passes.size() / 2];
   run.ms = run.scene = 1e3 * median.lap.wall;
   run.shares.resize(run.devices.size());
   for (const PoolAnswers& batch : median.batches) {
@@ -120,7 +120,7 @@ bool sameBits(const std::vector<Result>& a, const std::vector<Result>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Result)) == 0;
 }
 
-void addStages(std::vector<StageTime>& stages, const Pass& pass) {
+void addStages(std::vector<StageTime>& stages, const Timed& pass) {
   for (const PoolAnswers& batch : pass.batches) {
     for (const StageTime& stage : batch.stats.stages) {
       const auto found =
@@ -166,11 +166,11 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint
     report.sensors.push_back(points[p].sensors);
     report.batches.push_back(pools.batches());
     report.queries.push_back(points[p].workload.queries.size());
-    std::vector<std::vector<Pass>> passes(sets.size());
+    std::vector<std::vector<Timed>> passes(sets.size());
     std::vector<Result> expected;
-    bench::inTurns({.least = settings.repeats, .most = settings.repeats}, sets.size(), [&](size_t s, bool counts) {
+    inTurns({.least = settings.repeats, .most = settings.repeats}, sets.size(), [&](size_t s, bool counts) {
       step();
-      Pass pass = pools.run(s, false);
+      Timed pass = pools.run(s, false);
       if (expected.empty()) expected = pass.results;
       report.sameBits = report.sameBits && sameBits(pass.results, expected);
       pass.results = {};
@@ -182,9 +182,9 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint
       run.point = p;
       summarize(run, std::move(passes[s]));
       if (p + 1 < points.size()) continue;
-      bench::inTurns({.least = 1, .most = 1}, 1, [&](size_t, bool counts) {
+      inTurns({.least = 1, .most = 1}, 1, [&](size_t, bool counts) {
         step();
-        const Pass profiled = pools.run(s, true);
+        const Timed profiled = pools.run(s, true);
         if (counts) addStages(run.stages, profiled);
       });
     }

@@ -5,18 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "bench/harness.h"
-#include "bench/statistics.h"
+#include "measure/case_run.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
-#include "stability/case_run.h"
 #include "workloads/generate.h"
 
 namespace radar::tools {
 
 namespace {
-
-using bench::Deadline;
 
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 constexpr uint32_t kDistinct = 16'384;  // queries that are not repeated in a batch, where it is that large
@@ -46,8 +42,8 @@ struct Standing {
   Batch batch;
 };
 
-double medianUs(const std::vector<bench::Lap>& laps, uint64_t queries) {
-  return 1e6 * median(bench::secondsOf(laps)) / static_cast<double>(queries);
+double medianUs(const std::vector<Lap>& laps, uint64_t queries) {
+  return 1e6 * median(secondsOf(laps)) / static_cast<double>(queries);
 }
 
 // The device's search and the CPU's, side by side.
@@ -66,14 +62,13 @@ class Race {
   double measure(
       const char* workload, std::span<const Batch> batches, const Deadline& deadline, Json& rows,
       const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
-    const std::vector<bench::Method> methods{
-        {"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
-        {"CPU", [&](auto queries) { return cpu_.run(queries).results; }, show}};
-    const std::vector<bench::Series> all =
-        bench::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
-    const auto us = [](const bench::Series& series) {
-      std::vector<bench::Lap> laps = series.answer;
-      for (size_t i = 0; i < laps.size(); ++i) laps[i] += series.prepare[i];
+    const std::vector<Session> methods{{"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
+                                       {"CPU", [&](auto queries) { return cpu_.run(queries).results; }, show}};
+    const std::vector<Series> all =
+        tools::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
+    const auto us = [](const Series& series) {
+      std::vector<Lap> laps = series.answer;
+      for (size_t i = 0; i < laps.size(); ++i) laps[i] += series.show[i];
       return medianUs(laps, series.answers.size());
     };
     const double device = us(all[0]), cpu = us(all[1]);
@@ -131,12 +126,12 @@ bool addStages(const Device& device, const char* name, const Workload& workload,
   const Standing standing(workload);
   const uint64_t queries = standing.batch.queries.size();
   Sweeper sweeper(device, standing.scene(), {.timestamps = true, .cpuBatch = 0});
-  std::vector<bench::Lap> laps;
+  std::vector<Lap> laps;
   std::map<std::string, std::vector<double>> times;
   std::vector<std::string> order;
-  bench::inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
+  inTurns({.least = 5, .most = 5, .deadline = deadline}, 1, [&](size_t, bool counts) {
     Answers answers;
-    const bench::Lap lap = bench::lapOf([&] { answers = sweeper.run(standing.batch.queries, mode); });
+    const Lap lap = lapOf([&] { answers = sweeper.run(standing.batch.queries, mode); });
     if (!counts) return;
     laps.push_back(lap);
     for (const StageTime& stage : answers.stats.stages) {
@@ -154,7 +149,7 @@ bool addStages(const Device& device, const char* name, const Workload& workload,
 
 constexpr uint32_t kInFlight = 4;  // batches that a lane is given at once
 
-bench::Method laneOf(const std::string& name, Pool& pool) {
+Session laneOf(const std::string& name, Pool& pool) {
   return {name, [&pool](std::span<const Query> queries) {
             std::vector<std::future<PoolAnswers>> answers;
             for (uint32_t i = 0; i < kInFlight; ++i) answers.push_back(pool.submit({queries.begin(), queries.end()}));
@@ -163,10 +158,9 @@ bench::Method laneOf(const std::string& name, Pool& pool) {
           }};
 }
 
-bool addLanes(const std::vector<bench::Method>& lanes, const Batch& batch, const Deadline& deadline, Json& rows) {
+bool addLanes(const std::vector<Session>& lanes, const Batch& batch, const Deadline& deadline, Json& rows) {
   double first = 0;
-  const std::vector<bench::Series> all =
-      bench::measure(lanes, {&batch, 1}, {.least = 3, .most = 3, .deadline = deadline});
+  const std::vector<Series> all = tools::measure(lanes, {&batch, 1}, {.least = 3, .most = 3, .deadline = deadline});
   for (size_t i = 0; i < lanes.size(); ++i) {
     if (all[i].differ > 0) throw Error(lanes[i].name + ": other answers than " + lanes[0].name);
     const double us = medianUs(all[i].answer, kInFlight * batch.queries.size());
@@ -299,7 +293,7 @@ bool measureTogether(const std::vector<Device>& devices, const std::vector<uint3
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   std::vector<std::unique_ptr<Pool>> pools;
-  std::vector<bench::Method> lanes;
+  std::vector<Session> lanes;
   const auto add = [&](const std::string& name, std::span<const Device> some) {
     pools.push_back(std::make_unique<Pool>(some, standing.scene(), kOnDevice));
     lanes.push_back(laneOf(name, *pools.back()));

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "bench/clock.h"
+#include "measure/timing.h"
 #include "radar/radar.h"
 #include "report/tables.h"
 
@@ -15,13 +15,13 @@ struct SelftestPart {
   double weight;  ///< share of the device's time; 0: as much as all the others leave
   /// Makes the first row whatever the time is, and stops at the deadline; returns false if the deadline kept it from
   /// something. `number`: of the device, in listDevices().
-  bool (*measure)(const Device& device, uint32_t number, const bench::Deadline& deadline, Json& rows);
+  bool (*measure)(const Device& device, uint32_t number, const Deadline& deadline, Json& rows);
   bool sampled = false;  ///< only on devices that support mode sampled
 };
 std::span<const SelftestPart> selftestParts();
 
 /// Every device alone, then all of them; as SelftestPart::measure.
-bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers,
-                     const bench::Deadline& deadline, Json& rows);
+bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,
+                     Json& rows);
 
 }  // namespace radar::tools

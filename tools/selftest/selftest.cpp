@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "bench/clock.h"
 #include "radar/pool.h"
 #include "selftest/measure.h"
 
 namespace radar::tools {
 
 namespace {
-
-using bench::Deadline;
 
 Json newPart() {
   return {{"state", "not begun"}, {"note", ""}, {"seconds", 0.0}, {"rows", Json::array()}};
@@ -34,7 +31,7 @@ Json newDevice(uint32_t number, const DeviceReport& report) {
 void run(Json& part, const std::function<bool(Json&)>& work, const std::function<void()>& onChange) {
   part["state"] = "running";
   onChange();
-  const bench::Stopwatch stopwatch;
+  const Stopwatch stopwatch;
   try {
     part["state"] = work(part["rows"]) ? "done" : "cut short: the time was up";
   } catch (const std::exception& error) {
@@ -141,7 +138,7 @@ Json lookAtDevices(const std::vector<uint32_t>& asked) {
 
 void runSelftest(Json& report, double minutes, const std::function<void()>& onChange) {
   report["minutes"] = minutes;
-  const bench::Stopwatch stopwatch;
+  const Stopwatch stopwatch;
   const Deadline end(60 * minutes);
   const auto tell = [&] {
     report["seconds"] = stopwatch.lap().wall;

@@ -10,7 +10,7 @@ namespace radar::tools {
 
 namespace {
 
-constexpr std::array kAsked{Method::sampled, Method::contact};
+constexpr size_t kTiers = 2;  // sampled and contact
 
 struct Change {
   const char* name;
@@ -49,14 +49,14 @@ class Comparing {
   Comparing(const Device& device, const ChangeSettings& settings) : sweeper_(device, scene_), settings_(settings) {}
 
   /// By method, by case.
-  using Answers = std::array<std::vector<Result>, kAsked.size()>;
+  using Answers = std::array<std::vector<Result>, kTiers>;
   Answers answer(const std::vector<HardCase>& cases) {
     const Workload workload = sceneOf(cases, Company::isolated);
     replaceBy(workload, 0, scene_);
     const std::vector<Query> queries = queriesOf(workload.queries);
     Answers answers;
-    answers[0] = answersBy({Method::sampled, settings_.resolution}, sweeper_, queries);
-    answers[1] = answersBy({Method::contact, 0}, sweeper_, queries);
+    answers[0] = answersBy({settings_.resolution}, sweeper_, queries);
+    answers[1] = answersBy({}, sweeper_, queries);
     return answers;
   }
 
@@ -74,7 +74,7 @@ class Comparing {
     Answers answers = answer(changed);
     if (rest.empty()) return answers;
     const Answers second = answer(rest);
-    for (size_t m = 0; m < kAsked.size(); ++m) {
+    for (size_t m = 0; m < kTiers; ++m) {
       for (size_t i = 0; i < cases.size(); ++i) {
         answers[m][i] = joined(answers[m][i], second[m][i], changed[i].distance);
       }
@@ -106,7 +106,8 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
   Comparing comparing(device, settings);
   std::vector<ChangeRow> rows;
   for (const Change& change : kChanges) {
-    for (const Method method : kAsked) rows.push_back({change.name, method, 0, 0, 0});
+    rows.push_back({change.name, {settings.resolution}});
+    rows.push_back({change.name});
   }
   for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
     std::vector<HardCase> cases;
@@ -119,15 +120,15 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
     const Comparing::Answers before = comparing.answer(cases);
     for (size_t c = 0; c < std::size(kChanges); ++c) {
       const Comparing::Answers after = comparing.answerChanged(kChanges[c], cases, random);
-      for (size_t m = 0; m < kAsked.size(); ++m) {
-        ChangeRow& row = rows[c * kAsked.size() + m];
+      for (size_t m = 0; m < kTiers; ++m) {
+        ChangeRow& row = rows[c * kTiers + m];
         for (size_t i = 0; i < cases.size(); ++i) {
           ++row.cases;
           row.contacts += meets(before[m][i]);
-          const bool undecided = kAsked[m] == Method::contact && after[m][i].status == Status::undecided;
+          const bool undecided = row.asked.resolution == 0 && after[m][i].status == Status::undecided;
           if (agree(before[m][i], after[m][i]) && !undecided) continue;
           ++row.broken;
-          onBroken(row.change + ", " + nameOf(row.method) + ", case " + std::to_string(next + i));
+          onBroken(row.change + ", " + row.asked.tier() + ", case " + std::to_string(next + i));
         }
       }
     }

@@ -33,20 +33,20 @@ std::vector<StabilityRow> measureStability(const Device& device, const Stability
   }
   std::vector<Approach> all;
   for (const uint32_t resolution : settings.resolutions) {
-    all.push_back({Method::paper, resolution});
-    all.push_back({Method::sampled, resolution});
+    all.push_back({resolution, true});
+    all.push_back({resolution});
   }
-  all.push_back({Method::contact, 0});
+  all.emplace_back();
   const uint64_t each = (settings.cases + families.size() - 1) / families.size();
   CaseRun run(device);
   std::vector<StabilityRow> rows;
   for (const std::string& family : families) {
     std::vector<Approach> asked;
     std::copy_if(all.begin(), all.end(), std::back_inserter(asked),
-                 [&](const Approach& one) { return canAnswer(one.method, hardFamily(family)); });
+                 [&](const Approach& one) { return one.resolution == 0 || offersSampled(hardFamily(family)); });
     const auto tell = [&](uint64_t number, const Approach& who, const std::string& words) {
-      onWrong(who.name() + ": " + words + "; --family \"" + family + "\" --seed " + std::to_string(settings.seed) +
-              " --first " + std::to_string(number) + " --cases 1");
+      onWrong(who.tier() + (" " + std::to_string(who.resolution)) + ": " + words + "; --family \"" + family +
+              "\" --seed " + std::to_string(settings.seed) + " --first " + std::to_string(number) + " --cases 1");
     };
     const std::vector<Tally> tallies =
         run.run({family, settings.seed, settings.first, each, Company::isolated}, asked, tell, onProgress);
@@ -57,13 +57,13 @@ std::vector<StabilityRow> measureStability(const Device& device, const Stability
 
 std::vector<StabilityRow> overFamilies(const std::vector<StabilityRow>& rows) {
   return sums(
-      rows, [](const StabilityRow& row) { return row.asked.name(); },
+      rows, [](const StabilityRow& row) { return std::pair(row.asked.resolution, row.asked.paper); },
       [](StabilityRow& sum, const StabilityRow& row) { sum.tally.add(row.tally); });
 }
 
 std::vector<StepRow> overFamilies(const std::vector<StepRow>& rows) {
   return sums(
-      rows, [](const StepRow& row) { return row.method; },
+      rows, [](const StepRow& row) { return std::string(row.asked.tier()); },
       [](StepRow& sum, const StepRow& row) {
         sum.steps += row.steps;
         sum.flips += row.flips;
@@ -78,7 +78,7 @@ Json tableOf(const std::vector<StabilityRow>& rows) {
     const uint64_t other = t[Fault::unanswered] + t[Fault::wrongStatus] + t[Fault::wrongPair] + t[Fault::wrongList] +
                            t[Fault::late] + t[Fault::point] + t[Fault::normal];
     table.push_back({{"family", row.family},
-                     {"tier", nameOf(row.asked.method)},
+                     {"tier", row.asked.tier()},
                      {"resolution", row.asked.resolution},
                      {"cases", t.queries},
                      {"contacts", t.contacts()},
@@ -96,7 +96,7 @@ Json tableOf(const std::vector<StepRow>& rows) {
   Json table = Json::array();
   for (const StepRow& row : rows) {
     table.push_back({{"family", row.family},
-                     {"tier", nameOf(row.method)},
+                     {"tier", row.asked.tier()},
                      {"steps", row.steps},
                      {"flips", row.flips},
                      {"excess", row.excess}});
@@ -108,7 +108,7 @@ Json tableOf(const std::vector<ChangeRow>& rows) {
   Json table = Json::array();
   for (const ChangeRow& row : rows) {
     table.push_back({{"change", row.change},
-                     {"tier", nameOf(row.method)},
+                     {"tier", row.asked.tier()},
                      {"cases", row.cases},
                      {"contacts", row.contacts},
                      {"broken", row.broken}});

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "measure/case_run.h"
 #include "report/tables.h"
-#include "stability/case_run.h"
 
 namespace radar::tools {
 
@@ -21,7 +21,7 @@ struct StabilityRow {
 
   uint64_t missed() const { return tally[Fault::missed] + tally.unseen; }
   /// Nothing that the method promises is broken; the paper's min(L) promises nothing.
-  bool right() const { return asked.method == Method::paper || tally.wrong == 0; }
+  bool right() const { return asked.paper || tally.wrong == 0; }
 };
 
 struct StabilitySettings {
@@ -42,7 +42,7 @@ std::vector<StabilityRow> measureStability(const Device& device, const Stability
 
 struct ChangeRow {
   std::string change;
-  Method method = Method::contact;  ///< not the paper's, which has no bracket
+  Approach asked = {};  ///< not the paper's, which has no bracket
   uint64_t cases = 0;
   uint64_t contacts = 0;  ///< cases in which it finds one
   uint64_t broken = 0;    ///< the two answers cannot both be right
@@ -68,7 +68,7 @@ std::vector<ChangeRow> measureChanges(const Device& device, const ChangeSettings
 
 struct StepRow {
   std::string family;
-  Method method = Method::contact;
+  Approach asked = {};
   uint64_t steps = 0;  ///< from pose to pose, where the reference finds contact in both
   uint64_t flips = 0;  ///< steps in which only one of the two contacts is found
   /// The most that t moved in a step beyond what the reference's did, in units of max(size of the sensor, t*).

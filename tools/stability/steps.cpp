@@ -39,9 +39,11 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
   std::vector<StepRow> rows;
   for (const HardFamily& family : hardFamilies()) {
     std::vector<StepRow> own;
-    for (const Method method : {Method::paper, Method::sampled, Method::contact}) {
-      if (canAnswer(method, family)) own.push_back({family.name, method, 0, 0, 0});
+    if (offersSampled(family)) {
+      own.push_back({family.name, {settings.resolution, true}});
+      own.push_back({family.name, {settings.resolution}});
     }
+    own.push_back({family.name});
     for (uint32_t next = 0; next < settings.cases; next += kIsolatedCases) {
       const uint32_t cases = std::min(settings.cases - next, kIsolatedCases);
       const Workload workload = hardScene(family, settings.seed, next, cases, Company::isolated);
@@ -54,8 +56,7 @@ std::vector<StepRow> measureSteps(const Device& device, const StepSettings& sett
       }
       const std::vector<Result> exact = cpu.run(queries).results;
       for (StepRow& row : own) {
-        const uint32_t resolution = row.method == Method::contact ? 0 : settings.resolution;
-        const std::vector<Result> results = answersBy({row.method, resolution}, sweeper, queries);
+        const std::vector<Result> results = answersBy(row.asked, sweeper, queries);
         for (size_t i = 1; i < queries.size(); ++i) {
           if (i % (settings.steps + 1) == 0) continue;
           count(row, results[i - 1], results[i], exact[i - 1], exact[i], sensorSize(scene, queries[i]));

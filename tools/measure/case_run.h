@@ -9,32 +9,28 @@
 #include <string>
 #include <vector>
 
-#include "stability/judge.h"
+#include "measure/judge.h"
 #include "workloads/hard_cases.h"
 
 namespace radar::tools {
 
-/// `paper` is the paper's literal min(L), which mode sampled reports beside its own answer.
-enum class Method { paper, sampled, contact };
-inline constexpr size_t kMethods = 3;
-const char* nameOf(Method method);
-
-/// A method and its resolution; 0 in mode contact.
+/// Mode sampled with so many pixels; with none, mode contact.
 struct Approach {
-  Method method = Method::contact;
   uint32_t resolution = 0;
-  /// "sampled 64", "contact".
-  std::string name() const;
+  bool paper = false;  ///< the paper's literal min(L), which mode sampled reports beside its own answer
+
+  Mode mode() const { return resolution == 0 ? Mode::contact : Mode::sampled; }
+  /// "paper", "sampled" or "contact".
+  const char* tier() const { return resolution == 0 ? "contact" : paper ? "paper" : "sampled"; }
 };
 
 /// The paper's own reading of an answer in mode sampled: contact after min(L) if that is within D, now if it is
 /// negative. It vouches for no bounds.
 Result paperAnswer(const Query& query, const Result& sampled);
 
-/// Whether it offers what the family's queries ask for.
-bool canAnswer(Method method, const HardFamily& family);
+/// Whether mode sampled offers what the family's queries ask for.
+bool offersSampled(const HardFamily& family);
 
-Mode modeOf(Method method);
 /// The queries at the resolution that is asked.
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);

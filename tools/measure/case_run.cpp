@@ -1,10 +1,9 @@
-#include "stability/case_run.h"
+#include "measure/case_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "bench/clock.h"
+#include "measure/timing.h"
 #include "radar/cpu_sweeper.h"
 #include "workloads/generate.h"
 #include "workloads/same_answer.h"
@@ -21,21 +20,13 @@ uint32_t strideOf(uint32_t resolution) {
   return std::max(1u, (resolution / 128) * (resolution / 128));
 }
 
-Verdict judgeAs(Method method, const Scene& scene, const Query& query, const Result& result, const Result& exact) {
-  if (method != Method::paper) return judge(scene, query, modeOf(method), result, exact);
+Verdict judgeAs(const Approach& asked, const Scene& scene, const Query& query, const Result& result,
+                const Result& exact) {
+  if (!asked.paper) return judge(scene, query, asked.mode(), result, exact);
   return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
 }
 
 }  // namespace
-
-const char* nameOf(Method method) {
-  constexpr std::array<const char*, kMethods> kNames{"paper", "sampled", "contact"};
-  return kNames[static_cast<size_t>(method)];
-}
-
-std::string Approach::name() const {
-  return method == Method::contact ? nameOf(method) : nameOf(method) + (" " + std::to_string(resolution));
-}
 
 Result paperAnswer(const Query& query, const Result& sampled) {
   Result paper = sampled;
@@ -46,12 +37,8 @@ Result paperAnswer(const Query& query, const Result& sampled) {
   return paper;
 }
 
-bool canAnswer(Method method, const HardFamily& family) {
-  return method == Method::contact || !(family.ignoresLeaving || family.skipsOverlapping);
-}
-
-Mode modeOf(Method method) {
-  return method == Method::contact ? Mode::contact : Mode::sampled;
+bool offersSampled(const HardFamily& family) {
+  return !family.ignoresLeaving && !family.skipsOverlapping;
 }
 
 std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
@@ -60,8 +47,8 @@ std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries)
 }
 
 std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
-  std::vector<Result> results = sweeper.run(queriesFor(asked, queries), modeOf(asked.method)).results;
-  if (asked.method != Method::paper) return results;
+  std::vector<Result> results = sweeper.run(queriesFor(asked, queries), asked.mode()).results;
+  if (!asked.paper) return results;
   for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
   return results;
 }
@@ -160,14 +147,14 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
   for (uint64_t next = range.first; next < range.first + range.cases;) {
     const std::vector<Query> queries = stage_->show(range, next, size);
     Answers exact, found;
-    const double cpuSeconds = bench::lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
+    const double cpuSeconds = lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
     double seconds = 0;
     for (size_t a = 0; a < asked.size(); ++a) {
       if (next / size % strideOf(asked[a].resolution) != 0) continue;
       const std::vector<Query> put = queriesFor(asked[a], queries);
       // The paper's min(L) stands beside mode sampled's own answer.
       if (a == 0 || asked[a].resolution != asked[a - 1].resolution) {
-        seconds = bench::lapOf([&] { found = stage_->sweeper.run(put, modeOf(asked[a].method)); }).wall;
+        seconds = lapOf([&] { found = stage_->sweeper.run(put, asked[a].mode()); }).wall;
       }
       Tally& tally = tallies[a];
       tally.deviceSeconds += seconds;
@@ -177,10 +164,10 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
       for (size_t i = 0; i < put.size(); ++i) {
         const Result &result = found.results[i], &right = exact.results[i];
         Verdict verdict =
-            range.steps ? judgeByBits(result, right) : judgeAs(asked[a].method, stage_->scene, put[i], result, right);
+            range.steps ? judgeByBits(result, right) : judgeAs(asked[a], stage_->scene, put[i], result, right);
         verdict.set(Fault::wrongList, !sameLists(found, exact, i));
         tally.add(verdict, right);
-        if (asked[a].method == Method::paper || verdict.right()) continue;
+        if (asked[a].paper || verdict.right()) continue;
         const auto reason = found.reasons.find(i);
         onWrong(next + i, asked[a], verdict.words() + " " + (reason == found.reasons.end() ? "" : reason->second));
       }

@@ -1,4 +1,4 @@
-#include "chart/cases.h"
+#include "measure/case.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include "bench/benchmarks.h"
 #include "commit/commit.h"
-#include "report/tables.h"
+#include "measure/report.h"
 
 namespace radar::bench {
 

@@ -1,20 +1,17 @@
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <thread>
 
 #include "baselines/baseline.h"
 #include "batch/query_file.h"
-#include "chart/charts.h"
-#include "chart/run.h"
-#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/origin.h"
 #include "import/mesh_import.h"
-#include "plot/plot.h"
+#include "measure/chart.h"
+#include "measure/plot.h"
 
 namespace radar::tools {
 
@@ -26,12 +23,12 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --out chart batch.json          with queries of your own
   cyber-radar chart --out docs/chart --render       measures nothing: draws the charts again
 
-DIR receives chart.csv with all measurements; methods.csv, workloads.csv and growth.csv, which sum them up; points.csv with
-what the charts show; and the charts as SVG files. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart) also
-measures other libraries.)";
+DIR receives index.html, a page with charts and tables; the charts as SVG files and the tables as .csv; and report.json, which
+has all measurements. Tables are on disk as soon as a workload is measured. A program built with -DRADAR_BASELINES=ON
+(./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
-  std::vector<std::string> files, meshes;
+  std::vector<std::string> files, meshes, sections{"front", "table1"};
   std::string out, device, extent = "full";
   bool quick = false, render = false;
 };
@@ -44,98 +41,85 @@ std::string nameFor(const std::string& file, const std::vector<Case>& cases) {
     c = plain ? static_cast<char>(std::tolower(c)) : '-';
   }
   std::string name = stem;
-  const auto isTaken = [&](const Case& one) { return one.name == name; };
+  const auto isTaken = [&](const Case& one) { return one.workload == name; };
   for (int i = 2; std::any_of(cases.begin(), cases.end(), isTaken); ++i) name = stem + "-" + std::to_string(i);
   return name;
 }
 
-// For a shell.
-std::string asArgument(const std::string& text) {
-  const auto isPlain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._-+,=:@%", c);
-  };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain)) return text;
-  std::string argument = "'";
-  for (const char c : text) argument += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return argument + "'";
-}
-
+// Reads all files, so that none is refused after others were measured.
 std::vector<Case> casesOf(const Options& options, Extent extent) {
   std::vector<Case> cases = frontCases(extent);
   std::vector<std::string> warnings;
   std::vector<MeshData> meshes;
   for (const std::string& file : options.meshes) meshes.push_back(readMesh(file, warnings));
   if (!meshes.empty()) cases.push_back(meshesCase(extent, std::move(meshes)));
+  Outputs outputs;
+  outputs.addIn("--out", options.out, {"report.json"});
   for (const std::string& file : options.files) {
-    Workload workload = readQueryFile(file, warnings);
+    Workload workload = readQueryFile(file, warnings, outputs);
     if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
-    cases.push_back({"front", nameFor(file, cases), "Queries of " + file, 0, std::move(workload)});
+    cases.push_back({.section = "front", .workload = nameFor(file, cases), .about = "Queries of " + file, .make = [=] {
+                       return workload;
+                     }});
   }
   printWarnings(warnings);
   for (auto* more : {table1Cases, growthCases}) {
     for (Case& which : more(extent)) cases.push_back(std::move(which));
   }
+  std::erase_if(cases, [&](const Case& one) {
+    return std::find(options.sections.begin(), options.sections.end(), one.section) == options.sections.end();
+  });
   return cases;
 }
 
-std::string commandOf(const Options& options) {
-  std::string command = "cyber-radar chart --out " + asArgument(options.out);
-  if (options.extent != "full") command += " --extent " + options.extent;
-  if (!options.device.empty()) command += " --device " + options.device;
-  for (const std::string& mesh : options.meshes) command += " --mesh " + asArgument(mesh);
-  for (const std::string& file : options.files) command += " " + asArgument(file);
-  return command;
-}
-
-Record measure(const Options& options) {
+Json measure(const Options& options) {
   EngineOptions engine;
   engine.device = options.device;
   const uint32_t number = engine.checked().device;
-  RunSettings settings;
-  settings.extent = options.extent == "full" ? Extent::full : options.extent == "quick" ? Extent::quick : Extent::least;
-  settings.cases = casesOf(options, settings.extent);
+  const Extent extent = options.extent == "full"    ? Extent::full
+                        : options.extent == "quick" ? Extent::quick
+                                                    : Extent::least;
+  const std::vector<Case> cases = casesOf(options, extent);
   const Device device = Device::open({.index = number});
-  settings.methods = [&, extent = settings.extent](const std::string& section) {
+  const auto methods = [&](const std::string& section) {
     const uint32_t threads = std::max(1u, std::thread::hardware_concurrency());
-    std::vector<Method> methods = ours(device, section, extent, threads);
-    for (Method& method : others(section, extent, threads)) methods.push_back(std::move(method));
-    return methods;
+    std::vector<Method> all = ours(device, section, extent, threads);
+    for (Method& method : others(section, extent, threads)) all.push_back(std::move(method));
+    return all;
   };
-  Record record;
-  record.add("command", commandOf(options));
-  record.add("machine", processorInWords());
-  record.add("device", device.name() + ", " + device.driver());
-  record.add("commit", commit());
+  Json report = newReport("Cyber Radar: accuracy against speed", {{"device", device.name() + ", " + device.driver()}});
+  Json libraries = Json::array();
   for (const BaselineRow& row : peerRows()) {
-    record.add("library", row.family + " (" + row.product + "): " + row.limits);
+    libraries.push_back({{"library", row.family}, {"product", row.product}, {"limits", row.limits}});
   }
-  for (const Case& which : settings.cases) {
-    if (which.section == "front") record.add("workload", which.name + ": " + which.about);
-  }
-  record.add("date", today());
+  if (!libraries.empty()) setRows(report, "libraries", "Other libraries, and what they cannot do", libraries);
   size_t cells = 0;
-  for (const Case& which : settings.cases) cells += settings.methods(which.section).size();
+  for (const Case& one : cases) cells += methods(one.section).size();
   Progress progress("measuring", cells);
-  return measureAll(settings, record, options.out, [&] { progress.add(1); });
+  measureCases({extent, cases, methods}, report, options.out, [&] { progress.add(1); });
+  return report;
+}
+
+Json readReport(const std::string& folder) {
+  std::ifstream file(std::filesystem::path(folder) / "report.json");
+  Json report = Json::parse(file, nullptr, false);
+  if (report.is_discarded())
+    throw InputError("--out", folder, "expected a folder with the report.json of an earlier run");
+  return report;
 }
 
 void chart(Options options) {
   requireGnuplot();
   if (options.quick) options.extent = "quick";
   makeFolder("--out", options.out);
-  std::optional<Record> record;
-  if (options.render) {
-    record = readRecord(options.out);
-    if (!record) throw InputError("--out", options.out, "expected a folder with the chart.csv of an earlier run");
-  } else {
-    record = measure(options);
+  Json report = options.render ? readReport(options.out) : measure(options);
+  sumUp(report, options.out);
+  for (const char* name : {"workloads", "methods", "growth"}) {
+    const Json& part = partOf(report, name);
+    if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
-  writeCharts(options.out, *record);
-  std::cout << "Section front, by workload; microseconds per query:\n"
-            << textOf(workloadTable(*record)) << "\nBy method; errors in sensor sizes:\n"
-            << textOf(methodTable(*record)) << "\nAs the work grows; microseconds per query:\n"
-            << textOf(growthTable(*record)) << "\nIn " << std::filesystem::absolute(options.out).string()
-            << ": chart.csv, these tables as CSV, charts as SVG\n";
+  std::cout << "In " << std::filesystem::absolute(options.out).string()
+            << ": index.html, report.json, tables as .csv, charts as .svg\n";
 }
 
 }  // namespace
@@ -155,6 +139,10 @@ void addChartCommand(CLI::App& app) {
       ->check(CLI::IsMember({"full", "quick", "least"}))
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "--extent quick");
+  command->add_option("--section", options->sections, "What: accuracy against speed, the paper's Table 1, growing work")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"front", "table1", "growth"}))
+      ->capture_default_str();
   command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
   command->callback([options] { chart(*options); });
 }

@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <numeric>
 
 #include "batch/atomic_file.h"
@@ -9,7 +10,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/origin.h"
 #include "cyber_radar/query_run.h"
-#include "plot/plot.h"
+#include "measure/plot.h"
 #include "scale/report.h"
 #include "workloads/generate.h"
 
@@ -90,6 +91,23 @@ std::vector<uint32_t> numbersOf(std::vector<uint32_t> asked) {
   return asked;
 }
 
+// The lines of the chart.
+Json chartRows(const ScaleReport& report) {
+  Json rows = Json::array();
+  std::map<std::string, int> linetypes;
+  for (const Json& row : runTable(report)) {
+    const std::string devices = row["devices"];
+    linetypes.emplace(devices, 2 * linetypes.size() + 1);
+    rows.push_back({{"name", devices},
+                    {"linetype", linetypes[devices]},
+                    {"x", row["sensors"]},
+                    {"ms_per_batch", row["ms_per_batch"]},
+                    {"speed_up", row["speed_up"]},
+                    {"efficiency_%", 100 * row["efficiency"].get<double>()}});
+  }
+  return rows;
+}
+
 int scale(Options options) {
   if (options.quick) {
     options.steps = std::min(options.steps, 4u);
@@ -135,7 +153,10 @@ int scale(Options options) {
     writeAtomically(folder / "scale.csv", csvOf(shareTable(report)));
     writeAtomically(folder / "trace.json", traceOf(report));
     const std::string origin = namesOf(devices) + "; " + processorInWords() + "; commit " + commit();
-    writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title, origin}));
+    writeAtomically(folder / "scale.svg",
+                    plot(kLinesScript, chartRows(report),
+                         {title, origin, "sensors in a batch", "devices", "milliseconds per batch",
+                          "speed-up over the first device", "efficiency, %"}));
     std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": scale.csv, scale.svg, trace.json\n";
   }
   return 0;

@@ -1,6 +1,7 @@
 // The workloads of each section of the chart.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,19 +14,21 @@ enum class Extent { full, quick, least };
 
 /// A workload with a place in the chart.
 struct Case {
-  std::string section;  ///< front, table1 or growth
-  std::string name, about;
-  double x = 0;  ///< on its section's axis
-  Workload workload;
+  std::string section;
+  std::string workload;  ///< its name, which no other section has
+  std::string about;
+  std::string axis;  ///< what x is, where cases of one workload grow; empty: there is one, and a chart of its front
+  double x = 0;
+  std::function<Workload()> make;
 };
 
 /// Section front: the paper's Table 1 and Figure 7, convex, non-convex, interlocking, thin, grazing shapes.
 std::vector<Case> frontCases(Extent extent);
 /// Meshes in random poses; not empty.
 Case meshesCase(Extent extent, std::vector<MeshData> meshes);
-/// Section table1: teapots among 10,000 to 30,000 boxes; x is the number of boxes.
+/// Section table1: teapots among 10,000 to 30,000 boxes.
 std::vector<Case> table1Cases(Extent extent);
-/// Section growth: x is the number of boxes, of sensors in a batch, of triangles of each mesh, as the name says.
+/// Section growth: more boxes, more sensors in a batch, more triangles of each mesh.
 std::vector<Case> growthCases(Extent extent);
 
 }  // namespace radar::tools

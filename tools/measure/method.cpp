@@ -143,13 +143,12 @@ std::vector<Method> others(const std::string& section, Extent extent, uint32_t t
     if (!has(row.sections, section) || (section == "growth" && !full)) continue;
     for (const uint32_t size : sizesOf(row, section, extent)) {
       const auto add = [&](uint32_t number) {
-        methods.push_back({.family = row.family,
-                           .size = size,
-                           .threads = number,
-                           .apart = true,
-                           .open = [row, size, number](const Workload& workload) {
-                             return casting(workload, row, size, number);
-                           }});
+        methods.push_back(
+            {.family = row.family,
+             .size = size,
+             .threads = number,
+             .apart = true,
+             .open = [row, size, number](const Workload& workload) { return casting(workload, row, size, number); }});
       };
       const uint32_t most = row.threads ? threads : 1;
       if (full || most == 1) add(1);

@@ -115,8 +115,8 @@ Accuracy accuracyOf(std::span<const Result> answers, const Truth& truth, bool ce
     accuracy.found += verdict.found;
     accuracy.misses += verdict[Fault::missed] || verdict.unseen;
     accuracy.falseHits += verdict[Fault::falseHit];
-    accuracy.violations += verdict[Fault::bracket] || (verdict[Fault::falseHit] && isBounded) ||
-                           (verdict[Fault::missed] && certified);
+    accuracy.violations +=
+        verdict[Fault::bracket] || (verdict[Fault::falseHit] && isBounded) || (verdict[Fault::missed] && certified);
     if (!verdict.found) continue;
     errors.push_back(finite(verdict.error));
     if (certified) widths.push_back(finite((answers[i].hi - answers[i].lo) / truth.sizes[i]));
@@ -128,18 +128,19 @@ Accuracy accuracyOf(std::span<const Result> answers, const Truth& truth, bool ce
   return accuracy;
 }
 
-Cell tryOut(const Case& which, const Method& method, const Truth& truth, Repetition repetition) {
+Cell tryOut(const Case& which, const Workload& workload, const Method& method, const Truth& truth,
+            const Repetition& repetition) {
   Cell cell;
   cell.section = which.section;
-  cell.workload = which.name;
+  cell.workload = which.workload;
   cell.x = which.x;
   cell.method = method.name();
   cell.family = method.family;
   cell.size = method.size;
   cell.threads = method.threads;
-  cell.queries = static_cast<uint32_t>(which.workload.queries.size());
-  const Played played = method.apart ? playApart(method, which.workload, repetition, cell.failed)
-                                     : playAll(method, which.workload, repetition);
+  cell.queries = static_cast<uint32_t>(workload.queries.size());
+  const Played played =
+      method.apart ? playApart(method, workload, repetition, cell.failed) : playAll(method, workload, repetition);
   if (!cell.failed.empty()) return cell;
   static_cast<Times&>(cell) = played.times;
   static_cast<Accuracy&>(cell) = accuracyOf(played.answers, truth, method.certified);

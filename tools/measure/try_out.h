@@ -86,7 +86,9 @@ Truth truthOf(const Workload& workload);
 /// How right the answers are; `certified`: as Method.
 Accuracy accuracyOf(std::span<const Result> answers, const Truth& truth, bool certified);
 
-/// The whole question, whatever the file says of modes. A method that is apart may fail, and Cell::failed says how.
-Cell tryOut(const Case& which, const Method& method, const Truth& truth, Repetition repetition);
+/// The whole question, whatever the file says of modes. `workload`, `truth`: of the case. A method that is apart may
+/// fail, and Cell::failed says how.
+Cell tryOut(const Case& which, const Workload& workload, const Method& method, const Truth& truth,
+            const Repetition& repetition);
 
 }  // namespace radar::tools

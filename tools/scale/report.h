@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "report/tables.h"
+#include "measure/report.h"
 #include "scale/measure.h"
 
 namespace radar::tools {

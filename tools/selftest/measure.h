@@ -5,7 +5,7 @@
 
 #include "measure/timing.h"
 #include "radar/radar.h"
-#include "report/tables.h"
+#include "measure/report.h"
 
 namespace radar::tools {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "radar/radar.h"
-#include "report/tables.h"
+#include "measure/report.h"
 
 namespace radar::tools {
 

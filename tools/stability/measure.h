@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "measure/case_run.h"
-#include "report/tables.h"
+#include "measure/report.h"
 
 namespace radar::tools {
 

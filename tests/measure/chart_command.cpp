@@ -20,17 +20,14 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
   INFO(first.err);
   REQUIRE(first.status == 0);
   CHECK_THAT(first.out, Contains("interlocking") && Contains("queries-2"));
-  const std::string csv = folder.read("c/chart.csv");
-  for (const char* workload :
-       {"figure7", "interlocking", "thin", "grazing", "meshes", "queries", "boxes", "triangles"}) {
-    CHECK_THAT(csv, Contains(std::string(",") + workload + ",") || Contains(std::string("growth,") + workload));
-  }
+  CHECK_THAT(folder.read("c/front.csv"), Contains("\nfront,interlocking,") && Contains("\nfront,meshes,"));
+  CHECK_THAT(folder.read("c/table1.csv"), Contains("\ntable1,table1,30000,"));
   // Names of files for charts and links, and none twice.
-  for (const char* file : {"c/front-queries.svg", "c/front-queries-2.svg", "c/front-it-s-thin.svg"}) {
+  for (const char* file :
+       {"c/front-thin.svg", "c/front-queries.svg", "c/front-queries-2.svg", "c/front-it-s-thin.svg", "c/table1.svg"}) {
     CHECK_THAT(folder.read(file), Contains("</svg>"));
   }
   CHECK_THAT(folder.read("c/front-it-s-thin.svg"), Contains("Queries of own/It's thin.json"));
-  CHECK_THAT(folder.read("c/points.csv"), Contains("front-queries-2,contact,3,"));
   const std::string chart = folder.read("c/front-thin.svg"), table = folder.read("c/workloads.csv");
   CHECK_THAT(table, Contains("\nit-s-thin,4,"));
   std::filesystem::remove(folder.path() / "c/front-thin.svg");
@@ -40,11 +37,19 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
   CHECK(folder.read("c/workloads.csv") == table);
 }
 
+TEST_CASE("chart measures only the sections that are named") {
+  const ScratchFolder folder;
+  CHECK(runProgram(folder, "chart --extent least --section growth --out c").status == 0);
+  CHECK_THAT(folder.read("c/growth-boxes.svg"), Contains("More of the scene"));
+  CHECK_THAT(folder.read("c/growth.csv"), Contains("\ngrowth-sensors,contact,1,"));
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "c/front.csv"));
+}
+
 TEST_CASE("chart refuses what it cannot do with status 2 and the option's or file's name") {
   const ScratchFolder folder;
   folder.write("file", "");
   std::filesystem::create_directory(folder.path() / "broken");
-  folder.write("broken/chart.csv", "section,workload\n");
+  folder.write("broken/report.json", "{");
   folder.write("none.json", R"({"format": "cyber-radar-queries-1", "meshes": [], "scenes": [], "queries": []})");
   const auto refused = [&](const std::string& arguments, const std::string& what) {
     CAPTURE(arguments);
@@ -54,8 +59,8 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   };
   refused("chart", "--out");
   refused("chart --out file", "--out");
-  refused("chart --out c --render", "chart.csv");
-  refused("chart --out broken --render", "broken/chart.csv");
+  refused("chart --out c --render", "report.json");
+  refused("chart --out broken --render", "broken");
   refused("chart --out c missing.json", "missing.json");
   refused("chart --out c none.json", "queries");
   refused("chart --out c --mesh missing.ply", "missing.ply");

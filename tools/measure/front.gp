@@ -1,8 +1,8 @@
 # Accuracy against speed on one workload:
-#   gnuplot tools/plot/style.gp -c tools/plot/front.gp docs/chart/points.csv front-thin 'Thin shapes' '' 'an H100' > thin.svg
+# ARG1: the table; ARG2: title; ARG3: where the figures are from.
 # Methods with wrong answers are in the upper panel, at their share; the others in the lower one, at their worst error.
 
-csv = ARG1; chart = ARG2
+csv = ARG1
 
 array Name[23]
 do for [n = 1:23] { Name[n] = '' }
@@ -11,17 +11,17 @@ min(a, b) = a < b ? a : b
 max(a, b) = a > b ? a : b
 note(wrong) = (Name[column('linetype')] = strcol('name'), worst = max(worst, column('worst_error')), \
                leastWrong = wrong > 0 ? min(leastWrong, wrong) : leastWrong, column('us'))
-stats csv using (strcol('chart') eq chart ? note(column('wrong_percent')) : NaN) nooutput
+stats csv using (note(column('wrong_percent'))) nooutput
 set xrange [STATS_min / 1.5 : STATS_max * 1.5]
 
-us(n) = strcol('chart') eq chart && column('linetype') == n ? column('us') : NaN
+us(n) = column('linetype') == n ? column('us') : NaN
 wrongOr(otherwise) = column('wrong_percent') > 0 ? column('wrong_percent') : otherwise
 errorOr(otherwise) = column('wrong_percent') > 0 ? otherwise : column('worst_error')
 markSize(n) = column('size') > 0 ? 0.4 + 0.1 * log(column('size')) : 1.1
 
 others = 0
 do for [n = 6:20] { others = others || Name[n] ne '' }
-set label 1 ARG5
+set label 1 ARG3
 
 set multiplot
 set logscale xy
@@ -30,7 +30,7 @@ set rmargin at screen 0.74
 
 set tmargin at screen 0.88
 set bmargin at screen 0.515
-set title ARG3
+set title ARG2
 set ylabel 'wrong answers, % of queries'
 set yrange [leastWrong / 1.3 : 100]
 set ytics (0.001, 0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)

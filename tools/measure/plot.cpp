@@ -1,4 +1,4 @@
-#include "plot/plot.h"
+#include "measure/plot.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -10,7 +10,11 @@
 #include <memory>
 #include <stdexcept>
 
+#include "batch/atomic_file.h"
+
 namespace radar::tools {
+
+extern const char* const kStyleScript;  // which runs before each script
 
 namespace {
 
@@ -20,20 +24,19 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
   throw std::runtime_error("gnuplot, which draws the charts, " + problem);
 }
 
-// Unnamed files: with pipes on both sides, both programs could wait for each other.
-File openFile() {
+// An unnamed file: with pipes on both sides, both programs could wait for each other.
+File fileOf(const std::string& text) {
   File file(std::tmpfile(), std::fclose);
-  if (!file) fail(std::string("cannot be given a script: ") + std::strerror(errno));
+  if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(file.get()) != 0) {
+    fail(std::string("cannot be given a script: ") + std::strerror(errno));
+  }
+  std::rewind(file.get());
   return file;
 }
 
 // What gnuplot writes to its standard output for a script and its arguments, which are never parsed as commands.
 std::string gnuplot(const std::string& script, const std::vector<std::string>& texts) {
-  const File in = openFile(), out = openFile();
-  if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() || std::fflush(in.get()) != 0) {
-    fail(std::string("cannot be given a script: ") + std::strerror(errno));
-  }
-  std::rewind(in.get());
+  const File in = fileOf(script), out = fileOf("");
   std::vector<const char*> arguments{"gnuplot", "-d", "-c", "/dev/stdin"};  // -d: ignores the user's settings
   for (const std::string& text : texts) arguments.push_back(text.c_str());
   arguments.push_back(nullptr);
@@ -61,9 +64,18 @@ std::string gnuplot(const std::string& script, const std::vector<std::string>& t
 
 }  // namespace
 
-std::string plot(const char* script, const std::filesystem::path& csv, const std::vector<std::string>& texts) {
-  // gnuplot runs a file name that begins with < as a command: an absolute path does not.
-  std::vector<std::string> arguments{std::filesystem::absolute(csv).string()};
+std::string plot(const char* script, Json table, const std::vector<std::string>& texts) {
+  // gnuplot has its own rules for quotation marks and backslashes in a table: cells are without.
+  for (Json& row : table) {
+    for (Json& value : row) {
+      if (!value.is_string()) continue;
+      for (char& c : value.get_ref<std::string&>()) {
+        if (static_cast<unsigned char>(c) < ' ' || std::strchr("\",\\", c) != nullptr) c = ' ';
+      }
+    }
+  }
+  const File csv = fileOf(csvOf(table));  // open in the child, too
+  std::vector<std::string> arguments{"/dev/fd/" + std::to_string(fileno(csv.get()))};
   arguments.insert(arguments.end(), texts.begin(), texts.end());
   std::string picture = gnuplot(std::string(kStyleScript) + script, arguments);
   // It does not report that there was no room for what it wrote.
@@ -71,6 +83,11 @@ std::string plot(const char* script, const std::filesystem::path& csv, const std
     fail("left a picture unfinished: is there room for temporary files?");
   }
   return picture;
+}
+
+void drawFor(Json& part, const std::filesystem::path& folder, const std::string& name, const std::string& svg) {
+  writeAtomically(folder / (name + ".svg"), svg);
+  part["charts"].push_back(name);
 }
 
 void requireGnuplot() {

@@ -73,11 +73,11 @@ void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const s
 
 }  // namespace
 
-Compared compare(const Scene& scene, const std::vector<Query>& queries) {
+Compared compare(const Scene& scene, const std::vector<Query>& queries, Mode mode) {
   Sweeper sweeper(device(), scene, {.cpuBatch = 0});
   CpuSweeper cpu(scene);
   Compared compared;
-  compareBatch(scene, sweeper, cpu, queries, Mode::contact, compared);
+  compareBatch(scene, sweeper, cpu, queries, mode, compared);
   return compared;
 }
 

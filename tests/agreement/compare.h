@@ -16,7 +16,7 @@ struct Compared {
 };
 
 /// Asks the device for all queries in one batch, and CHECKs every promise of every answer.
-Compared compare(const Scene& scene, const std::vector<Query>& queries);
+Compared compare(const Scene& scene, const std::vector<Query>& queries, Mode mode = Mode::contact);
 /// Likewise every batch of the workload: in mode sampled with so many pixels, or in mode contact.
 Compared compare(const tools::Workload& workload, uint32_t resolution = 0);
 

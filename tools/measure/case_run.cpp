@@ -20,14 +20,8 @@ uint32_t strideOf(uint32_t resolution) {
   return std::max(1u, (resolution / 128) * (resolution / 128));
 }
 
-Verdict judgeAs(const Approach& asked, const Scene& scene, const Query& query, const Result& result,
-                const Result& exact) {
-  if (!asked.paper) return judge(scene, query, asked.mode(), result, exact);
-  return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
-}
-
-}  // namespace
-
+/// The paper's own reading of an answer in mode sampled: contact after min(L) if that is within D, now if it is
+/// negative. It vouches for no bounds.
 Result paperAnswer(const Query& query, const Result& sampled) {
   Result paper = sampled;
   const bool hit = sampled.paperMinL <= query.distance;
@@ -37,20 +31,16 @@ Result paperAnswer(const Query& query, const Result& sampled) {
   return paper;
 }
 
+Verdict judgeAs(const Approach& asked, const Scene& scene, const Query& query, const Result& result,
+                const Result& exact) {
+  if (!asked.paper) return judge(scene, query, asked.mode(), result, exact);
+  return judge(paperAnswer(query, result), exact, unitOf(scene, query, exact));
+}
+
+}  // namespace
+
 bool offersSampled(const HardFamily& family) {
   return !family.ignoresLeaving && !family.skipsOverlapping;
-}
-
-std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries) {
-  for (Query& query : queries) query.resolution = asked.resolution;
-  return queries;
-}
-
-std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries) {
-  std::vector<Result> results = sweeper.run(queriesFor(asked, queries), asked.mode()).results;
-  if (!asked.paper) return results;
-  for (size_t i = 0; i < results.size(); ++i) results[i] = paperAnswer(queries[i], results[i]);
-  return results;
 }
 
 /// Whether two batches' answers list the same for a query.
@@ -61,8 +51,7 @@ bool sameLists(const Answers& ours, const Answers& exact, size_t query) {
 }
 
 std::vector<std::string> runFamilies(const MeshFamilies& meshes) {
-  std::vector<std::string> names;
-  for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
+  std::vector<std::string> names = hardFamilyNames();
   names.push_back(kAtDistance);
   for (const auto& [name, own] : meshes) names.push_back(name);
   return names;
@@ -145,26 +134,26 @@ std::vector<Tally> CaseRun::run(const CaseRange& range, std::span<const Approach
   std::vector<Tally> tallies(asked.size());
   const uint32_t size = range.company == Company::mixed ? kMixedCases : kIsolatedCases;
   for (uint64_t next = range.first; next < range.first + range.cases;) {
-    const std::vector<Query> queries = stage_->show(range, next, size);
+    std::vector<Query> queries = stage_->show(range, next, size);
     Answers exact, found;
     const double cpuSeconds = lapOf([&] { exact = stage_->cpu.run(queries); }).wall;
     double seconds = 0;
     for (size_t a = 0; a < asked.size(); ++a) {
       if (next / size % strideOf(asked[a].resolution) != 0) continue;
-      const std::vector<Query> put = queriesFor(asked[a], queries);
+      for (Query& query : queries) query.resolution = asked[a].resolution;
       // The paper's min(L) stands beside mode sampled's own answer.
       if (a == 0 || asked[a].resolution != asked[a - 1].resolution) {
-        seconds = lapOf([&] { found = stage_->sweeper.run(put, asked[a].mode()); }).wall;
+        seconds = lapOf([&] { found = stage_->sweeper.run(queries, asked[a].mode()); }).wall;
       }
       Tally& tally = tallies[a];
       tally.deviceSeconds += seconds;
       tally.cpuSeconds += cpuSeconds;
       tally.pairs += found.stats.pairs;
       tally.cpuPairs += found.stats.cpuPairs;
-      for (size_t i = 0; i < put.size(); ++i) {
+      for (size_t i = 0; i < queries.size(); ++i) {
         const Result &result = found.results[i], &right = exact.results[i];
         Verdict verdict =
-            range.steps ? judgeByBits(result, right) : judgeAs(asked[a], stage_->scene, put[i], result, right);
+            range.steps ? judgeByBits(result, right) : judgeAs(asked[a], stage_->scene, queries[i], result, right);
         verdict.set(Fault::wrongList, !sameLists(found, exact, i));
         tally.add(verdict, right);
         if (asked[a].paper || verdict.right()) continue;

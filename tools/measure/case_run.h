@@ -24,16 +24,8 @@ struct Approach {
   const char* tier() const { return resolution == 0 ? "contact" : paper ? "paper" : "sampled"; }
 };
 
-/// The paper's own reading of an answer in mode sampled: contact after min(L) if that is within D, now if it is
-/// negative. It vouches for no bounds.
-Result paperAnswer(const Query& query, const Result& sampled);
-
 /// Whether mode sampled offers what the family's queries ask for.
 bool offersSampled(const HardFamily& family);
-
-/// The queries at the resolution that is asked.
-std::vector<Query> queriesFor(const Approach& asked, std::vector<Query> queries);
-std::vector<Result> answersBy(const Approach& asked, Sweeper& sweeper, const std::vector<Query>& queries);
 
 /// Meshes to ask about in random poses, by the name of the family that they make.
 using MeshFamilies = std::map<std::string, std::vector<MeshData>>;

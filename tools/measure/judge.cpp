@@ -5,32 +5,20 @@
 #include <cmath>
 
 #include "workloads/same_answer.h"
+#include "workloads/vectors.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
 
 namespace {
 
-using Vector = std::array<double, 3>;
-using Corners = std::array<Vector, 3>;
+using Corners = std::array<Vec3, 3>;
 
-Vector plus(const Vector& x, const Vector& y, double scale) {
-  return {x[0] + scale * y[0], x[1] + scale * y[1], x[2] + scale * y[2]};
+double length(const Vec3& v) {
+  return std::hypot(v[0], v[1], v[2]);
 }
 
-Vector minus(const Vector& x, const Vector& y) {
-  return plus(x, y, -1);
-}
-
-double dot(const Vector& x, const Vector& y) {
-  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-}
-
-double lengthOf(const Vector& x) {
-  return std::hypot(x[0], x[1], x[2]);
-}
-
-Vector cross(const Vector& x, const Vector& y) {
+Vec3 cross(const Vec3& x, const Vec3& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
@@ -42,28 +30,28 @@ Corners cornersOf(const MeshView& mesh, const Transform& pose, uint32_t triangle
   return corners;
 }
 
-double distanceToEdge(const Vector& p, const Vector& from, const Vector& to) {
-  const Vector edge = minus(to, from), way = minus(p, from);
+double distanceToEdge(const Vec3& p, const Vec3& from, const Vec3& to) {
+  const Vec3 edge = to - from, way = p - from;
   const double square = dot(edge, edge);
   const double at = square > 0 ? std::clamp(dot(edge, way) / square, 0.0, 1.0) : 0;
-  return lengthOf(plus(way, edge, -at));
+  return length(way - at * edge);
 }
 
 /// The triangle may be degenerate.
-double distanceTo(const Vector& p, const Corners& t) {
+double distanceTo(const Vec3& p, const Corners& t) {
   double best = INFINITY;
   for (size_t i = 0; i < 3; ++i) best = std::min(best, distanceToEdge(p, t[i], t[(i + 1) % 3]));
-  const Vector n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  if (lengthOf(n) == 0) return best;
+  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
+  if (length(n) == 0) return best;
   for (size_t i = 0; i < 3; ++i) {
-    if (dot(n, cross(minus(t[(i + 1) % 3], t[i]), minus(p, t[i]))) < 0) return best;
+    if (dot(n, cross(t[(i + 1) % 3] - t[i], p - t[i])) < 0) return best;
   }
-  return std::min(best, std::abs(dot(n, minus(p, t[0]))) / lengthOf(n));
+  return std::min(best, std::abs(dot(n, p - t[0])) / length(n));
 }
 
 double largest(const Corners& corners) {
   double size = 0;
-  for (const Vector& corner : corners) {
+  for (const Vec3& corner : corners) {
     for (double c : corner) size = std::max(size, std::abs(c));
   }
   return size;
@@ -79,15 +67,15 @@ void judgePoint(const Scene& scene, const Query& query, const Result& result, Ve
   Corners a = cornersOf(scene.mesh(query.mesh), query.worldFromMesh, result.triA);
   const Corners b = cornersOf(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
   const double rounding = 1e-13 * std::max({largest(a), largest(b), result.t});
-  for (Vector& corner : a) corner = plus(corner, query.direction, result.t / lengthOf(query.direction));
+  for (Vec3& corner : a) corner = corner + result.t / length(query.direction) * query.direction;
   verdict.set(Fault::point, !(distanceTo(result.point, a) <= rounding && distanceTo(result.point, b) <= rounding));
 }
 
 void judgeNormal(const Query& query, const Result& result, const Result& exact, Verdict& verdict) {
   verdict.set(Fault::normal, std::isnan(result.normal[0]) != std::isnan(exact.normal[0]));
   if (std::isnan(result.normal[0])) return;
-  const bool isUnit = std::abs(lengthOf(result.normal) - 1) <= 1e-14;
-  const bool isAgainst = dot(result.normal, query.direction) <= 1e-15 * lengthOf(query.direction);
+  const bool isUnit = std::abs(length(result.normal) - 1) <= 1e-14;
+  const bool isAgainst = dot(result.normal, query.direction) <= 1e-15 * length(query.direction);
   verdict.set(Fault::normal, !isUnit || !isAgainst);
 }
 

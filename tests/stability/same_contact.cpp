@@ -1,4 +1,4 @@
-#include "workloads/same_contact.h"
+#include "stability/same_contact.h"
 
 #include <utility>
 

@@ -106,7 +106,7 @@ std::string element(const std::string& tag, const std::string& text) {
 
 // Rates have bars behind their numbers, and times that add up.
 bool hasBar(std::string_view column, const Json& value) {
-  return (column.ends_with("_per_second") || column == "us_per_query" || column == "times_as_fast") &&
+  return (column.ends_with("_per_s") || column == "us_per_query" || column == "times_as_fast") &&
          value.is_number() && std::isfinite(value.get<double>());
 }
 
@@ -152,10 +152,6 @@ std::string pageOf(const Json& report) {
 }
 
 }  // namespace
-
-std::string cellText(const Json& value) {
-  return cellOf(value);
-}
 
 std::string textOf(const Json& table, const std::string& indent) {
   if (table.empty()) return "";

@@ -24,9 +24,6 @@ std::string print(const char* format, Values... values) {
   return text;
 }
 
-/// A value as a cell of textOf() has it.
-std::string cellText(const Json& value);
-
 /// Columns that line up, under their names. Fractions have four digits. Where lines would be longer than 120
 /// characters, the last columns of text follow in lines below their row. Empty for a table without rows.
 std::string textOf(const Json& table, const std::string& indent = "");

@@ -1,7 +1,8 @@
-#include "scale/measure.h"
+#include "measure/scale.h"
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -130,24 +131,71 @@ void addStages(std::vector<StageTime>& stages, const Timed& pass) {
   }
 }
 
+std::string setOf(const ScaleReport& report, const ScaleRun& run) {
+  std::string text;
+  for (const uint32_t device : run.devices) text += (text.empty() ? "" : "+") + std::to_string(report.numbers[device]);
+  return text;
+}
+
+Json runRow(const ScaleReport& measured, const ScaleRun& run) {
+  const double all = run.ms * static_cast<double>(run.devices.size()), first = measured.alone(run.point, 0).ms;
+  DeviceShare sum;
+  double useful = 0, speeds = 0;
+  for (size_t i = 0; i < run.shares.size(); ++i) {
+    const DeviceShare& share = run.shares[i];
+    const ScaleRun& alone = measured.alone(run.point, run.devices[i]);
+    const DeviceShare& own = alone.shares[0];
+    speeds += 1 / alone.ms;
+    useful += own.queries > 0 ? own.busy / own.queries * share.queries : 0;
+    sum.busy += share.busy;
+    sum.start += share.start;
+    sum.gap += share.gap;
+    sum.tail += share.tail;
+    sum.encode += share.encode;
+  }
+  return {{"sensors", measured.sensors[run.point]},
+          {"devices", setOf(measured, run)},
+          {"ms_per_batch", run.ms / static_cast<double>(measured.batches[run.point])},
+          {"speed_up", first / run.ms},
+          {"efficiency", 1 / (speeds * run.ms)},
+          {"useful_%", 100 * useful / all},
+          {"slower_%", 100 * (sum.busy - useful) / all},
+          {"start_%", 100 * sum.start / all},
+          {"gap_%", 100 * sum.gap / all},
+          {"tail_%", 100 * sum.tail / all},
+          {"scene_%", 100 * run.scene / run.ms},
+          {"encode_%", sum.busy > 0 ? 100 * sum.encode / sum.busy : 0},
+          {"cores", run.cores}};
+}
+
+Json shareRow(const ScaleReport& measured, const ScaleRun& run, size_t device) {
+  const DeviceShare& share = run.shares[device];
+  return {{"sensors", measured.sensors[run.point]},
+          {"devices", setOf(measured, run)},
+          {"device", measured.numbers[run.devices[device]]},
+          {"batches", measured.batches[run.point]},
+          {"queries", measured.queries[run.point]},
+          {"ms", run.ms},
+          {"ms_least", run.least},
+          {"ms_most", run.most},
+          {"device_queries", share.queries},
+          {"chunks", share.chunks},
+          {"chunk_least", share.leastChunk},
+          {"chunk_most", share.mostChunk},
+          {"busy_ms", share.busy},
+          {"idle_start_ms", share.start},
+          {"idle_gap_ms", share.gap},
+          {"idle_tail_ms", share.tail},
+          {"encode_ms", share.encode},
+          {"wait_ms", share.wait},
+          {"decode_ms", share.decode}};
+}
+
 }  // namespace
 
-const ScaleRun& ScaleReport::run(size_t point, size_t deviceCount) const {
-  return runs[point * (2 * numbers.size() - 1) + deviceCount - 1];
-}
-
+// The first device is a set of one; those alone follow the sets.
 const ScaleRun& ScaleReport::alone(size_t point, uint32_t device) const {
-  return device == 0 ? run(point, 1) : runs[point * (2 * numbers.size() - 1) + numbers.size() + device - 1];
-}
-
-double ScaleReport::speedUp(const ScaleRun& of) const {
-  return run(of.point, 1).ms / of.ms;
-}
-
-double ScaleReport::efficiency(const ScaleRun& of) const {
-  double speeds = 0;
-  for (const uint32_t device : of.devices) speeds += 1 / alone(of.point, device).ms;
-  return 1 / (speeds * of.ms);
+  return runs[point * (2 * numbers.size() - 1) + (device == 0 ? 0 : numbers.size() + device - 1)];
 }
 
 size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings) {
@@ -190,6 +238,83 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint
     }
   }
   return report;
+}
+
+void addTables(const ScaleReport& measured, Json& report) {
+  Json runs = Json::array(), shares = Json::array(), stages = Json::array();
+  for (const ScaleRun& run : measured.runs) {
+    runs.push_back(runRow(measured, run));
+    for (size_t i = 0; i < run.shares.size(); ++i) shares.push_back(shareRow(measured, run, i));
+    for (const StageTime& stage : run.stages) {
+      stages.push_back({{"devices", setOf(measured, run)}, {"stage", stage.name}, {"ms", stage.ms}});
+    }
+  }
+  setRows(report, "runs", "What is gained, and where the devices' time goes", runs);
+  setRows(report, "scale", "Each device", shares);
+  setRows(report, "stages", "Stages of the most sensors", stages);
+}
+
+Json scaleLines(const Json& runs) {
+  Json lines = Json::array();
+  std::map<std::string, size_t> linetypes;
+  for (const Json& row : runs) {
+    const std::string devices = row["devices"];
+    const size_t linetype = linetypes.emplace(devices, 2 * linetypes.size() + 1).first->second;
+    lines.push_back({{"name", devices},
+                     {"linetype", linetype},
+                     {"x", row["sensors"]},
+                     {"ms_per_batch", row["ms_per_batch"]},
+                     {"speed_up", row["speed_up"]},
+                     {"efficiency", 100 * row["efficiency"].get<double>()}});
+  }
+  return lines;
+}
+
+std::string traceOf(const ScaleReport& report) {
+  Json events = Json::array();
+  const auto name = [&](const char* what, size_t process, size_t thread, const std::string& text) {
+    events.push_back({{"name", what}, {"ph", "M"}, {"pid", process}, {"tid", thread}, {"args", {{"name", text}}}});
+  };
+  const auto span = [&](const std::string& text, size_t process, size_t thread, double from, double to, Json args) {
+    if (to <= from) return;
+    events.push_back({{"name", text},
+                      {"ph", "X"},
+                      {"pid", process},
+                      {"tid", thread},
+                      {"ts", 1e3 * from},
+                      {"dur", 1e3 * (to - from)},
+                      {"args", std::move(args)}});
+  };
+  for (size_t r = 0; r < report.runs.size(); ++r) {
+    const ScaleRun& run = report.runs[r];
+    if (run.point + 1 < report.sensors.size()) continue;
+    name("process_name", r, 0, "devices " + setOf(report, run));
+    name("thread_name", r, 0, "batches");
+    const double origin = run.batches.front().submitted;
+    for (size_t i = 0; i < run.devices.size(); ++i) {
+      const std::string number = std::to_string(report.numbers[run.devices[i]]);
+      name("thread_name", r, 2 * i + 1, "device " + number);
+      name("thread_name", r, 2 * i + 2, "thread of device " + number);
+    }
+    std::vector<double> free(run.devices.size(), 0);
+    for (size_t b = 0; b < run.batches.size(); ++b) {
+      const PoolAnswers& batch = run.batches[b];
+      span("batch " + std::to_string(b), r, 0, batch.submitted - origin, batch.answered - origin, Json::object());
+      for (const ChunkTrace& chunk : batch.chunks) {
+        const size_t thread = 2 * chunk.device + 2;
+        const Json args{{"queries", chunk.queries}};
+        // A device does one after the other: what is submitted meanwhile waits in its queue.
+        double& since = free[chunk.device];
+        span("chunk of " + std::to_string(chunk.queries), r, thread - 1, std::max(chunk.submitted - origin, since),
+             chunk.done - origin, args);
+        since = std::max(since, chunk.done - origin);
+        span("encode and submit", r, thread, chunk.begun - origin, chunk.submitted - origin, args);
+        span("wait", r, thread, chunk.awaited - origin, chunk.done - origin, args);
+        span("decode", r, thread, std::max(chunk.done, chunk.awaited) - origin, chunk.decoded - origin, args);
+      }
+    }
+  }
+  return Json{{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}}.dump() + "\n";
 }
 
 }  // namespace radar::tools

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "measure/report.h"
 #include "radar/pool.h"
 #include "workloads/workload.h"
 
@@ -54,10 +56,7 @@ struct ScaleReport {
   std::vector<ScaleRun> runs;  ///< point by point: the first 1, 2, ... devices, then the second, third, ... alone
   bool sameBits = true;        ///< every set gave the same answers
 
-  const ScaleRun& run(size_t point, size_t deviceCount) const;  ///< of the first devices
   const ScaleRun& alone(size_t point, uint32_t device) const;
-  double speedUp(const ScaleRun& run) const;     ///< against the first device alone
-  double efficiency(const ScaleRun& run) const;  ///< its share of the speeds of its devices, each alone, added up
 };
 
 /// `step` is called before each of scaleSteps() passes. Throws Error where a query is not answered: a time without its
@@ -66,5 +65,18 @@ ScaleReport measureScale(std::span<const Device> devices, const std::vector<uint
                          const std::vector<ScalePoint>& points, const ScaleSettings& settings,
                          const std::function<void()>& step);
 size_t scaleSteps(size_t devices, size_t points, const ScaleSettings& settings);
+
+/// Adds three tables to a report. `runs`: what was gained against the first device alone, efficiency (the share of the
+/// speeds of its devices, each alone, added up), and where the devices' time (their number times the time that passed)
+/// went, in percent of it that add up to 100: `useful`, at work for as long as each device takes alone for as many
+/// queries; `slower`, at work for longer than that; `start`, `gap` and `tail`, idle as in DeviceShare; `scene`, idle
+/// while the scene is edited. `encode` is the time encoding over the time with the device. `scale`: a row for each run
+/// and device of it, times in milliseconds of a pass over all batches. `stages`: of the last point, milliseconds of a
+/// pass with timestamps, summed over devices.
+void addTables(const ScaleReport& measured, Json& report);
+/// The lines of the chart, of the table `runs`.
+Json scaleLines(const Json& runs);
+/// The last point's runs in Chrome's trace-event format: a process for each set of devices.
+std::string traceOf(const ScaleReport& report);
 
 }  // namespace radar::tools

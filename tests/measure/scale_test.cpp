@@ -1,4 +1,4 @@
-#include "scale/report.h"
+#include "measure/scale.h"
 #include "support/catch.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
@@ -36,19 +36,20 @@ ScaleReport madeUp() {
 
 }  // namespace
 
-TEST_CASE("speed-up is against the first device, efficiency against the speeds of all, each alone") {
-  const ScaleReport report = madeUp();
-  CHECK(report.speedUp(report.run(0, 2)) == Approx(6.0 / 5));
-  CHECK(report.efficiency(report.run(0, 2)) == Approx(4.0 / 5));
-  CHECK(report.efficiency(report.run(0, 1)) == Approx(1));
-  CHECK(report.efficiency(report.alone(0, 1)) == Approx(1));
-}
-
-TEST_CASE("the table tells where the devices' time went") {
-  ScaleReport report = madeUp();
-  const Json row = runTable(report)[1];
+TEST_CASE("the table tells what is gained, and where the devices' time went") {
+  ScaleReport measured = madeUp();
+  const auto runs = [&] {
+    Json report = newReport("");
+    addTables(measured, report);
+    return partOf(report, "runs")["rows"];
+  };
+  const Json row = runs()[1];
   CHECK(row["devices"] == "0+1");
-  CHECK(row["speed_up"].get<double>() == Approx(1.2));
+  // Against the first device; against the speeds of all, each alone.
+  CHECK(row["speed_up"].get<double>() == Approx(6.0 / 5));
+  CHECK(row["efficiency"].get<double>() == Approx(4.0 / 5));
+  CHECK(runs()[0]["efficiency"].get<double>() == Approx(1));
+  CHECK(runs()[2]["efficiency"].get<double>() == Approx(1));
   CHECK(row["useful_%"].get<double>() == Approx(80));
   CHECK(row["tail_%"].get<double>() == Approx(10));
   CHECK(row["gap_%"].get<double>() == Approx(7.5));
@@ -56,8 +57,8 @@ TEST_CASE("the table tells where the devices' time went") {
   CHECK(row["slower_%"].get<double>() == Approx(0).margin(1e-9));
   CHECK(row["encode_%"].get<double>() == Approx(2.5));
   // One device slower than alone.
-  report.runs[1].shares[0].busy = 5;
-  CHECK(runTable(report)[1]["slower_%"].get<double>() == Approx(10));
+  measured.runs[1].shares[0].busy = 5;
+  CHECK(runs()[1]["slower_%"].get<double>() == Approx(10));
 }
 
 TEST_CASE("a measured workload accounts for all time and all queries, with the same bits on every set of devices") {
@@ -78,12 +79,14 @@ TEST_CASE("a measured workload accounts for all time and all queries, with the s
     CHECK(queries == report.queries[run.point]);
     CHECK(run.stages.empty() == (run.point == 0));
   }
-  for (const Json& row : runTable(report)) {
+  Json tables = newReport("");
+  addTables(report, tables);
+  for (const Json& row : partOf(tables, "runs")["rows"]) {
     double sum = 0;
     for (const char* part : {"useful_%", "slower_%", "start_%", "gap_%", "tail_%", "scene_%"}) {
       sum += row[part].get<double>();
     }
     CHECK(sum == Approx(100).margin(1));
   }
-  CHECK_THAT(csvOf(stageTable(report)), Contains("\n0+1,readback,"));
+  CHECK_THAT(csvOf(partOf(tables, "stages")["rows"]), Contains("\n0+1,readback,"));
 }

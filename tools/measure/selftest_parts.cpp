@@ -1,11 +1,10 @@
-#include "selftest/measure.h"
-
 #include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
 
 #include "measure/case_run.h"
+#include "measure/selftest.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/pool.h"
 #include "workloads/generate.h"
@@ -76,6 +75,8 @@ class Race {
                     {"batch", all[0].answers.size() / batches.size()},
                     {"device_us_per_query", device},
                     {"cpu_us_per_query", cpu},
+                    {"device_per_s", 1e6 / device},
+                    {"cpu_per_s", 1e6 / cpu},
                     {"cpu_over_device", cpu / device},
                     {"differ", all[1].differ}});
     return device + cpu;
@@ -170,8 +171,8 @@ bool addLanes(const std::vector<Session>& lanes, const Batch& batch, const Deadl
   return !deadline.isOver();
 }
 
-bool measureArithmetic(const Device& device, uint32_t, const Deadline&, Json& rows) {
-  for (const ArithmeticCheck& check : checkArithmetic(device)) {
+bool measureArithmetic(std::span<const Device> devices, std::span<const uint32_t>, const Deadline&, Json& rows) {
+  for (const ArithmeticCheck& check : checkArithmetic(devices[0])) {
     rows.push_back({{"operation", check.operation},
                     {"passed", check.passed()},
                     {"tried", check.tried},
@@ -185,11 +186,11 @@ bool measureArithmetic(const Device& device, uint32_t, const Deadline&, Json& ro
 
 // Queries of every kind, also those that a renderer records, with its geometry, in scenes that other seeds decide than
 // those by which a device proves itself.
-bool measureAnswers(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
+bool measureAnswers(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline, Json& rows) {
   constexpr uint64_t kFirst = 2, kScenes = 100;
   for (uint64_t seed = kFirst; seed < kFirst + kScenes; ++seed) {
     if (deadline.isOver() && !rows.empty()) return false;
-    const std::vector<AnswerCheck> checks = checkAnswers(device, seed);
+    const std::vector<AnswerCheck> checks = checkAnswers(devices[0], seed);
     for (size_t i = 0; i < checks.size(); ++i) {
       const AnswerCheck& check = checks[i];
       if (rows.size() == i) {
@@ -209,7 +210,9 @@ bool measureAnswers(const Device& device, uint32_t, const Deadline& deadline, Js
 
 // Random queries of all families in turn, with doubles where the device has them and without, until the time is up.
 // Returns true once every family has been asked.
-bool measureExactness(const Device& device, uint32_t number, const Deadline& deadline, Json& rows) {
+bool measureExactness(std::span<const Device> devices, std::span<const uint32_t> numbers, const Deadline& deadline,
+                      Json& rows) {
+  const Device& device = devices[0];
   constexpr uint64_t kAtOnce = 64;
   const std::vector<std::string> families = runFamilies();
   std::optional<Device> withoutDoubles;
@@ -217,7 +220,7 @@ bool measureExactness(const Device& device, uint32_t number, const Deadline& dea
   for (uint64_t round = 0;; ++round) {
     for (size_t v = 0; v < variants.size(); ++v) {
       if (!variants[v]) {
-        if (v == 1) withoutDoubles.emplace(Device::open({.index = number, .doubles = false}));
+        if (v == 1) withoutDoubles.emplace(Device::open({.index = numbers[0], .doubles = false}));
         variants[v] = std::make_unique<CaseRun>(v == 0 ? device : *withoutDoubles);
       }
       for (size_t f = 0; f < families.size(); ++f) {
@@ -240,35 +243,36 @@ bool measureExactness(const Device& device, uint32_t number, const Deadline& dea
 
 // Batches of 1 to 10^6 small sensors among 30,000 boxes (light), of teapots (heavy), and of teapots that all move from
 // batch to batch (moving; D 15, the scene's changes in the time).
-bool measureThroughput(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
+bool measureThroughput(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline,
+                       Json& rows) {
   // What one workload does not use is left to the next.
   const Deadline first(deadline.left() / 3);
-  bool whole = measureStanding(device, "light", lightWorkload(), first, rows);
+  bool whole = measureStanding(devices[0], "light", lightWorkload(), first, rows);
   const Deadline second(deadline.left() / 2);
-  whole &= measureStanding(device, "heavy", heavyWorkload(), second, rows);
-  return measureMoving(device, deadline, rows) && whole;
+  whole &= measureStanding(devices[0], "heavy", heavyWorkload(), second, rows);
+  return measureMoving(devices[0], deadline, rows) && whole;
 }
 
 // Where the time of batches of 16,384 goes in the exact search.
-bool measureStages(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
-  const bool light = addStages(device, "light", lightWorkload(), Mode::contact, deadline, rows);
-  return addStages(device, "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
+bool measureStages(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline, Json& rows) {
+  const bool light = addStages(devices[0], "light", lightWorkload(), Mode::contact, deadline, rows);
+  return addStages(devices[0], "heavy", heavyWorkload(), Mode::contact, deadline, rows) && light;
 }
 
 // Where the time goes in the paper's method.
-bool measurePasses(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
-  return addStages(device, "256 teapots among 10,000 boxes",
+bool measurePasses(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline, Json& rows) {
+  return addStages(devices[0], "256 teapots among 10,000 boxes",
                    makeWorkload(Table1{.boxes = 10'000, .sensors = 256, .shape = SensorShape::teapot}), Mode::sampled,
                    deadline, rows);
 }
 
 // One batch after the other, beside two in flight.
-bool measureLanes(const Device& device, uint32_t, const Deadline& deadline, Json& rows) {
+bool measureLanes(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline, Json& rows) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
   // One thread at a time uses the queue: the pool sleeps while the sweeper runs.
-  Sweeper sweeper(device, standing.scene(), kOnDevice);
-  Pool pool({&device, 1}, standing.scene(), kOnDevice);
+  Sweeper sweeper(devices[0], standing.scene(), kOnDevice);
+  Pool pool(devices, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
     return sweeper.run(queries).results;
@@ -277,18 +281,8 @@ bool measureLanes(const Device& device, uint32_t, const Deadline& deadline, Json
                   standing.batch, deadline, rows);
 }
 
-constexpr SelftestPart kParts[] = {
-    {"arithmetic", 0.02, measureArithmetic}, {"answers", 0.05, measureAnswers}, {"throughput", 0.6, measureThroughput},
-    {"stages", 0.1, measureStages},          {"lanes", 0.1, measureLanes},      {"passes", 0.1, measurePasses, true},
-    {"exactness", 0, measureExactness}};
-
-}  // namespace
-
-std::span<const SelftestPart> selftestParts() {
-  return kParts;
-}
-
-bool measureTogether(const std::vector<Device>& devices, const std::vector<uint32_t>& numbers, const Deadline& deadline,
+// Every device alone, then all of them.
+bool measureTogether(std::span<const Device> devices, std::span<const uint32_t> numbers, const Deadline& deadline,
                      Json& rows) {
   const Workload workload = lightWorkload();
   const Standing standing(workload);
@@ -299,10 +293,26 @@ bool measureTogether(const std::vector<Device>& devices, const std::vector<uint3
     lanes.push_back(laneOf(name, *pools.back()));
   };
   for (size_t i = 0; i < devices.size(); ++i) {
-    add("device " + std::to_string(numbers[i]) + " alone", std::span(devices).subspan(i, 1));
+    add("device " + std::to_string(numbers[i]) + " alone", devices.subspan(i, 1));
   }
   add("all " + std::to_string(devices.size()) + " devices", devices);
   return addLanes(lanes, standing.batch, deadline, rows);
+}
+
+constexpr SelftestPart kParts[] = {
+    {"arithmetic", "Arithmetic, on which the bounds rest", 0.01, measureArithmetic},
+    {"answers", "Known queries of every kind, those of a renderer's frames among them", 0.04, measureAnswers},
+    {"throughput", "Throughput of the device, and of all cores of the CPU", 0.4, measureThroughput},
+    {"stages", "Stages of mode contact, batches of 16,384", 0.07, measureStages},
+    {"lanes", "Batches in flight", 0.07, measureLanes},
+    {"passes", "Passes of mode sampled", 0.07, measurePasses, SelftestPart::eachSampled},
+    {"together", "All devices together", 0.09, measureTogether, SelftestPart::together},
+    {"exactness", "Random queries of every family, compared with the CPU's answers", 0.25, measureExactness}};
+
+}  // namespace
+
+std::span<const SelftestPart> selftestParts() {
+  return kParts;
 }
 
 }  // namespace radar::tools

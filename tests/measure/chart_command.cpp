@@ -39,7 +39,17 @@ TEST_CASE("chart leaves numbers, charts and tables, and draws them again from it
 
 TEST_CASE("chart measures only the sections that are named") {
   const ScratchFolder folder;
-  CHECK(runProgram(folder, "chart --extent least --section growth --out c").status == 0);
+  const Run run = runProgram(folder, "chart --extent least --section growth,contacts,edits,recorded --out c");
+  INFO(run.err);
+  CHECK(run.status == 0);
+  CHECK_THAT(folder.read("c/growth.csv"), Contains("\nteapots-leaving-ignored,contact,64,"));
+  for (const char* file : {"c/edits.csv", "c/recorded.csv"}) {
+    const std::string csv = folder.read(file);
+    CHECK_THAT(csv, Contains("nothing") && Contains("moved"));
+    for (size_t end = csv.find('\n') + 1; (end = csv.find('\n', end)) != std::string::npos; ++end) {
+      CHECK(csv.substr(end - 2, 2) == ",0");  // answers that differ
+    }
+  }
   CHECK_THAT(folder.read("c/growth-boxes.svg"), Contains("More of the scene"));
   CHECK_THAT(folder.read("c/growth.csv"), Contains("\ngrowth-sensors,contact,1,"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "c/front.csv"));

@@ -11,6 +11,7 @@
 #include "cyber_radar/options.h"
 #include "import/mesh_import.h"
 #include "measure/chart.h"
+#include "measure/developer.h"
 #include "measure/plot.h"
 
 namespace radar::tools {
@@ -31,6 +32,8 @@ struct Options {
   std::vector<std::string> files, meshes, sections{"front", "table1"};
   std::string out, device, extent = "full";
   bool quick = false, render = false;
+
+  bool has(const char* section) const { return std::find(sections.begin(), sections.end(), section) != sections.end(); }
 };
 
 // What a file and a link can be named after, and no case is yet.
@@ -63,12 +66,10 @@ std::vector<Case> casesOf(const Options& options, Extent extent) {
                      }});
   }
   printWarnings(warnings);
-  for (auto* more : {table1Cases, growthCases}) {
+  for (auto* more : {table1Cases, growthCases, searchCases, contactCases}) {
     for (Case& which : more(extent)) cases.push_back(std::move(which));
   }
-  std::erase_if(cases, [&](const Case& one) {
-    return std::find(options.sections.begin(), options.sections.end(), one.section) == options.sections.end();
-  });
+  std::erase_if(cases, [&](const Case& one) { return !options.has(one.section.c_str()); });
   return cases;
 }
 
@@ -97,6 +98,8 @@ Json measure(const Options& options) {
   for (const Case& one : cases) cells += methods(one.section).size();
   Progress progress("measuring", cells);
   measureCases({extent, cases, methods}, report, options.out, [&] { progress.add(1); });
+  if (options.has("edits")) measureEdits(device, extent, report);
+  if (options.has("recorded")) measureRecorded(device, extent, report);
   return report;
 }
 
@@ -114,7 +117,7 @@ void chart(Options options) {
   makeFolder("--out", options.out);
   Json report = options.render ? readReport(options.out) : measure(options);
   sumUp(report, options.out);
-  for (const char* name : {"workloads", "methods", "growth"}) {
+  for (const char* name : {"workloads", "methods", "growth", "edits", "recorded"}) {
     const Json& part = partOf(report, name);
     if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
@@ -139,9 +142,13 @@ void addChartCommand(CLI::App& app) {
       ->check(CLI::IsMember({"full", "quick", "least"}))
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "--extent quick");
-  command->add_option("--section", options->sections, "What: accuracy against speed, the paper's Table 1, growing work")
+  command
+      ->add_option("--section", options->sections,
+                   "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own "
+                   "searches: search, "
+                   "by size of batch; contacts, by kind; edits of a scene; recorded in a host's command buffer")
       ->delimiter(',')
-      ->check(CLI::IsMember({"front", "table1", "growth"}))
+      ->check(CLI::IsMember({"front", "table1", "growth", "search", "contacts", "edits", "recorded"}))
       ->capture_default_str();
   command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
   command->callback([options] { chart(*options); });

@@ -123,10 +123,11 @@ std::vector<Method> ours(const Device& device, const std::string& section, Exten
   std::vector<Method> methods;
   if (section == "front") {
     for (const uint32_t size : resolutions(extent)) methods.push_back(onDevice(device, Mode::sampled, "sampled", size));
-  } else {
-    if (section == "table1") {
-      methods.push_back(onDevice(device, Mode::sampled, "drawing all", kOneSize, {.select = false}));
-    }
+  }
+  if (section == "table1") {
+    methods.push_back(onDevice(device, Mode::sampled, "drawing all", kOneSize, {.select = false}));
+  }
+  if (section == "table1" || section == "growth") {
     methods.push_back(onDevice(device, Mode::sampled, "sampled", kOneSize));
   }
   methods.push_back(onDevice(device, Mode::contact, "contact"));

@@ -38,6 +38,19 @@ std::string cellOf(const Json& value, bool exact = false) {
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
+std::string csvLine(const Json& values) {
+  std::string line;
+  for (const Json& value : values) {
+    std::string cell = cellOf(value, true);
+    if (cell.find_first_of(",\"\n#") != std::string::npos) {
+      for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
+      cell = '"' + cell + '"';
+    }
+    line += (&value == &*values.begin() ? "" : ",") + cell;
+  }
+  return line + "\n";
+}
+
 // The cells from `first` on, with their names, in lines that are as full as they may be.
 std::string linesBelow(const std::vector<std::string>& names, const std::vector<std::string>& cells, size_t first,
                        const std::string& indent) {
@@ -106,8 +119,8 @@ std::string element(const std::string& tag, const std::string& text) {
 
 // Rates have bars behind their numbers, and times that add up.
 bool hasBar(std::string_view column, const Json& value) {
-  return (column.ends_with("_per_s") || column == "us_per_query" || column == "times_as_fast") &&
-         value.is_number() && std::isfinite(value.get<double>());
+  return (column.ends_with("_per_s") || column == "us_per_query" || column == "times_as_fast") && value.is_number() &&
+         std::isfinite(value.get<double>());
 }
 
 // The longest bar of each workload fills its cell.
@@ -182,19 +195,6 @@ std::string textOf(const Json& table, const std::string& indent) {
     if (&cells != &lines[0]) text += linesBelow(lines[0], cells, inLine, indent + "  ");
   }
   return text;
-}
-
-std::string csvLine(const Json& values) {
-  std::string line;
-  for (const Json& value : values) {
-    std::string cell = cellOf(value, true);
-    if (cell.find_first_of(",\"\n#") != std::string::npos) {
-      for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
-      cell = '"' + cell + '"';
-    }
-    line += (&value == &*values.begin() ? "" : ",") + cell;
-  }
-  return line + "\n";
 }
 
 std::string csvOf(const Json& table) {

@@ -31,7 +31,6 @@ std::string textOf(const Json& table, const std::string& indent = "");
 /// A line for the names of the columns, then one for each row. Numbers read back as the same; "yes" or "no" for a
 /// boolean, nothing for null and NaN. Empty for a table without rows.
 std::string csvOf(const Json& table);
-std::string csvLine(const Json& values);
 
 /// With the command, the commit, the day, the processor and what else a reader needs to know; no parts.
 Json newReport(const std::string& title, const Json& head = Json::object());

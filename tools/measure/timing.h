@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/clock.h"
+#include "measure/clock.h"
 #include "workloads/workload.h"
 
 namespace radar::tools {
-
-using bench::Deadline, bench::Lap, bench::lapOf, bench::Stopwatch;
 
 /// The middle of the values; of an even number, the mean of the two in the middle; NaN of none.
 double median(std::vector<double> values);

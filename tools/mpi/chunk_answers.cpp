@@ -1,6 +1,6 @@
 #include "mpi/chunk_answers.h"
 
-#include "bench/clock.h"
+#include "measure/clock.h"
 #include "mpi/ranks.h"
 
 namespace radar::tools {
@@ -9,10 +9,10 @@ Answered ChunkAnswers::answer(uint64_t first, std::span<const QuerySpec> queries
   Answered answered{first, queries.size()};
   try {
     Progress none;
-    const double start = bench::now();
+    const double start = now();
     const std::vector<Answer> answers = answering_.run(queries, none);
     answered.rows = rows_.text(first, queries, answers);
-    answered.seconds = bench::now() - start;
+    answered.seconds = now() - start;
     answered.someInvalid = someInvalid(answers);
   } catch (const std::exception& error) {
     answered.failure = error.what();

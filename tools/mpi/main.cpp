@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "batch/atomic_file.h"
-#include "bench/clock.h"
+#include "measure/clock.h"
 #include "commit/commit.h"
 #include "cyber_radar/command_line.h"
 #include "cyber_radar/exit_status.h"
@@ -134,10 +134,10 @@ class Rank {
   // Rank 0: the options and the query file are good.
   bool reads() {
     try {
-      const double start = bench::now();
+      const double start = now();
       std::vector<std::string> warnings;
       queries_.emplace(options_.file, warnings, options_.outputs());
-      loadMs_ = 1e3 * (bench::now() - start);
+      loadMs_ = 1e3 * (now() - start);
       printWarnings(warnings);
       modes_ = queries_->modes();
       return true;
@@ -150,7 +150,7 @@ class Rank {
   RankReport prepare() {
     RankReport report{hostName(), "", ""};
     try {
-      const double start = bench::now();
+      const double start = now();
       AnsweringOptions engine = options_.engine.checked();
       const bool needsDevice =
           modes_.asks(AnswerMode::sampled, engine.mode) || modes_.asks(AnswerMode::contact, engine.mode);
@@ -158,7 +158,7 @@ class Rank {
       answering_.emplace(world(), modes_, engine);
       if (!world().scenes.empty()) answering_->setUp(0);
       report.devices = namesOf(answering_->devices());
-      setupMs_ = 1e3 * (bench::now() - start);
+      setupMs_ = 1e3 * (now() - start);
     } catch (const Error& error) {
       report.failure = error.what();
       for (const std::string& reason : error.reasons) report.failure += "\n  " + reason;
@@ -189,16 +189,16 @@ class Rank {
     farewell = resumeHint(options_.out);
     std::signal(SIGTERM, sayFarewell);
     try {
-      const double start = bench::now();
+      const double start = now();
       const uint64_t next = writer_->next();
       Coordinator coordinator(*queries_, *writer_, end_, static_cast<size_t>(session_.count()));
       coordinator.run(answers);
-      const double sweepMs = 1e3 * (bench::now() - start);
+      const double sweepMs = 1e3 * (now() - start);
       writer_->finish();
       if (!options_.stats.empty()) {
         writeAtomically(options_.stats, statsOf(reports_, coordinator, loadMs_, setupMs_, sweepMs));
       }
-      sayDone("cyber-radar-mpi", {end_ - next, next - first_, bench::now() - start, 1e-3 * (loadMs_ + setupMs_)},
+      sayDone("cyber-radar-mpi", {end_ - next, next - first_, now() - start, 1e-3 * (loadMs_ + setupMs_)},
               " on " + counted(reports_.size(), "rank"));
       return coordinator.someInvalid() ? kStatusSomeInvalid : 0;
     } catch (const RankFailure& failure) {

@@ -1,4 +1,4 @@
-// What some work takes, on three clocks.
+// What some work takes, on two clocks.
 #pragma once
 
 #include <time.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace radar::bench {
+namespace radar::tools {
 
 /// Nanoseconds since some point in the past.
 inline int64_t readClock(clockid_t clock) {
@@ -23,11 +23,9 @@ inline double now() {
 /// What some work took, seconds.
 struct Lap {
   double process = 0;  ///< computed by all threads of the process
-  double thread = 0;   ///< computed by the calling thread
   double wall = 0;     ///< passed
   Lap& operator+=(const Lap& other) {
     process += other.process;
-    thread += other.thread;
     wall += other.wall;
     return *this;
   }
@@ -37,14 +35,12 @@ class Stopwatch {
  public:
   /// Since construction. The clock of the time passed is the last to be started and the first to be read.
   Lap lap() const {
-    const int64_t wall = readClock(CLOCK_MONOTONIC) - wall_, thread = readClock(CLOCK_THREAD_CPUTIME_ID) - thread_,
-                  process = readClock(CLOCK_PROCESS_CPUTIME_ID) - process_;
-    return {1e-9 * static_cast<double>(process), 1e-9 * static_cast<double>(thread), 1e-9 * static_cast<double>(wall)};
+    const int64_t wall = readClock(CLOCK_MONOTONIC) - wall_, process = readClock(CLOCK_PROCESS_CPUTIME_ID) - process_;
+    return {1e-9 * static_cast<double>(process), 1e-9 * static_cast<double>(wall)};
   }
 
  private:
   int64_t process_ = readClock(CLOCK_PROCESS_CPUTIME_ID);
-  int64_t thread_ = readClock(CLOCK_THREAD_CPUTIME_ID);
   int64_t wall_ = readClock(CLOCK_MONOTONIC);
 };
 
@@ -65,4 +61,4 @@ class Deadline {
   double end_;
 };
 
-}  // namespace radar::bench
+}  // namespace radar::tools

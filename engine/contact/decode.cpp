@@ -138,6 +138,7 @@ std::optional<Merged> settledAnswer(const Query& query, double tolerance, std::s
     }
   }
   if (!std::all_of(searches.begin(), searches.end(), settled)) return std::nullopt;
+  if (searches.size() == 1 && query.hits == 1) return Merged{.first = searches[0], .hits = {}};
   Merged answer = merged(searches, query.hits);
   return answer.isCertain ? std::optional(std::move(answer)) : std::nullopt;
 }

@@ -9,23 +9,7 @@ namespace radar {
 
 namespace {
 
-std::vector<uint64_t> keyOf(const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
-                            const Scene::Impl& scene) {
-  // An object may have taken another's number, and its leaf.
-  std::vector<uint64_t> key{scene.identity, scene.structureVersion, scene.objectTree().structure(), scene.boundsVersion,
-                            geometry.meshes.size()};
-  for (const DeformedMesh& deformed : geometry.meshes) {
-    key.insert(key.end(), {deformed.mesh, scene.meshes[deformed.mesh].version, deformed.positions.stride,
-                           static_cast<uint64_t>(deformed.positions.format)});
-  }
-  for (const MovedObjects& moved : geometry.objects) {
-    key.insert(key.end(), {moved.objects.size(), moved.stride, moved.layout.row, moved.layout.column});
-  }
-  key.insert(key.end(), firstBytes.begin(), firstBytes.end());
-  return key;
-}
-
-void addDeformed(GeometryList& list, const DeformedMesh& deformed, uint32_t firstByte, const Mesh& mesh) {
+void addDeformed(DeformedList& list, const DeformedMesh& deformed, uint32_t firstByte, const Mesh& mesh) {
   const bool areListed = !mesh.hostVertices.empty();
   list.meshes.push_back({.mesh = deformed.mesh,
                          .vertices = mesh.vertexCount(),
@@ -37,12 +21,11 @@ void addDeformed(GeometryList& list, const DeformedMesh& deformed, uint32_t firs
                          .numbers = areListed ? static_cast<uint32_t>(list.vertexNumbers.size()) : kNone,
                          .isBounded = mesh.deforms});
   for (const uint32_t vertex : mesh.hostVertices) list.vertexNumbers.push_back(vertex - mesh.firstHostVertex);
-  if (!mesh.deforms) list.unboundedMeshes.push_back(deformed.mesh);
-  list.overwritten.meshes.push_back(deformed.mesh);
+  if (!mesh.deforms) list.unbounded.push_back(deformed.mesh);
 }
 
 // Adds the nodes of a mesh by depth, because a node is refitted after its children.
-void addLevels(GeometryList& list, MeshId mesh, const MeshTree& tree) {
+void addLevels(DeformedList& list, MeshId mesh, const MeshTree& tree) {
   std::vector<std::vector<uint32_t>> byDepth(tree.depth);
   std::vector<uint32_t> depths(tree.nodes.size());
   for (uint32_t n = 0; n < depths.size(); ++n) {  // parents before children
@@ -75,7 +58,7 @@ gpu::Moved movedOf(ObjectId id, const Scene::Impl& scene) {
 }
 
 // Adds the objects that a host moves, and marks them.
-void addGroup(GeometryList& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
+void addGroup(MovedList& list, const MovedObjects& group, uint32_t firstByte, std::vector<bool>& isNamed,
               const Scene::Impl& scene) {
   for (size_t k = 0; k < group.objects.size(); ++k) {
     const ObjectId id = group.objects[k];
@@ -93,11 +76,11 @@ void addGroup(GeometryList& list, const MovedObjects& group, uint32_t firstByte,
 }
 
 // Adds the objects that stand, but whose meshes are deformed without bounds.
-void addStanding(GeometryList& list, const std::vector<bool>& isNamed, const Scene::Impl& scene,
-                 std::vector<ObjectId>& standing) {
-  if (list.unboundedMeshes.empty()) return;
+void addStanding(MovedList& list, std::span<const MeshId> meshes, const std::vector<bool>& isNamed,
+                 const Scene::Impl& scene, std::vector<ObjectId>& standing) {
+  if (meshes.empty()) return;
   std::vector<bool> isDeformed(scene.meshes.size());
-  for (const MeshId mesh : list.unboundedMeshes) isDeformed[mesh] = true;
+  for (const MeshId mesh : meshes) isDeformed[mesh] = true;
   for (ObjectId id = 0; id < scene.objects.size(); ++id) {
     if (isNamed[id] || !scene.objects[id].used || !isDeformed[scene.objects[id].object.mesh]) continue;
     list.moved.push_back(movedOf(id, scene));
@@ -115,7 +98,7 @@ std::vector<bool> markPaths(std::span<const gpu::Moved> moved, const ObjectTree&
 }
 
 // Adds the marked inner nodes by depth.
-void addFitNodes(GeometryList& list, const std::vector<bool>& marks, const ObjectTree& tree) {
+void addFitNodes(MovedList& list, const std::vector<bool>& marks, const ObjectTree& tree) {
   std::vector<uint32_t>& nodes = list.fitNodes;
   const auto add = [&](uint32_t n) {
     if (marks[n] && (tree.nodes()[n].link & gpu::kLinkLeaf) == 0) nodes.push_back(n);
@@ -141,42 +124,67 @@ std::vector<uint32_t> numbersOf(const std::vector<bool>& marks) {
   return numbers;
 }
 
-}  // namespace
-
-bool GeometryList::isOf(const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
-                        const Scene::Impl& scene) const {
-  if (key != keyOf(geometry, firstBytes, scene)) return false;
-  auto next = named.begin();
-  return std::ranges::all_of(geometry.objects, [&](const MovedObjects& moved) {
-    const auto first = next;
-    next += static_cast<ptrdiff_t>(moved.objects.size());
-    return std::equal(first, next, moved.objects.begin());
+// Whether the groups name these objects.
+bool areNamed(std::span<const ObjectId> named, std::span<const MovedObjects> groups) {
+  return std::ranges::all_of(groups, [&](const MovedObjects& group) {
+    const auto first = named.first(group.objects.size());
+    named = named.subspan(group.objects.size());
+    return std::ranges::equal(first, group.objects);
   });
 }
 
-GeometryList listOf(const HostGeometry& geometry, std::span<const uint32_t> firstBytes, const Scene::Impl& scene) {
-  GeometryList list;
-  list.key = keyOf(geometry, firstBytes, scene);
-  auto firstByte = firstBytes.begin();
+}  // namespace
+
+void update(DeformedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
+            const Scene::Impl& scene) {
+  std::vector<uint64_t> key(firstBytes.begin(), firstBytes.end());
   for (const DeformedMesh& deformed : geometry.meshes) {
-    addDeformed(list, deformed, *firstByte++, scene.meshes[deformed.mesh]);
-    addLevels(list, deformed.mesh, scene.meshes[deformed.mesh].tree);
+    key.insert(key.end(), {deformed.mesh, scene.meshes[deformed.mesh].version, deformed.positions.stride,
+                           static_cast<uint64_t>(deformed.positions.format)});
   }
-  std::vector<bool> isNamed(scene.objects.size());
-  for (const MovedObjects& group : geometry.objects) addGroup(list, group, *firstByte++, isNamed, scene);
+  if (list.key == key) return;
+  list = {};
+  DeformedList next{.key = std::move(key)};
+  for (size_t i = 0; i < geometry.meshes.size(); ++i) {
+    const DeformedMesh& deformed = geometry.meshes[i];
+    addDeformed(next, deformed, firstBytes[i], scene.meshes[deformed.mesh]);
+    addLevels(next, deformed.mesh, scene.meshes[deformed.mesh].tree);
+  }
+  list = std::move(next);
+}
+
+void update(MovedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
+            std::span<const MeshId> meshes, const Scene::Impl& scene) {
+  const ObjectTree& tree = scene.objectTree();
+  // An object may have taken another's number, and its leaf.
+  std::vector<uint64_t> key{scene.identity, scene.structureVersion, tree.structure(), scene.boundsVersion,
+                            meshes.size()};
+  key.insert(key.end(), meshes.begin(), meshes.end());
+  for (size_t i = 0; i < geometry.objects.size(); ++i) {
+    const MovedObjects& group = geometry.objects[i];
+    key.insert(key.end(), {firstBytes[i], group.objects.size(), group.stride, group.layout.row, group.layout.column});
+  }
+  if (list.key == key && areNamed(list.named, geometry.objects)) return;
+  list = {};
+  MovedList next{.key = std::move(key)};
   GpuScene::Moved overwritten;
-  addStanding(list, isNamed, scene, overwritten.standing);
-  if (list.moved.empty()) return list;
-  for (const gpu::Moved& moved : list.moved) {
-    if (moved.leaf != gpu::kNobody) list.unbounded.push_back(moved.object);
+  std::vector<bool> isNamed(scene.objects.size());
+  for (size_t i = 0; i < geometry.objects.size(); ++i) {
+    addGroup(next, geometry.objects[i], firstBytes[i], isNamed, scene);
   }
-  std::ranges::sort(list.unbounded);
-  const std::vector<bool> marks = markPaths(list.moved, scene.objectTree());
-  addFitNodes(list, marks, scene.objectTree());
-  overwritten.objects = numbersOf(isNamed);
-  overwritten.nodes = numbersOf(marks);
-  list.overwritten.moved = std::make_shared<const GpuScene::Moved>(std::move(overwritten));
-  return list;
+  addStanding(next, meshes, isNamed, scene, overwritten.standing);
+  if (!next.moved.empty()) {
+    for (const gpu::Moved& moved : next.moved) {
+      if (moved.leaf != gpu::kNobody) next.unbounded.push_back(moved.object);
+    }
+    std::ranges::sort(next.unbounded);
+    const std::vector<bool> marks = markPaths(next.moved, tree);
+    addFitNodes(next, marks, tree);
+    overwritten.objects = numbersOf(isNamed);
+    overwritten.nodes = numbersOf(marks);
+    next.overwritten = std::make_shared<const GpuScene::Moved>(std::move(overwritten));
+  }
+  list = std::move(next);
 }
 
 }  // namespace radar

@@ -2,6 +2,7 @@
 // same.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,7 +12,8 @@
 
 namespace radar {
 
-struct GeometryList {
+/// Meshes that a host deforms.
+struct DeformedList {
   struct Deformed {
     MeshId mesh;
     uint32_t vertices, triangles;
@@ -26,26 +28,33 @@ struct GeometryList {
     uint32_t first, count;  ///< in `refitNodes`
   };
 
-  std::vector<uint64_t> key;    ///< with `named`, all that the rest depends on
-  std::vector<ObjectId> named;  ///< by the geometry, in its order
-
-  std::vector<Deformed> meshes;
-  std::vector<uint32_t> vertexNumbers;
-  std::vector<MeshId> unboundedMeshes;     ///< of these meshes, those without bounds
-  std::vector<uint32_t> refitNodes;        ///< of these meshes
-  std::vector<std::vector<Level>> levels;  ///< over all meshes; the deepest last
-  std::vector<gpu::Moved> moved;           ///< the named objects, then those that stand, but whose meshes are unbounded
-  std::vector<ObjectId> unbounded;         ///< moved objects without bounds: only the device knows where. Ascending
-  std::vector<uint32_t> fitNodes, fitEnds;  ///< inner nodes above those, the root first, and where each depth ends
-  GpuScene::Overwritten overwritten;        ///< by the device
-
-  bool empty() const { return meshes.empty() && moved.empty(); }
-  /// Whether a list of this would be the same. `firstBytes`: where the copied words have the positions of each mesh,
-  /// then the transforms of each group of objects.
-  bool isOf(const HostGeometry& geometry, std::span<const uint32_t> firstBytes, const Scene::Impl& scene) const;
+  std::vector<uint64_t> key{};  ///< all that the rest depends on
+  std::vector<Deformed> meshes{};
+  std::vector<uint32_t> vertexNumbers{};
+  std::vector<MeshId> unbounded{};  ///< those without bounds
+  std::vector<uint32_t> refitNodes{};
+  std::vector<std::vector<Level>> levels{};  ///< over all meshes; the deepest last
+  bool isUploaded = false;
 };
 
-/// Lists valid geometry. Throws Error if an object does not exist or is named twice.
-GeometryList listOf(const HostGeometry& geometry, std::span<const uint32_t> firstBytes, const Scene::Impl& scene);
+/// Objects that a host moves, and those that stand, but whose meshes it deforms without bounds.
+struct MovedList {
+  std::vector<uint64_t> key{};  ///< with `named`, all that the rest depends on
+  std::vector<ObjectId> named{};
+  std::vector<gpu::Moved> moved{};
+  std::vector<ObjectId> unbounded{};            ///< without bounds: only the device knows where they are. Ascending
+  std::vector<uint32_t> fitNodes{}, fitEnds{};  ///< inner nodes above those, the root first; where each depth ends
+  std::shared_ptr<const GpuScene::Moved> overwritten{};
+  bool isUploaded = false;
+};
+
+/// Lists valid geometry, or leaves `list` as it is if it would be the same. If this throws, the list is empty.
+/// `firstBytes`: where the copied words have the positions of each mesh.
+void update(DeformedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
+            const Scene::Impl& scene);
+/// The same; `firstBytes`: of the transforms of each group of objects; `meshes`: deformed without bounds. Throws Error
+/// if an object does not exist or is named twice.
+void update(MovedList& list, const HostGeometry& geometry, std::span<const uint32_t> firstBytes,
+            std::span<const MeshId> meshes, const Scene::Impl& scene);
 
 }  // namespace radar

@@ -78,7 +78,7 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
       numbers_(device, "host vertex numbers", BufferDomain::device, kUploaded),
       unboundedMeshes_(device, "unbounded meshes", BufferDomain::device, kUploaded),
       fitNodes_(device, "nodes to fit", BufferDomain::device, kUploaded),
-      moved_(device, "moved objects", BufferDomain::device, kUploaded),
+      movedObjects_(device, "moved objects", BufferDomain::device, kUploaded),
       extents_(device, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
       readback_(device, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       sensors_(device, "deformed sensors", BufferDomain::device, kUploaded),
@@ -117,16 +117,6 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
   return firstBytes;
 }
 
-void HostGeometryPass::reserve(const GeometryList& list) {
-  refitNodes_.reserve(list.refitNodes.size());
-  numbers_.reserve(list.vertexNumbers.size());
-  unboundedMeshes_.reserve(list.unboundedMeshes.size());
-  fitNodes_.reserve(list.fitNodes.size());
-  moved_.reserve(list.moved.size());
-  extents_.reserve(list.unboundedMeshes.size());
-  readback_.reserve(list.unboundedMeshes.size());
-}
-
 void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& scene) {
   run_.begin();
   upload_.begin();
@@ -135,26 +125,40 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
                          return moved.objects.empty();
                        });
   if (isEmpty) {
-    list_ = {};
+    deformed_ = {};
+    moved_ = {};
     return;
   }
   const std::vector<uint32_t> firstBytes = copyFrom(geometry, scene);
-  if (!list_.isOf(geometry, firstBytes, scene)) {
-    list_ = {};
-    isUploaded_ = false;
-    GeometryList list = listOf(geometry, firstBytes, scene);
-    reserve(list);
-    list_ = std::move(list);
-  }
-  if (isUploaded_) return;
-  const auto add = [&](const auto& elements, const gpu::Buffer& to) {
-    upload_.add(elements.data(), gpu::bytesOf(elements), to);
-  };
-  add(list_.refitNodes, refitNodes_);
-  add(list_.vertexNumbers, numbers_);
-  add(list_.unboundedMeshes, unboundedMeshes_);
-  add(list_.fitNodes, fitNodes_);
-  add(list_.moved, moved_);
+  const auto ofMeshes = std::span(firstBytes).first(geometry.meshes.size());
+  update(deformed_, geometry, ofMeshes, scene);
+  update(moved_, geometry, std::span(firstBytes).subspan(ofMeshes.size()), deformed_.unbounded, scene);
+  if (!deformed_.isUploaded) stageDeformed();
+  if (!moved_.isUploaded) stageMoved();
+}
+
+void HostGeometryPass::stageDeformed() {
+  refitNodes_.reserve(deformed_.refitNodes.size());
+  numbers_.reserve(deformed_.vertexNumbers.size());
+  unboundedMeshes_.reserve(deformed_.unbounded.size());
+  extents_.reserve(deformed_.unbounded.size());
+  readback_.reserve(deformed_.unbounded.size());
+  upload_.add(deformed_.refitNodes.data(), gpu::bytesOf(deformed_.refitNodes), refitNodes_);
+  upload_.add(deformed_.vertexNumbers.data(), gpu::bytesOf(deformed_.vertexNumbers), numbers_);
+  upload_.add(deformed_.unbounded.data(), gpu::bytesOf(deformed_.unbounded), unboundedMeshes_);
+}
+
+void HostGeometryPass::stageMoved() {
+  movedObjects_.reserve(moved_.moved.size());
+  fitNodes_.reserve(moved_.fitNodes.size());
+  upload_.add(moved_.moved.data(), gpu::bytesOf(moved_.moved), movedObjects_);
+  upload_.add(moved_.fitNodes.data(), gpu::bytesOf(moved_.fitNodes), fitNodes_);
+}
+
+GpuScene::Overwritten HostGeometryPass::overwritten() const {
+  GpuScene::Overwritten overwritten{.meshes = {}, .moved = moved_.overwritten};
+  for (const DeformedList::Deformed& deformed : deformed_.meshes) overwritten.meshes.push_back(deformed.mesh);
+  return overwritten;
 }
 
 void HostGeometryPass::stageSensors(std::span<const gpu::DeformedSensor> sensors) {
@@ -172,10 +176,10 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
     commands->CmdCopyBuffer(commands, source.buffer, words_.get(), 1, &source.region);
   }
   commands->CmdFillBuffer(commands, violation_.get(), 0, sizeof(BoundsViolation), kNobody);
-  const auto unbounded = static_cast<uint32_t>(list_.unboundedMeshes.size());
+  const auto unbounded = static_cast<uint32_t>(deformed_.unbounded.size());
   if (unbounded != 0) commands->CmdFillBuffer(commands, extents_.get(), 0, VK_WHOLE_SIZE, kNobody);
   transferToComputeReadWrite(commands);
-  for (const GeometryList::Deformed& d : list_.meshes) {
+  for (const DeformedList::Deformed& d : deformed_.meshes) {
     run_(commands, shaders::kDeform, groupsFor(d.vertices, kHostGroup),
          DeformPush{.count = d.vertices,
                     .mesh = d.mesh,
@@ -193,7 +197,7 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   if (unbounded != 0) {
     computeWriteToComputeReadWrite(commands);
     uint32_t extent = 0;
-    for (const GeometryList::Deformed& d : list_.meshes) {
+    for (const DeformedList::Deformed& d : deformed_.meshes) {
       if (d.isBounded) continue;
       run_(commands, shaders::kBound, groupsFor(d.triangles, kHostGroup * kBoundRun),
            BoundPush{resident_.record(d.mesh).firstTriangle, d.triangles, extent++},
@@ -204,21 +208,21 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
          {{kSlotMeshes, to.meshes}, {kSlotUnbounded, unboundedMeshes_}, {kSlotExtents, extents_}});
     computeWriteToComputeReadWrite(commands);
   }
-  if (!list_.moved.empty()) {
-    MovePush push{.count = static_cast<uint32_t>(list_.moved.size())};
+  if (!moved_.moved.empty()) {
+    MovePush push{.count = static_cast<uint32_t>(moved_.moved.size())};
     setAnchor(push, scene.objectTree());
     run_(commands, shaders::kMove, groupsFor(push.count, kHostGroup), push,
          {{kSlotMeshes, to.meshes},
           {kSlotObjects, to.objects},
           {kSlotPlacements, to.placements},
           {kSlotObjectNodes, to.objectNodes},
-          {kSlotMoved, moved_},
+          {kSlotMoved, movedObjects_},
           {kSlotBoundsViolation, violation_},
           {kSlotWords, words_}});
   }
   computeWriteToComputeReadWrite(commands);
-  for (size_t depth = list_.levels.size(); depth-- > 0;) {
-    for (const GeometryList::Level& level : list_.levels[depth]) {
+  for (size_t depth = deformed_.levels.size(); depth-- > 0;) {
+    for (const DeformedList::Level& level : deformed_.levels[depth]) {
       run_(commands, shaders::kRefit, groupsFor(level.count, kHostGroup),
            RefitPush{level.first, level.count, level.mesh},
            {{kSlotVertices, to.vertices},
@@ -229,8 +233,8 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
     }
     computeWriteToComputeReadWrite(commands);
   }
-  for (size_t depth = list_.fitEnds.size(); depth-- > 0;) {
-    const uint32_t first = depth == 0 ? 0 : list_.fitEnds[depth - 1], count = list_.fitEnds[depth] - first;
+  for (size_t depth = moved_.fitEnds.size(); depth-- > 0;) {
+    const uint32_t first = depth == 0 ? 0 : moved_.fitEnds[depth - 1], count = moved_.fitEnds[depth] - first;
     run_(commands, shaders::kFit, groupsFor(count, kHostGroup), FitPush{first, count},
          {{kSlotObjectNodes, to.objectNodes}, {kSlotFitNodes, fitNodes_}});
     computeWriteToComputeReadWrite(commands);
@@ -267,16 +271,16 @@ void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu
 }
 
 void HostGeometryPass::recordReadback(const gpu::Commands& commands) const {
-  if (list_.unboundedMeshes.empty()) return;
-  const VkBufferCopy all{0, 0, list_.unboundedMeshes.size() * sizeof(gpu::Extent)};
+  if (deformed_.unbounded.empty()) return;
+  const VkBufferCopy all{0, 0, deformed_.unbounded.size() * sizeof(gpu::Extent)};
   commands->CmdCopyBuffer(commands, extents_.get(), readback_.get(), 1, &all);
 }
 
 std::map<MeshId, Box> HostGeometryPass::unboundedBoxes() const {
   std::map<MeshId, Box> boxes;
-  for (size_t i = 0; i < list_.unboundedMeshes.size(); ++i) {
+  for (size_t i = 0; i < deformed_.unbounded.size(); ++i) {
     const gpu::Extent& extent = readback_.mapped()[i];
-    Box& box = boxes[list_.unboundedMeshes[i]];
+    Box& box = boxes[deformed_.unbounded[i]];
     for (int k = 0; k < 3; ++k) {
       box.lo[k] = floatOf(extent.lo[k]);
       box.hi[k] = floatOf(~extent.hi[k]);
@@ -288,10 +292,10 @@ std::map<MeshId, Box> HostGeometryPass::unboundedBoxes() const {
 std::string HostGeometryPass::boundsViolation() const {
   if (empty()) return {};
   const gpu::BoundsViolation& violation = *violation_.mapped();
-  for (const GeometryList::Deformed& deformed : list_.meshes) {
+  for (const DeformedList::Deformed& deformed : deformed_.meshes) {
     if (violation.mesh != deformed.mesh) continue;
     const uint32_t number =
-        deformed.numbers == kNone ? violation.vertex : list_.vertexNumbers[deformed.numbers + violation.vertex];
+        deformed.numbers == kNone ? violation.vertex : deformed_.vertexNumbers[deformed.numbers + violation.vertex];
     return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(deformed.firstHostVertex + number) +
            (deformed.isBounded ? " is outside its bounds or not finite" : " is not finite, or exceeds 2^120");
   }

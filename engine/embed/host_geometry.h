@@ -33,14 +33,14 @@ class HostGeometryPass {
   void stage(const HostGeometry& geometry, const Scene::Impl& scene);
   /// Then stores the sensors whose meshes are isUnbounded().
   void stageSensors(std::span<const gpu::DeformedSensor> sensors);
-  bool empty() const { return list_.empty(); }
+  bool empty() const { return deformed_.meshes.empty() && moved_.moved.empty(); }
   /// Objects of which only the device knows where they are. Ascending.
-  std::span<const ObjectId> unbounded() const { return list_.unbounded; }
+  std::span<const ObjectId> unbounded() const { return moved_.unbounded; }
   /// Whether only the device knows where a mesh's vertices are.
   bool isUnbounded(MeshId mesh) const {
-    return std::ranges::find(list_.unboundedMeshes, mesh) != list_.unboundedMeshes.end();
+    return std::ranges::find(deformed_.unbounded, mesh) != deformed_.unbounded.end();
   }
-  const GpuScene::Overwritten& overwritten() const { return list_.overwritten; }
+  GpuScene::Overwritten overwritten() const;
 
   /// Call after recording the scene's upload. The geometry is then visible to compute shaders.
   void record(const gpu::Commands& commands, const Scene::Impl& scene);
@@ -57,8 +57,8 @@ class HostGeometryPass {
   /// Describes something that left its bounds, once the device is done; empty if nothing did.
   std::string boundsViolation() const;
   /// Marks what has been recorded as executed, unless forget() is called.
-  void confirm() { isUploaded_ = true; }
-  void forget() { isUploaded_ = false; }
+  void confirm() { deformed_.isUploaded = moved_.isUploaded = true; }
+  void forget() { deformed_.isUploaded = moved_.isUploaded = false; }
 
  private:
   struct Source {
@@ -66,20 +66,21 @@ class HostGeometryPass {
     VkBufferCopy region;
   };
   std::vector<uint32_t> copyFrom(const HostGeometry& geometry, const Scene::Impl& scene);
-  void reserve(const GeometryList& list);
+  void stageDeformed();
+  void stageMoved();
 
   const Device::Impl* device_;
   const GpuScene& resident_;
   gpu::Passes run_;
   gpu::Upload upload_;
   gpu::Array<uint32_t> words_, refitNodes_, numbers_, unboundedMeshes_, fitNodes_;
-  gpu::Array<gpu::Moved> moved_;
+  gpu::Array<gpu::Moved> movedObjects_;
   gpu::Array<gpu::Extent> extents_, readback_;
   gpu::Array<gpu::DeformedSensor> sensors_;
   gpu::Array<gpu::BoundsViolation> violation_;  ///< in host memory: rarely written
   std::vector<Source> sources_;                 ///< of `words_`
-  GeometryList list_;
-  bool isUploaded_ = false;  ///< the list
+  DeformedList deformed_;
+  MovedList moved_;
   uint32_t sensorCount_ = 0;
 };
 

@@ -1,12 +1,8 @@
-// Fuzzes queries as arrays: an input is a list of arrays, of which the target makes an .npz file, so that sums are
-// right and what they protect is reached. An array is the number of its name, a byte that says whether it is
-// compressed, its length in two bytes, and what would be in its file .npy.
-#include <minizip/zip.h>
-
+// Fuzzes queries as an array: an input is the file .npy.
 #include <cmath>
-#include <cstring>
+#include <fstream>
 
-#include "batch/npz_file.h"
+#include "batch/binary_queries.h"
 #include "batch/query_file.h"
 #include "fuzz/check_batch.h"
 #include "fuzz/target.h"
@@ -16,35 +12,13 @@ namespace radar::fuzz {
 
 namespace {
 
-constexpr const char* kNames[] = {"mesh",     "pose",  "dir",  "D",     "scene",  "batch",     "motion",
-                                  "exclude",  "mask",  "hits", "mode",  "decide", "slack",     "ignore_leaving",
-                                  "speed",    "other", "",     "mesh/", "dir",    "clearance", "skip_overlapping",
-                                  "tolerance"};
-
-/// Writes them to a file; as many as the input has.
-void writeArchive(std::string_view arrays, const std::filesystem::path& file) {
-  std::filesystem::remove(file);
-  void* const archive = zipOpen64(file.c_str(), APPEND_STATUS_CREATE);
-  while (arrays.size() >= 4) {
-    const auto byte = [&](size_t i) { return static_cast<size_t>(static_cast<uint8_t>(arrays[i])); };
-    const std::string name = std::string(kNames[byte(0) % std::size(kNames)]) + ".npy";
-    const std::string_view content = arrays.substr(4, byte(2) + 256 * byte(3));
-    const int method = (byte(1) & 1) != 0 ? Z_DEFLATED : 0;
-    zipOpenNewFileInZip64(archive, name.c_str(), nullptr, nullptr, 0, nullptr, 0, nullptr, method, 1, 0);
-    zipWriteInFileInZip(archive, content.data(), static_cast<unsigned>(content.size()));
-    zipCloseFileInZip(archive);
-    arrays.remove_prefix(4 + content.size());
-  }
-  zipClose(archive, nullptr);
-}
-
 /// The folder with the query file, which is the current one.
 struct Files {
   Files() {
     folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("q.json", R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj", "a.obj"], "scenes":
  [{"instances": [[0], [1, 1,0,0,5, 0,1,0,0, 0,0,1,0]]}, {"base": 0, "instances": [], "motions": [[1, 0, 0, -3]]}],
- "queries_file": "q.npz"})");
+ "queries_file": "q.npy"})");
     std::filesystem::current_path(folder.path());
   }
   test::ScratchFolder folder;
@@ -52,10 +26,11 @@ struct Files {
 
 void run(std::string_view input) {
   static const Files files;
-  writeArchive(input, "q.npz");
+  std::filesystem::remove("q.npy");  // to write over a file may wait for the disk
+  std::ofstream("q.npy", std::ios::binary) << input;
   std::vector<std::string> warnings;
   try {
-    const tools::Workload workload = tools::readQueryFile("q.json", warnings);
+    const tools::Workload workload = tools::QueryFile("q.json", warnings).all();
     // In ranges, as the program reads it.
     const tools::QueryFile ranges("q.json", warnings);
     require(ranges.count() == workload.queries.size(), "another number of queries");
@@ -65,46 +40,42 @@ void run(std::string_view input) {
     }
     if (workload.queries.size() <= 16) checkBatch(workload);
   } catch (const tools::InputError& error) {
-    checkMessage("q.npz", error.what());
+    checkMessage("q.npy", error.what());
   }
 }
 
-/// An array of an input.
-std::string array(size_t name, bool isCompressed, const std::string& content) {
-  std::string text{static_cast<char>(name), static_cast<char>(isCompressed)};
-  text += static_cast<char>(content.size() & 255);
-  text += static_cast<char>(content.size() >> 8);
-  return text + content;
-}
-
-template <class Value>
-std::string npy(const char* descr, std::vector<uint64_t> shape, const std::vector<Value>& values) {
-  std::string content = tools::npyHeader(descr, shape);
-  const size_t before = content.size();
-  content.resize(before + values.size() * sizeof(Value));
-  std::memcpy(content.data() + before, values.data(), values.size() * sizeof(Value));
-  return content;
+/// A file of two rows: meshes, poses, and the columns and values given.
+template <class... Values>
+std::string rowsOf(const std::string& columns, const Values&... values) {
+  const double poses[2][12] = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3}, {2, 0, 0, 5, 0, 0, 2, 0, 0, -2, 0, 1}};
+  std::string file = tools::npyHeader("[('mesh', '|u1'), ('pose', '<f8', (3, 4)), " + columns + "]", 2);
+  for (uint8_t i = 0; i < 2; ++i) {
+    tools::appendBytes(file, i);
+    tools::appendBytes(file, poses[i]);
+    (tools::appendBytes(file, values[i]), ...);
+  }
+  return file;
 }
 
 std::vector<std::string> seeds() {
-  const std::vector<double> poses{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -3, 2, 0, 0, 5, 0, 0, 2, 0, 0, -2, 0, 1};
-  const auto usual = [&](bool isCompressed) {
-    return array(0, isCompressed, npy<uint8_t>("'|u1'", {2}, {0, 1})) +
-           array(1, isCompressed, npy("'<f8'", {2, 3, 4}, poses));
-  };
-  const std::string ways = array(2, false, npy<float>("'<f4'", {2, 3}, {0, 0, 1, 0, -1, 0.5f})) +
-                           array(3, false, npy<double>("'<f8'", {2}, {8, 0}));
-  return {usual(false) + ways,
-          usual(true) + array(6, true, npy<double>("'<f8'", {2, 3}, {0, 0, 4, 0, 0, 0})) +
-              array(4, false, npy<int16_t>("'<i2'", {2}, {0, 1})),
-          usual(false) + ways + array(7, false, npy<int64_t>("'<i8'", {2, 2}, {0, 1, -1, -1})) +
-              array(8, false, npy<uint32_t>("'<u4'", {2}, {1, ~0u})) +
-              array(11, false, npy<uint8_t>("'|b1'", {2}, {0, 1})),
-          usual(false) + ways + array(9, false, npy<uint32_t>("'<u4'", {2}, {0, 3})) +
-              array(10, false, npy<uint8_t>("'|u1'", {2}, {1, 2})) +
-              array(12, false, npy<double>("'<f8'", {2}, {NAN, 1e-9})) +
-              array(13, false, npy<uint8_t>("'|b1'", {2}, {1, 1})) +
-              array(19, false, npy<float>("'<f4'", {2}, {0.25f, 0}))};
+  using Floats = float[2][3];
+  using Doubles = double[2];
+  const Floats directions{{0, 0, 1}, {0, -1, 0.5f}};
+  const Doubles distances{8, 0};
+  const std::string way = "('dir', '<f4', (3,)), ('D', '<f8')";
+  return {
+      rowsOf(way, directions, distances),
+      rowsOf("('motion', '<f4', (3,)), ('scene', '<i2')", Floats{{0, 0, 4}, {0, 0, 0}}, std::array<int16_t, 2>{0, 1}),
+      rowsOf(way + ", ('exclude', '<i8'), ('mask', '<u4'), ('', '|V1'), ('decide', '|b1')", directions, distances,
+             std::array<int64_t, 2>{0, -1}, std::array{1u, ~0u}, "ab", std::array{false, true}),
+      rowsOf(
+          way + ", ('hits', '<u4'), ('mode', '|u1'), ('slack', '<f8'), ('ignore_leaving', '|b1'), ('clearance', '<f4')",
+          directions, distances, std::array{0u, 3u}, std::array<uint8_t, 2>{1, 2}, Doubles{NAN, 1e-9},
+          std::array{true, true}, std::array{0.25f, 0.0f}),
+      rowsOf("('D', '<f8'), ('dir', '<f8', (3,)), ('batch', '<u8'), ('speed', '<f8'), ('tolerance', '<f8'), "
+             "('skip_overlapping', '|b1')",
+             distances, std::array<std::array<double, 3>, 2>{{{0, 0, 1}, {1, 0, 0}}}, std::array<uint64_t, 2>{0, 7},
+             Doubles{2, NAN}, Doubles{0.5, NAN}, std::array{true, false})};
 }
 
 }  // namespace

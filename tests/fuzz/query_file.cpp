@@ -39,7 +39,7 @@ Workload readText(const std::string& text) {
   std::streambuf* const before = std::cin.rdbuf(stream.rdbuf());
   std::vector<std::string> warnings;
   try {
-    Workload workload = readQueryFile("-", warnings);
+    Workload workload = QueryFile("-", warnings).all();
     std::cin.rdbuf(before);
     return workload;
   } catch (...) {
@@ -60,7 +60,7 @@ bool areSame(const QuerySpec& a, const QuerySpec& b) {
 /// Written and read again, a workload is the same.
 void checkRoundTrip(const Workload& workload, const std::filesystem::path& folder) {
   std::vector<std::string> warnings;
-  const Workload again = readQueryFile(writeQueryFile(workload, folder), warnings);
+  const Workload again = QueryFile(writeQueryFile(workload, folder), warnings).all();
   const auto sameMesh = [](const MeshData& a, const MeshData& b) {
     return a.positions == b.positions && a.indices == b.indices;
   };

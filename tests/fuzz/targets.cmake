@@ -37,7 +37,7 @@ radar_fuzz(cpu_calls "any calls of the interface keep its contracts, and the CPU
 radar_fuzz(query_file "any bytes are read or refused as a query file, and what is read is answered" MUTATIONS 5000
   SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 radar_fuzz(query_arrays "any arrays are read or refused as queries, and what is read is answered" MUTATIONS 5000
-  SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle ${MINIZIP_LIBRARY})
+  SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 radar_fuzz(part_file "any bytes are merged, resumed or refused as a shard's answers" MUTATIONS 5000
   SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)

@@ -3,7 +3,6 @@
 import json
 import os
 import subprocess
-import zipfile
 
 import numpy as np
 import pytest
@@ -65,6 +64,14 @@ def some_arrays(count: int) -> dict[str, np.ndarray]:
     }
 
 
+def save(file, arrays: dict[str, np.ndarray]) -> None:
+    """As one array, with a column for each."""
+    rows = np.zeros(len(next(iter(arrays.values()))), [(name, a.dtype, a.shape[1:]) for name, a in arrays.items()])
+    for name, array in arrays.items():
+        rows[name] = array
+    np.save(file, rows)
+
+
 def as_queries(arrays: dict[str, np.ndarray]) -> list[dict]:
     """The same queries in JSON."""
     queries = []
@@ -85,17 +92,17 @@ def as_queries(arrays: dict[str, np.ndarray]) -> list[dict]:
     return queries
 
 
-@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
-def test_arrays_are_answered_as_the_same_queries_in_json(tmp_path, save):
+def test_arrays_are_answered_as_the_same_queries_in_json(tmp_path):
     arrays = some_arrays(500)
     write_world(tmp_path, queries=as_queries(arrays))
     expected = answer(tmp_path)
-    save(tmp_path / "q.npz", **arrays)
-    write_world(tmp_path, queries_file="q.npz")
+    save(tmp_path / "q.npy", arrays)
+    write_world(tmp_path, queries_file="q.npy")
     assert answer(tmp_path) == expected
-    save(tmp_path / "q.npz", **{name: arrays[name] for name in ("mesh", "pose", "dir", "D")}, hits=np.arange(500) % 3)
+    arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D")} | {"hits": np.arange(500) % 3}
+    save(tmp_path / "q.npy", arrays)
     listed = answer(tmp_path)
-    write_world(tmp_path, queries=as_queries({**dict(np.load(tmp_path / "q.npz"))}))
+    write_world(tmp_path, queries=as_queries(arrays))
     assert answer(tmp_path) == listed
 
 
@@ -103,8 +110,8 @@ def test_steps_are_arrays_of_motions(tmp_path):
     arrays = some_arrays(100)
     motions = arrays["dir"].astype(np.float32)
     steps = {"mesh": arrays["mesh"], "pose": arrays["pose"], "motion": motions, "speed": arrays["speed"]}
-    np.savez(tmp_path / "q.npz", **steps)
-    write_world(tmp_path, queries_file="q.npz")
+    save(tmp_path / "q.npy", steps)
+    write_world(tmp_path, queries_file="q.npy")
     found = answer(tmp_path)
     write_world(tmp_path, queries=as_queries(steps))
     assert answer(tmp_path) == found
@@ -115,8 +122,8 @@ def test_records_say_what_lines_say(tmp_path, mode):
     arrays = some_arrays(300)
     if mode == "sampled":
         arrays = {name: arrays[name] for name in ("mesh", "pose", "dir", "D", "speed", "decide")}
-    np.savez(tmp_path / "q.npz", **arrays)
-    write_world(tmp_path, queries_file="q.npz")
+    save(tmp_path / "q.npy", arrays)
+    write_world(tmp_path, queries_file="q.npy")
     lines = [json.loads(line) for line in answer(tmp_path, "--mode", mode).splitlines()]
     assert run(tmp_path, "query", "q.json", "--mode", mode, "--out", "a.npy").returncode == 0
     records = np.load(tmp_path / "a.npy")
@@ -141,8 +148,8 @@ def test_records_say_what_lines_say(tmp_path, mode):
 
 
 def test_shards_and_resumed_runs_give_the_same_records(tmp_path):
-    np.savez(tmp_path / "q.npz", **some_arrays(1000))
-    write_world(tmp_path, queries_file="q.npz")
+    save(tmp_path / "q.npy", some_arrays(1000))
+    write_world(tmp_path, queries_file="q.npy")
     assert run(tmp_path, "query", "q.json", "--out", "whole.npy").returncode == 0
     whole = (tmp_path / "whole.npy").read_bytes()
     for i in range(3):
@@ -162,7 +169,7 @@ def test_numpy_reads_what_workload_writes(tmp_path):
             tmp_path, "workload", "figure7", "--teapots", "3", "--boxes", "20", "--steps", "4", "--out", folder, *binary
         )
         assert made.returncode == 0, made.stderr
-    arrays = np.load(tmp_path / "arrays/queries.npz")
+    arrays = np.load(tmp_path / "arrays/queries.npy")
     queries = json.loads((tmp_path / "lines/queries.json").read_text())["queries"]
     assert arrays["dir"].tolist() == [query["dir"] for query in queries]
     assert arrays["scene"].tolist() == [query["scene"] for query in queries]
@@ -193,72 +200,81 @@ def with_value(name: str, index, value) -> np.ndarray:
 @pytest.mark.parametrize(
     "name, value, words",
     [
-        ("mesh", None, "q.npz: mesh: expected this array, which is missing"),
-        ("D", None, "q.npz: D: expected this array, which is missing"),
-        ("d", np.zeros(20), "q.npz: d: expected one of the arrays mesh, pose, motion, dir, D"),
-        ("mesh", np.zeros(20), "q.npz: mesh: expected integers of shape (20,), got float64 of shape (20,)"),
-        ("pose", np.zeros((20, 4, 4)), "q.npz: pose: expected float32 or float64 of shape (20, 3, 4), got float64 of shape (20, 4, 4)"),
-        ("D", np.zeros(19), "q.npz: D: expected float32 or float64 of shape (20,), got float64 of shape (19,)"),
-        ("decide", np.zeros(20, np.uint8), "q.npz: decide: expected booleans of shape (20,), got uint8"),
-        ("D", np.zeros(20, ">f8"), "q.npz: D: expected little-endian numbers"),
-        ("D", np.zeros(20, np.float16), "q.npz: D: expected float32, float64, integers or booleans, got the type f2"),
-        ("D", np.zeros(20, "U3"), "q.npz: D: expected float32, float64, integers or booleans, got the type U3"),
-        ("dir", np.ones((20, 3), order="F"), "q.npz: dir: expected an array in C order"),
-        ("D", np.zeros(20, [("a", "f8")]), "q.npz: D: expected an array of plain numbers"),
-        ("D", with_value("D", 7, np.nan), "q.npz: D[7]: expected finite numbers, got nan"),
-        ("D", with_value("D", 7, -1), "q.npz: D[7]: expected a number of 0 or more, got -1"),
-        ("dir", with_value("dir", 3, 0), "q.npz: dir[3]: expected a vector that is not zero"),
-        ("dir", with_value("dir", (3, 1), np.inf), "q.npz: dir[3]: expected finite numbers, got inf"),
-        ("mesh", with_value("mesh", 5, 2), "q.npz: mesh[5]: expected a whole number that names one of the 2 meshes"),
-        ("mesh", with_value("mesh", 5, -1), "q.npz: mesh[5]: expected a whole number that names one of the 2 meshes"),
-        ("pose", with_value("pose", 9, 1), "q.npz: pose[9]: expected"),
-        ("scene", np.arange(20), "q.npz: scene[2]: expected a whole number that names one of the 2 scenes"),
-        ("exclude", np.full((20, 1), 29), "q.npz: exclude[0]: expected -1 or a whole number"),
-        ("mode", np.full(20, 3), "q.npz: mode[0]: expected 0 for sampled"),
-        ("speed", np.zeros(20), "q.npz: speed[0]: expected a number above 0"),
-        ("slack", np.full(20, -1.0), "q.npz: slack[0]: expected a finite number of 0 or more, or nan"),
-        ("motion", np.zeros((20, 3)), "q.npz: motion: expected either"),
+        ("mesh", None, "q.npy: mesh: expected this column, which is missing"),
+        ("D", None, "q.npy: D: expected this column, which is missing"),
+        ("d", np.zeros(20), "q.npy: d: expected one of the columns mesh, pose, motion, dir, D"),
+        ("mesh", np.zeros(20), "q.npy: mesh: expected integers, got float64"),
+        ("pose", np.zeros((20, 4, 4)), "q.npy: pose: expected float32 or float64 of shape (3, 4), got float64 of shape (4, 4)"),
+        ("D", np.zeros((20, 1)), "q.npy: D: expected float32 or float64, got float64 of shape (1,)"),
+        ("decide", np.zeros(20, np.uint8), "q.npy: decide: expected booleans, got uint8"),
+        ("D", np.zeros(20, ">f8"), "q.npy: D: expected little-endian numbers"),
+        ("D", np.zeros(20, np.float16), "q.npy: D: expected float32, float64, integers or booleans, got the type f2"),
+        ("D", np.zeros(20, "U3"), "q.npy: D: expected float32, float64, integers or booleans, got the type U3"),
+        ("D", np.zeros(20, [("a", "f8")]), "q.npy: expected columns of plain numbers, got ('D', [('a'"),
+        ("D", with_value("D", 7, np.nan), "q.npy: D[7]: expected finite numbers, got nan"),
+        ("D", with_value("D", 7, -1), "q.npy: D[7]: expected a number of 0 or more, got -1"),
+        ("dir", with_value("dir", 3, 0), "q.npy: dir[3]: expected a vector that is not zero"),
+        ("dir", with_value("dir", (3, 1), np.inf), "q.npy: dir[3]: expected finite numbers, got inf"),
+        ("mesh", with_value("mesh", 5, 2), "q.npy: mesh[5]: expected a whole number that names one of the 2 meshes"),
+        ("mesh", with_value("mesh", 5, -1), "q.npy: mesh[5]: expected a whole number that names one of the 2 meshes"),
+        ("pose", with_value("pose", 9, 1), "q.npy: pose[9]: expected"),
+        ("scene", np.arange(20), "q.npy: scene[2]: expected a whole number that names one of the 2 scenes"),
+        ("exclude", np.full((20, 1), 29), "q.npy: exclude[0]: expected -1 or a whole number"),
+        ("mode", np.full(20, 3), "q.npy: mode[0]: expected 0 for sampled"),
+        ("mask", np.full(20, 2**32), "q.npy: mask[0]: expected a whole number from 0 to 4294967295"),
+        ("speed", np.zeros(20), "q.npy: speed[0]: expected a finite number above 0, or nan for none, got 0"),
+        ("slack", np.full(20, -1.0), "q.npy: slack[0]: expected a finite number of 0 or more, or nan"),
+        ("motion", np.zeros((20, 3)), "q.npy: motion: expected either"),
+        ("hits", np.full(20, -1), "q.npy: hits[0]: expected a whole number from 1 to 4294967294, or \"all\", which is 0"),
         ("hits", np.full(20, 2), "out.npy: expected another file than .npy"),
     ],
 )  # fmt: skip
-def test_bad_arrays_are_refused_by_name_and_index(tmp_path, name, value, words):
-    np.savez(tmp_path / "q.npz", **change(name, value))
-    write_world(tmp_path, queries_file="q.npz")
+def test_bad_columns_are_refused_by_name_and_index(tmp_path, name, value, words):
+    save(tmp_path / "q.npy", change(name, value))
+    write_world(tmp_path, queries_file="q.npy")
     assert words in refusal(tmp_path)
 
 
 @pytest.mark.parametrize("size", [0, 3, 5, 6, 7])
 def test_numbers_of_odd_sizes_are_refused(tmp_path, size):
     """They were read as numbers of eight bytes, beyond the array."""
-    write_world(tmp_path, queries_file="q.npz")
-    header = f"{{'descr': '<u{size}', 'fortran_order': False, 'shape': (20,), }}".ljust(117) + "\n"
-    odd = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode() + bytes(20 * size)
-    np.savez(tmp_path / "whole.npz", **some_arrays(20))
-    with zipfile.ZipFile(tmp_path / "whole.npz") as whole, zipfile.ZipFile(tmp_path / "q.npz", "w") as archive:
-        for name in whole.namelist():
-            archive.writestr(name, odd if name == "mesh.npy" else whole.read(name))
-    assert f"q.npz: mesh: expected float32, float64, integers or booleans, got the type u{size}" in refusal(tmp_path)
+    write_world(tmp_path, queries_file="q.npy")
+    save(tmp_path / "q.npy", some_arrays(20))
+    whole = (tmp_path / "q.npy").read_bytes()
+    (tmp_path / "q.npy").write_bytes(whole.replace(b"('mesh', '<i8')", b"('mesh', '<u%d')" % size))
+    assert f"q.npy: mesh: expected float32, float64, integers or booleans, got the type u{size}" in refusal(tmp_path)
 
 
-def test_damaged_archives_are_refused(tmp_path):
-    write_world(tmp_path, queries_file="q.npz")
-    assert "q.npz: expected an .npz file, got no such file" in refusal(tmp_path)
-    for save in (np.savez, np.savez_compressed):
-        save(tmp_path / "q.npz", **change("D", np.arange(20.0)))
-        whole = (tmp_path / "q.npz").read_bytes()
-        for length in (0, 10, len(whole) // 2, len(whole) - 30):
-            (tmp_path / "q.npz").write_bytes(whole[:length])
-            assert "q.npz: expected" in refusal(tmp_path)
-        # One bit of each byte in turn: refused, or of no consequence, but never another answer.
-        (tmp_path / "q.npz").write_bytes(whole)
-        expected = answer(tmp_path)
-        for place in np.random.default_rng(1).integers(0, len(whole), 60).tolist():
-            (tmp_path / "q.npz").write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1 :])
-            done = run(tmp_path, "query", "q.json")
-            assert (done.returncode == 0 and done.stdout.encode() == expected) or (
-                done.returncode == 2 and "q.npz: " in done.stderr
-            ), (place, done.stderr)
-    (tmp_path / "q.npz").write_text("no archive")
-    assert "q.npz: expected an .npz file, which is a ZIP archive" in refusal(tmp_path)
-    write_world(tmp_path, queries_file="q.npz", queries=[])
+def test_columns_may_have_gaps_between_them(tmp_path):
+    arrays = some_arrays(50)
+    save(tmp_path / "q.npy", arrays)
+    write_world(tmp_path, queries_file="q.npy")
+    expected = answer(tmp_path)
+    rows = np.load(tmp_path / "q.npy")
+    aligned = np.zeros(50, np.dtype([(name, rows.dtype[name]) for name in reversed(rows.dtype.names)], align=True))
+    for name in rows.dtype.names:
+        aligned[name] = rows[name]
+    assert aligned.dtype.itemsize > rows.dtype.itemsize
+    np.save(tmp_path / "q.npy", aligned)
+    assert answer(tmp_path) == expected
+
+
+def test_damaged_files_are_refused(tmp_path):
+    write_world(tmp_path, queries_file="q.npy")
+    assert "q.npy: expected an .npy file, got no such file" in refusal(tmp_path)
+    save(tmp_path / "q.npy", change("D", np.arange(20.0)))
+    whole = (tmp_path / "q.npy").read_bytes()
+    for length in (0, 10, len(whole) // 2, len(whole) - 1):
+        (tmp_path / "q.npy").write_bytes(whole[:length])
+        assert "q.npy: expected" in refusal(tmp_path)
+    for place in np.random.default_rng(1).integers(0, 300, 60).tolist():
+        (tmp_path / "q.npy").write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1 :])
+        done = run(tmp_path, "query", "q.json")
+        assert done.returncode == 0 or (done.returncode == 2 and "q.npy: " in done.stderr), (place, done.stderr)
+    for wrong in (b"no array", b"\x93NUMPY\x01\x00\xff\xff{}"):
+        (tmp_path / "q.npy").write_bytes(wrong)
+        assert "q.npy: expected an array in numpy's format .npy" in refusal(tmp_path)
+    np.save(tmp_path / "q.npy", np.zeros((20, 3)))
+    assert "q.npy: expected a structured array of one dimension, got {'descr': '<f8'" in refusal(tmp_path)
+    write_world(tmp_path, queries_file="q.npy", queries=[])
     assert "queries_file: expected either" in refusal(tmp_path)

@@ -34,7 +34,7 @@ std::string refusalOf(const std::string& file) {
 std::string refusalOfQueries(const std::string& file) {
   std::vector<std::string> warnings;
   try {
-    readQueryFile(file, warnings);
+    QueryFile(file, warnings).all();
   } catch (const InputError& error) {
     return error.what();
   }
@@ -96,7 +96,7 @@ TEST_CASE("a query file may name meshes outside its folder") {
                             {"scenes", nlohmann::json::array()},
                             {"queries", nlohmann::json::array()}};
   std::vector<std::string> warnings;
-  CHECK(readQueryFile(folder.write("sub/q.json", file.dump()), warnings).meshes.size() == 2);
+  CHECK(QueryFile(folder.write("sub/q.json", file.dump()), warnings).all().meshes.size() == 2);
 }
 
 TEST_CASE("a mesh file that crashes assimp costs an error message") {

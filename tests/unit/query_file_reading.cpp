@@ -33,7 +33,7 @@ struct Files {
 
   Workload read(const std::string& text) {
     std::vector<std::string> warnings;
-    Workload workload = readQueryFile(folder.write("q.json", text), warnings);
+    Workload workload = QueryFile(folder.write("q.json", text), warnings).all();
     CHECK(warnings.empty());
     return workload;
   }
@@ -42,7 +42,7 @@ struct Files {
     std::vector<std::string> warnings;
     const std::string file = folder.write("q.json", text);
     try {
-      readQueryFile(file, warnings);
+      QueryFile(file, warnings).all();
     } catch (const InputError& error) {
       REQUIRE_THAT(error.what(), StartsWith(file + ": "));
       return std::string(error.what()).substr(file.size() + 2);
@@ -259,6 +259,43 @@ TEST_CASE("an instance file is read line by line, and the message about a bad li
   CHECK_THAT(files.refusal(text), StartsWith("scenes[0].instances_file: ") && Contains("a.inst"));
 }
 
+TEST_CASE("a fingerprint tells files apart that have other answers, and no two forms of a mesh") {
+  Files files;
+  nlohmann::json file = goodFile();
+  file["scenes"][0] = {{"instances_file", "a.inst"}, {"deforms", {{0, "p.f32"}}}};
+  file["scenes"].push_back({{"assembly", "b.obj"}});
+  const auto write = [&](const std::string& mesh, const std::string& instances, const std::string& positions,
+                         const std::string& assembly) {
+    files.folder.write("a.obj", mesh);
+    files.folder.write("a.inst", instances);
+    files.folder.write("p.f32", positions);
+    files.folder.write("b.obj", assembly);
+  };
+  const auto fingerprint = [&] {
+    std::vector<std::string> warnings;
+    return QueryFile(files.folder.write("q.json", file.dump()), warnings).fingerprint();
+  };
+  const std::string mesh = kMesh, zeros(36, 0), parts = mesh + "o lid\nf 1 3 2\n";
+  std::string moved = zeros;
+  moved[0] = 1;
+  write(mesh, "0\n0\n", zeros, parts);
+  const std::string first = fingerprint();
+  write("# a triangle\n" + mesh, "0\n0\n", zeros, parts);
+  CHECK(fingerprint() == first);
+  write("v 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "0\n0\n", zeros, parts);
+  CHECK(fingerprint() != first);
+  write(mesh, "0\n0", zeros, parts);
+  CHECK(fingerprint() != first);
+  write(mesh, "0\n0\n", moved, parts);
+  CHECK(fingerprint() != first);
+  write(mesh, "0\n0\n", zeros, mesh + "o roof\nf 1 3 2\n");
+  CHECK(fingerprint() != first);
+  write(mesh, "0\n0\n", zeros, parts);
+  CHECK(fingerprint() == first);
+  file["queries"][0]["D"] = 9;
+  CHECK(fingerprint() != first);
+}
+
 TEST_CASE("a workload that is written and read back has the same bits") {
   const ScratchFolder folder;
   Workload workload = makeWorkload(Figure7{3, 100, 2});
@@ -270,7 +307,7 @@ TEST_CASE("a workload that is written and read back has the same bits") {
   workload.queries[1].tolerance = 0.1;
   workload.queries[2].id = "odd \"id\"\n\\ \xc3\xa4";
   std::vector<std::string> warnings;
-  const Workload again = readQueryFile(writeQueryFile(workload, folder.path() / "new" / "folder"), warnings);
+  const Workload again = QueryFile(writeQueryFile(workload, folder.path() / "new" / "folder"), warnings).all();
   REQUIRE(again.meshes.size() == workload.meshes.size());
   for (size_t i = 0; i < workload.meshes.size(); ++i) {
     CHECK(again.meshes[i].positions == workload.meshes[i].positions);
@@ -301,7 +338,7 @@ TEST_CASE("a query may ask what counts as a contact and for how many, and is wri
                               "clearance": 0.5})"));
   const Workload workload = files.read(file.dump());
   std::vector<std::string> warnings;
-  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  const Workload again = QueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings).all();
   for (const QuerySpec& query : {workload.queries[0], again.queries[0]}) {
     CHECK(query.ignoreLeaving);
     CHECK(query.slack == 1e-9);
@@ -331,7 +368,7 @@ TEST_CASE("motions and deformations are read, written as they were read, and ref
   file["queries"][1]["mode"] = "reference";
   const Workload workload = files.read(file.dump());
   std::vector<std::string> warnings;
-  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  const Workload again = QueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings).all();
   for (const Workload& one : {workload, again}) {
     CHECK(one.scenes[0].motions.empty());
     CHECK(one.scenes[1].motions == std::vector<ObjectMotion>{{2, {0, 0.5, 0}}, {0, {1, 2, 3}}});
@@ -367,7 +404,7 @@ TEST_CASE("scenes without an id are written without one and read again") {
   for (nlohmann::json& scene : file["scenes"]) scene.erase("id");
   const Workload workload = files.read(file.dump());
   std::vector<std::string> warnings;
-  const Workload again = readQueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings);
+  const Workload again = QueryFile(writeQueryFile(workload, files.folder.path() / "again"), warnings).all();
   REQUIRE(again.scenes.size() == 2);
   CHECK(again.scenes[1].id.empty());
   CHECK(again.scenes[1].base == 0u);

@@ -1,7 +1,13 @@
 #include "batch/answer_file.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "batch/json_output.h"
 
@@ -9,53 +15,156 @@ namespace radar::tools {
 
 namespace {
 
-std::string idText(uint32_t id) {
-  return id == kNone ? "null" : std::to_string(id);
+constexpr double kNull = std::numeric_limits<double>::quiet_NaN();
+
+/// Distances of the sensor in world units, and fractions. With a motion, the times of a result are fractions.
+struct Times {
+  Times(const QuerySpec& query, const Result& result) {
+    constexpr double kRoom = 0x1p-50;
+    const double length = query.motion ? std::hypot((*query.motion)[0], (*query.motion)[1], (*query.motion)[2]) : 1,
+                 room = query.motion ? kRoom : 0;
+    t = length * result.t;
+    lo = (1 - room) * length * result.lo;
+    hi = (1 + room) * length * result.hi;
+    fraction = result.fraction;
+    fractionLo = query.motion ? result.lo : kNull;
+    fractionHi = query.motion ? result.hi : kNull;
+    time = query.speed ? length * result.t / *query.speed : kNull;
+  }
+  double t, lo, hi, fraction, fractionLo, fractionHi, time;
+};
+
+struct Row {
+  uint64_t index;  ///< of the query
+  const QuerySpec& query;
+  const Result& result;
+  bool isSampled;  ///< answered in mode sampled
+  Times times{query, result};
+};
+
+/// The lines that have a member: stepsAndHits those of steps, timed with a speed, sampled in that mode; hits are those
+/// that a line lists.
+enum class In { none, lines, linesAndHits, stepsAndHits, timed, sampled };
+
+struct AnswerField {
+  const char* name;
+  const char* type;  ///< in a record, as numpy writes it
+  size_t place;      ///< in a record
+  /// NaN is null; in a record so is an infinity, and in whole numbers null is -1.
+  double (*value)(const Row& row, size_t part);
+  In in = In::lines;
+  std::string (*text)(double value) = nullptr;  ///< in a line, of a number that is a code
+  size_t width = 1;                             ///< numbers
+};
+
+double numberOf(uint32_t id, size_t) {
+  return id == kNone ? kNull : id;
 }
 
-std::string vectorText(const std::array<double, 3>& vector) {
-  return std::isnan(vector[0]) ? "null" : listOf(vector, ", ", appendNumber);
+double numberOf(const std::array<double, 3>& vector, size_t part) {
+  return std::isnan(vector[0]) ? kNull : vector[part];
 }
 
-std::string featureText(Feature feature) {
-  return feature == Feature::none ? "null" : "\"" + std::string(nameOf(feature)) + "\"";
+template <class Code>
+double numberOf(Code code, size_t) {
+  return static_cast<double>(code);
 }
 
-const char* wordFor(Detected detected) {
-  return detected == Detected::no ? "false" : detected == Detected::yes ? "true" : "null";
+double numberOf(Detected detected, size_t) {
+  return detected == Detected::notLooked ? kNull : double(detected == Detected::yes);
 }
 
-void addObject(JsonObject& to, ObjectId object, std::span<const std::string> names) {
-  to.add("object", idText(object));
-  if (names.empty()) return;
+/// The value of a member of Times or Result.
+template <auto member>
+double valueOf(const Row& row, size_t part) {
+  if constexpr (std::is_same_v<decltype(member), double Times::*>) {
+    return row.times.*member;
+  } else {
+    return numberOf(row.result.*member, part);
+  }
+}
+
+template <class Code>
+std::string wordOf(double value) {
+  return "\"" + std::string(nameOf(static_cast<Code>(value))) + "\"";
+}
+
+std::string featureWord(double value) {
+  return value == 0 ? "null" : wordOf<Feature>(value);
+}
+
+constexpr AnswerField kObject{"object", "<i8", 120, valueOf<&Result::object>, In::linesAndHits};
+
+// In the order of lines.
+constexpr AnswerField kFields[] = {
+    {"query", "<u8", 0, [](const Row& row, size_t) { return double(row.index); }, In::none},
+    {"status", "|u1", 144, valueOf<&Result::status>, In::lines, wordOf<Status>},
+    {"t", "<f8", 8, valueOf<&Times::t>, In::linesAndHits},
+    {"lo", "<f8", 16, valueOf<&Times::lo>, In::linesAndHits},
+    {"hi", "<f8", 24, valueOf<&Times::hi>, In::linesAndHits},
+    {"fraction", "<f8", 32, valueOf<&Times::fraction>},
+    {"fraction_lo", "<f8", 40, valueOf<&Times::fractionLo>, In::stepsAndHits},
+    {"fraction_hi", "<f8", 48, valueOf<&Times::fractionHi>, In::stepsAndHits},
+    {"time", "<f8", 56, valueOf<&Times::time>, In::timed},
+    {"detected", "|i1", 148, valueOf<&Result::detected>, In::lines,
+     [](double v) { return std::string(v == 0 ? "false" : "true"); }},
+    kObject,
+    {"tri_a", "<i8", 128, valueOf<&Result::triA>, In::linesAndHits},
+    {"tri_b", "<i8", 136, valueOf<&Result::triB>, In::linesAndHits},
+    {"feature_a", "|u1", 146, valueOf<&Result::featureA>, In::linesAndHits, featureWord},
+    {"feature_b", "|u1", 147, valueOf<&Result::featureB>, In::linesAndHits, featureWord},
+    {"point", "<f8", 72, valueOf<&Result::point>, In::linesAndHits, nullptr, 3},
+    {"normal", "<f8", 96, valueOf<&Result::normal>, In::linesAndHits, nullptr, 3},
+    {"tier", "|u1", 145, valueOf<&Result::tier>, In::lines, wordOf<Tier>},
+    {"paper_min_l", "<f8", 64, [](const Row& row, size_t) { return row.isSampled ? row.result.paperMinL : kNull; },
+     In::sampled},
+};
+
+bool isIn(In in, const Row& row, bool isHit) {
+  return in == In::linesAndHits || (in == In::stepsAndHits && row.query.motion) ||
+         (!isHit && (in == In::lines || (in == In::timed && row.query.speed) || (in == In::sampled && row.isSampled)));
+}
+
+void append(std::string& text, const AnswerField& field, double value) {
+  if (field.type[1] == 'f') {
+    appendNumber(text, value);
+  } else if (std::isnan(value)) {
+    text += "null";
+  } else {
+    text += field.text ? field.text(value) : std::to_string(static_cast<uint64_t>(value));
+  }
+}
+
+void add(JsonObject& to, const AnswerField& field, const Row& row, std::span<const std::string> names) {
+  std::string& text = to.begin(field.name);
+  if (field.width == 1 || std::isnan(field.value(row, 0))) {
+    append(text, field, field.value(row, 0));
+  } else {
+    for (size_t part = 0; part < field.width; ++part) {
+      append(text += part == 0 ? "[" : ", ", field, field.value(row, part));
+    }
+    text += "]";
+  }
+  if (field.name != kObject.name || names.empty()) return;
+  const ObjectId object = row.result.object;
   to.add("object_name", object == kNone || names[object].empty() ? "null" : quoted(names[object]));
 }
 
-// Adds t, lo and hi; `hasFraction`: the fractions, too.
-void addTimes(JsonObject& object, const QuerySpec& query, const Result& result, bool hasFraction) {
-  const AnswerTimes times = timesOf(query, result);
-  object.addNumber("t", times.t);
-  object.addNumber("lo", times.lo);
-  object.addNumber("hi", times.hi);
-  if (hasFraction) object.addNumber("fraction", times.fraction);
-  if (query.motion) {
-    object.addNumber("fraction_lo", times.fractionLo);
-    object.addNumber("fraction_hi", times.fractionHi);
+std::string hitText(const QuerySpec& query, const Result& hit, std::span<const std::string> names) {
+  const Row row{0, query, hit, false};
+  JsonObject object;
+  add(object, kObject, row, names);
+  for (const AnswerField& field : kFields) {
+    if (field.name != kObject.name && isIn(field.in, row, true)) add(object, field, row, names);
   }
-  if (hasFraction && query.speed) object.addNumber("time", times.time);
+  return object.text();
 }
 
-std::string hitText(const QuerySpec& query, const Result& hit, std::span<const std::string> objectNames) {
-  JsonObject object;
-  addObject(object, hit.object, objectNames);
-  addTimes(object, query, hit, false);
-  object.add("tri_a", idText(hit.triA));
-  object.add("tri_b", idText(hit.triB));
-  object.add("feature_a", featureText(hit.featureA));
-  object.add("feature_b", featureText(hit.featureB));
-  object.add("point", vectorText(hit.point));
-  object.add("normal", vectorText(hit.normal));
-  return object.text();
+template <class Number>
+void put(char* to, double value) {
+  if (!std::isfinite(value)) value = std::is_floating_point_v<Number> ? std::numeric_limits<double>::quiet_NaN() : -1;
+  const auto number = static_cast<Number>(value);
+  std::memcpy(to, &number, sizeof number);
 }
 
 }  // namespace
@@ -75,39 +184,16 @@ const char* nameOf(Feature feature) {
   return kNames[static_cast<size_t>(feature)];
 }
 
-// With a motion, the times of a result are fractions.
-AnswerTimes timesOf(const QuerySpec& query, const Result& result) {
-  constexpr double kRoom = 0x1p-50, kNone = std::numeric_limits<double>::quiet_NaN();
-  const double length = query.motion ? std::hypot((*query.motion)[0], (*query.motion)[1], (*query.motion)[2]) : 1,
-               room = query.motion ? kRoom : 0;
-  AnswerTimes times;
-  times.t = length * result.t;
-  times.lo = (1 - room) * length * result.lo;
-  times.hi = (1 + room) * length * result.hi;
-  times.fraction = result.fraction;
-  times.fractionLo = query.motion ? result.lo : kNone;
-  times.fractionHi = query.motion ? result.hi : kNone;
-  times.time = query.speed ? length * result.t / *query.speed : kNone;
-  return times;
-}
-
 std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames) {
-  const Result& result = answer.result;
+  const Row row{0, query, answer.result, answer.mode == AnswerMode::sampled};
   JsonObject line;
   line.addString("id", query.id);
-  line.addString("status", nameOf(result.status));
-  if (result.status == Status::invalid) line.addString("reason", answer.reason);
-  addTimes(line, query, result, true);
-  line.add("detected", wordFor(result.detected));
-  addObject(line, result.object, objectNames);
-  line.add("tri_a", idText(result.triA));
-  line.add("tri_b", idText(result.triB));
-  line.add("feature_a", featureText(result.featureA));
-  line.add("feature_b", featureText(result.featureB));
-  line.add("point", vectorText(result.point));
-  line.add("normal", vectorText(result.normal));
-  line.addString("tier", nameOf(result.tier));
-  if (answer.mode == AnswerMode::sampled) line.addNumber("paper_min_l", result.paperMinL);
+  for (const AnswerField& field : kFields) {
+    if (!isIn(field.in, row, false)) continue;
+    add(line, field, row, objectNames);
+    const bool isInvalid = answer.result.status == Status::invalid;
+    if (isInvalid && field.name == std::string_view("status")) line.addString("reason", answer.reason);
+  }
   if (query.hits > 1) {
     line.add("hits", listOf(answer.listed.hits, ", ",
                             [&](std::string& text, const Result& hit) { text += hitText(query, hit, objectNames); }));
@@ -117,6 +203,36 @@ std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<c
                                    [](std::string& text, ObjectId id) { text += std::to_string(id); }));
   }
   return line.text();
+}
+
+void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, const Answer& answer) {
+  static_assert(std::endian::native == std::endian::little);
+  const Row row{index, query, answer.result, answer.mode == AnswerMode::sampled};
+  const size_t start = records.size();
+  records.resize(start + kRecordLength);
+  for (const AnswerField& field : kFields) {
+    for (size_t part = 0; part < field.width; ++part) {
+      char* const to = &records[start + field.place + 8 * part];
+      const double value = field.value(row, part);
+      if (field.type[2] == '1') {
+        put<int8_t>(to, value);
+      } else if (field.type[1] == 'f') {
+        put<double>(to, value);
+      } else {
+        put<int64_t>(to, value);
+      }
+    }
+  }
+}
+
+std::string recordDescription() {
+  std::vector<AnswerField> fields(std::begin(kFields), std::end(kFields));
+  std::ranges::sort(fields, {}, &AnswerField::place);
+  std::string text = "[";
+  for (const AnswerField& field : fields) {
+    text += "('" + std::string(field.name) + "', '" + field.type + (field.width == 1 ? "'), " : "', (3,)), ");
+  }
+  return text + "('', '|V3')]";
 }
 
 }  // namespace radar::tools

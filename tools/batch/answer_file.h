@@ -1,4 +1,4 @@
-// Answer files: JSON Lines, one line per query.
+// Answers as lines of JSON, and as records.
 #pragma once
 
 #include <span>
@@ -17,19 +17,16 @@ struct Answer {
   Listed listed;
 };
 
-/// The times of an answer, NaN where it has none: distances of the sensor in world units, and fractions.
-struct AnswerTimes {
-  double t = 0, lo = 0, hi = 0;
-  double fraction = 0, fractionLo = 0, fractionHi = 0;  ///< the last two with a motion only
-  double time = 0;                                      ///< with a speed only
-};
-AnswerTimes timesOf(const QuerySpec& query, const Result& result);
-
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
 /// `paper_min_l` only in mode sampled, `time` only where the query gives a speed, `reason` only where the status is
 /// invalid, `hits` and `overlapping` only where the query asks for them, `object_name` only with `objectNames`, which
 /// are Workload::objectNames of the query's scene.
 std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames = {});
+
+/// The same as a record of numpy's, whose type recordDescription() says; NaN and -1 for null.
+inline constexpr size_t kRecordLength = 152;
+void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, const Answer& answer);
+std::string recordDescription();
 
 const char* nameOf(Status status);
 const char* nameOf(Tier tier);

@@ -3,9 +3,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "batch/answer_record.h"
+#include "batch/columns.h"
 #include "batch/json_output.h"
-#include "batch/npz_file.h"
 
 namespace radar::tools {
 
@@ -26,11 +25,7 @@ size_t stringLength(std::string_view text) {
   return 0;
 }
 
-AnswerRecord recordFrom(std::string_view row) {
-  AnswerRecord record;
-  std::memcpy(&record, row.data(), sizeof record);
-  return record;
-}
+constexpr size_t kStatusPlace = 144;  // in a record
 
 }  // namespace
 
@@ -52,11 +47,7 @@ AnswerFormat answerFormatOf(const std::filesystem::path& file) {
 std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries, std::span<const Answer> answers) {
   std::string rows;
   if (format_ == AnswerFormat::records) {
-    rows.resize(queries.size() * sizeof(AnswerRecord));
-    for (size_t i = 0; i < queries.size(); ++i) {
-      const AnswerRecord record = recordOf(first + i, queries[i], answers[i]);
-      std::memcpy(rows.data() + i * sizeof record, &record, sizeof record);
-    }
+    for (size_t i = 0; i < queries.size(); ++i) appendRecord(rows, first + i, queries[i], answers[i]);
     return rows;
   }
   for (size_t i = 0; i < queries.size(); ++i) {
@@ -69,23 +60,23 @@ std::string AnswerRows::text(uint64_t first, std::span<const QuerySpec> queries,
 }
 
 std::string startOf(AnswerFormat format, uint64_t queries) {
-  return format == AnswerFormat::lines ? "" : npyHeader(recordDescription(), {&queries, 1}, kRecordsStart);
+  return format == AnswerFormat::lines ? "" : npyHeader(recordDescription(), queries, kRecordsStart);
 }
 
 size_t rowLength(AnswerFormat format, std::string_view rows) {
-  if (format == AnswerFormat::records) return rows.size() < sizeof(AnswerRecord) ? 0 : sizeof(AnswerRecord);
+  if (format == AnswerFormat::records) return rows.size() < kRecordLength ? 0 : kRecordLength;
   return rows.find('\n') + 1;  // npos + 1 is 0
 }
 
 bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const QuerySpec* query) {
-  if (format == AnswerFormat::records) return recordFrom(row).query == index;
+  if (format == AnswerFormat::records) return std::memcmp(row.data(), &index, sizeof index) == 0;
   if (!row.starts_with(kLineStart) || !row.ends_with("}\n")) return false;
   row.remove_prefix(kLineStart.size());
   return query ? row.starts_with(quoted(query->id) + ", ") : stringLength(row) > 0;
 }
 
 bool isInvalidRow(AnswerFormat format, std::string_view row) {
-  if (format == AnswerFormat::records) return recordFrom(row).status == static_cast<uint8_t>(Status::invalid);
+  if (format == AnswerFormat::records) return row[kStatusPlace] == static_cast<char>(Status::invalid);
   row.remove_prefix(kLineStart.size());
   row.remove_prefix(stringLength(row));
   return row.starts_with(", \"status\": \"invalid\"");

@@ -14,7 +14,7 @@ namespace radar::tools {
 
 enum class AnswerFormat {
   lines,   ///< JSON Lines
-  records  ///< AnswerRecord, in an .npy file
+  records  ///< in an .npy file
 };
 const char* nameOf(AnswerFormat format);
 /// Throws std::invalid_argument that lists the names.

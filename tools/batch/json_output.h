@@ -36,13 +36,12 @@ std::string listOf(const List& list, const char* separator, const Append& append
 /// An object's members, in the order in which they are added.
 class JsonObject {
  public:
-  void add(const char* key, const std::string& json) {
-    text_.append(text_.empty() ? "{\"" : ", \"").append(key).append("\": ").append(json);
-  }
+  void add(const char* key, const std::string& json) { begin(key) += json; }
   void addString(const char* key, const std::string& value) { add(key, quoted(value)); }
-  void addNumber(const char* key, double value) {
-    add(key, "");
-    appendNumber(text_, value);
+  void addNumber(const char* key, double value) { appendNumber(begin(key), value); }
+  /// Begins a member, whose value is to be appended to what this returns.
+  std::string& begin(const char* key) {
+    return text_.append(text_.empty() ? "{\"" : ", \"").append(key).append("\": ");
   }
   std::string text() const { return text_ + "}"; }
 

@@ -5,26 +5,20 @@
 #include <thread>
 
 #include "batch/binary_queries.h"
-#include "batch/fingerprint.h"
 #include "batch/query_reader.h"
 
 namespace radar::tools {
 
 void ModesAsked::add(const Workload& world, const QuerySpec& query) {
   if (!listed && (query.hits > 1 || query.skipOverlapping)) listed = query.id;
-  if (query.mode) {
-    chosen[static_cast<size_t>(*query.mode)] = true;
-    return;
-  }
-  byCommand = true;
-  if (!exactOnly.empty()) return;
+  modes.insert(query.mode);
+  if (query.mode || !exactOnly.empty()) return;
   const std::string reason = tools::exactOnly(world, query);
   if (!reason.empty()) exactOnly = reason + " of query \"" + query.id + "\"";
 }
 
 void ModesAsked::add(const ModesAsked& later) {
-  for (size_t i = 0; i < chosen.size(); ++i) chosen[i] = chosen[i] || later.chosen[i];
-  byCommand = byCommand || later.byCommand;
+  modes.insert(later.modes.begin(), later.modes.end());
   if (exactOnly.empty()) exactOnly = later.exactOnly;
   if (!listed) listed = later.listed;
 }
@@ -72,17 +66,14 @@ ModesAsked modesOf(const Workload& workload) {
 QueryFile::QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
   JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
   world_ = std::move(json.workload);
-  Fingerprint fingerprint;
-  fingerprint.addWorld(world_);
   if (json.queriesFile) {
     binary_ = std::make_unique<BinaryQueries>(*json.queriesFile, world_, json.listedMeshes);
     modes_ = check(*binary_, world_);
-    binary_->addTo(fingerprint);
+    json.fingerprint.add(binary_->bytes());
   } else {
     modes_ = modesOf(world_);
-    for (const QuerySpec& query : world_.queries) fingerprint.add(query);
   }
-  fingerprint_ = fingerprint.text();
+  fingerprint_ = json.fingerprint.text();
 }
 
 QueryFile::~QueryFile() = default;
@@ -98,13 +89,9 @@ std::span<const QuerySpec> QueryFile::read(uint64_t first, uint64_t count, std::
   return room;
 }
 
-Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs) {
-  JsonQueryFile json = readJsonQueryFile(file, warnings, outputs);
-  if (json.queriesFile) {
-    const BinaryQueries binary(*json.queriesFile, json.workload, json.listedMeshes);
-    for (uint64_t i = 0; i < binary.count(); ++i) json.workload.queries.push_back(binary.read(i));
-  }
-  return std::move(json.workload);
+Workload QueryFile::all() && {
+  for (uint64_t i = 0; binary_ && i < count(); ++i) world_.queries.push_back(binary_->read(i));
+  return std::move(world_);
 }
 
 }  // namespace radar::tools

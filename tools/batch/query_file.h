@@ -1,10 +1,10 @@
 // Query files, format cyber-radar-queries-1.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,27 +16,19 @@
 
 namespace radar::tools {
 
-/// Reads a query file with its meshes and instance files; "-" is standard input, in the current folder. Everything is
-/// checked: what is returned keeps the contracts of radar::Scene and radar::Query. Throws InputError that names the
-/// file, the JSON path (or line) and what was expected; also if one of `outputs` is read, before it is. Appends the
-/// warnings about mesh files to `warnings`.
-Workload readQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                       const Outputs& outputs = {});
-
 class BinaryQueries;
 
 /// The modes that queries ask for.
 struct ModesAsked {
-  std::array<bool, 3> chosen{};       ///< by a query, indexed by AnswerMode
-  bool byCommand = false;             ///< a query leaves the choice to the command
-  std::string exactOnly;              ///< what of one that does mode sampled does not offer; or empty
-  std::optional<std::string> listed;  ///< the id of one whose answer has lists: of hits, or of what overlaps
+  std::set<std::optional<AnswerMode>> modes;  ///< none: a query leaves the choice to the command
+  std::string exactOnly;                      ///< what of one that does mode sampled does not offer; or empty
+  std::optional<std::string> listed;          ///< the id of one whose answer has lists: of hits, or of what overlaps
   void add(const Workload& world, const QuerySpec& query);
   /// Those of later queries.
   void add(const ModesAsked& later);
   /// Whether a query is answered in `mode` where the command chooses `command`.
   bool asks(AnswerMode mode, AnswerMode command) const {
-    return chosen[static_cast<size_t>(mode)] || (byCommand && mode == command);
+    return modes.contains(mode) || (modes.contains(std::nullopt) && mode == command);
   }
 };
 ModesAsked modesOf(const Workload& workload);
@@ -44,7 +36,10 @@ ModesAsked modesOf(const Workload& workload);
 /// A query file whose queries are read in ranges.
 class QueryFile {
  public:
-  /// Reads and checks the whole file, as readQueryFile(). Queries in a queries file stay there.
+  /// Reads a query file with its meshes and instance files; "-" is standard input, in the current folder. Everything is
+  /// checked: what is returned keeps the contracts of radar::Scene and radar::Query. Queries in a queries file stay
+  /// there. Throws InputError that names the file, the JSON path (or line) and what was expected; also if one of
+  /// `outputs` is read, before it is. Appends the warnings about mesh files to `warnings`.
   QueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings, const Outputs& outputs = {});
   ~QueryFile();
 
@@ -53,8 +48,10 @@ class QueryFile {
   uint64_t count() const;
   /// The queries from `first` on, `count` of them, which exist. Valid until `room`, which may hold them, changes.
   std::span<const QuerySpec> read(uint64_t first, uint64_t count, std::vector<QuerySpec>& room) const;
+  /// The world with all queries.
+  Workload all() &&;
   const ModesAsked& modes() const { return modes_; }
-  /// A hash of all that the answers depend on.
+  /// A hash of all that the answers depend on: bytes of the files, but of meshes only what was read.
   const std::string& fingerprint() const { return fingerprint_; }
 
  private:
@@ -65,7 +62,7 @@ class QueryFile {
 };
 
 /// Writes `folder`/queries.json, the meshes as binary PLY, whose floats are exact, and a scene of more than 64
-/// instances as an instance file; makes the folder. `binary`: the queries as arrays in queries.npz. Reading it gives
+/// instances as an instance file; makes the folder. `binary`: the queries as an array in queries.npy. Reading it gives
 /// the same workload to the bit (a mesh's name is its file's then, and names of objects are not kept, nor, if binary,
 /// ids of queries). Returns the query file. Throws std::runtime_error if something cannot be written.
 std::filesystem::path writeQueryFile(const Workload& workload, const std::filesystem::path& folder,

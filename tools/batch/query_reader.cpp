@@ -71,36 +71,26 @@ std::array<double, 3> readVector(const JsonValue& list) {
   return {list[0].number(), list[1].number(), list[2].number()};
 }
 
-/// A field's value.
-struct FieldReader {
-  const JsonValue& value;
-  const QueryField& field;
-  uint32_t objects;  ///< of the query's scene
-
-  void operator()(bool& to) const { to = value.boolean(); }
-  void operator()(double& to) const {
-    to = value.number();
-    if (!takes(field, to)) value.expected(expectedFor(field));
+void readField(const JsonValue& value, const QueryField& field, QuerySpec& to) {
+  const nlohmann::json& json = value.json();
+  double number = HUGE_VAL;
+  bool fits = true;
+  if (field.kind() == 'b') {
+    number = value.boolean();
+  } else if (!field.word || json != field.word) {
+    fits = field.kind() == 'u' ? json.is_number_unsigned() : json.is_number();
+    number = fits ? json.get<double>() : 0;
   }
-  void operator()(std::optional<double>& to) const { (*this)(to.emplace()); }
-  void operator()(uint32_t& to) const {
-    const nlohmann::json& json = value.json();
-    if (field.word && json == field.word) {
-      to = static_cast<uint32_t>(field.most) + 1;
-    } else if (json.is_number_unsigned() && takes(field, json.get<double>())) {
-      to = json.get<uint32_t>();
-    } else {
-      value.expected(expectedFor(field));
-    }
-  }
-  void operator()(std::vector<ObjectId>& to) const {
-    value.forEach([&](const JsonValue& id) { to.push_back(id.index(objects, "objects of the query's scene")); });
-  }
-};
+  if (!fits || !setValue(to, field, number)) value.expected(expectedFor(field));
+}
 
 void readFields(const JsonValue& query, uint32_t objects, QuerySpec& to) {
   for (const QueryField& field : queryFields()) {
-    query.ifHas(field.name, [&](const JsonValue& value) { withMember(field, to, FieldReader{value, field, objects}); });
+    query.ifHas(field.name, [&](const JsonValue& value) {
+      if (field.kind() != 'o') return readField(value, field, to);
+      value.forEach(
+          [&](const JsonValue& id) { to.exclude.push_back(id.index(objects, "objects of the query's scene")); });
+    });
   }
   if (to.hits > 1 && to.anyHit) query.member("hits").expected("1 beside \"decide\"");
 }
@@ -121,18 +111,19 @@ class Reader {
   const Assembly& assembly(const std::filesystem::path& file);
   void readQuery(const JsonValue& query);
   Instance readInstance(const JsonValue& list) const;
-  std::vector<Instance> readInstanceFile(const std::filesystem::path& file) const;
+  std::vector<Instance> readInstanceFile(const std::filesystem::path& file);
   std::vector<ObjectMask> readMasks(const JsonValue& list, size_t objects) const;
   std::vector<ObjectMotion> readMotions(const JsonValue& list, size_t objects) const;
-  std::vector<Deformation> readDeforms(const JsonValue& list) const;
-  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh) const;
+  std::vector<Deformation> readDeforms(const JsonValue& list);
+  std::vector<float> readPositions(const std::filesystem::path& file, const MeshData& mesh);
 
   std::filesystem::path file_;
   std::string name_;
   std::vector<std::string>& warnings_;
   const Outputs& outputs_;
   Workload workload_;
-  size_t listed_ = 0;  ///< of the meshes, those that the file lists; those of assemblies follow
+  Fingerprint fingerprint_;  ///< of what is read
+  size_t listed_ = 0;        ///< of the meshes, those that the file lists; those of assemblies follow
   std::map<std::filesystem::path, Assembly> assemblies_;
   std::map<const Assembly*, uint32_t> firstMesh_;  ///< of the assemblies that scenes place
   std::unordered_set<std::string> sceneIds_, queryIds_;
@@ -152,7 +143,9 @@ std::filesystem::path Reader::pathOf(const JsonValue& value) const {
 }
 
 JsonQueryFile Reader::read() {
-  const nlohmann::json document = parseJson(name_, content());
+  const std::string text = content();
+  fingerprint_.add(text);
+  const nlohmann::json document = parseJson(name_, text);
   const JsonValue root(name_, document);
   requireKnownKeys(root, {"format", "meshes", "scenes", "queries", "queries_file"});
   const JsonValue format = root.member("format");
@@ -168,7 +161,13 @@ JsonQueryFile Reader::read() {
   } else {
     root.member("queries").forEach([&](const JsonValue& query) { readQuery(query); });
   }
+  // A mesh decides, whatever its file looks like.
+  for (const MeshData& mesh : workload_.meshes) {
+    fingerprint_.add(mesh.positions);
+    fingerprint_.add(mesh.indices);
+  }
   result.workload = std::move(workload_);
+  result.fingerprint = fingerprint_;
   result.listedMeshes = listed_;
   return result;
 }
@@ -225,6 +224,9 @@ void Reader::readInstances(const JsonValue& scene, SceneSpec& spec) {
     for (const Assembly::Part& part : parts.parts) {
       spec.instances.push_back({first->second + part.mesh, part.fileFromMesh});
       spec.names.push_back(part.name);
+      fingerprint_.add(part.name);
+      fingerprint_.add(std::array{part.mesh});
+      fingerprint_.add(part.fileFromMesh.m);
     }
   } else {
     scene.member("instances").forEach([&](const JsonValue& list) { spec.instances.push_back(readInstance(list)); });
@@ -253,7 +255,7 @@ std::vector<ObjectMotion> Reader::readMotions(const JsonValue& list, size_t obje
   return motions;
 }
 
-std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
+std::vector<Deformation> Reader::readDeforms(const JsonValue& list) {
   std::vector<Deformation> deforms;
   std::unordered_set<uint32_t> named;
   list.forEach([&](const JsonValue& pair) {
@@ -266,9 +268,10 @@ std::vector<Deformation> Reader::readDeforms(const JsonValue& list) const {
   return deforms;
 }
 
-std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) const {
+std::vector<float> Reader::readPositions(const std::filesystem::path& file, const MeshData& mesh) {
   static_assert(std::endian::native == std::endian::little);
   const std::string bytes = readRegularFile(file, "a file of vertex positions");
+  fingerprint_.add(bytes);
   std::vector<float> positions(mesh.positions.size());
   const size_t expected = positions.size() * sizeof(float);
   if (bytes.size() != expected) {
@@ -295,8 +298,9 @@ Instance Reader::readInstance(const JsonValue& list) const {
   return instance;
 }
 
-std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) const {
+std::vector<Instance> Reader::readInstanceFile(const std::filesystem::path& file) {
   const std::string content = readRegularFile(file, "an instance file");
+  fingerprint_.add(content);
   std::string_view rest = content;
   std::vector<Instance> instances;
   // Only the last line may be blank.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "batch/fingerprint.h"
 #include "batch/outputs.h"
 #include "workloads/workload.h"
 
@@ -15,9 +16,10 @@ struct JsonQueryFile {
   Workload workload;        ///< without the queries of a queries file
   size_t listedMeshes = 0;  ///< the meshes that sensors may be; those of assemblies follow
   std::optional<std::filesystem::path> queriesFile;
+  Fingerprint fingerprint;  ///< of all but the queries file
 };
 
-/// As readQueryFile(), but for the content of a queries file.
+/// As QueryFile(), but for the content of a queries file.
 JsonQueryFile readJsonQueryFile(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                 const Outputs& outputs);
 

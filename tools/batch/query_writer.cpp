@@ -1,4 +1,4 @@
-#include <bit>
+#include <cmath>
 #include <stdexcept>
 
 #include "batch/atomic_file.h"
@@ -12,12 +12,6 @@ namespace radar::tools {
 namespace {
 
 constexpr size_t kMostInline = 64;
-
-template <class Value>
-void appendBytes(std::string& bytes, const Value& value) {
-  static_assert(std::endian::native == std::endian::little);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::string plyOf(const MeshData& mesh) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertexCount()) +
@@ -86,21 +80,18 @@ std::string sceneText(const SceneSpec& scene, size_t number, const std::string& 
   return object.text();
 }
 
-/// Adds a field's value to an object.
-struct FieldWriter {
-  const QueryField& field;
-  JsonObject& to;
-
-  void operator()(bool) const { to.add(field.name, "true"); }
-  void operator()(double value) const { to.addNumber(field.name, value); }
-  void operator()(const std::optional<double>& value) const { to.addNumber(field.name, *value); }
-  void operator()(uint32_t value) const {
-    to.add(field.name, field.word && value > field.most ? quoted(field.word) : std::to_string(value));
+void addField(JsonObject& to, const QueryField& field, const QuerySpec& query) {
+  const double value = valueIn(query, field);
+  if (field.kind() == 'o') {
+    to.add(field.name, listOf(query.exclude, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+  } else if (field.kind() == 'b') {
+    to.add(field.name, "true");
+  } else if (field.kind() == 'f') {
+    to.addNumber(field.name, value);
+  } else {
+    to.add(field.name, std::isinf(value) ? quoted(field.word) : std::to_string(static_cast<uint32_t>(value)));
   }
-  void operator()(const std::vector<ObjectId>& ids) const {
-    to.add(field.name, listOf(ids, ",", [](std::string& text, ObjectId id) { text += std::to_string(id); }));
-  }
-};
+}
 
 std::string queryText(const QuerySpec& query) {
   JsonObject object;
@@ -116,7 +107,7 @@ std::string queryText(const QuerySpec& query) {
   }
   if (query.mode) object.addString("mode", nameOf(*query.mode));
   for (const QueryField& field : queryFields()) {
-    if (isGiven(field, query)) withMember(field, query, FieldWriter{field, object});
+    if (isGiven(query, field)) addField(object, field, query);
   }
   return object.text();
 }
@@ -155,8 +146,8 @@ std::filesystem::path writeQueryFile(const Workload& workload, const std::filesy
     text += (i > 0 ? ",\n  " : "\n  ") + sceneText(scene, i, instanceFile);
   }
   if (binary) {
-    writeBinaryQueries(workload.queries, folder / "queries.npz");
-    text += "],\n \"queries_file\": \"queries.npz\"}\n";
+    writeBinaryQueries(workload.queries, folder / "queries.npy");
+    text += "],\n \"queries_file\": \"queries.npy\"}\n";
   } else {
     text += "],\n \"queries\": [";
     for (size_t i = 0; i < workload.queries.size(); ++i) {

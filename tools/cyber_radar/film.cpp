@@ -1,7 +1,5 @@
 #include "cyber_radar/film.h"
 
-#include <zlib.h>
-
 #include <stdexcept>
 #include <string_view>
 
@@ -21,8 +19,12 @@ std::string bigEndian(uint32_t value, int bytes) {
 
 std::string chunk(const std::string& kind, const std::string& data) {
   const std::string checked = kind + data;
-  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size()));
-  return bigEndian(static_cast<uint32_t>(data.size()), 4) + checked + bigEndian(static_cast<uint32_t>(sum), 4);
+  uint32_t sum = ~0u;  // CRC-32
+  for (const char byte : checked) {
+    sum ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (0xedb88320u & (0u - (sum & 1)));
+  }
+  return bigEndian(static_cast<uint32_t>(data.size()), 4) + checked + bigEndian(~sum, 4);
 }
 
 uint32_t numberAt(const std::string& png, size_t at) {

@@ -141,19 +141,17 @@ void SweepOptions::addFieldsTo(CLI::App& command) {
     if (!field.option) continue;
     std::string name = std::string("--") + field.name;
     std::ranges::replace(name, '_', '-');
-    withMember(field, fields, [&]<class Value>(Value& to) {
-      if constexpr (std::is_same_v<Value, bool>) {
-        command.add_flag(name, to, field.about);
-      } else if constexpr (std::is_assignable_v<Value&, double>) {
-        const auto take = [&, name](double value) {
-          if (!takes(field, value)) {
-            throw InputError(name, "", "expected " + expectedFor(field) + ", got " + std::to_string(value));
-          }
-          to = value;
-        };
-        command.add_option_function<double>(name, take, field.about)->type_name("X");
+    const auto set = [&, name](double value) {
+      if (std::isnan(value) || !setValue(fields, field, value)) {
+        throw InputError(name, "", "expected " + expectedFor(field) + ", got " + std::to_string(value));
       }
-    });
+    };
+    if (field.kind() == 'b') {
+      command.add_flag_callback(
+          name, [set] { set(1); }, field.about);
+    } else {
+      command.add_option_function<double>(name, set, field.about)->type_name("X");
+    }
   }
 }
 

@@ -69,7 +69,7 @@ std::vector<ScalePoint> filePoints(const Options& options) {
   std::vector<std::string> warnings;
   Outputs outputs;
   if (!options.out.empty()) outputs.addIn("--out", options.out, {"report.json", "trace.json"});
-  const Workload whole = readQueryFile(options.file, warnings, outputs);
+  const Workload whole = QueryFile(options.file, warnings, outputs).all();
   printWarnings(warnings);
   if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
   std::vector<ScalePoint> points;

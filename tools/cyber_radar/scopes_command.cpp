@@ -50,7 +50,7 @@ Workload load(Options& options) {
   std::vector<std::string> warnings;
   Outputs outputs;
   outputs.addIn("--out", options.out, {"scopes.json", "R.f32", "M.f32", "L.f32"});
-  Workload workload = readQueryFile(options.files[0], warnings, outputs);
+  Workload workload = QueryFile(options.files[0], warnings, outputs).all();
   printWarnings(warnings);
   return workload;
 }

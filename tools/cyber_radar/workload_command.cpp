@@ -72,7 +72,7 @@ void addWorkload(CLI::App& parent, const char* name, const char* about,
       ->type_name("N")
       ->capture_default_str();
   auto binary = std::make_shared<bool>(false);
-  command->add_flag("--binary", *binary, "Writes the queries as arrays, in queries.npz, without their ids");
+  command->add_flag("--binary", *binary, "Writes the queries as an array, in queries.npy, without their ids");
   addOptions(*command, *settings);
   command->callback([settings, out, binary] {
     requireUntouched(*settings, *out);

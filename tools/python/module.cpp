@@ -5,6 +5,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
+
 #include "commit/commit.h"
 #include "import/mesh_import.h"
 #include "python/batch.h"
@@ -213,37 +215,28 @@ BatchOutput outputFrom(const py::dict& arrays, size_t count) {
 }
 
 /// A field's value for all casts, as cast_option() gives it.
-struct FieldReader {
-  const tools::QueryField& field;
-  py::object value;
-
-  [[noreturn]] void refuse() const {
-    throw py::value_error(std::string(field.python) + ": expected " + expectedFor(field) + ", got " +
-                          std::string(py::repr(value)));
+void readField(const tools::QueryField& field, const py::object& value, tools::QuerySpec& to) {
+  double number = std::nan("");
+  bool fits = true;
+  if (field.kind() == 'b') {
+    number = py::bool_(value);
+  } else if (py::isinstance<py::float_>(value)) {
+    number = value.cast<double>();
+    fits = std::isfinite(number);
+  } else if (field.word && value.equal(py::str(field.word))) {
+    number = HUGE_VAL;
+  } else {
+    fits = value.is_none();
   }
-  double number() const {
-    if (!py::isinstance<py::float_>(value) || !takes(field, value.cast<double>())) refuse();
-    return value.cast<double>();
-  }
-  void operator()(bool& to) const { to = py::bool_(value); }
-  void operator()(double& to) const { to = number(); }
-  void operator()(std::optional<double>& to) const {
-    if (!value.is_none()) to = number();
-  }
-  void operator()(uint32_t& to) const {
-    if (field.word && value.equal(py::str(field.word))) {
-      to = static_cast<uint32_t>(field.most) + 1;
-    } else if ((to = static_cast<uint32_t>(number())) != number()) {
-      refuse();
-    }
-  }
-  void operator()(std::vector<ObjectId>&) const {}  // of each cast
-};
+  if (fits && setValue(to, field, number)) return;
+  throw py::value_error(std::string(field.python) + ": expected " + expectedFor(field) + ", got " +
+                        std::string(py::repr(value)));
+}
 
 Query optionsFrom(const py::dict& options) {
   tools::QuerySpec query;
   for (const tools::QueryField& field : tools::queryFields()) {
-    if (*field.python != 0) withMember(field, query, FieldReader{field, options[field.python]});
+    if (*field.python != 0) readField(field, options[field.python], query);
   }
   query.resolution = options["resolution"].cast<uint32_t>();
   if (query.hits > 1 && query.anyHit) throw py::value_error("hits: expected 1 with any_hit");

@@ -1,13 +1,15 @@
 #include "workloads/query_fields.h"
 
-#include <array>
+#include <cmath>
+#include <type_traits>
 
 namespace radar::tools {
 
 namespace {
 
 const QuerySpec kUsual;
-constexpr double kAboveZero = std::numeric_limits<double>::denorm_min();
+constexpr double kAboveZero = std::numeric_limits<double>::denorm_min(),
+                 kInfinity = std::numeric_limits<double>::infinity(), kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr QueryField kFields[] = {
     {.name = "decide",
@@ -63,13 +65,10 @@ constexpr QueryField kFields[] = {
 };
 
 std::string defaultOf(const QueryField& field) {
-  std::string text = "none";
-  withMember(field, kUsual, [&]<class Value>(const Value& value) {
-    if constexpr (std::is_same_v<Value, bool>) text = value ? "true" : "false";
-    if constexpr (std::is_same_v<Value, double>) text = "0";
-    if constexpr (std::is_same_v<Value, uint32_t>) text = value == ~0u ? "all" : std::to_string(value);
-  });
-  return text;
+  const double value = field.kind() == 'o' ? kNone : valueIn(kUsual, field);
+  if (std::isnan(value)) return "none";
+  if (field.kind() == 'b') return value == 0 ? "false" : "true";
+  return value == ~0u ? "all" : std::to_string(static_cast<uint32_t>(value));
 }
 
 }  // namespace
@@ -78,30 +77,57 @@ std::span<const QueryField> queryFields() {
   return kFields;
 }
 
-bool isGiven(const QueryField& field, const QuerySpec& query) {
+bool isGiven(const QuerySpec& query, const QueryField& field) {
   return std::visit([&](auto member) { return query.*member != kUsual.*member; }, field.member);
 }
 
-bool takes(const QueryField& field, double value) {
-  return value >= field.least && value <= field.most;
+double valueIn(const QuerySpec& query, const QueryField& field) {
+  return std::visit(
+      [&]<class Value>(Value QuerySpec::*member) -> double {
+        if constexpr (std::is_same_v<Value, std::vector<ObjectId>>) {
+          return kNone;
+        } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+          return (query.*member).value_or(kNone);
+        } else {
+          return field.word && query.*member > field.most ? kInfinity : query.*member;
+        }
+      },
+      field.member);
+}
+
+bool setValue(QuerySpec& query, const QueryField& field, double value) {
+  return std::visit(
+      [&]<class Value>(Value QuerySpec::*member) {
+        if constexpr (std::is_same_v<Value, std::vector<ObjectId>>) {
+          return false;
+        } else if constexpr (std::is_same_v<Value, bool>) {
+          query.*member = value != 0;
+        } else if (std::is_same_v<Value, std::optional<double>> && std::isnan(value)) {
+          query.*member = Value();
+        } else if (field.word && value == kInfinity) {
+          query.*member = static_cast<Value>(field.most + 1);
+        } else {
+          const bool isWhole = value == std::floor(value);
+          if (!(value >= field.least && value <= field.most) || (field.kind() == 'u' && !isWhole)) return false;
+          query.*member = static_cast<Value>(value);
+        }
+        return true;
+      },
+      field.member);
 }
 
 std::string expectedFor(const QueryField& field) {
-  std::string text = field.least > 0 ? "a finite number above 0" : "a finite number of 0 or more";
-  withMember(field, kUsual, [&]<class Value>(const Value&) {
-    if constexpr (std::is_same_v<Value, bool>) text = "true or false";
-    if constexpr (std::is_same_v<Value, std::vector<ObjectId>>) text = "ids of objects";
-    if constexpr (std::is_same_v<Value, uint32_t>) {
-      text = "a whole number from " + std::to_string(static_cast<uint32_t>(field.least)) + " to " +
-             std::to_string(static_cast<uint32_t>(field.most));
-    }
-  });
-  return text + (field.word ? ", or \"" + std::string(field.word) + "\"" : "");
+  if (field.kind() == 'b') return "true or false";
+  if (field.kind() == 'o') return "ids of objects";
+  if (field.kind() == 'f') return field.least > 0 ? "a finite number above 0" : "a finite number of 0 or more";
+  const auto whole = [](double value) { return std::to_string(static_cast<uint32_t>(value)); };
+  return "a whole number from " + whole(field.least) + " to " + whole(field.most) +
+         (field.word ? ", or \"" + std::string(field.word) + "\"" : "");
 }
 
 const QueryField* exactOnly(const QuerySpec& query) {
   for (const QueryField& field : kFields) {
-    if (!field.sampled && isGiven(field, query)) return &field;
+    if (!field.sampled && isGiven(query, field)) return &field;
   }
   return nullptr;
 }

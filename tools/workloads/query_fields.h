@@ -24,20 +24,19 @@ struct QueryField {
   const char* python = "";     ///< the keyword of Scene.cast that takes one value for all casts, if there is one
   bool sampled = true;         ///< mode sampled offers it
   bool option = false;         ///< of the command sweep
+
+  /// 'b' true or false, 'u' whole number, 'f' number, 'o' ids of objects
+  char kind() const { return "buffo"[member.index()]; }
 };
 
 std::span<const QueryField> queryFields();
 
-/// Calls `use` with the member of `query` that a field stands for.
-template <class Spec, class Use>
-void withMember(const QueryField& field, Spec& query, const Use& use) {
-  std::visit([&](auto member) { use(query.*member); }, field.member);
-}
-
+/// The value as a number: 0 or 1 for false or true, infinity for the word, NaN for none. Not of ids.
+double valueIn(const QuerySpec& query, const QueryField& field);
+/// Sets such a value; returns whether the field takes it.
+bool setValue(QuerySpec& query, const QueryField& field, double value);
 /// Whether the query gives a value that is not the default.
-bool isGiven(const QueryField& field, const QuerySpec& query);
-/// Whether a number is one of the field's.
-bool takes(const QueryField& field, double value);
+bool isGiven(const QuerySpec& query, const QueryField& field);
 /// Words for messages: what the field takes.
 std::string expectedFor(const QueryField& field);
 

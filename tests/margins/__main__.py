@@ -1,0 +1,86 @@
+"""Proves that the margins of tests in shaders, and of the CPU's, are no smaller than the errors that they are for.
+
+Usage: python3 tests/margins. Needs no packages and no device. Ends with an error and the place if a margin is too
+small, or if a function has changed so that a claim does not understand it any more.
+
+The functions are read from their sources (reader.py) and evaluated on numbers that carry bounds (evaluator.py,
+rounding.py): each is what a machine computes where the formula, on exact inputs, has another value. Bounds of its size
+and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors.
+
+The model. A float operation on a device is off by at most an ulp of 1, relative, in any direction, a division by 2.5;
+the CPU's operations and those of doubles by half an ulp. On a device, what is below the normal range may be flushed to
+0, at every use or at none, and the terms of a sum in one expression are added in any order; a variable, and what a
+function returns, is rounded as it stands. Fused multiply-adds only omit roundings.
+
+A margin in the source is such a polynomial, too, of what it is at least. It is proved if none of its coefficients is
+less than the error's, after facts have been applied that a claim states: that an intermediate result has a known bound,
+that a centre and a half extent share the reach of their mesh. So it holds for all inputs, whatever their ratios.
+docs/method.md says which margins are proved here, and which by hand.
+
+Each constant of a margin is also lowered until the proof fails: *room* is by what factor it exceeds the least that
+proves. With three quarters of that, the claim must fail.
+"""
+import sys
+import time
+from fractions import Fraction
+from pathlib import Path
+
+import cpu_claims
+import double_claims
+import node_claims
+import own_tests
+import triangle_claims
+from reader import SourceError, number_of
+
+ROOT = Path(__file__).resolve().parents[2]
+TABLES = [
+    ("Pairs of triangles, floats", triangle_claims),
+    ("Nodes, floats", node_claims),
+    ("Doubles on a device", double_claims),
+    ("The CPU", cpu_claims),
+]
+
+
+def report(claim, constant):
+    """A row of the table, and a complaint or none."""
+    token = claim.token(constant)
+    value, least = Fraction(number_of(token)), claim.least_that_proves(constant)
+    complaint = None
+    if least == 0:
+        complaint = f"{token.place}: {constant.text}: '{claim.name}' holds without this constant"
+    elif not claim.lacking({token: least * Fraction(3, 4)}):
+        complaint = f"{token.place}: {constant.text}: '{claim.name}' holds with 3/4 of the least that proves it"
+    elif claim.lacking({token: least}):
+        complaint = f"{token.place}: {constant.text}: '{claim.name}' does not hold with the least constant found"
+    room = f"{float(value / least):.7g}" if least else "-"
+    owner = constant.owner.split("::")[-1]
+    print(f"  {claim.name:29} {owner:18} {constant.text[:44]:45} " f"{float(value):12.8g} {float(least):12.8g}  {room}")
+    return complaint
+
+
+def main():
+    start, complaints, proved = time.time(), own_tests.complaints(), 0
+    print(f"  {'claim':29} {'in':18} {'margin':45} {'constant':>12} {'least':>12}  room")
+    for title, module in TABLES:
+        print(f"{title}:")
+        for claim in module.claims(ROOT):
+            lacking = claim.lacking()
+            for what, lacks in lacking:
+                complaints.append(
+                    f"{claim.function}: a margin of '{claim.name}' is too small: {what}: it lacks {str(lacks)[:400]}"
+                )
+            if lacking:
+                continue
+            proved += 1
+            complaints += [c for c in (report(claim, constant) for constant in claim.constants) if c]
+    print(f"{proved} claims proved in {time.time() - start:.1f} s")
+    for complaint in complaints:
+        print(complaint, file=sys.stderr)
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except SourceError as error:
+        sys.exit(f"a claim does not understand the sources any more: {error}")

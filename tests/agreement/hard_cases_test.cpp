@@ -41,7 +41,7 @@ tools::Tally tallyOf(tools::CaseRange range) {
   for (const std::string& family : tools::runFamilies()) {
     CAPTURE(family);
     range.family = family;
-    const tools::Tally tally = run.run(range, onWrong, [](uint64_t) {});
+    const tools::Tally tally = run.run(range, onWrong);
     CHECK(tally.wrong == 0);
     all.add(tally);
   }
@@ -59,7 +59,7 @@ TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU
     const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
       UNSCOPED_INFO("case " << number << ": " << words);
     };
-    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong, [](uint64_t) {});
+    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong);
     CHECK(tally.queries == cases);
     CHECK(tally.wrong == 0);
     CHECK(std::max(tally.late, tally.early) <= 1e-12);
@@ -121,10 +121,7 @@ TEST_CASE("with D at the contact and a rounding beside it, answers and decisions
 
 TEST_CASE("a case is the same whichever cases are asked before it") {
   tools::CaseRun run(test::device());
-  const auto ask = [&](uint64_t first, uint64_t cases) {
-    return run.run(
-        {"touching", 5, first, cases}, [](uint64_t, const Approach&, const std::string&) {}, [](uint64_t) {});
-  };
+  const auto ask = [&](uint64_t first, uint64_t cases) { return run.run({"touching", 5, first, cases}); };
   const tools::Tally whole = ask(60, 10);
   tools::Tally parts;
   for (uint64_t i = 60; i < 70; ++i) parts.add(ask(i, 1));

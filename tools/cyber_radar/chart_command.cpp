@@ -22,7 +22,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --quick --out chart             about a minute
   cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
   cyber-radar chart --out chart batch.json          with queries of your own
-  cyber-radar chart --out docs/chart --render       measures nothing: draws the charts again
+  cyber-radar chart --out chart --render            measures nothing: draws the charts again
 
 DIR receives index.html, a page with charts and tables; the charts as SVG files and the tables as .csv; and report.json, which
 has all measurements. Tables are on disk as soon as a workload is measured. A program built with -DRADAR_BASELINES=ON

@@ -58,7 +58,9 @@ class CaseRun {
   std::vector<Tally> run(const CaseRange& range, std::span<const Approach> asked, const OnWrong& onWrong,
                          const std::function<void(uint64_t)>& onProgress);
   /// Mode contact alone.
-  Tally run(const CaseRange& range, const OnWrong& onWrong, const std::function<void(uint64_t)>& onProgress);
+  Tally run(
+      const CaseRange& range, const OnWrong& onWrong = [](uint64_t, const Approach&, const std::string&) {},
+      const std::function<void(uint64_t)>& onProgress = [](uint64_t) {});
 
  private:
   struct Stage;

@@ -226,9 +226,7 @@ bool measureExactness(std::span<const Device> devices, std::span<const uint32_t>
       for (size_t f = 0; f < families.size(); ++f) {
         if (deadline.isOver() && !rows.empty()) return round > 0;
         if (round == 0) rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.doubles()}});
-        const Tally tally = variants[v]->run(
-            {families[f], 1, round * kAtOnce, kAtOnce}, [](uint64_t, const Approach&, const std::string&) {},
-            [](uint64_t) {});
+        const Tally tally = variants[v]->run({families[f], 1, round * kAtOnce, kAtOnce});
         Json& row = rows[v * families.size() + f];
         for (const auto& [name, count] :
              {std::pair("queries", tally.queries), std::pair("hits", tally.hits), std::pair("clear", tally.clear),

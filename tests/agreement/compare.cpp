@@ -73,22 +73,22 @@ void compareBatch(const Scene& scene, Sweeper& sweeper, CpuSweeper& cpu, const s
 
 }  // namespace
 
-Compared compare(const Scene& scene, const std::vector<Query>& queries) {
+Compared compare(const Scene& scene, const std::vector<Query>& queries, Mode mode) {
   Sweeper sweeper(device(), scene, {.cpuBatch = 0});
   CpuSweeper cpu(scene);
   Compared compared;
-  compareBatch(scene, sweeper, cpu, queries, Mode::contact, compared);
+  compareBatch(scene, sweeper, cpu, queries, mode, compared);
   return compared;
 }
 
-Compared compare(const tools::Workload& workload, const tools::Approach& asked) {
+Compared compare(const tools::Workload& workload, uint32_t resolution) {
   tools::ScenePlayer player(workload);
   Sweeper sweeper(device(), player.scene(), {.cpuBatch = 0});
   CpuSweeper cpu(player.scene());
   Compared compared;
-  for (const tools::Batch& batch : tools::batchesOf(workload.queries)) {
+  for (const tools::Batch& batch : tools::batchesOf(workload.queries, resolution)) {
     player.show(batch.scene);
-    compareBatch(player.scene(), sweeper, cpu, tools::queriesFor(asked, batch.queries), tools::modeOf(asked.method),
+    compareBatch(player.scene(), sweeper, cpu, batch.queries, resolution == 0 ? Mode::contact : Mode::sampled,
                  compared);
   }
   return compared;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stability/case_run.h"
+#include "measure/judge.h"
 #include "workloads/workload.h"
 
 namespace radar::test {
@@ -16,8 +16,8 @@ struct Compared {
 };
 
 /// Asks the device for all queries in one batch, and CHECKs every promise of every answer.
-Compared compare(const Scene& scene, const std::vector<Query>& queries);
-/// Likewise every batch of the workload.
-Compared compare(const tools::Workload& workload, const tools::Approach& asked = {});
+Compared compare(const Scene& scene, const std::vector<Query>& queries, Mode mode = Mode::contact);
+/// Likewise every batch of the workload: in mode sampled with so many pixels, or in mode contact.
+Compared compare(const tools::Workload& workload, uint32_t resolution = 0);
 
 }  // namespace radar::test

@@ -3,8 +3,9 @@
 
 #include "agreement/compare.h"
 #include "agreement/real_meshes.h"
+#include "measure/case_run.h"
+#include "measure/stability.h"
 #include "radar/cpu_sweeper.h"
-#include "stability/measure.h"
 #include "support/catch.h"
 #include "support/test_device.h"
 
@@ -40,7 +41,7 @@ tools::Tally tallyOf(tools::CaseRange range) {
   for (const std::string& family : tools::runFamilies()) {
     CAPTURE(family);
     range.family = family;
-    const tools::Tally tally = run.run(range, onWrong, [](uint64_t) {});
+    const tools::Tally tally = run.run(range, onWrong);
     CHECK(tally.wrong == 0);
     all.add(tally);
   }
@@ -58,7 +59,7 @@ TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU
     const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
       UNSCOPED_INFO("case " << number << ": " << words);
     };
-    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong, [](uint64_t) {});
+    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong);
     CHECK(tally.queries == cases);
     CHECK(tally.wrong == 0);
     CHECK(std::max(tally.late, tally.early) <= 1e-12);
@@ -82,20 +83,20 @@ TEST_CASE("where objects move, too, hard cases of every family get the CPU's ans
 TEST_CASE("hard cases of every family, each alone, keep every promise of modes sampled and contact") {
   const auto onWrong = [](const std::string& words) { UNSCOPED_INFO(words); };
   const std::vector<tools::HardFamily>& families = tools::hardFamilies();
-  const tools::StabilitySettings settings{
-      .cases = tools::kIsolatedCases * families.size(), .seed = 7, .resolutions = {16, 64}};
-  const std::vector<tools::StabilityRow> rows =
-      tools::measureStability(test::device(), settings, onWrong, [](uint64_t) {});
+  tools::Json report = tools::newReport("");
+  CHECK(tools::measureStability(test::device(),
+                                {.cases = tools::kIsolatedCases * families.size(), .seed = 7, .resolutions = {16, 64}},
+                                report, onWrong, [](uint64_t) {}));
   size_t expected = 0;
-  for (const tools::HardFamily& family : families) {
-    expected += tools::canAnswer(tools::Method::sampled, family) ? 5 : 1;
-  }
+  for (const tools::HardFamily& family : families) expected += tools::offersSampled(family) ? 5 : 1;
+  const tools::Json rows = tools::partOf(report, "table")["rows"], totals = tools::partOf(report, "totals")["rows"];
   CHECK(rows.size() == expected);
-  for (const tools::StabilityRow& row : rows) {
-    CAPTURE(row.family, row.asked.name());
-    CHECK(row.right());
-    CHECK(row.tally.queries == tools::kIsolatedCases);
-    CHECK(row.tally.contacts() >= 5);
+  CHECK(totals.size() == 5);
+  CHECK(totals.back()["cases"] == tools::kIsolatedCases * families.size());
+  for (const tools::Json& row : rows) {
+    CAPTURE(row.dump());
+    CHECK(row["cases"] == tools::kIsolatedCases);
+    CHECK(row["contacts"] >= 5);
   }
 }
 
@@ -108,10 +109,12 @@ TEST_CASE("with D at the contact and a rounding beside it, answers and decisions
     CAPTURE(family.name);
     CHECK(queries.size() > workload.queries.size());
     for (const bool decide : {false, true}) {
-      for (Query& query : queries) query.anyHit = decide;
+      for (Query& query : queries) {
+        query.anyHit = decide;
+        query.resolution = 32;
+      }
       test::compare(scene, queries);
-      if (!tools::canAnswer(tools::Method::sampled, family)) continue;
-      test::compare(scene, tools::queriesFor({tools::Method::sampled, 32}, queries));
+      if (tools::offersSampled(family)) test::compare(scene, queries, Mode::sampled);
     }
   }
 }
@@ -129,10 +132,7 @@ TEST_CASE("the normal where twelve pairs touch at a vertex and an edge does not 
 
 TEST_CASE("a case is the same whichever cases are asked before it") {
   tools::CaseRun run(test::device());
-  const auto ask = [&](uint64_t first, uint64_t cases) {
-    return run.run(
-        {"touching", 5, first, cases}, [](uint64_t, const Approach&, const std::string&) {}, [](uint64_t) {});
-  };
+  const auto ask = [&](uint64_t first, uint64_t cases) { return run.run({"touching", 5, first, cases}); };
   const tools::Tally whole = ask(60, 10);
   tools::Tally parts;
   for (uint64_t i = 60; i < 70; ++i) parts.add(ask(i, 1));

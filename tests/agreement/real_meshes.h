@@ -1,7 +1,7 @@
 // Meshes that people made, from assimp's test models and CGAL's data.
 #pragma once
 
-#include "stability/case_run.h"
+#include "measure/case_run.h"
 
 namespace radar::test {
 

@@ -158,7 +158,7 @@ TEST_CASE("workload writes the same files each time, and query answers them") {
   for (const std::string name :
        {"table1 --boxes 200 --sensors 9 --shape box", "figure7 --teapots 3 --boxes 40 --steps 3",
         "scale --boxes 100 --sensors 5", "soup --objects 10 --sensors 12 --triangles 6",
-        "meshes --mesh a.obj --objects 5 --sensors 4"}) {
+        "meshes --mesh a.obj --objects 5 --sensors 4", "hard --family thin --first 2 --cases 4"}) {
     CAPTURE(name);
     REQUIRE(runProgram(folder, "workload " + name + " --out one").status == 0);
     REQUIRE(runProgram(folder, "workload " + name + " --out two").status == 0);

@@ -87,7 +87,7 @@ TEST_CASE("commands that draw or measure name the file for which there is no roo
       {"selftest --minutes 0.1 --device 0 --out d", "d/report.json"},
       {"stability --cases 24 --resolution 16 --out d", "d/table.csv"},
       {kScale + "--out d", "d/scale.csv"},
-      {"chart --extent least --out d", "d/chart.csv"},
+      {"chart --extent least --out d", "d/report.json"},
   }));
   const ScratchFolder folder;
   makeQueries(folder);

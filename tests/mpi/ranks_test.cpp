@@ -164,6 +164,16 @@ TEST_CASE("when rank 0 can no longer write, the run ends with a message, and its
   requireSame(folder.read("a.jsonl"), runProgram(folder, "query w/queries.json").out);
 }
 
+TEST_CASE("ranks that read different query files under one name do not begin") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 20 --out 0").status == 0);
+  REQUIRE(runProgram(folder, "workload table1 --boxes 21 --sensors 20 --out 1").status == 0);
+  const Run run = runCommand(folder, mpirun(2, "queries.json --out ../a", "cd \\$OMPI_COMM_WORLD_RANK"));
+  CHECK(run.status == 2);
+  CHECK_THAT(run.err, Contains("cyber-radar-mpi: rank 1 on ") && Contains("expected the query file of rank 0"));
+  CHECK(folder.list() == "0 1");
+}
+
 TEST_CASE("bad input ends all ranks with one message and status 2, and leaves no file") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 20 --out w").status == 0);
@@ -171,7 +181,7 @@ TEST_CASE("bad input ends all ranks with one message and status 2, and leaves no
     CAPTURE(arguments);
     const Run run = runRanks(folder, 2, arguments);
     CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains("cyber-radar-mpi: " + words));
+    CHECK_THAT(run.err, Contains("cyber-radar-mpi: ") && Contains(words));
     CHECK(run.err.find(words) == run.err.rfind(words));
     CHECK(folder.list() == "w");
   };
@@ -181,6 +191,7 @@ TEST_CASE("bad input ends all ranks with one message and status 2, and leaves no
           "--out: w/queries.json: expected another file than those that are read");
   refused("w/queries.json --out a --mode exact", "--mode: expected mode");
   refused("w/queries.json --out a --device 7,8", "rank 0 on ");
+  refused("/dev/null --out a", "FILE.json: /dev/null: expected a file that every rank can read");
   const Run full = runCommand(folder, "'" RADAR_MPI_PROGRAM "' --help >/dev/full");
   CHECK(full.status == 2);
   CHECK_THAT(full.err, Contains("standard output: expected a place to write to"));

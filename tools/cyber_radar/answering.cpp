@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/clock.h"
+#include "measure/clock.h"
 
 namespace radar::tools {
 
@@ -47,11 +47,11 @@ void Answering::show(uint32_t scene) {
 }
 
 double Answering::setUp(uint32_t scene) {
-  const double start = bench::now();
+  const double start = now();
   show(scene);
   if (sweeper_) sweeper_->sync();
   if (cpu_) cpu_->sync();
-  return 1e3 * (bench::now() - start);
+  return 1e3 * (now() - start);
 }
 
 std::vector<Answering::Group> Answering::groupsOf(std::span<const QuerySpec> queries) const {
@@ -72,7 +72,7 @@ std::vector<Answering::Group> Answering::groupsOf(std::span<const QuerySpec> que
 std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress& progress) {
   std::vector<Answer> answers(queries.size());
   const std::vector<Group> groups = groupsOf(queries);
-  const double start = bench::now();
+  const double start = now();
   const auto keep = [&](const Part& part, AnswerMode mode, Answers found) {
     for (size_t i = 0; i < found.results.size(); ++i) {
       answers[part.numbers[i]] = {.result = found.results[i], .mode = mode};
@@ -98,15 +98,15 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
     }
   }
   stats_.batches += groups.size();
-  stats_.ms += 1e3 * (bench::now() - start);
+  stats_.ms += 1e3 * (now() - start);
   return answers;
 }
 
 Answers Answering::answer(const std::vector<Query>& queries, AnswerMode mode) {
   if (mode == AnswerMode::reference) {
-    const double start = bench::now();
+    const double start = now();
     Answers found = cpu_->run(queries);
-    found.stats.stages = {{"reference", 1e3 * (bench::now() - start)}};
+    found.stats.stages = {{"reference", 1e3 * (now() - start)}};
     return found;
   }
   const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;

@@ -1,19 +1,18 @@
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <thread>
 
+#include "baselines/baseline.h"
 #include "batch/query_file.h"
-#include "chart/charts.h"
-#include "chart/run.h"
-#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/origin.h"
 #include "import/mesh_import.h"
-#include "plot/plot.h"
+#include "measure/chart.h"
+#include "measure/developer.h"
+#include "measure/plot.h"
 
 namespace radar::tools {
 
@@ -23,17 +22,18 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --quick --out chart             about a minute
   cyber-radar chart --out chart --mesh bunny.ply    all of it: a quarter of an hour
   cyber-radar chart --out chart batch.json          with queries of your own
-  cyber-radar chart --out docs/chart --render       measures nothing: draws the charts again
+  cyber-radar chart --out chart --render            measures nothing: draws the charts again
 
-DIR receives chart.csv with all measurements; methods.csv, workloads.csv and growth.csv, which sum them up; points.csv with
-what the charts show; and the charts as SVG files. Every measurement is saved at once: the same command continues where it
-was interrupted, if program and device are the same. A program built with -DRADAR_BASELINES=ON (./tools/bootstrap chart)
-also measures other libraries.)";
+DIR receives index.html, a page with charts and tables; the charts as SVG files and the tables as .csv; and report.json, which
+has all measurements. Tables are on disk as soon as a workload is measured. A program built with -DRADAR_BASELINES=ON
+(./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
-  std::vector<std::string> files, meshes;
+  std::vector<std::string> files, meshes, sections{"front", "table1"};
   std::string out, device, extent = "full";
   bool quick = false, render = false;
+
+  bool has(const char* section) const { return std::find(sections.begin(), sections.end(), section) != sections.end(); }
 };
 
 // What a file and a link can be named after, and no case is yet.
@@ -44,97 +44,85 @@ std::string nameFor(const std::string& file, const std::vector<Case>& cases) {
     c = plain ? static_cast<char>(std::tolower(c)) : '-';
   }
   std::string name = stem;
-  const auto isTaken = [&](const Case& one) { return one.name == name; };
+  const auto isTaken = [&](const Case& one) { return one.workload == name; };
   for (int i = 2; std::any_of(cases.begin(), cases.end(), isTaken); ++i) name = stem + "-" + std::to_string(i);
   return name;
 }
 
-// For a shell.
-std::string asArgument(const std::string& text) {
-  const auto isPlain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._-+,=:@%", c);
-  };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), isPlain)) return text;
-  std::string argument = "'";
-  for (const char c : text) argument += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return argument + "'";
-}
-
+// Reads all files, so that none is refused after others were measured.
 std::vector<Case> casesOf(const Options& options, Extent extent) {
   std::vector<Case> cases = frontCases(extent);
   std::vector<std::string> warnings;
   std::vector<MeshData> meshes;
   for (const std::string& file : options.meshes) meshes.push_back(readMesh(file, warnings));
   if (!meshes.empty()) cases.push_back(meshesCase(extent, std::move(meshes)));
+  Outputs outputs;
+  outputs.addIn("--out", options.out, {"report.json"});
   for (const std::string& file : options.files) {
-    Workload workload = QueryFile(file, warnings).all();
+    Workload workload = QueryFile(file, warnings, outputs).all();
     if (workload.queries.empty()) throw InputError(file, "queries", "expected at least one query, got none");
-    cases.push_back({"front", nameFor(file, cases), "Queries of " + file, 0, std::move(workload)});
+    cases.push_back({.section = "front", .workload = nameFor(file, cases), .about = "Queries of " + file, .make = [=] {
+                       return workload;
+                     }});
   }
   printWarnings(warnings);
-  for (auto* more : {table1Cases, growthCases}) {
+  for (auto* more : {table1Cases, growthCases, searchCases, contactCases}) {
     for (Case& which : more(extent)) cases.push_back(std::move(which));
   }
+  std::erase_if(cases, [&](const Case& one) { return !options.has(one.section.c_str()); });
   return cases;
 }
 
-std::string commandOf(const Options& options) {
-  std::string command = "cyber-radar chart --out " + asArgument(options.out);
-  if (options.extent != "full") command += " --extent " + options.extent;
-  if (!options.device.empty()) command += " --device " + options.device;
-  for (const std::string& mesh : options.meshes) command += " --mesh " + asArgument(mesh);
-  for (const std::string& file : options.files) command += " " + asArgument(file);
-  return command;
-}
-
-Record measure(const Options& options) {
+Json measure(const Options& options) {
   EngineOptions engine;
   engine.device = options.device;
   const uint32_t number = engine.checked().device;
-  RunSettings settings;
-  settings.extent = options.extent == "full" ? Extent::full : options.extent == "quick" ? Extent::quick : Extent::least;
-  settings.threads = std::max(1u, std::thread::hardware_concurrency());
-  settings.cases = casesOf(options, settings.extent);
+  const Extent extent = options.extent == "full"    ? Extent::full
+                        : options.extent == "quick" ? Extent::quick
+                                                    : Extent::least;
+  const std::vector<Case> cases = casesOf(options, extent);
   const Device device = Device::open({.index = number});
-  Record record;
-  record.add("command", commandOf(options));
-  record.add("machine", processorInWords());
-  record.add("device", device.name() + ", " + device.driver());
-  record.add("commit", commit());
-  settings.baselines = peerRows();
-  for (const BaselineRow& row : settings.baselines) {
-    record.add("library", row.family + " (" + row.product + "): " + row.limits);
+  const auto methods = [&](const std::string& section) {
+    const uint32_t threads = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<Method> all = ours(device, section, extent, threads);
+    for (Method& method : others(section, extent, threads)) all.push_back(std::move(method));
+    return all;
+  };
+  Json report = newReport("Cyber Radar: accuracy against speed", {{"device", device.name() + ", " + device.driver()}});
+  Json libraries = Json::array();
+  for (const BaselineRow& row : peerRows()) {
+    libraries.push_back({{"library", row.family}, {"product", row.product}, {"limits", row.limits}});
   }
-  for (const Case& which : settings.cases) {
-    if (which.section == "front") record.add("workload", which.name + ": " + which.about);
-  }
-  std::string origin;
-  for (const std::string& line : record.head) origin += line;
-  record.add("run", fingerprintOf(settings, origin));
-  record.add("date", today());
+  if (!libraries.empty()) setRows(report, "libraries", "Other libraries, and what they cannot do", libraries);
   size_t cells = 0;
-  for (const Case& which : settings.cases) cells += methodsOf(which.section, settings).size();
+  for (const Case& one : cases) cells += methods(one.section).size();
   Progress progress("measuring", cells);
-  return measureAll(settings, record, device, options.out, [&] { progress.add(1); });
+  measureCases({extent, cases, methods}, report, options.out, [&] { progress.add(1); });
+  if (options.has("edits")) measureEdits(device, extent, report);
+  if (options.has("recorded")) measureRecorded(device, extent, report);
+  return report;
+}
+
+Json readReport(const std::string& folder) {
+  std::ifstream file(std::filesystem::path(folder) / "report.json");
+  Json report = Json::parse(file, nullptr, false);
+  if (report.is_discarded())
+    throw InputError("--out", folder, "expected a folder with the report.json of an earlier run");
+  return report;
 }
 
 void chart(Options options) {
   requireGnuplot();
   if (options.quick) options.extent = "quick";
   makeFolder("--out", options.out);
-  std::optional<Record> record;
-  if (options.render) {
-    record = readRecord(options.out);
-    if (!record) throw InputError("--out", options.out, "expected a folder with the chart.csv of an earlier run");
-  } else {
-    record = measure(options);
+  Json report = options.render ? readReport(options.out) : measure(options);
+  sumUp(report, options.out);
+  for (const char* name : {"workloads", "methods", "growth", "edits", "recorded"}) {
+    const Json& part = partOf(report, name);
+    if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
-  writeCharts(options.out, *record);
-  std::cout << "Section front, by workload; microseconds per query:\n"
-            << textOf(workloadTable(*record)) << "\nBy method; errors in sensor sizes:\n"
-            << textOf(methodTable(*record)) << "\nAs the work grows; microseconds per query:\n"
-            << textOf(growthTable(*record)) << "\nIn " << std::filesystem::absolute(options.out).string()
-            << ": chart.csv, these tables as CSV, charts as SVG\n";
+  std::cout << "In " << std::filesystem::absolute(options.out).string()
+            << ": index.html, report.json, tables as .csv, charts as .svg\n";
 }
 
 }  // namespace
@@ -154,6 +142,14 @@ void addChartCommand(CLI::App& app) {
       ->check(CLI::IsMember({"full", "quick", "least"}))
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "--extent quick");
+  command
+      ->add_option("--section", options->sections,
+                   "What: front, accuracy against speed; table1, the paper's; growth of the work; and of our own "
+                   "searches: search, "
+                   "by size of batch; contacts, by kind; edits of a scene; recorded in a host's command buffer")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"front", "table1", "growth", "search", "contacts", "edits", "recorded"}))
+      ->capture_default_str();
   command->add_flag("--render", options->render, "Measure nothing: draw what --out holds");
   command->callback([options] { chart(*options); });
 }

@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "cyber_radar/commands.h"
-#include "selftest/selftest.h"
+#include "measure/selftest.h"
 
 namespace radar::tools {
 

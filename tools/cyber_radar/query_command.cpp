@@ -2,12 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/atomic_file.h"
-#include "bench/clock.h"
-#include "bench/statistics.h"
+#include "measure/clock.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/query_run.h"
 #include "cyber_radar/words.h"
+#include "measure/timing.h"
 #include "workloads/query_fields.h"
 
 namespace radar::tools {
@@ -104,9 +104,9 @@ class Run {
     });
   }
   void finish() {
-    const double start = bench::now();
+    const double start = now();
     if (writer_) writer_->finish();
-    writeMs_ += 1e3 * (bench::now() - start);
+    writeMs_ += 1e3 * (now() - start);
   }
   int status() const { return someInvalid_ ? kStatusSomeInvalid : 0; }
   double readMs() const { return readMs_; }    ///< waited for in the last pass
@@ -137,11 +137,11 @@ int query(const Options& options) {
   AnsweringOptions engine = options.run.engine.checked();
   options.run.check();
 
-  const double start = bench::now();
+  const double start = now();
   std::vector<std::string> warnings;
   const QueryFile queries(options.run.file, warnings, options.run.outputs());
   Times times;
-  times.loadMs = 1e3 * (bench::now() - start);
+  times.loadMs = 1e3 * (now() - start);
   printWarnings(warnings);
 
   engine.timestamps = !options.run.stats.empty() && !options.repeated;
@@ -156,13 +156,13 @@ int query(const Options& options) {
     sweepTimes.push_back(run.rehearse("answering").ms);
     run.setUp();
   }
-  const double begun = bench::now();
+  const double begun = now();
   AnsweringStats pass = run.write();
   sweepTimes.push_back(pass.ms);
   times.sweepMs = median(sweepTimes);
   times.loadMs += run.readMs();
   run.finish();
-  const double seconds = bench::now() - begun;
+  const double seconds = now() - begun;
   times.writeMs = run.writeMs();
   if (!options.run.stats.empty()) {
     // A separate pass measures the stages, since timestamps slow the others.

@@ -5,7 +5,7 @@
 #include <future>
 #include <iostream>
 
-#include "bench/clock.h"
+#include "measure/clock.h"
 #include "commit/commit.h"
 
 namespace radar::tools {
@@ -106,28 +106,28 @@ Waited answerRange(const QueryFile& queries, uint64_t first, uint64_t end, Answe
     if (!chunk.answers.empty()) sink(chunk.first, chunk.queries, chunk.answers);
   };
   Waited waited;
-  const double begun = bench::now();
+  const double begun = now();
   Chunk answered, current, next;
   read(current);
-  waited.reading = bench::now() - begun;
+  waited.reading = now() - begun;
   while (!current.queries.empty()) {
     std::future<void> beside = std::async(std::launch::async, [&] {
       write(answered);
       read(next);
     });
-    const double start = bench::now();
+    const double start = now();
     current.answers = answering.run(current.queries, progress);
-    const double done = bench::now();
+    const double done = now();
     beside.get();
-    waited.writing += bench::now() - done;
+    waited.writing += now() - done;
     const double rate = static_cast<double>(current.queries.size()) / std::max(done - start, 1e-6);
     count = static_cast<uint64_t>(std::clamp(kSeconds * rate, 256.0, 262'144.0));
     std::swap(answered, current);
     std::swap(current, next);
   }
-  const double last = bench::now();
+  const double last = now();
   write(answered);
-  waited.writing += bench::now() - last;
+  waited.writing += now() - last;
   return waited;
 }
 

@@ -1,16 +1,13 @@
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 
 #include "batch/atomic_file.h"
 #include "batch/query_file.h"
-#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/origin.h"
 #include "cyber_radar/query_run.h"
-#include "plot/plot.h"
-#include "scale/report.h"
+#include "measure/plot.h"
+#include "measure/scale.h"
 #include "workloads/generate.h"
 
 namespace radar::tools {
@@ -23,8 +20,8 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar scale batch.json --mode contact --sensors 64,256,1024
 
 Without a query file, the paper's Figure 7: teapots, all of them sensors, fly among boxes; each step is a batch. With
-one, its batches; --sensors N,... then takes the first N queries of each. DIR receives scale.csv, scale.svg and
-trace.json, a timeline for ui.perfetto.dev.)";
+one, its batches; --sensors N,... then takes the first N queries of each. DIR receives index.html, a page with the chart
+and the tables; these as .csv, the chart as scale.svg; report.json; and trace.json, a timeline for ui.perfetto.dev.)";
 
 constexpr const char* kLegend = R"(
 The devices' time adds up to 100%: useful (each device as fast as alone), slower (because of the others), and idle: start (a
@@ -71,7 +68,7 @@ ScalePoint firstOf(const Workload& whole, uint32_t most) {
 std::vector<ScalePoint> filePoints(const Options& options) {
   std::vector<std::string> warnings;
   Outputs outputs;
-  if (!options.out.empty()) outputs.addIn("--out", options.out, {"scale.csv", "trace.json"});
+  if (!options.out.empty()) outputs.addIn("--out", options.out, {"report.json", "trace.json"});
   const Workload whole = QueryFile(options.file, warnings, outputs).all();
   printWarnings(warnings);
   if (whole.queries.empty()) throw InputError(options.file, "queries", "expected at least one query, got none");
@@ -114,29 +111,41 @@ int scale(Options options) {
   if (devices.size() == 1) {
     printWarnings({"there is one device, so nothing is compared; the tables say what limits it alone"});
   }
-  ScaleReport report;
+  ScaleReport measured;
   {
     Progress progress("measuring", scaleSteps(devices.size(), points.size(), settings));
-    report = measureScale(devices, numbersOf(asked), points, settings, [&] { progress.add(1); });
+    measured = measureScale(devices, numbersOf(asked), points, settings, [&] { progress.add(1); });
   }
   const std::string title =
       (options.file.empty() ? print("Teapots among %u boxes, %u steps, resolution ", options.boxes, options.steps) +
                                   options.engine.resolution
                             : options.file) +
       "; mode " + options.mode;
-  std::cout << title << "; commit " << commit() << ", " << today() << "\n";
+  std::vector<std::string> names;
   for (size_t i = 0; i < devices.size(); ++i) {
-    std::cout << "device " << report.numbers[i] << ": " << devices[i].name() << ", " << devices[i].driver() << "\n";
+    names.push_back("device " + std::to_string(measured.numbers[i]) + ": " + devices[i].name() + ", " +
+                    devices[i].driver());
   }
-  std::cout << "\n" << textOf(runTable(report)) << kLegend << textOf(stageTable(report));
-  if (!report.sameBits) std::cout << "\nThe answers differ between sets of devices: the drivers are not alike.\n";
+  Json report = newReport(title, {{"devices", names}});
+  addTables(measured, report);
+  Json& runs = partOf(report, "runs");
+  const std::string commit = report["commit"];
+  std::cout << title << "; commit " << commit << ", " << report["date"].get<std::string>() << "\n";
+  for (const std::string& name : names) std::cout << name << "\n";
+  std::cout << "\n" << textOf(runs["rows"]) << kLegend << textOf(partOf(report, "stages")["rows"]);
+  if (!measured.sameBits) std::cout << "\nThe answers differ between sets of devices: the drivers are not alike.\n";
   if (!options.out.empty()) {
     const std::filesystem::path folder = options.out;
-    writeAtomically(folder / "scale.csv", csvOf(shareTable(report)));
-    writeAtomically(folder / "trace.json", traceOf(report));
-    const std::string origin = namesOf(devices) + "; " + processorInWords() + "; commit " + commit();
-    writeAtomically(folder / "scale.svg", plot(kScaleScript, folder / "scale.csv", {title, origin}));
-    std::cout << "\nIn " << std::filesystem::absolute(folder).string() << ": scale.csv, scale.svg, trace.json\n";
+    writeAtomically(folder / "trace.json", traceOf(measured));
+    writeReport(folder, report);
+    const std::string origin = namesOf(devices) + "; " + report["processor"].get<std::string>() + "; commit " + commit;
+    drawFor(runs, folder, "scale",
+            plot(kLinesScript, scaleLines(runs["rows"]),
+                 {title, origin, "sensors in a batch", "devices", "milliseconds per batch",
+                  "speed-up over the first device", "efficiency, %"}));
+    writeReport(folder, report);
+    std::cout << "\nIn " << std::filesystem::absolute(folder).string()
+              << ": index.html, report.json, trace.json, tables as .csv, the chart as scale.svg\n";
   }
   return 0;
 }

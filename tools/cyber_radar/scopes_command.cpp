@@ -10,7 +10,7 @@
 #include "cyber_radar/options.h"
 #include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
-#include "report/tables.h"
+#include "measure/report.h"
 
 namespace radar::tools {
 

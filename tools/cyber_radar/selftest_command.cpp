@@ -3,12 +3,10 @@
 #include <iostream>
 
 #include "batch/atomic_file.h"
-#include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/origin.h"
 #include "import/input_error.h"
-#include "selftest/selftest.h"
+#include "measure/selftest.h"
 
 namespace radar::tools {
 
@@ -26,32 +24,21 @@ struct Options {
   double minutes = 5;
 };
 
-// The part that is under way, on standard error.
-void tellProgress(const Json& report) {
-  for (const Json& device : report["devices"]) {
-    for (const auto& [name, part] : device["parts"].items()) {
-      if (part["state"] != "running") continue;
-      std::cerr << "device " << device["number"] << ", " << device["name"].get<std::string>() << ": " << name << "\n";
-    }
-  }
-}
-
 int selftest(const Options& options) {
   const std::vector<uint32_t> numbers = devicesFrom(options.device);
   // A range check of the parser lets through what is not a number.
   if (std::isnan(options.minutes)) throw InputError("--minutes", "nan", "expected a number of minutes");
   makeFolder("--out", options.out);
   Json report = lookAtDevices(numbers);
-  report["command"] = print("cyber-radar selftest --minutes %g --device %s", options.minutes, options.device.c_str());
-  report["commit"] = commit();
-  report["date"] = today();
-  report["processor"] = processorInWords();
   const std::filesystem::path folder = options.out;
   runSelftest(report, options.minutes, [&] {
-    tellProgress(report);
-    for (const auto& [name, content] : selftestFiles(report)) writeAtomically(folder / name, content);
+    for (const Json& part : report["parts"]) {
+      if (part["state"] == "running") std::cerr << part["title"].get<std::string>() << "\n";
+    }
+    writeReport(folder, report);
+    writeAtomically(folder / "report.txt", reportText(report));
   });
-  std::cout << selftestSummary(report) << "\nIn " << std::filesystem::absolute(folder).string()
+  std::cout << summaryOf(report) << "\nIn " << std::filesystem::absolute(folder).string()
             << ": index.html, report.txt, report.json, and tables as .csv\n";
   return report["right"] ? 0 : 1;
 }

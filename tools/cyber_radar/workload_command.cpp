@@ -6,6 +6,7 @@
 #include "cyber_radar/options.h"
 #include "import/mesh_import.h"
 #include "workloads/generate.h"
+#include "workloads/hard_cases.h"
 #include "workloads/interlocking.h"
 
 namespace radar::tools {
@@ -23,6 +24,16 @@ Equal options give equal files on every machine.)";
 struct MeshFiles : RandomPoses {
   std::vector<std::string> files;
 };
+
+struct HardCases {
+  std::string family;
+  uint64_t seed = 1, first = 0;
+  uint32_t cases = 1;
+};
+
+Workload makeWorkload(const HardCases& options) {
+  return hardScene(hardFamily(options.family), options.seed, options.first, options.cases, Company::mixed);
+}
 
 // What writeQueryFile() would write over.
 void requireUntouched(const MeshFiles& settings, const std::string& folder) {
@@ -130,6 +141,13 @@ void addWorkloadCommand(CLI::App& app) {
                                        ->check(CLI::IsMember({"ring on peg", "comb in comb", "crossing"}))
                                        ->default_str(nameOf(Interlocking::ringOnPeg));
                                  });
+  addWorkload<HardCases>(
+      *command, "hard", "Cases of a family in which queries are known to fail, in one scene",
+      [](CLI::App& hard, HardCases& settings) {
+        hard.add_option("--family", settings.family, "Which")->required()->check(CLI::IsMember(hardFamilyNames()));
+        hard.add_option("--first", settings.first, "Number of the first case")->capture_default_str();
+        addCount(hard, "--cases", settings.cases, "How many");
+      });
   addWorkload<MeshFiles>(*command, "meshes", "Given meshes in random poses", [](CLI::App& meshes, MeshFiles& settings) {
     addObjectOptions(meshes, settings);
     meshes.add_option("--mesh", settings.files, "Mesh files")->required()->type_name("FILE...");

@@ -1,31 +1,28 @@
 #include "mpi/chunk_answers.h"
 
-#include "bench/clock.h"
-#include "mpi/ranks.h"
+#include "measure/clock.h"
 
 namespace radar::tools {
 
-Answered ChunkAnswers::answer(uint64_t first, std::span<const QuerySpec> queries) {
-  Answered answered{first, queries.size()};
+Answered ChunkAnswers::answer(Chunk chunk) {
+  Answered answered{{.chunk = chunk}, {}};
   try {
     Progress none;
-    const double start = bench::now();
+    const double start = now();
+    const std::span<const QuerySpec> queries = queries_.read(chunk.first, chunk.count, room_);
     const std::vector<Answer> answers = answering_.run(queries, none);
-    answered.rows = rows_.text(first, queries, answers);
-    answered.seconds = bench::now() - start;
+    answered.text = rows_.text(chunk.first, queries, answers);
+    answered.seconds = now() - start;
     answered.someInvalid = someInvalid(answers);
   } catch (const std::exception& error) {
-    answered.failure = error.what();
+    answered.failed = true;
+    answered.text = error.what();
   }
   return answered;
 }
 
 void ChunkAnswers::serve() {
-  for (;;) {
-    const auto chunk = unpacked<Chunk>(receiveFrom(0));
-    if (chunk.queries.empty()) return;
-    send(0, packed(answer(chunk.first, chunk.queries)));
-  }
+  for (Chunk chunk = receiveChunk(); chunk.count > 0; chunk = receiveChunk()) send(answer(chunk));
 }
 
 }  // namespace radar::tools

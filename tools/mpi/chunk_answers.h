@@ -3,23 +3,25 @@
 
 #include "batch/answer_rows.h"
 #include "cyber_radar/answering.h"
-#include "mpi/messages.h"
+#include "mpi/ranks.h"
 
 namespace radar::tools {
 
 class ChunkAnswers {
  public:
   /// Both must outlive this.
-  ChunkAnswers(const Workload& world, Answering& answering, AnswerFormat format)
-      : answering_(answering), rows_(world, format) {}
+  ChunkAnswers(const QueryFile& queries, Answering& answering, AnswerFormat format)
+      : queries_(queries), answering_(answering), rows_(queries.world(), format) {}
   /// Throws nothing: what goes wrong is the failure of the answer.
-  Answered answer(uint64_t first, std::span<const QuerySpec> queries);
+  Answered answer(Chunk chunk);
   /// Answers chunks from rank 0 until there are no more.
   void serve();
 
  private:
+  const QueryFile& queries_;
   Answering& answering_;
   AnswerRows rows_;
+  std::vector<QuerySpec> room_;
 };
 
 }  // namespace radar::tools

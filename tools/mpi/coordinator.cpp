@@ -1,10 +1,13 @@
 #include "mpi/coordinator.h"
 
+#include <chrono>
+#include <thread>
+
 namespace radar::tools {
 
-Coordinator::Coordinator(const QueryFile& queries, PartWriter& writer, uint64_t end, size_t ranks)
-    : queries_(queries),
-      writer_(writer),
+Coordinator::Coordinator(PartWriter& writer, uint64_t end, size_t ranks, ChunkAnswers& own)
+    : writer_(writer),
+      own_(own),
       sizes_(ranks),
       work_(ranks),
       held_(ranks),
@@ -13,63 +16,56 @@ Coordinator::Coordinator(const QueryFile& queries, PartWriter& writer, uint64_t 
       progress_("answering", end - writer.next()),
       someInvalid_(writer.keptInvalid()) {}
 
-void Coordinator::run(ChunkAnswers& own) {
-  OwnThread thread([&, room = std::vector<QuerySpec>()](uint64_t first, uint64_t count) mutable {
-    return own.answer(first, queries_.read(first, count, room));
-  });
+void Coordinator::run() {
+  using namespace std::chrono_literals;
   while (writer_.next() < end_) {
-    handOut(thread);
-    bool isIdle = true;
-    while (const std::optional<Received> received = receiveIfAny()) {
-      take(static_cast<size_t>(received->rank), unpacked<Answered>(received->bytes));
-      isIdle = false;
+    handOut();
+    if (mine_.valid() && mine_.wait_for(0s) == std::future_status::ready) {
+      take(0, mine_.get());
+    } else if (std::optional<Received> received = receiveIfAny()) {
+      take(static_cast<size_t>(received->rank), std::move(received->answered));
+    } else {
+      std::this_thread::sleep_for(500us);
     }
-    outbox_.tidy();
-    if (!isIdle) continue;
-    if (std::optional<Answered> answered = thread.take()) take(0, std::move(*answered));
   }
-  for (size_t rank = 1; rank < held_.size(); ++rank) outbox_.send(static_cast<int>(rank), packed(Chunk()));
-  outbox_.wait();
+  for (size_t rank = 1; rank < held_.size(); ++rank) send(static_cast<int>(rank), Chunk());
 }
 
-// A second chunk waits at each rank while it answers the first.
-void Coordinator::handOut(OwnThread& own) {
+// A second chunk waits at each other rank while it answers the first.
+void Coordinator::handOut() {
   constexpr uint64_t kMostEarly = 1u << 30;  // bytes of answers that wait for a slow chunk
   for (size_t depth = 0; depth < 2; ++depth) {
-    for (size_t rank = 0; rank < held_.size(); ++rank) {
-      if (held_[rank] <= depth && next_ < end_ && earlyBytes_ < kMostEarly) give(rank, own);
+    for (size_t rank = depth; rank < held_.size(); ++rank) {
+      if (held_[rank] > depth || next_ == end_ || earlyBytes_ >= kMostEarly) continue;
+      const Chunk chunk{next_, sizes_.next(rank, end_ - next_)};
+      if (rank == 0) {
+        mine_ = std::async(std::launch::async, [this, chunk] { return own_.answer(chunk); });
+      } else {
+        send(static_cast<int>(rank), chunk);
+      }
+      ++held_[rank];
+      next_ += chunk.count;
     }
   }
-}
-
-void Coordinator::give(size_t rank, OwnThread& own) {
-  const uint64_t count = sizes_.next(rank, end_ - next_);
-  if (rank == 0) {
-    own.give(next_, count);
-  } else {
-    std::vector<QuerySpec> room;
-    const std::span<const QuerySpec> queries = queries_.read(next_, count, room);
-    outbox_.send(static_cast<int>(rank), packed(Chunk{next_, {queries.begin(), queries.end()}}));
-  }
-  ++held_[rank];
-  next_ += count;
 }
 
 void Coordinator::take(size_t rank, Answered answered) {
-  if (!answered.failure.empty()) throw RankFailure(rank, answered.failure);
+  if (answered.failed) throw RankFailure(rank, answered.text);
+  const auto [first, count] = answered.chunk;
   --held_[rank];
-  sizes_.answered(rank, answered.count, answered.seconds);
-  work_[rank].queries += answered.count;
+  sizes_.answered(rank, count, answered.seconds);
+  handOut();  // before writing takes its time
+  work_[rank].queries += count;
   ++work_[rank].chunks;
   work_[rank].seconds += answered.seconds;
   someInvalid_ = someInvalid_ || answered.someInvalid;
-  progress_.add(answered.count);
-  earlyBytes_ += answered.rows.size();
-  early_.emplace(answered.first, std::move(answered));
+  progress_.add(count);
+  earlyBytes_ += answered.text.size();
+  early_.emplace(first, std::move(answered));
   while (!early_.empty() && early_.begin()->first == writer_.next()) {
     const Answered& turn = early_.begin()->second;
-    writer_.append(turn.rows, turn.count);
-    earlyBytes_ -= turn.rows.size();
+    writer_.append(turn.text, turn.chunk.count);
+    earlyBytes_ -= turn.text.size();
     early_.erase(early_.begin());
   }
 }

@@ -1,13 +1,14 @@
 // Rank 0: hands out chunks of the queries, and writes the answers in their order.
 #pragma once
 
+#include <future>
 #include <map>
+#include <stdexcept>
 
 #include "batch/part_file.h"
 #include "cyber_radar/progress.h"
 #include "mpi/chunk_answers.h"
 #include "mpi/chunk_sizes.h"
-#include "mpi/own_thread.h"
 #include "mpi/ranks.h"
 
 namespace radar::tools {
@@ -29,24 +30,23 @@ class Coordinator {
     double seconds = 0;  ///< answering
   };
 
-  /// `ranks`: all, with this one. All must outlive this.
-  Coordinator(const QueryFile& queries, PartWriter& writer, uint64_t end, size_t ranks);
+  /// `ranks`: all, with this one. Both must outlive this.
+  Coordinator(PartWriter& writer, uint64_t end, size_t ranks, ChunkAnswers& own);
 
-  /// Answers what `writer` lacks, part of it by `own` on a thread of its own, and ends the other ranks' work. Throws
+  /// Answers what `writer` lacks, part of it by `own` on another thread, and ends the other ranks' work. Throws
   /// RankFailure; what is complete until then is written.
-  void run(ChunkAnswers& own);
+  void run();
 
   const std::vector<Work>& work() const { return work_; }  ///< of each rank
   bool someInvalid() const { return someInvalid_; }
 
  private:
-  void handOut(OwnThread& own);
-  void give(size_t rank, OwnThread& own);
+  void handOut();
   void take(size_t rank, Answered answered);
 
-  const QueryFile& queries_;
   PartWriter& writer_;
-  Outbox outbox_;
+  ChunkAnswers& own_;
+  std::future<Answered> mine_;  ///< of the chunk that this rank has
   ChunkSizes sizes_;
   std::vector<Work> work_;
   std::vector<size_t> held_;            ///< chunks that each rank has

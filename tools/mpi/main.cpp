@@ -3,11 +3,12 @@
 
 #include <csignal>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "batch/atomic_file.h"
-#include "bench/clock.h"
+#include "measure/clock.h"
 #include "commit/commit.h"
 #include "cyber_radar/command_line.h"
 #include "cyber_radar/exit_status.h"
@@ -22,8 +23,8 @@ constexpr const char* kExamples = R"(Examples:
   mpirun -np 4 --map-by ppr:1:node --bind-to none cyber-radar-mpi query batch.json --out answers.jsonl
   srun --ntasks-per-node=1 cyber-radar-mpi query batch.json --out answers.npy --resume
 
-One rank a node answers on the node's devices; ranks that share a node share its devices and cores. Rank 0 reads the
-file and writes the answers, with the bytes that cyber-radar query writes.)";
+One rank a node answers on the node's devices; ranks that share a node share its devices and cores. All ranks read the
+file, on a disk that they share; rank 0 writes the answers, with the bytes that cyber-radar query writes.)";
 
 // What a signal's handler prints.
 std::string farewell;
@@ -59,22 +60,50 @@ void takeShare(AnsweringOptions& options, const EngineOptions& given, const MpiS
   if (own.size() > 1) options.pool = own;
 }
 
-// Says why ranks cannot answer. Returns whether all can.
-bool allCanAnswer(const std::vector<std::string>& packedReports, std::vector<RankReport>& reports, bool sampled) {
-  bool all = true;
-  for (const std::string& bytes : packedReports) reports.push_back(unpacked<RankReport>(bytes));
+/// Who answers.
+struct RankReport {
+  std::string host = hostName(), devices, fingerprint;
+  std::string failure;  ///< why the rank cannot answer
+};
+
+// On rank 0, what all ranks report.
+std::vector<RankReport> reportsOf(const RankReport& own) {
+  std::vector<RankReport> all;
+  for (std::string RankReport::*const member :
+       {&RankReport::host, &RankReport::devices, &RankReport::fingerprint, &RankReport::failure}) {
+    std::vector<std::string> texts = gather(own.*member);
+    all.resize(texts.size());
+    for (size_t rank = 0; rank < texts.size(); ++rank) all[rank].*member = std::move(texts[rank]);
+  }
+  return all;
+}
+
+std::string nameOf(size_t rank, const RankReport& report) {
+  return "rank " + std::to_string(rank) + " on " + report.host;
+}
+
+// Says why ranks cannot answer, each reason once. Returns whether all can.
+bool allCanAnswer(const std::vector<RankReport>& reports, bool sampled) {
+  std::map<std::string, std::vector<std::string>> failures;
   for (size_t rank = 0; rank < reports.size(); ++rank) {
     const RankReport& report = reports[rank];
     std::string problem = report.failure;
-    if (problem.empty() && sampled && report.devices != reports[0].devices) {
-      problem = "in mode sampled, expected the device of rank 0, \"" + reports[0].devices + "\", got \"" +
-                report.devices + "\"";
-    }
-    if (problem.empty()) continue;
-    std::cerr << "cyber-radar-mpi: rank " << rank << " on " << report.host << ": " << problem << "\n";
-    all = false;
+    const auto require = [&](const char* what, const std::string& found, const std::string& wanted) {
+      if (!problem.empty() || !reports[0].failure.empty() || found == wanted) return;
+      problem = std::string(what) + " of rank 0, \"" + wanted + "\", got \"" + found + "\"";
+    };
+    require("expected the query file", report.fingerprint, reports[0].fingerprint);
+    if (sampled) require("in mode sampled, expected the device", report.devices, reports[0].devices);
+    if (!problem.empty()) failures[problem].push_back(nameOf(rank, report));
   }
-  return all;
+  for (const auto& [problem, names] : failures) {
+    std::cerr << "cyber-radar-mpi: ";
+    if (names.size() < reports.size()) {
+      for (const std::string& name : names) std::cerr << name << ": ";
+    }
+    std::cerr << problem << "\n";
+  }
+  return failures.empty();
 }
 
 std::string statsOf(const std::vector<RankReport>& reports, const Coordinator& coordinator, double loadMs,
@@ -104,61 +133,34 @@ class Rank {
   Rank(const RunOptions& options, const MpiSession& session) : options_(options), session_(session) {}
 
   int run() {
-    if (!broadcast(isFirst() ? reads() : false)) return kStatusBadInput;
-    std::string start;
-    if (isFirst()) {
-      const Workload& world = queries_->world();
-      start = packed(Start{world.meshes, world.scenes, queries_->modes()});
-    }
-    broadcast(start);
-    if (!isFirst()) {
-      Start received = unpacked<Start>(std::move(start));
-      world_.meshes = std::move(received.meshes);
-      world_.scenes = std::move(received.scenes);
-      modes_ = received.modes;
-    }
-    const std::vector<std::string> reports = gather(packed(prepare()));
-    if (!broadcast(isFirst() ? opens(reports) : false)) return kStatusBadInput;
-    ChunkAnswers answers(world(), *answering_, answerFormatOf(options_.out));
-    if (!isFirst()) {
-      answers.serve();
-      return 0;
-    }
-    return coordinate(answers);
+    reports_ = reportsOf(prepare());
+    if (!broadcast(isFirst() && opens())) return kStatusBadInput;
+    ChunkAnswers answers(*queries_, *answering_, answerFormatOf(options_.out));
+    if (isFirst()) return coordinate(answers);
+    answers.serve();
+    return 0;
   }
 
  private:
   bool isFirst() const { return session_.rank() == 0; }
-  const Workload& world() const { return isFirst() ? queries_->world() : world_; }
-
-  // Rank 0: the options and the query file are good.
-  bool reads() {
-    try {
-      const double start = bench::now();
-      std::vector<std::string> warnings;
-      queries_.emplace(options_.file, warnings, options_.outputs());
-      loadMs_ = 1e3 * (bench::now() - start);
-      printWarnings(warnings);
-      modes_ = queries_->modes();
-      return true;
-    } catch (const std::exception& error) {
-      std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
-      return false;
-    }
-  }
 
   RankReport prepare() {
-    RankReport report{hostName(), "", ""};
+    RankReport report;
     try {
-      const double start = bench::now();
+      const double start = now();
+      std::vector<std::string> warnings;
+      queries_.emplace(options_.file, warnings, isFirst() ? options_.outputs() : Outputs());
+      if (isFirst()) printWarnings(warnings);
+      report.fingerprint = queries_->fingerprint();
+      loadMs_ = 1e3 * (now() - start);
       AnsweringOptions engine = options_.engine.checked();
-      const bool needsDevice =
-          modes_.asks(AnswerMode::sampled, engine.mode) || modes_.asks(AnswerMode::contact, engine.mode);
+      const bool needsDevice = queries_->modes().asks(AnswerMode::sampled, engine.mode) ||
+                               queries_->modes().asks(AnswerMode::contact, engine.mode);
       takeShare(engine, options_.engine, session_, needsDevice);
-      answering_.emplace(world(), modes_, engine);
-      if (!world().scenes.empty()) answering_->setUp(0);
+      answering_.emplace(queries_->world(), queries_->modes(), engine);
+      if (!queries_->world().scenes.empty()) answering_->setUp(0);
       report.devices = namesOf(answering_->devices());
-      setupMs_ = 1e3 * (bench::now() - start);
+      setupMs_ = 1e3 * (now() - start) - loadMs_;
     } catch (const Error& error) {
       report.failure = error.what();
       for (const std::string& reason : error.reasons) report.failure += "\n  " + reason;
@@ -169,10 +171,10 @@ class Rank {
   }
 
   // Rank 0: all ranks can answer, and the answers have a place.
-  bool opens(const std::vector<std::string>& packedReports) {
+  bool opens() {
     try {
-      const AnsweringOptions engine = options_.engine.checked();
-      if (!allCanAnswer(packedReports, reports_, modes_.asks(AnswerMode::sampled, engine.mode))) return false;
+      const bool sampled = queries_ && queries_->modes().asks(AnswerMode::sampled, options_.engine.checked().mode);
+      if (!allCanAnswer(reports_, sampled)) return false;
       const Part part = options_.part(*queries_, answering_->devices());
       first_ = part.first();
       end_ = part.end();
@@ -189,21 +191,21 @@ class Rank {
     farewell = resumeHint(options_.out);
     std::signal(SIGTERM, sayFarewell);
     try {
-      const double start = bench::now();
+      const double start = now();
       const uint64_t next = writer_->next();
-      Coordinator coordinator(*queries_, *writer_, end_, static_cast<size_t>(session_.count()));
-      coordinator.run(answers);
-      const double sweepMs = 1e3 * (bench::now() - start);
+      Coordinator coordinator(*writer_, end_, static_cast<size_t>(session_.count()), answers);
+      coordinator.run();
+      const double sweepMs = 1e3 * (now() - start);
       writer_->finish();
       if (!options_.stats.empty()) {
         writeAtomically(options_.stats, statsOf(reports_, coordinator, loadMs_, setupMs_, sweepMs));
       }
-      sayDone("cyber-radar-mpi", {end_ - next, next - first_, bench::now() - start, 1e-3 * (loadMs_ + setupMs_)},
+      sayDone("cyber-radar-mpi", {end_ - next, next - first_, now() - start, 1e-3 * (loadMs_ + setupMs_)},
               " on " + counted(reports_.size(), "rank"));
       return coordinator.someInvalid() ? kStatusSomeInvalid : 0;
     } catch (const RankFailure& failure) {
-      std::cerr << "cyber-radar-mpi: rank " << failure.rank() << " on " << reports_[failure.rank()].host << ": "
-                << failure.what() << "\n";
+      std::cerr << "cyber-radar-mpi: " << nameOf(failure.rank(), reports_[failure.rank()]) << ": " << failure.what()
+                << "\n";
     } catch (const std::exception& error) {
       std::cerr << "cyber-radar-mpi: " << error.what() << "\n";
     }
@@ -215,9 +217,7 @@ class Rank {
 
   const RunOptions& options_;
   const MpiSession& session_;
-  std::optional<QueryFile> queries_;  ///< rank 0
-  Workload world_;                    ///< of the other ranks
-  ModesAsked modes_;
+  std::optional<QueryFile> queries_;
   std::optional<Answering> answering_;
   std::vector<RankReport> reports_;
   std::optional<PartWriter> writer_;
@@ -239,6 +239,9 @@ int run(int argc, char** argv, const MpiSession& session) {
     app.parse(argc, argv);
     options.engine.checked();
     options.check();
+    if (options.file == "-" || isStream(options.file)) {
+      throw InputError("FILE.json", options.file, "expected a file that every rank can read, got a stream");
+    }
   } catch (const CLI::ParseError& error) {
     if (session.rank() > 0) return error.get_exit_code() == 0 ? 0 : kStatusBadInput;
     if (app.exit(error) != 0) return kStatusBadInput;

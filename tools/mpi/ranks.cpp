@@ -1,13 +1,12 @@
 #include "mpi/ranks.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace radar::tools {
 
 namespace {
 
-constexpr uint64_t kPiece = 1u << 30;
+constexpr uint64_t kPiece = 1u << 30;  // MPI counts in an int
 constexpr int kTag = 1;
 
 // Calls `use` with the start and the length of each piece of so many bytes.
@@ -16,13 +15,22 @@ void forEachPiece(uint64_t size, const Use& use) {
   for (uint64_t start = 0; start < size; start += kPiece) use(start, static_cast<int>(std::min(kPiece, size - start)));
 }
 
-// Receives the pieces that follow a length.
-std::string receivePieces(int rank, uint64_t size) {
-  std::string bytes(size, '\0');
+void sendText(const std::string& text) {
+  const uint64_t size = text.size();
+  MPI_Send(&size, 1, MPI_UINT64_T, 0, kTag, MPI_COMM_WORLD);
   forEachPiece(size, [&](uint64_t start, int length) {
-    MPI_Recv(bytes.data() + start, length, MPI_BYTE, rank, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Send(text.data() + start, length, MPI_BYTE, 0, kTag, MPI_COMM_WORLD);
   });
-  return bytes;
+}
+
+std::string receiveText(int rank) {
+  uint64_t size = 0;
+  MPI_Recv(&size, 1, MPI_UINT64_T, rank, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  std::string text(size, '\0');
+  forEachPiece(size, [&](uint64_t start, int length) {
+    MPI_Recv(text.data() + start, length, MPI_BYTE, rank, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  });
+  return text;
 }
 
 }  // namespace
@@ -37,9 +45,14 @@ MpiSession::MpiSession(int& argc, char**& argv) {
   MPI_Comm_rank(machine, &localRank_);
   MPI_Comm_size(machine, &localCount_);
   MPI_Comm_free(&machine);
+  outgoing_.resize(3 * static_cast<size_t>(count_) * (sizeof(Chunk) + MPI_BSEND_OVERHEAD));
+  MPI_Buffer_attach(outgoing_.data(), static_cast<int>(outgoing_.size()));
 }
 
 MpiSession::~MpiSession() {
+  void* outgoing = nullptr;
+  int size = 0;
+  MPI_Buffer_detach(&outgoing, &size);
   MPI_Finalize();
 }
 
@@ -50,45 +63,39 @@ std::string hostName() {
   return {name, static_cast<size_t>(length)};
 }
 
-void broadcast(std::string& bytes) {
-  uint64_t size = bytes.size();
-  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
-  bytes.resize(size);
-  forEachPiece(
-      size, [&](uint64_t start, int length) { MPI_Bcast(bytes.data() + start, length, MPI_BYTE, 0, MPI_COMM_WORLD); });
-}
-
 bool broadcast(bool value) {
   int number = value ? 1 : 0;
   MPI_Bcast(&number, 1, MPI_INT, 0, MPI_COMM_WORLD);
   return number == 1;
 }
 
-std::vector<std::string> gather(const std::string& bytes) {
+std::vector<std::string> gather(const std::string& text) {
   int rank = 0, count = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &count);
   if (rank > 0) {
-    send(0, bytes);
+    sendText(text);
     return {};
   }
-  std::vector<std::string> all{bytes};
-  for (int other = 1; other < count; ++other) all.push_back(receiveFrom(other));
+  std::vector<std::string> all{text};
+  for (int other = 1; other < count; ++other) all.push_back(receiveText(other));
   return all;
 }
 
-void send(int rank, const std::string& bytes) {
-  const uint64_t size = bytes.size();
-  MPI_Send(&size, 1, MPI_UINT64_T, rank, kTag, MPI_COMM_WORLD);
-  forEachPiece(size, [&](uint64_t start, int length) {
-    MPI_Send(bytes.data() + start, length, MPI_BYTE, rank, kTag, MPI_COMM_WORLD);
-  });
+void send(int rank, Chunk chunk) {
+  MPI_Bsend(&chunk, sizeof chunk, MPI_BYTE, rank, kTag, MPI_COMM_WORLD);
 }
 
-std::string receiveFrom(int rank) {
-  uint64_t size = 0;
-  MPI_Recv(&size, 1, MPI_UINT64_T, rank, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-  return receivePieces(rank, size);
+Chunk receiveChunk() {
+  Chunk chunk;
+  MPI_Recv(&chunk, sizeof chunk, MPI_BYTE, 0, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return chunk;
+}
+
+void send(const Answered& answered) {
+  const ChunkReport& report = answered;
+  MPI_Send(&report, sizeof report, MPI_BYTE, 0, kTag, MPI_COMM_WORLD);
+  sendText(answered.text);
 }
 
 std::optional<Received> receiveIfAny() {
@@ -96,33 +103,11 @@ std::optional<Received> receiveIfAny() {
   MPI_Status status;
   MPI_Iprobe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &isThere, &status);
   if (isThere == 0) return std::nullopt;
-  return Received{status.MPI_SOURCE, receiveFrom(status.MPI_SOURCE)};
-}
-
-void Outbox::send(int rank, std::string bytes) {
-  Letter& letter = letters_.emplace_back();
-  letter.bytes = std::move(bytes);
-  letter.size = letter.bytes.size();
-  MPI_Isend(&letter.size, 1, MPI_UINT64_T, rank, kTag, MPI_COMM_WORLD, &letter.requests.emplace_back());
-  forEachPiece(letter.size, [&](uint64_t start, int length) {
-    MPI_Isend(letter.bytes.data() + start, length, MPI_BYTE, rank, kTag, MPI_COMM_WORLD,
-              &letter.requests.emplace_back());
-  });
-}
-
-void Outbox::tidy() {
-  std::erase_if(letters_, [](Letter& letter) {
-    int done = 0;
-    MPI_Testall(static_cast<int>(letter.requests.size()), letter.requests.data(), &done, MPI_STATUSES_IGNORE);
-    return done != 0;
-  });
-}
-
-void Outbox::wait() {
-  for (Letter& letter : letters_) {
-    MPI_Waitall(static_cast<int>(letter.requests.size()), letter.requests.data(), MPI_STATUSES_IGNORE);
-  }
-  letters_.clear();
+  Received received{status.MPI_SOURCE, {}};
+  ChunkReport& report = received.answered;
+  MPI_Recv(&report, sizeof report, MPI_BYTE, received.rank, kTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  received.answered.text = receiveText(received.rank);
+  return received;
 }
 
 }  // namespace radar::tools

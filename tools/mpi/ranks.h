@@ -1,10 +1,10 @@
-// Bytes between the ranks of a run, of any length: MPI counts them in an int. An error of MPI ends the run.
+// What the ranks of a run send each other. An error of MPI ends the run.
 #pragma once
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,43 +27,42 @@ class MpiSession {
 
  private:
   int rank_ = 0, count_ = 1, localRank_ = 0, localCount_ = 1;
+  std::vector<std::byte> outgoing_;  ///< room for chunks that are under way
 };
 
 /// The host's name.
 std::string hostName();
 
-/// Rank 0's bytes reach all ranks.
-void broadcast(std::string& bytes);
 /// Rank 0's value reaches all ranks.
 bool broadcast(bool value);
-/// All ranks' bytes, on rank 0; elsewhere nothing.
-std::vector<std::string> gather(const std::string& bytes);
+/// All ranks' texts, on rank 0; elsewhere nothing.
+std::vector<std::string> gather(const std::string& text);
 
-void send(int rank, const std::string& bytes);
-std::string receiveFrom(int rank);
+/// Consecutive queries of the file; none: the work is done.
+struct Chunk {
+  uint64_t first = 0, count = 0;
+};
+/// What answering a chunk took and came to.
+struct ChunkReport {
+  Chunk chunk;
+  double seconds = 0;
+  bool someInvalid = false, failed = false;
+};
+/// The answers to a chunk.
+struct Answered : ChunkReport {
+  std::string text;  ///< rows of the answer file; if it failed, what ended the rank
+};
+
+/// From rank 0, which does not wait for the other. At most three chunks are under way to a rank.
+void send(int rank, Chunk chunk);
+Chunk receiveChunk();
+/// To rank 0.
+void send(const Answered& answered);
 /// What another rank sent, if there is something.
 struct Received {
   int rank = 0;
-  std::string bytes;
+  Answered answered;
 };
 std::optional<Received> receiveIfAny();
-
-/// Sends that are under way.
-class Outbox {
- public:
-  void send(int rank, std::string bytes);
-  /// Forgets those that arrived.
-  void tidy();
-  /// Waits until all arrived.
-  void wait();
-
- private:
-  struct Letter {
-    uint64_t size = 0;
-    std::string bytes;
-    std::vector<MPI_Request> requests;
-  };
-  std::list<Letter> letters_;
-};
 
 }  // namespace radar::tools

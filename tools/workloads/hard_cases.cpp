@@ -59,6 +59,12 @@ void moveVertices(PlacedMesh& placed, const Vec3& offset) {
   placed.mesh = std::move(moved);
 }
 
+std::vector<std::string> hardFamilyNames() {
+  std::vector<std::string> names;
+  for (const HardFamily& family : hardFamilies()) names.push_back(family.name);
+  return names;
+}
+
 const HardFamily& hardFamily(std::string_view name) {
   for (const HardFamily& family : hardFamilies()) {
     if (family.name == name) return family;

@@ -44,6 +44,7 @@ struct HardFamily {
 };
 
 const std::vector<HardFamily>& hardFamilies();
+std::vector<std::string> hardFamilyNames();
 /// Throws Error if there is no family of that name.
 const HardFamily& hardFamily(std::string_view name);
 

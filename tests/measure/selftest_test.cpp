@@ -1,0 +1,141 @@
+// The selftest of devices: its report is complete whenever it ends.
+#include "measure/selftest.h"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "cli/program.h"
+#include "support/catch.h"
+
+using namespace radar;
+using namespace radar::tools;
+using radar::test::Contains;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+using radar::test::StartsWith;
+
+namespace {
+
+Json raceRow(uint64_t batch, double times) {
+  return {{"device", 3}, {"batch", batch}, {"device_per_s", 1e6}, {"cpu_over_device", times}, {"differ", 0}};
+}
+
+// A report with all parts done.
+Json madeUp() {
+  Json report = lookAtDevices({0});
+  for (Json& part : report["parts"]) part["state"] = "done";
+  partOf(report, "arithmetic")["rows"] = {{{"device", 3}, {"operation", "float addition"}, {"worst_ulps", NAN}}};
+  partOf(report, "exactness")["rows"] = {{{"device", 3}, {"family", "convex"}, {"queries", 64}, {"wrong", 0}}};
+  partOf(report, "throughput")["rows"] = {raceRow(1, 0.5), raceRow(1000, 10)};
+  return report;
+}
+
+std::string verdictOn(Json report) {
+  conclude(report);
+  CHECK(report["right"] == report["verdict"].get<std::string>().starts_with("RIGHT"));
+  CHECK_THAT(reportText(report), StartsWith(report["verdict"].get<std::string>() + "\n"));
+  return report["verdict"];
+}
+
+}  // namespace
+
+TEST_CASE("a selftest's first line says whether all is right, who is faster, by how much, and what to set") {
+  Json report = madeUp();
+  const auto verdictWith = [&](const std::vector<std::pair<uint64_t, double>>& races) {
+    Json& rows = partOf(report, "throughput")["rows"] = Json::array();
+    for (const auto& [batch, times] : races) rows.push_back(raceRow(batch, times));
+    return verdictOn(report);
+  };
+  CHECK(verdictWith({{1, 0.1}, {100, 2.0}, {100, 0.1}, {1000, 2.0}, {1000, 8.0}}) ==
+        "RIGHT (2265 answers, 0 wrong); device 3 is 4 times as fast as the CPU, from batches of 1000 on: set "
+        "--cpu-batch 1000");
+  CHECK(
+      verdictWith({{1, 1.5}, {10, 3.14159}}) ==
+      "RIGHT (75 answers, 0 wrong); device 3 is 3.14 times as fast as the CPU, whatever the batch: set --cpu-batch 0");
+  CHECK(verdictWith({{1, 2.0}, {10, 0.25}}) ==
+        "RIGHT (75 answers, 0 wrong); the CPU is 4 times as fast as device 3: set --mode reference");
+  CHECK(verdictWith({}) == "RIGHT (64 answers, 0 wrong)");
+  partOf(report, "lanes")["state"] = "running";
+  CHECK_THAT(verdictWith({{10, 2.0}}), StartsWith("UNFINISHED (74 answers, 0 wrong); device 3 is 2 times"));
+  partOf(report, "lanes")["state"] = "failed";
+  CHECK(verdictWith({{10, 2.0}}) == "WRONG (74 answers, 0 wrong, part lanes failed)");
+  partOf(report, "exactness")["rows"][0]["wrong"] = 2;
+  partOf(report, "lanes")["state"] = "done";
+  CHECK(verdictWith({{10, 2.0}}) == "WRONG (74 answers, 2 wrong)");
+  partOf(report, "exactness")["rows"][0]["wrong"] = 0;
+  partOf(report, "throughput")["rows"][0]["differ"] = 1;
+  CHECK(verdictOn(report) == "WRONG (74 answers, 1 wrong)");
+}
+
+TEST_CASE("a selftest can be read whenever it is interrupted, and every part has at least its first row") {
+  Json report = lookAtDevices({});
+  REQUIRE(partOf(report, "devices")["rows"].size() == 2);
+  std::vector<std::string> begun, parts;
+  // So little time that every part is over when it begins: what is measured does not depend on the machine.
+  runSelftest(report, 1e-6, [&] {
+    CHECK_THAT(
+        reportText(report),
+        StartsWith("UNFINISHED (" + report["answers_checked"].dump() + " answers, 0 wrong") || StartsWith("RIGHT ("));
+    bool isBefore = true;
+    for (const Json& part : report["parts"]) {
+      if (part["state"] == "running") {
+        isBefore = false;
+        begun.push_back(part["name"]);
+        CHECK_THAT(reportText(report), Contains(begun.back() + ": running"));
+      } else if (!isBefore) {
+        CHECK(part["state"] == "not begun");
+      }
+    }
+  });
+  for (const SelftestPart& one : selftestParts()) {
+    CAPTURE(one.name);
+    parts.emplace_back(one.name);
+    const Json& rows = partOf(report, one.name)["rows"];
+    CHECK_FALSE(rows.empty());
+    if (one.asks != SelftestPart::together) CHECK((rows.front()["device"] == 0 && rows.back()["device"] == 1));
+  }
+  CHECK(begun == parts);
+  CHECK(report["right"] == true);
+  CHECK(partOf(report, "arithmetic")["rows"].size() == 2 * 26);
+  CHECK(partOf(report, "answers")["rows"].size() == 2 * 7);
+  CHECK(partOf(report, "lanes")["rows"].size() == 2 * 2);
+  CHECK(partOf(report, "together")["rows"].size() == 3);
+  CHECK(report["answers_checked"] > 2 * 64);
+}
+
+TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
+  const ScratchFolder folder;
+  const Run run = runProgram(folder, "selftest --minutes 0.1 --device 1 --out report");
+  INFO(run.err);
+  CHECK(run.status == 0);
+  // Standard output has the verdict and what was done; the files have the details.
+  const std::string told = run.out.substr(0, run.out.find("\nIn "));
+  CHECK_THAT(folder.read("report/report.txt"), StartsWith(told) && StartsWith("RIGHT ("));
+  CHECK_THAT(told, Contains("exactness: ") && !Contains("interlocking"));
+  CHECK(nlohmann::json::parse(folder.read("report/report.json"))["right"] == true);
+  for (const char* file : {"index.html", "devices.csv", "limits.csv", "arithmetic.csv", "answers.csv", "exactness.csv",
+                           "throughput.csv", "stages.csv", "lanes.csv", "passes.csv"}) {
+    CAPTURE(file);
+    CHECK_FALSE(folder.read(std::string("report/") + file).empty());
+  }
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "report"), {}) == 12);
+  std::istringstream text(folder.read("report/report.txt"));
+  for (std::string line; std::getline(text, line);) CHECK(line.size() <= 120);
+
+  folder.write("file", "taken");
+  const auto refused = [&](const std::string& arguments, const std::string& what) {
+    CAPTURE(arguments);
+    const Run one = runProgram(folder, "selftest " + arguments);
+    CHECK(one.status == 2);
+    CHECK_THAT(one.err, Contains(what));
+  };
+  refused("--out file", "expected a folder");
+  refused("--device 99 --out none", "device 99 does not exist");
+  refused("--device some --out none", "--device");
+  refused("--device 1,1 --out none", "device 1 is named twice");
+  refused("--minutes 0 --out none", "--minutes");
+  refused("--minutes nan --out none", "--minutes");
+  refused("", "--out");
+}

@@ -303,16 +303,19 @@ class Contacts {
 class Around {
  public:
   Around(std::span<const TouchingPair* const> pairs, bool moving, const Place& point) : moving_(moving) {
-    for (const Triangle* t : trianglesOf(pairs, moving)) {
-      const auto found = sidesAt(point, *t);
+    for (const Triangle* triangle : trianglesOf(pairs, moving)) {
+      // Sorted, so that the numbering of corners does not matter.
+      Triangle t = *triangle;
+      std::sort(t.begin(), t.end());
+      const auto found = sidesAt(point, t);
       if (!found) continue;
       // Inside one side, the next one leads away from it, too. Inside the face, any two do.
       const unsigned rest = std::has_single_bit(*found) ? *found << 1 | *found >> 2 : 0;
       const unsigned sides = *found == 0 ? 3 : *found | rest;
       for (int i = 0; i < 3; ++i) {
-        if ((sides >> i & 1) != 0) edges.push_back(std::minmax((*t)[i], (*t)[next(i)]));
+        if ((sides >> i & 1) != 0) edges.push_back(std::minmax(t[i], t[next(i)]));
       }
-      found_.push_back(*t);
+      found_.push_back(*triangle);
     }
     sortOnce(found_);
   }

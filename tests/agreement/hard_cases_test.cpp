@@ -119,6 +119,17 @@ TEST_CASE("with D at the contact and a rounding beside it, answers and decisions
   }
 }
 
+TEST_CASE("the normal where twelve pairs touch at a vertex and an edge does not depend on how corners are numbered") {
+  tools::CaseRun run(test::device());
+  for (const uint64_t number : {493u, 747u}) {
+    const tools::Tally tally = run.run(
+        {.family = "interlocking", .seed = 77, .first = number, .cases = 1, .allHits = true},
+        [](uint64_t, const Approach&, const std::string&) {}, [](uint64_t) {});
+    CHECK(tally.queries == 1);
+    CHECK(tally.wrong == 0);
+  }
+}
+
 TEST_CASE("a case is the same whichever cases are asked before it") {
   tools::CaseRun run(test::device());
   const auto ask = [&](uint64_t first, uint64_t cases) { return run.run({"touching", 5, first, cases}); };

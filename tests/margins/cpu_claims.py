@@ -755,9 +755,9 @@ def claims(root):
     overlap = Sources(root, ["engine/math/rounding.h", "engine/cpu/swept_overlap.cpp"])
     motions = Sources(
         root,
-        ["engine/math/rounding.h", "engine/math/vector.h", "engine/cpu/pair_motion.cpp", "engine/cpu/placement.cpp"],
+        ["engine/math/rounding.h", "engine/math/vector.h", "engine/cpu/pair_motion.cpp"],
     )
-    placements = Sources(root, ["engine/math/rounding.h", "engine/cpu/placement.cpp", "engine/math/frame.cpp"])
+    placements = Sources(root, ["engine/math/rounding.h", "engine/cpu/pair_motion.cpp", "engine/math/frame.cpp"])
     return [
         claim("determinant", "estimate", [("kRelative", "16 * 0x1p-53")], determinants, estimate),
         claim("component of a cross product", "crossSign", [("kRelative", "16 * 0x1p-53")], crosses, cross_sign),

@@ -138,18 +138,25 @@ std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
   return wrong;
 }
 
-/// Answers those of the queries that keep their contracts; the others become invalid, with a reason.
-Answers answerValid(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode) {
+/// Answers the queries; those that break their contracts become invalid, with a reason.
+Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode) {
+  Answers all;
+  try {
+    return scene.answerer().run(queries, mode);
+  } catch (const Error&) {
+    for (size_t i = 0; i < queries.size(); ++i) {
+      if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
+        all.reasons[i] = std::move(wrong);
+      }
+    }
+    if (all.reasons.empty()) throw;
+  }
   std::vector<Query> valid;
   std::vector<size_t> numbers;
-  Answers all;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
-      all.reasons[i] = std::move(wrong);
-    } else {
-      numbers.push_back(i);
-      valid.push_back(queries[i]);
-    }
+    if (all.reasons.contains(i)) continue;
+    numbers.push_back(i);
+    valid.push_back(queries[i]);
   }
   Answers some = scene.answerer().run(valid, mode);
   all.results.resize(queries.size());
@@ -158,16 +165,6 @@ Answers answerValid(CastingScene& scene, const std::vector<Query>& queries, Answ
   for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
   for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
   return all;
-}
-
-Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode) {
-  try {
-    return scene.answerer().run(queries, mode);
-  } catch (const Error&) {
-    const auto isWrong = [&](const Query& query) { return !wrongWith(query, scene.scene(), mode).empty(); };
-    if (std::none_of(queries.begin(), queries.end(), isWrong)) throw;
-  }
-  return answerValid(scene, queries, mode);
 }
 
 /// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a

@@ -184,13 +184,19 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
         engine.add(np.zeros(2, np.uint32), np.zeros((1, 4, 4)), np.zeros(2, np.uint32))
     with pytest.raises((TypeError, ValueError)):
         engine.set_transforms(np.zeros(2, np.uint32), np.zeros((1, 4, 4)))
-    batch = scene._batch(mesh, at(np.zeros((4, 3))), DOWN, None, np.zeros(0, int), 1, {"mode": "contact"}, None)
+    of_casts = {
+        "mesh": np.full(4, mesh, np.uint32),
+        "poses": at(np.zeros((4, 3))),
+        "displacements": np.full((4, 3), DOWN, float),
+        "mask": np.ones(4, np.uint32),
+        "exclude_from_each": np.zeros((4, 1), np.int64),
+    }
+    of_answers = cyber_radar.Casts.empty((4,)).to_dict()
     options = dict.fromkeys(cyber_radar._engine.OPTIONS, 1.0) | {"any_hit": False, "mode": "contact", "resolution": 0}
-    for wrong in itertools.chain(batch.arguments, batch.results):
-        if wrong == "distances":
-            continue
-        arguments, results = dict(batch.arguments), dict(batch.results)
+    engine.cast((4,), of_casts | {"distances": None}, options, of_answers, lambda n: {}, None)
+    for wrong in itertools.chain(of_casts, of_answers):
+        arguments, results = of_casts | {"distances": None}, dict(of_answers)
         of = arguments if wrong in arguments else results
         of[wrong] = of[wrong][:2]
         with pytest.raises(ValueError):
-            engine.cast(batch.shape, arguments, options, results, lambda n: {}, None)
+            engine.cast((4,), arguments, options, results, lambda n: {}, None)

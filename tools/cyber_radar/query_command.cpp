@@ -47,10 +47,10 @@ std::string textOf(uint64_t queries, const Answering& answering, const Answering
   for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
   stats["pairs"] = pass.pairs;
   stats["cpu_pairs"] = pass.cpuPairs;
-  const std::span<const Device> devices = answering.devices();
+  const std::span<const Device> devices = answering.answerer().devices();
   stats["device"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].name());
   stats["driver"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].driver());
-  for (const PoolDevice& device : answering.poolDevices()) {
+  for (const PoolDevice& device : answering.answerer().poolDevices()) {
     stats["devices"].push_back(
         {{"name", device.name}, {"driver", device.driver}, {"queries", device.queries}, {"chunks", device.chunks}});
   }
@@ -63,7 +63,7 @@ class Run {
  public:
   Run(const Options& options, const QueryFile& queries, const AnsweringOptions& engine)
       : queries_(queries), answering_(queries.world(), queries.modes(), engine) {
-    const Part part = options.run.part(queries, answering_.devices());
+    const Part part = options.run.part(queries, answering_);
     first_ = part.first();
     end_ = part.end();
     if (!options.run.out.empty()) {
@@ -173,7 +173,7 @@ int query(const Options& options) {
     const std::string chosen = resolutionsInWords(pass);
     if (!chosen.empty()) std::cerr << "cyber-radar: " << chosen << " (chosen per sensor)\n";
   }
-  for (const PoolDevice& device : run.answering().poolDevices()) {
+  for (const PoolDevice& device : run.answering().answerer().poolDevices()) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
   sayDone("cyber-radar", {run.count(), run.kept(), seconds, begun - start}, statusesInWords(pass));

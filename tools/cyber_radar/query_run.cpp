@@ -41,7 +41,7 @@ Outputs RunOptions::outputs() const {
   return outputs;
 }
 
-Part RunOptions::part(const QueryFile& queries, std::span<const Device> devices) const {
+Part RunOptions::part(const QueryFile& queries, Answering& answering) const {
   Part part;
   part.format = answerFormatOf(out);
   if (part.format == AnswerFormat::records && queries.modes().listed) {
@@ -56,7 +56,10 @@ Part RunOptions::part(const QueryFile& queries, std::span<const Device> devices)
   part.mode = engine.mode;
   part.resolution = engine.resolution;
   part.program = commit();
-  if (queries.modes().asks(AnswerMode::sampled, modeFrom(engine.mode))) part.device = namesOf(devices);
+  if (queries.modes().asks(AnswerMode::sampled, modeFrom(engine.mode))) {
+    answering.open();
+    part.device = namesOf(answering.answerer().devices());
+  }
   return part;
 }
 

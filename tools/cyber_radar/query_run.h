@@ -21,8 +21,8 @@ struct RunOptions {
   void check() const;
   /// What the run writes. Throws InputError that names the option.
   Outputs outputs() const;
-  /// What the answers of this run are part of. `devices`: those that answer.
-  Part part(const QueryFile& queries, std::span<const Device> devices) const;
+  /// What the answers of this run are part of. In mode sampled, opens what `answering` needs.
+  Part part(const QueryFile& queries, Answering& answering) const;
 };
 
 /// The names of devices and drivers, for messages and for runs in mode sampled.

@@ -47,7 +47,7 @@ int sweep(const Options& options) {
     const std::string resolution = resolutionsInWords(answering.stats());
     if (!resolution.empty()) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "
-                << answering.devices()[0].name() << "\n";
+                << answering.answerer().devices()[0].name() << "\n";
     }
   }
   return someInvalid({&answer, 1}) ? kStatusSomeInvalid : 0;

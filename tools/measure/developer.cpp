@@ -355,14 +355,20 @@ std::vector<Case> searchCases(Extent extent) {
       [](uint32_t n) { return makeWorkload(Table1{.boxes = 30'000, .sensors = n, .shape = SensorShape::box}); });
   add("table1-teapots", sizes, [](uint32_t n) { return makeWorkload(Table1{.boxes = 30'000, .sensors = n}); });
   for (const uint32_t triangles : {1'000'000u, 10'000'000u}) {
+    if (extent != Extent::full && triangles > 1'000'000) continue;
     add("mesh-" + std::to_string(triangles) + "-boxes", fewer, [=](uint32_t n) {
       return makeWorkload(OneMesh{.triangles = triangles, .sensors = n, .shape = SensorShape::box});
     });
   }
   add("city-teapots", fewer, [](uint32_t n) { return makeWorkload(OneMesh{.sensors = n}); });
   for (const Interlocking kind : kInterlocking) {
-    add(std::string("interlocking-") + nameOf(kind), heavy,
-        [=](uint32_t n) { return makeWorkload(InterlockingPairs{.kind = kind, .sensors = n}); });
+    std::string name = std::string("interlocking-") + nameOf(kind);
+    std::replace(name.begin(), name.end(), ' ', '-');
+    add(name, heavy, [=](uint32_t n) { return makeWorkload(InterlockingPairs{.kind = kind, .sensors = n}); });
+  }
+  for (const uint32_t boxes : {1'000u, 1'000'000u}) {
+    add("boxes-" + std::to_string(boxes), {16'384},
+        [=](uint32_t n) { return makeWorkload(Scale{.boxes = boxes, .sensors = n, .shape = SensorShape::box}); });
   }
   add("drop-cutter", {1, 64, 1'024, 42'000}, [](uint32_t) { return makeWorkload(DropCutter()); });
   return cases;

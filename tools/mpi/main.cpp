@@ -159,7 +159,7 @@ class Rank {
       takeShare(engine, options_.engine, session_, needsDevice);
       answering_.emplace(queries_->world(), queries_->modes(), engine);
       if (!queries_->world().scenes.empty()) answering_->setUp(0);
-      report.devices = namesOf(answering_->devices());
+      report.devices = namesOf(answering_->answerer().devices());
       setupMs_ = 1e3 * (now() - start) - loadMs_;
     } catch (const Error& error) {
       report.failure = error.what();
@@ -175,7 +175,7 @@ class Rank {
     try {
       const bool sampled = queries_ && queries_->modes().asks(AnswerMode::sampled, options_.engine.checked().mode);
       if (!allCanAnswer(reports_, sampled)) return false;
-      const Part part = options_.part(*queries_, answering_->devices());
+      const Part part = options_.part(*queries_, *answering_);
       first_ = part.first();
       end_ = part.end();
       writer_.emplace(options_.out, part, *queries_, options_.resume);

@@ -10,6 +10,7 @@ namespace radar::python {
 
 namespace {
 
+using tools::AnswerMode;
 using Clock = std::chrono::steady_clock;
 
 // Between two chunks a signal is seen and progress reported. The first is small, because a query may take anything from
@@ -51,17 +52,17 @@ double lengthOf(const std::array<double, 3>& way) {
 // end is exact. Sweeps are those along an axis, where the length is a component and distances round only once; and
 // those that may round the length up: mode sampled, which has no steps, and a clearance where nothing moves, for which
 // the device has none. Both bracket the distance more widely than that.
-void setWay(Query& query, const std::array<double, 3>& way, Mode mode, bool mayRoundUp) {
+void setWay(Query& query, const std::array<double, 3>& way, AnswerMode mode, bool mayRoundUp) {
   const double length = lengthOf(way);
   const bool isAlongAxis = (way[0] == 0) + (way[1] == 0) + (way[2] == 0) == 2;
   query.motion.reset();
-  if (mode == Mode::sampled && length == 0) {
+  if (mode == AnswerMode::sampled && length == 0) {
     query.direction = {0, 0, 1};  // no direction changes whether the surfaces meet at the start
     query.distance = 0;
   } else if (isAlongAxis && length <= kMostWay) {
     for (int k = 0; k < 3; ++k) query.direction[k] = way[k] / length;
     query.distance = length;
-  } else if (mode == Mode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
+  } else if (mode == AnswerMode::sampled || (mayRoundUp && length > 0 && length <= kMostWay)) {
     query.direction = way;
     query.distance = std::nextafter((1 + 0x1p-50) * length, std::numeric_limits<double>::infinity());
   } else {
@@ -127,8 +128,8 @@ void Reader::next(Query& query) {
 }
 
 /// A query's broken contract in the words of the arguments; empty if it is kept.
-std::string wrongWith(const Query& query, const Scene& scene, Mode mode) {
-  std::string wrong = validate(query, scene, mode);
+std::string wrongWith(const Query& query, const Scene& scene, AnswerMode mode) {
+  std::string wrong = validate(query, scene, mode == AnswerMode::sampled ? Mode::sampled : Mode::contact);
   for (const auto& [engine, argument] :
        {std::pair{"sensor: ", "poses: "}, std::pair{"direction: ", "displacements: "},
         std::pair{"motion: ", "displacements: "}, std::pair{"distance: ", "distances: "}}) {
@@ -137,36 +138,33 @@ std::string wrongWith(const Query& query, const Scene& scene, Mode mode) {
   return wrong;
 }
 
-/// Answers those of the queries that keep their contracts; the others become invalid, with a reason.
-Answers answerValid(CastingScene& scene, const std::vector<Query>& queries, Mode mode, bool onCpu) {
+/// Answers the queries; those that break their contracts become invalid, with a reason.
+Answers answer(CastingScene& scene, const std::vector<Query>& queries, AnswerMode mode) {
+  Answers all;
+  try {
+    return scene.answerer().run(queries, mode);
+  } catch (const Error&) {
+    for (size_t i = 0; i < queries.size(); ++i) {
+      if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
+        all.reasons[i] = std::move(wrong);
+      }
+    }
+    if (all.reasons.empty()) throw;
+  }
   std::vector<Query> valid;
   std::vector<size_t> numbers;
-  Answers all;
   for (size_t i = 0; i < queries.size(); ++i) {
-    if (std::string wrong = wrongWith(queries[i], scene.scene(), mode); !wrong.empty()) {
-      all.reasons[i] = std::move(wrong);
-    } else {
-      numbers.push_back(i);
-      valid.push_back(queries[i]);
-    }
+    if (all.reasons.contains(i)) continue;
+    numbers.push_back(i);
+    valid.push_back(queries[i]);
   }
-  Answers some = scene.answer(valid, mode, onCpu);
+  Answers some = scene.answerer().run(valid, mode);
   all.results.resize(queries.size());
   if (!some.lists.empty()) all.lists.resize(queries.size());
   for (size_t i = 0; i < numbers.size(); ++i) all.results[numbers[i]] = some.results[i];
   for (size_t i = 0; i < some.lists.size(); ++i) all.lists[numbers[i]] = std::move(some.lists[i]);
   for (const auto& [i, reason] : some.reasons) all.reasons[numbers[i]] = reason;
   return all;
-}
-
-Answers answer(CastingScene& scene, const std::vector<Query>& queries, Mode mode, bool onCpu) {
-  try {
-    return scene.answer(queries, mode, onCpu);
-  } catch (const Error&) {
-    const auto isWrong = [&](const Query& query) { return !validate(query, scene.scene(), mode).empty(); };
-    if (std::none_of(queries.begin(), queries.end(), isWrong)) throw;
-  }
-  return answerValid(scene, queries, mode, onCpu);
 }
 
 /// The times of a step are fractions of its displacement, whose length rounds, as products do; the floor is what a
@@ -245,7 +243,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
       Reader reader(input, first + from, mayRoundUp);
       for (size_t i = from; i < to; ++i) reader.next(queries[i]);
     });
-    Answers answers = answer(scene, queries, input.mode, input.onCpu);
+    Answers answers = answer(scene, queries, input.mode);
     timesToDistances(queries, answers);
     inParts(end - first, [&](size_t from, size_t to) {
       for (size_t i = from; i < to; ++i) output.write(first + i, answers.results[i], input.options.anyHit);

@@ -29,8 +29,7 @@ struct BatchInput {
   PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;
   Query options;  ///< for the members that all queries share
-  Mode mode = Mode::contact;
-  bool onCpu = false;  ///< mode reference
+  tools::AnswerMode mode = tools::AnswerMode::contact;
 
   size_t count() const;
 };

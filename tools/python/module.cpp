@@ -57,8 +57,10 @@ std::optional<std::pair<size_t, std::string>> firstSingular(const Array<double>&
 
 std::unique_ptr<CastingScene> makeScene(std::optional<uint32_t> device, std::optional<std::vector<uint32_t>> pool,
                                         std::optional<uint32_t> cpuBatch, uint32_t threads) {
-  return std::make_unique<CastingScene>(
-      DeviceChoice{device.value_or(kNone), std::move(pool), cpuBatch.value_or(kNone), threads});
+  return std::make_unique<CastingScene>(tools::AnswererOptions{.device = device.value_or(kNone),
+                                                               .pool = std::move(pool),
+                                                               .cpuBatch = cpuBatch.value_or(kNone),
+                                                               .threads = threads});
 }
 
 /// Works while other Python threads run, which may write to arrays: it must have copied what it reads of them.
@@ -233,6 +235,12 @@ void readField(const tools::QueryField& field, const py::object& value, tools::Q
                         std::string(py::repr(value)));
 }
 
+tools::AnswerMode modeFrom(const py::dict& options) {
+  const auto mode = options["mode"].cast<std::string>();
+  if (mode == "sampled") return tools::AnswerMode::sampled;
+  return mode == "reference" ? tools::AnswerMode::reference : tools::AnswerMode::contact;
+}
+
 Query optionsFrom(const py::dict& options) {
   tools::QuerySpec query;
   for (const tools::QueryField& field : tools::queryFields()) {
@@ -241,7 +249,7 @@ Query optionsFrom(const py::dict& options) {
   query.resolution = options["resolution"].cast<uint32_t>();
   if (query.hits > 1 && query.anyHit) throw py::value_error("hits: expected 1 with any_hit");
   const tools::QueryField* const exact = exactOnly(query);
-  if (exact && options["mode"].cast<std::string>() == "sampled") {
+  if (exact && modeFrom(options) == tools::AnswerMode::sampled) {
     throw py::value_error("mode: expected \"contact\" or \"reference\" with " + std::string(exact->python) +
                           ", got \"sampled\"");
   }
@@ -288,8 +296,7 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
     input.distances = perQuery<double>(distances, shape, 1, "distances");
   }
   input.options = optionsFrom(options);
-  input.mode = options["mode"].cast<std::string>() == "sampled" ? Mode::sampled : Mode::contact;
-  input.onCpu = options["mode"].cast<std::string>() == "reference";
+  input.mode = modeFrom(options);
   const BatchOutput output = outputFrom(out, input.count());
   BatchLists found;
   {

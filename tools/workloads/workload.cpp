@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <tuple>
 
 #include "workloads/vectors.h"
 
@@ -70,12 +71,13 @@ double sensorSize(const Scene& scene, const Query& query) {
   return boundsOf(scene.mesh(query.mesh), query.worldFromMesh).longest();
 }
 
-std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution) {
+std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution, AnswerMode mode) {
   std::vector<Batch> batches;
-  std::map<std::pair<uint32_t, uint64_t>, size_t> places;
+  std::map<std::tuple<uint32_t, uint64_t, AnswerMode>, size_t> places;
   for (uint32_t i = 0; i < specs.size(); ++i) {
-    const auto [place, isNew] = places.try_emplace({specs[i].scene, specs[i].batch}, batches.size());
-    if (isNew) batches.push_back({.scene = specs[i].scene});
+    const AnswerMode own = specs[i].mode.value_or(mode);
+    const auto [place, isNew] = places.try_emplace({specs[i].scene, specs[i].batch, own}, batches.size());
+    if (isNew) batches.push_back({.scene = specs[i].scene, .mode = own});
     Batch& batch = batches[place->second];
     batch.queries.push_back(specs[i]);
     batch.queries.back().resolution = resolution;

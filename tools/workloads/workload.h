@@ -85,14 +85,16 @@ std::vector<Query> queriesOf(std::span<const QuerySpec> specs, uint32_t resoluti
 /// Greatest extent of the placed sensor's box.
 double sensorSize(const Scene& scene, const Query& query);
 
-/// The queries of one scene and one batch number.
+/// The queries of one scene, one batch number and one mode.
 struct Batch {
   uint32_t scene = 0;
+  AnswerMode mode = AnswerMode::contact;
   std::vector<Query> queries;
   std::vector<uint32_t> numbers;  ///< where they stand among the given ones
 };
-/// In the order of first appearance.
-std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution = 0);
+/// In the order of first appearance. `mode`: of queries that do not choose one.
+std::vector<Batch> batchesOf(std::span<const QuerySpec> specs, uint32_t resolution = 0,
+                             AnswerMode mode = AnswerMode::contact);
 
 /// Makes `to` hold the workload's meshes and one of its scenes, under the workload's numbers, and nothing else.
 void replaceBy(const Workload& workload, uint32_t scene, Scene& to);

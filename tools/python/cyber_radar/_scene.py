@@ -286,13 +286,39 @@ class Scene:
         options["mode"] = mode
         options["resolution"] = one_whole_number(resolution, "resolution", 0, _engine.MAX_RESOLUTION)
         excluded = self._excluded(exclude_from_all, exclude_from_each)
-        batch = self._batch(mesh, poses, displacements, distances, excluded, mask, options, out)
+        arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
+            "mesh": (self._known_meshes(mesh), 0),
+            "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
+            "displacements": (reals(displacements, "displacements", (3,)), 1),
+            "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
+            "exclude_from_each": (excluded, 1),
+        }
+        if distances is not None:
+            arrays["distances"] = (reals(distances, "distances"), 0)
+        shape = common_shape(arrays)
         if exclude_from_each is not None:
-            refuse_one_each(np.shape(exclude_from_each), batch.shape)
-        total = _count(batch.shape)
+            refuse_one_each(np.shape(exclude_from_each), shape)
+        arguments: dict[str, Any] = {"distances": None}
+        for name, (array, inner) in arrays.items():
+            arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
+        sampled = mode == "sampled"
+        results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
+        total = int(np.prod(shape, dtype=np.int64))
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
-            return self._run(engine, batch, after_chunk)
+            try:
+                hits, overlapping, reasons = engine.cast(
+                    shape, arguments, options, results, lambda count: _new_arrays((count,), False), after_chunk
+                )
+            finally:
+                warn_of(_engine.take_validation_messages(), ValidationWarning)
+        casts = Casts(**results) if out is None else out
+        if not sampled:
+            casts.paper_min_l = casts.resolution = None
+        casts.hits = None if hits is None else Hits(**hits[0], offsets=hits[1], of_shape=shape)
+        casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
+        casts.reasons = reasons
+        return casts
 
     @property
     def device_names(self) -> list[str]:
@@ -355,34 +381,6 @@ class Scene:
             with self._exclusive() as engine:
                 yield engine
 
-    def _batch(
-        self,
-        mesh: npt.ArrayLike,
-        poses: npt.ArrayLike | None,
-        displacements: npt.ArrayLike,
-        distances: npt.ArrayLike | None,
-        excluded: npt.NDArray[np.int64],
-        mask: npt.ArrayLike,
-        options: dict[str, Any],
-        out: Casts | None,
-    ) -> _Batch:
-        arrays: dict[str, tuple[npt.NDArray[Any], int]] = {
-            "mesh": (self._known_meshes(mesh), 0),
-            "poses": (np.eye(4) if poses is None else _poses(poses, "poses"), 2),
-            "displacements": (reals(displacements, "displacements", (3,)), 1),
-            "mask": (whole_numbers(mask, "mask", np.uint32, LEAST_MASK, MOST_MASK), 0),
-            "exclude_from_each": (excluded, 1),
-        }
-        if distances is not None:
-            arrays["distances"] = (reals(distances, "distances"), 0)
-        shape = common_shape(arrays)
-        arguments: dict[str, Any] = {"distances": None}
-        for name, (array, inner) in arrays.items():
-            arguments[name] = np.broadcast_to(array, shape + array.shape[array.ndim - inner :])
-        sampled = options["mode"] == "sampled"
-        results = _new_arrays(shape, sampled) if out is None else _arrays_of(out, shape, sampled)
-        return _Batch(shape, arguments, options, results, out)
-
     def _excluded(self, from_all: npt.ArrayLike, from_each: npt.ArrayLike | None) -> npt.NDArray[np.int64]:
         """Rows of objects to ignore: (..., K)."""
         all_ids = self._known_objects(from_all, "exclude_from_all")
@@ -401,31 +399,6 @@ class Scene:
                 "one id each, pass ids[:, None]; for the same ids in every cast, exclude_from_all"
             )
         return np.concatenate([rows, np.broadcast_to(all_ids, (*rows.shape[:-1], all_ids.size))], axis=-1)
-
-    def _run(
-        self,
-        engine: _engine.Scene,
-        batch: _Batch,
-        after_chunk: Callable[[int], object] | None,
-    ) -> Casts:
-        try:
-            hits, overlapping, reasons = engine.cast(
-                batch.shape,
-                batch.arguments,
-                batch.options,
-                batch.results,
-                lambda count: _new_arrays((count,), False),
-                after_chunk,
-            )
-        finally:
-            warn_of(_engine.take_validation_messages(), ValidationWarning)
-        casts = Casts(**batch.results) if batch.out is None else batch.out
-        if batch.options["mode"] != "sampled":
-            casts.paper_min_l = casts.resolution = None
-        casts.hits = None if hits is None else Hits(**hits[0], offsets=hits[1], of_shape=batch.shape)
-        casts.overlapping = None if overlapping is None else Overlapping(*overlapping, batch.shape)
-        casts.reasons = reasons
-        return casts
 
     def _known_meshes(self, mesh: npt.ArrayLike) -> npt.NDArray[np.uint32]:
         ids = whole_numbers(mesh, "mesh", np.uint32, 0, MOST_ID)
@@ -447,18 +420,6 @@ class Scene:
             if unknown.size:
                 raise ValueError(f"{name}: expected ids of objects of the scene, got {unknown[0]}")
         return ids
-
-
-class _Batch(NamedTuple):
-    shape: tuple[int, ...]
-    arguments: dict[str, Any]  # of that leading shape
-    options: dict[str, Any]
-    results: dict[str, Any]
-    out: Casts | None  # whose arrays `results` are
-
-
-def _count(shape: tuple[int, ...]) -> int:
-    return int(np.prod(shape, dtype=np.int64))
 
 
 _scenes: weakref.WeakSet[Scene] = weakref.WeakSet()

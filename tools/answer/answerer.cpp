@@ -1,0 +1,43 @@
+#include "answer/answerer.h"
+
+namespace radar::tools {
+
+void Answerer::edit(const std::function<void()>& change) {
+  if (pool_) {
+    pool_->edit(change);
+  } else {
+    change();
+  }
+}
+
+void Answerer::open(AnswerMode mode) {
+  if (mode == AnswerMode::reference) {
+    if (!cpu_) cpu_.emplace(scene_, options_.threads);
+    return;
+  }
+  if (sweeper_ || pool_) return;
+  const SweeperOptions options{
+      .timestamps = options_.timestamps, .cpuBatch = options_.cpuBatch, .cpuThreads = options_.threads};
+  if (options_.pool) {
+    devices_ = openDevices(*options_.pool, options_.onValidation);
+    pool_.emplace(devices_, scene_, options);
+  } else {
+    devices_.clear();
+    devices_.push_back(Device::open({.index = options_.device, .onValidation = options_.onValidation}));
+    sweeper_.emplace(devices_[0], scene_, options);
+  }
+}
+
+void Answerer::sync() {
+  if (sweeper_) sweeper_->sync();
+  if (cpu_) cpu_->sync();
+}
+
+Answers Answerer::run(const std::vector<Query>& queries, AnswerMode mode) {
+  open(mode);
+  if (mode == AnswerMode::reference) return cpu_->run(queries);
+  const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
+  return pool_ ? pool_->submit(queries, ofDevice).get() : sweeper_->run(queries, ofDevice);
+}
+
+}  // namespace radar::tools

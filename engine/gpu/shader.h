@@ -1,4 +1,5 @@
-// A shader as the build describes it (shaders/CMakeLists.txt): radar::shaders, in spirv/radar_shaders.h, are the engine's.
+// A shader as the build describes it (shaders/CMakeLists.txt): radar::shaders, in spirv/radar_shaders.h, are the
+// engine's.
 #pragma once
 
 #include <cstdint>

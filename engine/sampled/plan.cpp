@@ -6,14 +6,13 @@
 
 #include "math/frame.h"
 #include "query/swept.h"
+#include "sampled/in_frame.h"
 #include "scene/placement.h"
 
 namespace radar {
 
 namespace {
 
-// Half an ulp of 1 in float.
-constexpr double kFloatUnit = 0x1p-24;
 // Larger clip coordinates might overflow in products of the identify stage (docs/method.md, "Ranges, infinities and
 // rounding"). Units: half the window across, the picture's depth along.
 constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
@@ -31,76 +30,6 @@ std::string outOfRange(const Query& query, const Scene::Impl& scene) {
     return "range: the sensor has coordinates beyond 2^80, or a size below 2^-80";
   }
   return {};
-}
-
-// Whether each row's terms, for vectors of the mesh's reach, but at least `least`, sum up to less than `most`.
-bool staysBelow(const Vector& most, const Mesh& mesh, const Affine& m, double least) {
-  for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double sum = std::abs(r[3]);
-    for (int k = 0; k < 3; ++k) sum += std::abs(r[k]) * std::max<double>(least, mesh.reach[k]);
-    if (!(sum < most[row])) return false;
-  }
-  return true;
-}
-
-// Whether floats hold every entry of the matrix and every vertex that it places.
-bool fitsFloats(const Mesh& mesh, const Affine& m) {
-  return staysBelow({0x1p125, 0x1p125, 0x1p125}, mesh, m, 1);
-}
-
-// Bound on the error of a vertex placed by a shader, world units (docs/method.md, "Placement in the pictures").
-double placementError(const Mesh& mesh, const Affine& frameFromMesh) {
-  // The 2^-120 terms cover floats below the normal range: of a product, of an entry per unit of the mesh, of a vertex.
-  const Vector reach{mesh.reach[0], mesh.reach[1], mesh.reach[2]};
-  double scale = 0;
-  for (int row = 0; row < 3; ++row) {
-    const double* r = &frameFromMesh[4 * row];
-    scale = std::max(scale, norm1({r[0], r[1], r[2]}));
-  }
-  return 16 * kFloatUnit * placedMagnitude(reach, {frameFromMesh}) + 0x1p-120 * (1 + norm1(reach) + scale);
-}
-
-// Bound on the double-precision error of a vertex in a frame about `origin`, relative to `transformPoint`, world units.
-double doubleError(const Mesh& mesh, const Transform& pose, const Vector& origin) {
-  Vector farthest;
-  for (int k = 0; k < 3; ++k) farthest[k] = std::abs(mesh.origin[k]) + mesh.reach[k];
-  return 0x1p-47 * (placedMagnitude(farthest, pose) + largest(origin));
-}
-
-// A box around a box that `m` has turned, whose points are then off by up to `error`.
-Box turned(const auto& centre, const auto& halfExtent, const Affine& m, double error) {
-  Box box;
-  for (int row = 0; row < 3; ++row) {
-    const double* r = &m[4 * row];
-    double middle = r[3], half = error;
-    for (int k = 0; k < 3; ++k) {
-      middle += r[k] * centre[k];
-      half += std::abs(r[k]) * halfExtent[k];
-    }
-    box.lo[row] = middle - half;
-    box.hi[row] = middle + half;
-  }
-  return box;
-}
-
-// The box of the vertices in the frame, which is tighter than the mesh's box in the frame, so that M fills the window.
-Box tightBox(const Mesh& mesh, const Affine& m) {
-  Box box;
-  for (int row = 0; row < 3; ++row) {
-    const auto x = static_cast<float>(m[4 * row]), y = static_cast<float>(m[4 * row + 1]),
-               z = static_cast<float>(m[4 * row + 2]);
-    const float *px = mesh.local[0].data(), *py = mesh.local[1].data(), *pz = mesh.local[2].data();
-    float low = 3e38f, high = -3e38f;
-    for (uint32_t i = 0; i < mesh.vertexCount(); ++i) {
-      const float at = x * px[i] + y * py[i] + z * pz[i];
-      low = at < low ? at : low;
-      high = at > high ? at : high;
-    }
-    box.lo[row] = low + m[4 * row + 3];
-    box.hi[row] = high + m[4 * row + 3];
-  }
-  return box;
 }
 
 Box worldBox(const gpu::ObjectNode& node, const Vector& anchor) {

@@ -118,7 +118,7 @@ void chart(Options options) {
   Json report = options.render ? readReport(options.out) : measure(options);
   sumUp(report, options.out);
   for (const char* name : {"workloads", "methods", "growth", "edits", "recorded"}) {
-    const Json& part = partOf(report, name);
+    Json& part = partOf(report, name);
     if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
   std::cout << "In " << std::filesystem::absolute(options.out).string()

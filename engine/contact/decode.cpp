@@ -21,7 +21,8 @@ UnresolvedPairs::UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs) {
   std::sort(ordered_.begin(), ordered_.end(), [&](const auto* p, const auto* q) { return name(p) < name(q); });
 }
 
-std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor) const {
+std::span<const gpu::UnresolvedPair* const> UnresolvedPairs::of(uint32_t sensor, const Result& found) const {
+  if (found.flags != Flag::unresolved && found.status != Status::overlap) return {};
   const auto first =
       std::partition_point(ordered_.begin(), ordered_.end(), [&](const auto* pair) { return pair->sensor < sensor; });
   const auto end =

@@ -14,19 +14,20 @@
 
 namespace radar {
 
-/// A device's unresolved pairs, by sensor: all pairs of a sensor, or none if there was no room.
+/// The pairs that a device leaves to the CPU, by sensor: those that may be first (all, or none if there was no room),
+/// or that of an overlap, whose point is missing.
 class UnresolvedPairs {
  public:
   /// `pairs` must outlive this, in place.
   explicit UnresolvedPairs(std::span<const gpu::UnresolvedPair> pairs);
-  /// Ordered by (object, triB, triA).
-  std::span<const gpu::UnresolvedPair* const> of(uint32_t sensor) const;
+  /// Ordered by (object, triB, triA). None if `found`, the sensor's answer, stands.
+  std::span<const gpu::UnresolvedPair* const> of(uint32_t sensor, const Result& found) const;
 
  private:
   std::vector<const gpu::UnresolvedPair*> ordered_;
 };
 
-/// The answer to a query whose device answer `found` has the flag Flag::unresolved; `pairs` are all that may be first.
+/// The answer to a query from its device answer `found` and `pairs`, at least one, of UnresolvedPairs.
 /// `motion`: that of the search. For a query with `anyHit`, stops at the first pair that meets. `tolerance`: of its
 /// clearance (cpu/clearance.h).
 /// Throws Error with VK_ERROR_UNKNOWN if the search found a certain contact, but none of `pairs` meets. `farthest`:

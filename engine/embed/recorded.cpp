@@ -39,10 +39,6 @@ std::vector<ObjectId> mayReach(const Query& query, const Scene::Impl& scene, con
   return objects;
 }
 
-bool isOpen(const Result& result, std::span<const gpu::UnresolvedPair* const> pairs) {
-  return result.flags == Flag::unresolved && !pairs.empty();
-}
-
 }  // namespace
 
 void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, const HostGeometryPass& geometry,
@@ -134,13 +130,13 @@ Answers Recorded::answers(std::vector<Result> all, std::span<const gpu::Unresolv
     const gpu::Sweep& sweep = sensors.sweeps[i];
     while (next != gathered.end() && sweep.result >= next->first + next->count) ++next;
     Result& result = all[sweep.result];
-    if (!isOpen(result, unresolved.of(i))) continue;
+    const auto left = unresolved.of(i, result);
+    if (left.empty()) continue;
     const uint32_t number = sweep.result >= hitOffsets.back() ? next->query : sweep.result;
     const Query& query = queries[number];
     const Vector drift{sweep.drift[0], sweep.drift[1], sweep.drift[2]};
-    result =
-        decideUnresolved(result, unresolved.of(i), query, query.motion ? Motion(*query.motion, drift) : Motion(query),
-                         tolerances[number], *farthest);
+    const Motion motion = query.motion ? Motion(*query.motion, drift) : Motion(query);
+    result = decideUnresolved(result, left, query, motion, tolerances[number], *farthest);
   }
   Answers answers = unanswered(queries);
   std::copy_n(all.begin(), count, answers.results.begin());
@@ -156,9 +152,10 @@ Answers Recorded::answersToWritten(std::vector<Result> all, std::span<const gpu:
                                    const gpu::Sweep* sweeps) const {
   const UnresolvedPairs unresolved(pairs);
   for (uint32_t i = 0; i < all.size(); ++i) {
-    if (!isOpen(all[i], unresolved.of(i))) continue;
+    const auto left = unresolved.of(i, all[i]);
+    if (left.empty()) continue;
     const Query query = queryOf(sweeps[i]);
-    all[i] = decideUnresolved(all[i], unresolved.of(i), query, Motion(query), 0, *farthest);
+    all[i] = decideUnresolved(all[i], left, query, Motion(query), 0, *farthest);
   }
   return {.results = std::move(all)};
 }

@@ -7,8 +7,6 @@
 
 #include "exact/determinant.h"
 
-// shaders/contact/double_double.glsl has the same operations in the same order, but for exactCrossing.
-
 namespace radar::exact {
 
 namespace {

@@ -200,7 +200,7 @@ void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span
       if (results[i].flags == 0 && results[i].status == Status::invalid) {
         throw Error("the contact search lost a certain contact", VK_ERROR_UNKNOWN);
       }
-      const size_t pairs = results[i].flags == Flag::unresolved ? unresolved.of(i).size() : 0;
+      const size_t pairs = unresolved.of(i, results[i]).size();
       if (pairs == 0 || pairs > kMostDecided) continue;
       open.push_back({i, group.query});
       flight.answers.stats.cpuPairs += pairs;
@@ -210,7 +210,7 @@ void ContactRunner::decide(Flight& flight, const SearchAnswers& found, std::span
     for (size_t k = first; k < last; ++k) {
       const auto [i, query] = open[k];
       const Query& asked = flight.queries[query];
-      const auto pairs = unresolved.of(i);
+      const auto pairs = unresolved.of(i, results[i]);
       const Motion motion = motionPast(asked, scene, pairs.front()->object);
       const double tolerance = cpu::toleranceOf(asked, scene.meshes[asked.mesh]);
       results[i] = decideUnresolved(results[i], pairs, asked, motion, tolerance, *resident_.farthest());

@@ -1,6 +1,6 @@
 // Writes the answers, one invocation per sensor. If the device is certain which features touch first, it computes the numbers
-// in the arithmetic of engine/exact, with the same bits. Otherwise it lists the pairs that may be first as unresolved, for the
-// CPU to decide. A device without doubles lists all of them.
+// in the arithmetic of engine/exact, with the same bits; of an overlap, all but the point. Otherwise it lists the pairs that may
+// be first as unresolved, for the CPU to decide. A device without doubles lists all of them.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -45,7 +45,7 @@ vec3[3] cornersAt(uint slot) {
 // Reserves entries for unresolved pairs and returns the first. If they do not fit, marks the remaining entries unused and
 // returns kNobody.
 uint reserveUnresolved(uint pairs) {
-  // The sum cannot wrap: it is at most the number of refined pairs.
+  // The sum cannot wrap: it is at most twice the number of refined pairs.
   const uint at = atomicAdd(counts.unresolved, pairs), end = at + pairs;
   if (end <= push.unresolvedCapacity) return at;
   for (uint i = at; i < push.unresolvedCapacity; ++i) unresolved[i].sensor = kNobody;
@@ -193,16 +193,15 @@ bool setHit(uint feature, Corners corners, inout RadarResult r) {
   return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 
-// Sets the refined pair's overlap. Returns whether its numbers certainly have the CPU's bits.
-bool setOverlap(Corners corners, inout RadarResult r) {
+// Sets the refined pair's overlap, and lists the pair, for the CPU to find the point. Returns whether there was room.
+bool setOverlap(RefinedPair c, inout RadarResult r) {
   r.status = RADAR_STATUS_overlap;
   // The contact certainly begins before the start and ends after it.
   r.featureA = r.featureB = RADAR_FEATURE_face;
   r.t = r.lo = r.hi = r.fraction = uvec2(0);
-  dvec3 point;
-  const bool found = commonPoint(corners.a, corners.b, point);
-  r.point = bitsOf(point);
-  return sound && found;
+  const uint at = reserveUnresolved(1);
+  if (at != kNobody) writeUnresolved(at, c);
+  return at != kNobody;
 }
 
 // A summary of a sensor's refined pairs.
@@ -259,7 +258,7 @@ bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
-  return pierces ? setOverlap(corners, r) : setHit(one.flags & 0xffu, corners, r);
+  return pierces ? setOverlap(one, r) : setHit(one.flags & 0xffu, corners, r);
 }
 
 RadarResult decide(SearchState state, bool met) {

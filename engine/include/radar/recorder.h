@@ -57,7 +57,8 @@ class RADAR_API Recorder {
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
   /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
   /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has Flag::unresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`.
+  /// has Flag::unresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`. The
+  /// point of an overlap is absent (NaN) in results(): read() finds it.
   /// Queries with numbers that floats cannot hold become Status::invalid with Flag::range:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis
@@ -94,7 +95,7 @@ class RADAR_API Recorder {
   /// `geometry` breaks its contract, or something does not fit the device.
   void record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry = {});
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
-  /// shaders read has Flag::unresolved as above; read() decides it. Answers beyond the number of queries, up to
+  /// shaders read may be left to read() as above. Answers beyond the number of queries, up to
   /// HostQueries::count, become Status::invalid with Flag::query, as do queries that break the contract of HostQuery.
   /// Matrices of nothing but subnormal floats are out of range, too. Without Device::doubles(), a sensor modelled far
   /// from its own origin is placed with the precision of floats, and may need more candidates.

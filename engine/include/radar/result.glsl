@@ -1,5 +1,5 @@
 // The layout of a radar::Recorder's results in shaders: the bytes of radar::Result. radar/answers.h explains the members.
-// Absent numbers are infinite or NaN, absent ids RADAR_NONE.
+// Absent numbers are infinite or NaN, absent ids RADAR_NONE. The point of an overlap is absent: only read() finds it.
 //
 //     #extension GL_EXT_scalar_block_layout : require
 //     #extension GL_GOOGLE_include_directive : require

@@ -1,9 +1,9 @@
 """What is to be proved, and how: a claim is one or more inequalities between polynomials."""
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from polynomial import Polynomial, polynomial
-from reader import SourceError, number_of
+from polynomial import Polynomial, divided
+from reader import SourceError, Sources
 
 
 @dataclass
@@ -15,15 +15,40 @@ class Rule:
     bound: Polynomial
     unless: tuple = ()
 
-    def applies(self, monomial):
-        left = list(monomial)
-        for symbol in self.factor:
-            if symbol not in left:
-                return None
-            left.remove(symbol)
-        if any(symbol in monomial for symbol in self.unless):
+    def bound_of(self, monomial):
+        left = divided(monomial, self.factor)
+        if left is None or any(symbol in monomial for symbol in self.unless):
             return None
-        return tuple(left)
+        return Polynomial([(left, 1)]) * self.bound
+
+
+def at_most(bounds):
+    """Rules from a dict, by symbols or by tuples of them."""
+    return [Rule(f if isinstance(f, tuple) else (f,), bound) for f, bound in bounds.items()]
+
+
+@dataclass
+class Shared:
+    """A step for products of symbols, `parts`, that together are at most `bound`: what a balance lacks of the part of
+    which it lacks most is paid by the bound instead. What it has to spare in the parts is left out."""
+
+    parts: list
+    bound: Polynomial
+
+    def __call__(self, balance):
+        rest, lacks = [], {}
+        for monomial, c in balance.terms.items():
+            factor = next((left for part in self.parts if (left := divided(monomial, part)) is not None), None)
+            if factor is None:
+                rest.append((monomial, c))
+            else:
+                lacks[factor] = min(lacks.get(factor, 0), c)
+        return Polynomial(rest) + Polynomial(lacks.items()) * self.bound
+
+
+def without_flushing(balance):
+    """A step that leaves out what underflow takes."""
+    return balance.without("flushed")
 
 
 def paid(balance, rules):
@@ -34,11 +59,7 @@ def paid(balance, rules):
     terms = dict(balance.terms)
 
     def bound_of(monomial):
-        bounds = [
-            rule.bound * Polynomial({left: Fraction(1)})
-            for rule in rules
-            if (left := rule.applies(monomial)) is not None
-        ]
+        bounds = [bound for rule in rules if (bound := rule.bound_of(monomial)) is not None]
         has = [bound for bound in bounds if all(terms.get(m, 0) > 0 for m in bound.terms)]
         return (has + bounds + [None])[0]
 
@@ -54,7 +75,7 @@ def paid(balance, rules):
                 terms[m] = terms.get(m, 0) + c * short
                 if terms[m] < 0:
                     lacking.append(m)
-    return Polynomial(terms)
+    return Polynomial(terms.items())
 
 
 @dataclass
@@ -73,6 +94,11 @@ class Inequality:
             balance = step(balance) if callable(step) else paid(balance, step)
         return balance.negative()
 
+    def moved(self, other, share):
+        """The inequality at `share` of the way to another, in which constants have other values."""
+        margin = self.margin + (other.margin - self.margin) * share
+        return replace(self, margin=margin, need=self.need + (other.need - self.need) * share)
+
 
 @dataclass
 class Constant:
@@ -86,26 +112,33 @@ class Constant:
 class Claim:
     """Bounds the error of what a function computes by its margin.
 
-    statement: from a dict of replaced literals to a list of inequalities. It raises SourceError where the sources have
-    changed their shape.
+    constants: texts, in the function, or pairs of another owner and a text. statement: from the sources of the files to
+    a list of inequalities.
     """
 
     name: str
     function: str
     constants: list
-    sources: object
+    files: list
     statement: object
 
-    def lacking(self, replaced=None):
-        """The inequalities that do not hold, with what they lack."""
+    def __post_init__(self):
+        self.constants = [Constant(*c) if isinstance(c, tuple) else Constant(self.function, c) for c in self.constants]
+        self.sources = Sources.of(*self.files)
+
+    def inequalities(self, replaced):
+        """With literals replaced, by token. Raises SourceError where the sources have changed their shape."""
         try:
-            inequalities = self.statement(replaced or {})
-        except (AttributeError, IndexError, KeyError, StopIteration, TypeError) as error:
+            return self.statement(self.sources.replacing(replaced))
+        except (AttributeError, IndexError, KeyError, StopIteration, TypeError, ValueError) as error:
             raise SourceError(
                 f"{self.token(self.constants[0]).place}: the claim '{self.name}' does not understand {self.function}: "
                 f"{type(error).__name__}: {error}"
             ) from error
-        balances = [(inequality.what, inequality.lacking()) for inequality in inequalities]
+
+    def lacking(self, replaced=None):
+        """The inequalities that do not hold, with what they lack."""
+        balances = [(inequality.what, inequality.lacking()) for inequality in self.inequalities(replaced or {})]
         return [(what, lacks) for what, lacks in balances if lacks.terms]
 
     def token(self, constant):
@@ -117,22 +150,14 @@ class Claim:
 
         Margins are affine in each constant, so two values give those for all others.
         """
-        token = self.token(constant)
-        value = Fraction(number_of(token))
-        samples = [value * Fraction(1025, 1024), value * Fraction(1281, 1024)]
-        at = [self.statement({token: sample}) for sample in samples]
-        depending = [(p, q) for p, q in zip(*at, strict=True) if (p.margin - q.margin).terms or (p.need - q.need).terms]
+        token, value = self.token(constant), self.sources.number(constant.owner, constant.text)
+        low, high = value * Fraction(1025, 1024), value * Fraction(1281, 1024)
+        pairs = zip(self.inequalities({token: low}), self.inequalities({token: high}), strict=True)
+        depending = [(p, q) for p, q in pairs if (p.margin - q.margin).terms or (p.need - q.need).terms]
 
         def holds(c):
-            share = (c - samples[1]) / (samples[0] - samples[1])
-            return not any(
-                Inequality(
-                    p.what, p.margin * share + q.margin * (1 - share), p.need * share + q.need * (1 - share), p.steps
-                )
-                .lacking()
-                .terms
-                for p, q in depending
-            )
+            share = (c - low) / (high - low)
+            return not any(p.moved(q, share).lacking().terms for p, q in depending)
 
         if holds(Fraction(0)):
             return Fraction(0)

@@ -34,7 +34,7 @@ class Polynomial:
         """terms: pairs of a monomial and a coefficient; those of the same monomial are added up."""
         sums = {}
         for monomial, c in terms:
-            sums[monomial] = sums.get(monomial, 0) + c
+            sums[monomial] = sums[monomial] + c if monomial in sums else c
         self.terms = {m: c for m, c in sums.items() if c}
 
     @staticmethod
@@ -93,7 +93,7 @@ def polynomial(value):
 
 
 def total(polynomials):
-    return sum(polynomials, Polynomial())
+    return Polynomial(term for p in polynomials for term in polynomial(p).terms.items())
 
 
 def merged(choose, p, q):

@@ -102,7 +102,7 @@ def given(name, error=ZERO, *, normal=False, counts=True, **more):
     """
     size, lost = symbol(name), ZERO if normal else FLUSHED
     lower = size - lost if counts else ZERO
-    return Number(size, error + lost, lower, ideal=size + error, normal=normal, **more)
+    return Number(size, error + lost, lower, normal=normal, **more)
 
 
 def converted(number, arithmetic):
@@ -133,7 +133,7 @@ class Rounding:
         if p.constant is not None and q.constant is not None:
             value = exactly(p.constant + q.constant)
             size, lost = value.size, value.size * self.arithmetic.unit
-            return Number(size + lost, lost, size - lost, nonnegative=value.nonnegative, normal=value.normal)
+            return Number(size + lost, lost, size - lost, nonnegative=value.nonnegative)
         if precise or self.arithmetic.ordered:
             return self._rounded_sum([self.settled(p), self.settled(q)])
         return Number(ZERO, terms=(p.terms or [p]) + (q.terms or [q]))
@@ -154,7 +154,6 @@ class Rounding:
             total(t.least for t in terms) * shrinks if nonnegative else ZERO,
             ideal=total(t.ideal for t in terms),
             nonnegative=nonnegative,
-            normal=nonnegative and any(t.normal for t in terms),
             arithmetic=a if a is not self.arithmetic else None,
             before=(inner + lost, a.unit) if n == 1 else None,
         )
@@ -162,7 +161,7 @@ class Rounding:
     def negated(self, p):
         terms = p.terms and [self.negated(t) for t in p.terms]
         constant = None if p.constant is None else -p.constant
-        return replace(p, nonnegative=False, terms=terms, constant=constant, before=None)
+        return replace(p, nonnegative=False, terms=terms, constant=constant)
 
     def absolute(self, p):
         p = self.settled(p)
@@ -186,18 +185,13 @@ class Rounding:
             product_of_lower_bounds(p.least, q.least) * (1 - unit) - lost,
             ideal=p.ideal * q.ideal,
             nonnegative=p.nonnegative and q.nonnegative,
-            normal=not lost.terms and p.normal and q.normal,
-            scales=p.scales and q.scales,
         )
 
     @staticmethod
     def _stays_normal(p, q):
         """Whether a factor p is at least 1, so that the product is normal or, if p is a power of two, no further off
-        than q; or whether both are constants."""
-        if p.constant is not None and abs(p.constant) >= 1:
-            return q.normal or p.scales
-        both = not (p.size.terms.keys() | q.size.terms.keys()) - {()}
-        return both and p.normal and q.normal
+        than q."""
+        return p.constant is not None and abs(p.constant) >= 1 and (q.normal or p.scales)
 
     def divide(self, p, q):
         """p / q, for an exact q."""
@@ -206,28 +200,21 @@ class Rounding:
             raise ValueError("a divisor must be a constant or a symbol")
         ((monomial, c),) = q.size.terms.items()
         inverse = Polynomial([(tuple(f"1/{symbol}" for symbol in monomial), 1 / c)])
-        unit = 0 if q.scales else self.arithmetic.division
-        size = p.size * inverse
+        size, unit = p.size * inverse, self.arithmetic.division
         return Number(
             size * (1 + unit) + self.lost,
             p.error * inverse + size * unit + self.lost,
             p.least * inverse * (1 - unit) - self.lost,
             ideal=p.ideal * inverse,
             nonnegative=p.nonnegative and q.nonnegative,
-            scales=p.scales and q.scales,
         )
 
     def maximum(self, p, q):
         p, q = self.settled(p), self.settled(q)
         lower = ZERO
         if p.nonnegative and q.nonnegative:
-            # It is no less than either; one is taken if the other has nothing to add.
-            if not q.least.positive().terms or p.least.is_no_less_than(q.least):
-                lower = p.least
-            elif not p.least.positive().terms or q.least.is_no_less_than(p.least):
-                lower = q.least
-            else:
-                lower = least(p.least, q.least)
+            # It is no less than either; the second is taken if the first is not known to be above 0.
+            lower = p.least if p.least.positive().terms else q.least
         elif p.nonnegative or q.nonnegative:
             lower = p.least if p.nonnegative else q.least
         return self._one_of(p, q, lower, p.nonnegative or q.nonnegative)
@@ -237,7 +224,7 @@ class Rounding:
         nonnegative = p.nonnegative and q.nonnegative
         lower = least(p.least, q.least) if nonnegative else ZERO
         if nonnegative and q.constant is not None:  # it is at most either
-            return Number(p.size, p.error, lower, ideal=p.ideal, nonnegative=True)
+            return Number(p.size, p.error, lower, nonnegative=True)
         return self._one_of(p, q, lower, nonnegative)
 
     @staticmethod
@@ -246,7 +233,6 @@ class Rounding:
             greatest(p.size, q.size),
             greatest(p.error, q.error),
             lower,
-            ideal=greatest(p.ideal, q.ideal),
             nonnegative=nonnegative,
         )
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from claims import Claim, Inequality, Rule, at_most, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, total
-from rounding import CPU_DOUBLES, Number, exactly, plain, roughly, symbol
+from rounding import CPU_DOUBLES, Number, Rounding, exactly, plain, roughly, symbol
 from sizes import positive, vector
 
 UNIT = CPU_DOUBLES.unit
@@ -63,13 +63,14 @@ def bounded(name):
 
 def bounded_operations(sources):
     """Sums, products, differences of products and inner products of numbers with bounds; nothing underflows."""
-    # What a sum loses last is relative to the result.
-    total_of_two = evaluator_of(sources, names={"sum.value": "value"})
-    others = evaluator_of(sources)
     p, q, r, s = map(bounded, "pqrs")
+    add = Rounding(CPU_DOUBLES).add
+    terms = [add(p[part], q[part]) for part in ("value_", "error_")]
+    # What a sum loses last is relative to the result.
+    sums, others = evaluator_of(sources, names={"value": "value"}), evaluator_of(sources)
     vectors = [[bounded(f"{name}{k}") for k in range(3)] for name in "pq"]
     results = {
-        "sum": total_of_two.call("operator+", p, q),
+        "sum": sums.call("sum", *terms),
         "product": others.call("operator*", p, q),
         "minor": others.call("minor", p, q, r, s),
         "inner": others.call("inner", *vectors),
@@ -86,7 +87,7 @@ def outlines(sources):
     corners = [Vector([UNKNOWN] * 2)] * 3
     triangle = {"corners": corners, "error": positive("e"), "area": UNKNOWN, "areaError": UNKNOWN}
     difference = Number(symbol("W"), symbol("E") * (1 + 4 * UNIT))
-    names = {"outline.error": positive("E"), "outline.x[i][k]": difference, "outline.y[i][k]": difference}
+    names = {"error": positive("E"), "x[i][k]": difference, "y[i][k]": difference}
     conditions = {"contracts": {"separates": False}, "globals": {"kNext": [1, 2, 0]}}
     evaluator, out = evaluator_of(sources, names=names, **conditions), {}
     evaluator.call("outline", triangle, triangle, positive("W"), out)

@@ -61,9 +61,9 @@ def by_roots(sources):
     own, other = ({"centre": n["centre"], "halfExtent": n["half"]} for n in (node("O"), node("X")))
     evaluator.call("narrow", times, relative_placement(), own, other)
     # Of an axis, the last of the values that half has: there are four.
-    halves = evaluator.values["narrow.half"][3::4]
+    halves = evaluator.values["half"][3::4]
     inequalities = []
-    for k, (middle, half) in enumerate(zip(evaluator.values["narrow.way"], halves, strict=True)):
+    for k, (middle, half) in enumerate(zip(evaluator.values["way"], halves, strict=True)):
         need = widths(k) + middle.error + (middle.size + half.size + symbol(f"travel{k}") * 2) * UNIT
         steps = [without_flushing, *within("O", REACH), *within("X", REACH)]
         inequalities.append(Inequality(f"axis {k}", half.least, need, steps))
@@ -86,8 +86,8 @@ class NodeAxes:
         self.most = 1 << (30 if real is CPU_FLOATS else 200)
         self.assumptions = {IS_FLOAT: real is CPU_FLOATS}
         names = {
-            "Axes::Axes.used": iter(vector("u", divides=True)),
-            "Axes::Axes.std::abs(used - relative.travel[k])": positive("raised"),
+            "used": iter(vector("u", divides=True)),
+            "std::abs(used - relative.travel[k])": positive("raised"),
         }
         evaluator = Evaluator(
             sources,
@@ -181,10 +181,10 @@ def by_normals(real, sources):
         [own, other],
         assumptions=axes.assumptions,
         contracts={"withSignOf": lambda x, y: x},
-        names={f"cutByNormal.{name}": value for name, value in names.items()},
+        names=names,
     )
     middle = middle.times(symbol("v"))
-    m, h, s = (evaluator.values[f"cutByNormal.{name}"][0] for name in ("middle", "half", "speed"))
+    m, h, s = (evaluator.values[name][0] for name in ("middle", "half", "speed"))
     n, r = symbols("n"), evaluator.variables["rest"]
     need = symbol("own slab") + symbol("a") * symbol("other slab")
     need += total((symbol(f"r{j}") + r[j].error) * symbol(f"halfX{j}") for j in range(3))
@@ -193,7 +193,7 @@ def by_normals(real, sources):
     need += middle.error + (middle.size + h.size) * (real.division + real.unit) * (1 + 4 * real.unit)
     need += m.error + s.error + axes.least + axes.ends()
     g = total(n[k] * symbol(f"P{k}{j}") for k in range(3) for j in range(3))
-    rests = {f"r{j}": value.size for j, value in enumerate(evaluator.values["cutByNormal.rest[j]"])}
+    rests = {f"r{j}": value.size for j, value in enumerate(evaluator.values["rest[j]"])}
     speeds = {f"u{k}": symbol(f"travel{k}") + symbol("raised") for k in range(3)}
     steps = [
         at_most({"m": m.size, "h": h.size}),
@@ -233,9 +233,9 @@ class LeafAxes:
             },
             assumptions={"out.possible == 0": False, IS_FLOAT: real is CPU_FLOATS},
             names={
-                "operator().gap[k]": iter(self._off("d", symbol("p") * HELD, 1)),
-                "operator().collected": {"from": UNKNOWN, "to": UNKNOWN, "axis": UNKNOWN},
-                "operator().duration": positive("tau", divides=True),
+                "gap[k]": iter(self._off("d", symbol("p") * HELD, 1)),
+                "collected": {"from": UNKNOWN, "to": UNKNOWN, "axis": UNKNOWN},
+                "duration": positive("tau", divides=True),
             },
         )
         members = {
@@ -286,7 +286,7 @@ class LeafAxes:
         """What an interval's ends are off by, times v: for a middle m, a half width h and a margin's width, q."""
         evaluator = self._evaluator(
             contracts={"withSignOf": lambda x, y: x, "select": UNKNOWN},
-            names={"add.max(abs(speed), margin.speed)": positive("v", divides=True)},
+            names={"max(abs(speed), margin.speed)": positive("v", divides=True)},
         )
         margin = {"width": positive("q"), "speed": positive("least")}
         members = {"from": exactly(0), "to": exactly(0), "axis": UNKNOWN}

@@ -121,7 +121,7 @@ def operation(name, one, other, sources):
     from it.
     """
     is_difference = name in ("minus", "difference")
-    names = {f"{name}.value": "value"} if is_difference else {}
+    names = {"value": "value"} if is_difference else {}
     result = Evaluator(sources, DEVICE_DOUBLES, names=names).call(name, one, other)
     values, errors = (x if isinstance(x, Vector) else [x] for x in (result["value"], result["error"]))
     steps = [without_flushing if is_difference else underflow]

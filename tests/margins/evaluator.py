@@ -90,38 +90,36 @@ def _fits(value, base):
 class Evaluator:
     """Evaluates functions under a claim's conditions. All of these must be used.
 
+    names: by the text of a variable, or of a call, of the function that is called, what takes the place of its value.
+    A text is the name of a symbol: that of the value as computed; of a vector's components, with their numbers.
     contracts: by name, what takes the place of functions.
     assumptions: by the text of a condition, whether it holds.
-    names: by "function.variable", or by "function.call(...)" for a call in it, what takes the place of the variable's
-    value. A text is the name of a symbol: that of the value as computed; of a vector's components, with their numbers.
     globals: by name, values of variables outside functions, and functions; they need not be used.
 
     What takes a place is a value, a Python function of the value or of the arguments, or an iterator that gives another
     of these each time.
 
-    values: by "function.variable", the values that variables had, before others took their places.
+    values: by the text of a variable, the values that it had, before others took their places.
+    variables: those of the function that has been called, at its end.
     compared: comparisons of Numbers: text, left, right.
-    variables: those of the function that has been called.
     """
 
-    def __init__(self, sources, arithmetic, *, contracts=(), assumptions=(), names=(), globals=()):
+    def __init__(self, sources, arithmetic, *, names=(), contracts=(), assumptions=(), globals=()):
         self.sources, self.rounding = sources, Rounding(arithmetic)
         self.contracts, self.globals = dict(contracts), dict(globals)
         self.assumptions, self.names = (
             {text.replace(" ", ""): value for text, value in dict(given).items()} for given in (assumptions, names)
         )
         self.values, self.compared, self.variables = {}, [], {}
-        self.used, self.precise = set(), False
-
-    # ---- functions
+        self.called, self.used, self.precise = None, set(), False
 
     def call(self, name, *arguments, members=()):
         """The result of a function of the sources. `members`: those of its object."""
+        self.called = name
         result, self.variables = self._run(self._function(name, arguments), arguments, dict(members))
-        for conditions in (self.contracts, self.assumptions, self.names):
-            for entry in conditions:
-                if entry not in self.used:
-                    raise SourceError(f"nothing in the sources corresponds to the claim's '{entry}'")
+        unused = (self.names.keys() | self.contracts.keys() | self.assumptions.keys()) - self.used
+        if unused:
+            raise SourceError(f"{name}: nothing in the sources corresponds to the claim's {sorted(unused)}")
         return result
 
     def expression(self, owner, text, **variables):
@@ -129,11 +127,11 @@ class Evaluator:
         return self.settled(self.evaluate(self.sources.expression(owner, text), {"function": owner} | variables))
 
     def _function(self, name, arguments):
-        return self.sources.function(
-            name,
-            lambda f: len(f.parameters) == len(arguments)
-            and all(_fits(value, base) for value, (base, _, _) in zip(arguments, f.parameters)),
-        )
+        def takes(function):
+            bases = [base for base, _, _ in function.parameters]
+            return len(bases) == len(arguments) and all(map(_fits, arguments, bases))
+
+        return self.sources.function(name, takes)
 
     def _run(self, function, arguments, members):
         """The result of a function, and the values of its variables."""
@@ -158,25 +156,26 @@ class Evaluator:
 
     def _renamed(self, scope, text, value):
         """What a claim puts in the place of a value, or the value."""
-        entry = f"{scope['function']}.{text}"
-        self.values.setdefault(entry, []).append(value)
-        if entry not in self.names:
+        if scope["function"] != self.called:
             return value
-        self.used.add(entry)
-        other = self._in_place(self.names[entry], value)
+        self.values.setdefault(text, []).append(value)
+        if text not in self.names:
+            return value
+        other = self._in_place(self.names, text, value)
         if not isinstance(other, str):
             return other
         if isinstance(value, Vector):
             return type(value)(self.rounding.named(x, f"{other}{k}") for k, x in enumerate(value))
         return self.rounding.named(value, other)
 
-    @staticmethod
-    def _in_place(other, *arguments):
+    def _in_place(self, conditions, key, *arguments):
+        self.used.add(key)
+        other = conditions[key]
         if hasattr(other, "__next__"):
             other = next(other)
         return other(*arguments) if callable(other) else other
 
-    # ---- statements
+    # Statements
 
     def execute(self, node, scope):
         try:
@@ -185,62 +184,62 @@ class Evaluator:
             raise SourceError(f"{node.place}: not understood: {type(error).__name__}: {error}") from error
 
     def _execute(self, node, scope):
-        kind, parts = node.kind, node.parts
-        if kind == "block":
-            for part in parts:
-                self.execute(part, scope)
-        elif kind == "declare":
-            base, qualifiers = node.value
-            is_struct = base in self.sources.structs
-            outer, self.precise = self.precise, "precise" in qualifiers
-            if parts:
-                value = self.evaluate(parts[0], scope)
-                if is_struct and parts[0].kind == "list":
-                    value = self._struct(node, base, value)
-            else:
-                value = {"type": base} if is_struct else Vector()
-            scope[node.name] = self._renamed(scope, node.name, self.settled(value))
-            self.precise = outer
-        elif kind == "assign":
-            value = self.evaluate(parts[1], scope)
-            if node.name != "=":
-                value = self._binary(node, node.name[0], self.evaluate(parts[0], scope), value)
-            self._assign(parts[0], value, scope)
-        elif kind == "evaluate":
-            self.evaluate(parts[0], scope)
-        elif kind == "if":
-            if self.condition(parts[0], scope):
-                self.execute(parts[1], scope)
-            elif len(parts) > 2:
-                self.execute(parts[2], scope)
-        elif kind == "for":
-            scope[node.name] = self.evaluate(parts[0], scope)
-            while self.condition(parts[1], scope):
-                self.execute(parts[2], scope)
-                scope[node.name] += 1
-        elif kind == "return":
-            raise Returned(self.evaluate(parts[0], scope) if parts else None)
-        else:
-            raise SourceError(f"{node.place}: '{kind}' is not understood here")
+        parts = node.parts
+        match node.kind:
+            case "block":
+                for part in parts:
+                    self.execute(part, scope)
+            case "declare":
+                base, qualifiers = node.value
+                outer, self.precise = self.precise, "precise" in qualifiers
+                value = self._initial(node, base, scope)
+                scope[node.name] = self._renamed(scope, node.name, self.settled(value))
+                self.precise = outer
+            case "assign":
+                value = self.evaluate(parts[1], scope)
+                if node.name != "=":
+                    value = self._binary(node, node.name[0], self.evaluate(parts[0], scope), value)
+                self._assign(parts[0], value, scope)
+            case "evaluate":
+                self.evaluate(parts[0], scope)
+            case "if":
+                for part in parts[1:2] if self.condition(parts[0], scope) else parts[2:]:
+                    self.execute(part, scope)
+            case "for":
+                scope[node.name] = self.evaluate(parts[0], scope)
+                while self.condition(parts[1], scope):
+                    self.execute(parts[2], scope)
+                    scope[node.name] += 1
+            case "return":
+                raise Returned(self.evaluate(parts[0], scope) if parts else None)
+            case _:
+                raise SourceError(f"{node.place}: '{node.kind}' is not understood here")
+
+    def _initial(self, node, base, scope):
+        """The value that a variable is declared with."""
+        is_struct = base in self.sources.structs
+        if not node.parts:
+            return {"type": base} if is_struct else Vector()
+        value = self.evaluate(node.parts[0], scope)
+        return self._struct(node, base, value) if is_struct and node.parts[0].kind == "list" else value
 
     def _assign(self, target, value, scope):
         value = self._renamed(scope, target.text, self.settled(value))
-        if target.kind == "name":
-            scope[target.name] = value
-        elif target.kind == "member":
-            holder = self._holder(target.parts[0], scope)
-            holder[target.name if isinstance(holder, dict) else _SWIZZLES[target.name]] = value
-        elif target.kind == "index":
-            self._holder(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
-        else:
-            raise SourceError(f"{target.place}: cannot assign to this")
+        match target.kind:
+            case "name":
+                scope[target.name] = value
+            case "member":
+                holder = self._holder(target.parts[0], scope)
+                holder[target.name if isinstance(holder, dict) else _SWIZZLES[target.name]] = value
+            case "index":
+                self._holder(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
+            case _:
+                raise SourceError(f"{target.place}: cannot assign to this")
 
     def _holder(self, node, scope):
         """The vector or struct of which an element or a member is assigned; a new vector where there was nothing."""
         if node.kind == "name":
-            if scope.get(node.name) is None:
-                scope[node.name] = Vector()
-            return scope[node.name]
+            return scope.setdefault(node.name, Vector())
         holder = self._holder(node.parts[0], scope)
         if node.kind == "member":
             return holder.setdefault(node.name, Vector())
@@ -249,74 +248,65 @@ class Evaluator:
             holder.append(Vector())
         return holder[index]
 
-    # ---- expressions
+    # Expressions
 
     def condition(self, node, scope):
         if node.text in self.assumptions:
-            self.used.add(node.text)
-            return self.assumptions[node.text]
+            return self._in_place(self.assumptions, node.text)
         value = self.evaluate(node, scope)
         if isinstance(value, int):
             return bool(value)
         raise SourceError(f"{node.place}: whether '{node.text}' holds is neither known nor assumed")
 
     def evaluate(self, node, scope):
-        value = getattr(self, f"_evaluate_{node.kind}")(node, scope)
-        if node.kind == "call" and f"{scope['function']}.{node.text}" in self.names:
-            return self._renamed(scope, node.text, self.settled(value))
-        return value
+        match node.kind:
+            case "name":
+                return self._variable(node, scope)
+            case "number":
+                value = self.sources.replaced.get(node.token, node.value)
+                return value if isinstance(value, int) else exactly(value)
+            case "closure":
+                return lambda *arguments: self._returned(node.parts[0], scope | dict(zip(node.value, arguments)))
+            case "choose":
+                return self.evaluate(node.parts[1 if self.condition(node.parts[0], scope) else 2], scope)
+            case "call":
+                value = self._call(node, scope)
+                named = node.text in self.names and scope["function"] == self.called
+                return self._renamed(scope, node.text, self.settled(value)) if named else value
+            case "method":  # of an object: only contracts know any
+                return self._in_place(self.contracts, node.name, *(self.evaluate(p, scope) for p in node.parts[1:]))
+            case "unary" if node.name == "&" and node.parts[0].kind == "index":  # a pointer to what is indexed
+                holder, index = (self.evaluate(part, scope) for part in node.parts[0].parts)
+                return holder[index:]
+        values = [self.evaluate(part, scope) for part in node.parts]
+        match node.kind:
+            case "list":
+                return Vector(values)
+            case "binary":
+                return self._binary(node, node.name, *values)
+            case "unary" | "member" | "index" if isinstance(values[0], Unknown):
+                return UNKNOWN
+            case "index":
+                return values[0][values[1]]
+            case "member":
+                if isinstance(values[0], dict):
+                    return values[0][node.name]
+                picked = Vector(values[0][_SWIZZLES[c]] for c in node.name)
+                return picked[0] if len(picked) == 1 else picked
+            case "unary" if node.name == "-":
+                return -values[0] if isinstance(values[0], int) else each(values[0], self.rounding.negated)
+            case "unary" if node.name == "!" and isinstance(values[0], bool):
+                return not values[0]
+        raise SourceError(f"{node.place}: '{node.text}' is not understood here")
 
-    def _evaluate_name(self, node, scope):
+    def _variable(self, node, scope):
         name = node.name
-        value = scope.get(name, self.globals.get(name))
-        if value is not None:
-            return value
+        for variables in (scope, self.globals, {"true": True, "false": False}):
+            if name in variables:
+                return variables[name]
         if name in self.sources.constants:
             return self.evaluate(self.sources.constant(name), {"function": name})
-        if name in ("true", "false"):
-            return name == "true"
-        raise SourceError(f"{node.place}: '{name}' is not known, or has no value yet")
-
-    def _evaluate_number(self, node, scope):
-        value = self.sources.replaced.get(node.token, node.value)
-        return value if isinstance(value, int) else exactly(value)
-
-    def _evaluate_closure(self, node, scope):
-        return lambda *arguments: self._returned(node.parts[0], scope | dict(zip(node.value, arguments)))
-
-    def _evaluate_choose(self, node, scope):
-        return self.evaluate(node.parts[1 if self.condition(node.parts[0], scope) else 2], scope)
-
-    def _evaluate_list(self, node, scope):
-        return Vector(self.evaluate(part, scope) for part in node.parts)
-
-    def _evaluate_member(self, node, scope):
-        holder = self.evaluate(node.parts[0], scope)
-        if isinstance(holder, Unknown):
-            return UNKNOWN
-        if isinstance(holder, dict):
-            return holder[node.name]
-        picked = Vector(holder[_SWIZZLES[c]] for c in node.name)
-        return picked[0] if len(picked) == 1 else picked
-
-    def _evaluate_index(self, node, scope):
-        holder, index = (self.evaluate(part, scope) for part in node.parts)
-        return UNKNOWN if isinstance(holder, Unknown) else holder[index]
-
-    def _evaluate_unary(self, node, scope):
-        (operand,) = node.parts
-        if node.name == "&" and operand.kind == "index":  # a pointer to an element, which is indexed
-            holder, index = (self.evaluate(part, scope) for part in operand.parts)
-            return holder[index:]
-        value = self.evaluate(operand, scope)
-        if node.name == "-":
-            return -value if isinstance(value, int) else each(value, self.rounding.negated)
-        if node.name == "!":
-            return not value if isinstance(value, bool) else UNKNOWN
-        raise SourceError(f"{node.place}: '{node.name}' is not understood here")
-
-    def _evaluate_binary(self, node, scope):
-        return self._binary(node, node.name, *(self.evaluate(part, scope) for part in node.parts))
+        raise SourceError(f"{node.place}: '{name}' is not known")
 
     def _binary(self, node, name, p, q):
         if isinstance(p, int) and isinstance(q, int):
@@ -325,7 +315,6 @@ class Evaluator:
             self.compared.append((node.text, self.settled(p), self.settled(q)))
         if name not in ("+", "-", "*", "/") or isinstance(p, Unknown) or isinstance(q, Unknown):
             return UNKNOWN
-        p, q = _real(p), _real(q)
         if name == "*":
             return self._multiply(p, q)
         return pairwise(p, q, {"+": self._add, "-": self._subtract, "/": self.rounding.divide}[name])
@@ -357,17 +346,16 @@ class Evaluator:
 
         return Vector([minor(1, 2), minor(2, 0), minor(0, 1)])
 
-    # ---- calls
+    # Calls
 
-    def _evaluate_call(self, node, scope):
+    def _call(self, node, scope):
         name = node.name.removeprefix("std::").removeprefix("radar::")
         arguments = [self.evaluate(part, scope) for part in node.parts]
         called = scope.get(node.name, self.globals.get(node.name))
         if callable(called):
             return called(*arguments)
         if node.name in self.contracts:
-            self.used.add(node.name)
-            return self._in_place(self.contracts[node.name], *map(self.settled, arguments))
+            return self._in_place(self.contracts, node.name, *map(self.settled, arguments))
         if node.name in self.sources.structs:
             return self._struct(node, node.name, arguments)
         if name in _BUILT_IN and node.name not in self.sources.functions:
@@ -379,24 +367,11 @@ class Evaluator:
                 self._assign(part, inner[parameter], scope)
         return result
 
-    def _evaluate_method(self, node, scope):
-        """A call of an object's function: only contracts know any."""
-        if node.name not in self.contracts:
-            raise SourceError(f"{node.place}: no claim knows what '{node.name}' does")
-        self.used.add(node.name)
-        return self._in_place(self.contracts[node.name], *(self.evaluate(part, scope) for part in node.parts[1:]))
-
     def _struct(self, node, name, values):
         members = self.sources.structs[name]
         if len(values) != len(members):
             raise SourceError(f"{node.place}: {name} has {len(members)} members, not {len(values)}")
         return dict(zip(members, values), type=name)
-
-    def _minimum(self, x, y):
-        return min(x, y) if isinstance(x, int) and isinstance(y, int) else pairwise(x, y, self.rounding.minimum)
-
-    def _maximum(self, x, y):
-        return max(x, y) if isinstance(x, int) and isinstance(y, int) else pairwise(x, y, self.rounding.maximum)
 
     def _vector(self, n, values):
         flat = [x for value in values for x in (value if isinstance(value, Vector) else [_real(value)])]
@@ -409,8 +384,8 @@ class Evaluator:
 
 _BUILT_IN = {
     "abs": lambda e, x: each(_real(x), e.rounding.absolute),
-    "min": Evaluator._minimum,
-    "max": Evaluator._maximum,
+    "min": lambda e, x, y: pairwise(x, y, e.rounding.minimum),
+    "max": lambda e, x, y: pairwise(x, y, e.rounding.maximum),
     "dot": Evaluator.dot,
     "cross": Evaluator.cross,
     "transpose": lambda e, m: Matrix(map(Vector, zip(*m))),

@@ -64,13 +64,12 @@ class Pair:
             "clearanceOf": positive("c"),
             "awayFromZero": lambda v, least: Vector(Number(x.size + y.size) for x, y in zip(v, least)),
         }
-        names = {f"meshPairOf.{name}": value for name, value in self._names().items()}
-        assumptions = {"p.inRange": True}
-        evaluator = Evaluator(self.sources, FLOATS, contracts=contracts, names=names, assumptions=assumptions)
+        conditions = {"contracts": contracts, "assumptions": {"p.inRange": True}}
+        evaluator = Evaluator(self.sources, FLOATS, names=self._names(), **conditions)
         self.values = evaluator.call("meshPairOf", UNKNOWN, UNKNOWN)
         self.matrix, self.least = self.values[f"from{self.other}"], evaluator.variables[f"least{self.other}"]
-        (self.velocity,) = evaluator.values[f"meshPairOf.p.velocity{self.other}"]
-        (most,) = evaluator.values["meshPairOf.most"]
+        (self.velocity,) = evaluator.values[f"p.velocity{self.other}"]
+        (most,) = evaluator.values["most"]
         # Contact that counts is no later than this; `farthest` has been raised.
         terms = ("apart0", "apart1", "apart2", "sizeA", "sizeB", "c")
         rounding = (1 - UNIT) * min(most.least.coefficient((term,)) for term in terms)
@@ -190,8 +189,7 @@ def along_axes(sources):
             f"slack{own}": ONES,
         }
         # Middle and reach are products with the speed.
-        names = {"gap": "gap", "middle": "middle", "reach": "extent"}
-        names = {f"approachOf.{name}{other}": vector(other_name) for name, other_name in names.items()}
+        names = {f"gap{other}": vector("gap"), f"middle{other}": vector("middle"), f"reach{other}": vector("extent")}
         conditions = {"contracts": {"addNormalSlab": UNKNOWN}, "assumptions": {"meets": True}}
         evaluator = Evaluator(pair.sources, FLOATS, names=names, **conditions)
         evaluator.call("approachOf", values, node("A"), node("B"), UNKNOWN)
@@ -250,7 +248,6 @@ def along_normal(pair, negative):
         # Its error is charged below.
         "inverse": plain("1/held"),
     }
-    names = {f"addNormalSlab.{name}": value for name, value in names.items()}
     evaluator = Evaluator(pair.sources, FLOATS, names=names, assumptions={"way < 0.0": negative})
     own_node = node(own, normal=vector("g"), middle=plain("own middle"), slab=positive("own slab"))
     other_node = node(other, normal=vector("o"), middle=plain("mu"), slab=positive("h"))
@@ -259,7 +256,7 @@ def along_normal(pair, negative):
     numbers = positive("least"), positive("f")
     motion = pair.named_matrix(), offset, velocity, slack
     evaluator.call("addNormalSlab", exactly(0), exactly(0), own_node, other_node, *motion, *numbers)
-    kept = {name: evaluator.values[f"addNormalSlab.{name}"][0] for name in ("way", "gap", "reach")}
+    kept = {name: evaluator.values[name][0] for name in ("way", "gap", "reach")}
     rest, *ends = (evaluator.variables[name] for name in ("rest", "enter", "leave"))
 
     gap, way, raised, a = map(symbol, ("gap", "way", "raised", "a"))
@@ -303,13 +300,13 @@ def boxes_of_objects(sources):
     """
     half, inverse = vector("half", nonnegative=True), vector("1/d")
     box = {"type": "SensorBox", "centre": vector("centre"), "halfExtent": half, "inverseDirection": inverse}
-    names = {"meetsBox.gap": "gap", "meetsBox.at": vector("at"), "meetsBox.reach": vector("extent")}
+    names = {"gap": "gap", "at": vector("at"), "reach": vector("extent")}
     evaluator = Evaluator(sources, FLOATS, names=names)
     middle, size = (Vector(v + [UNKNOWN]) for v in (vector("middle"), vector("size", nonnegative=True)))
     ends = evaluator.call("meetsBox", box, middle, size)
     inequalities = []
     for k in range(3):
-        at, reach = (evaluator.values[f"meetsBox.{name}"][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
+        at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
         relative = (DIRECTION + DIVISION) * (1 + 4 * UNIT)
         need = symbol(f"size{k}") + symbol(f"half{k}") + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")

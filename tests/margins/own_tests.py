@@ -33,7 +33,7 @@ def _stopping():
         "a divisor without a name": lambda: _evaluate("float f(float x) { return 1.0 / x; }"),
         "a renamed function": lambda: _evaluate("float h(float x) { return x; }"),
         "a function twice": lambda: _evaluate("float f(float x) { return x; } float f(float x) { return x * x; }"),
-        "a name that the source lacks": lambda: _evaluate(identity, names={"f.y": "y"}),
+        "a name that the source lacks": lambda: _evaluate(identity, names={"y": "y"}),
         "a constant that the source lacks": lambda: _sources(identity).literal("f", "3.0 * x"),
     }
     for what, case in cases.items():

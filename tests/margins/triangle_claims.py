@@ -75,8 +75,8 @@ def quotient(sources, arithmetic, bounded, **conditions):
     Flushing is left out. In floats, it may take one FLUSHED from a + |value| b: plane_of proves that a has it to spare.
     """
     names = {
-        "quotientOf.divisor": plain("d", nonnegative=True, divides=True),
-        "quotientOf.value": plain("v"),
+        "divisor": plain("d", nonnegative=True, divides=True),
+        "value": plain("v"),
     }
     evaluator = Evaluator(sources, arithmetic, names=names, **conditions)
     above = {"type": bounded, "value": plain("n"), "error": plain("a", nonnegative=True)}
@@ -100,8 +100,8 @@ def edge_separates(sources):
     """s < -margin implies that the exact s is below -clearance |edge|, for each corner, whatever the others are."""
     inequalities = []
     for i in range(3):
-        names = {f"edgeSeparates.d{k}": vector(f"d{k}", "xy", counts=k == i) for k in range(3)}
-        evaluator = Evaluator(sources, DEVICE_FLOATS, names=names | {"edgeSeparates.e": vector("e", "xy")})
+        names = {f"d{k}": vector(f"d{k}", "xy", counts=k == i) for k in range(3)}
+        evaluator = Evaluator(sources, DEVICE_FLOATS, names=names | {"e": vector("e", "xy")})
         other = {"type": "PlacedTriangle", "corners": [vector("o")] * 3}
         edge = vector("p", "xy"), vector("q", "xy")
         evaluator.call("edgeSeparates", *edge, SIGN, other, positive("E"), positive("c"))
@@ -126,7 +126,7 @@ def plane_keeps_apart(sources):
 
     inequalities = []
     for i in range(3):
-        names = {"planeKeepsApart.n": name_normal}
+        names = {"n": name_normal}
         evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names)
         area = {"type": "BoundedFloat", "value": given("t", normal=True), "error": positive("b")}
         gaps = [vector(f"g{k}", counts=k == i) for k in range(3)]
@@ -181,7 +181,7 @@ def placed_triangle(sources, side, counting):
 
     matrix = Matrix(Vector(entry(f"m{i}{j}", ROUNDED + Fraction(1, 1 << 39)) for i in range(3)) for j in range(3))
     apart = Vector(entry(f"apart{k}", ROUNDED) for k in range(3))
-    names = {f"pairFrameOf.matrix{side}": matrix, "pairFrameOf.apart": apart}
+    names = {f"matrix{side}": matrix, "apart": apart}
     frame = frame_of(sources, texel, SIGN, names=names)
     contracts = {"triangleAt": UNKNOWN, "vertexAt": UNKNOWN, "normalised": iter(map(corner, range(3)))}
     zero = Vector(exactly(0) for _ in AXES)
@@ -222,7 +222,7 @@ def boxes(sources):
 
     contracts = {"faceOf": UNKNOWN, "signOf": SIGN, "edgeSeparates": UNKNOWN, "planeKeepsApart": UNKNOWN}
     # As computed, E is exact.
-    names = {"mayMeet.error": lambda e: Number(e.size, ZERO, e.least, nonnegative=True, normal=True)}
+    names = {"error": lambda e: Number(e.size, ZERO, e.least, nonnegative=True, normal=True)}
     evaluator = Evaluator(sources, FLOATS, contracts=contracts, names=names)
     a, b = symbol("a"), symbol("b")
     triangles = triangle_of(a, symbol("A")), triangle_of(b, symbol("B"))
@@ -261,7 +261,7 @@ def error_of_a_row(sources):
         return Vector(Number(symbol(f"r{side}{j}") * 2 * (1 + 2 * UNIT)) for j in range(3))
 
     sizes = total(symbol(f"m{side}{j}") * symbol(f"r{side}{j}") * 2 for side in "AB" for j in range(3))
-    names = {"rowApart.high": exactly(0), "rowApart.low": fine(sizes, 20, Fraction(1, 1 << 40))}
+    names = {"high": exactly(0), "low": fine(sizes, 20, Fraction(1, 1 << 40))}
     # As many exact terms are added as the claim knows.
     additions = iter([UNKNOWN] * 7)
     evaluator = Evaluator(sources, FLOATS, contracts={"addExactly": additions}, names=names)

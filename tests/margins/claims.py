@@ -113,7 +113,7 @@ class Claim:
     """Bounds the error of what a function computes by its margin.
 
     constants: texts, in the function, or pairs of another owner and a text. statement: from the sources of the files to
-    a list of inequalities.
+    inequalities.
     """
 
     name: str
@@ -129,8 +129,8 @@ class Claim:
     def inequalities(self, replaced):
         """With literals replaced, by token. Raises SourceError where the sources have changed their shape."""
         try:
-            return self.statement(self.sources.replacing(replaced))
-        except (AttributeError, IndexError, KeyError, StopIteration, TypeError, ValueError) as error:
+            return list(self.statement(self.sources.replacing(replaced)))
+        except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
             raise SourceError(
                 f"{self.token(self.constants[0]).place}: the claim '{self.name}' does not understand {self.function}: "
                 f"{type(error).__name__}: {error}"

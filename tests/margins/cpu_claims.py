@@ -21,15 +21,12 @@ def evaluator_of(sources, **conditions):
     return Evaluator(sources, CPU_DOUBLES, **conditions)
 
 
-# ---- determinants ----------------------------------------------------------------------------------------------------
-
-
 def estimate(sources):
     """A determinant of rounded differences. Underflow takes something from products, which are multiplied by w."""
     evaluator = evaluator_of(sources)
     w, x, y = (vector(name, DIFFERENCE) for name in "wxy")
     value, error = evaluator.call("estimate", w, x, y, evaluator.call("underflowOf", w))
-    return [Inequality("error of a determinant", error.least, value.error, [UNDERFLOW])]
+    yield Inequality("error of a determinant", error.least, value.error, [UNDERFLOW])
 
 
 CROSS = "kRelative * (std::abs(p) + std::abs(q)) + kUnderflow"
@@ -42,7 +39,7 @@ def cross_sign(sources):
     evaluator.call("crossSign", v, w, 0)
     products = {name: evaluator.variables[name] for name in "pq"}
     value, margin = (evaluator.expression("crossSign", text, **products) for text in ("std::abs(p - q)", CROSS))
-    return [Inequality("error of a component", margin.least, value.error, [UNDERFLOW])]
+    yield Inequality("error of a component", margin.least, value.error, [UNDERFLOW])
 
 
 def side_beyond(sources):
@@ -53,7 +50,7 @@ def side_beyond(sources):
     evaluator = evaluator_of(sources, contracts=contracts, assumptions=assumptions)
     evaluator.call("sideBeyond", UNKNOWN, UNKNOWN, UNKNOWN, positive("slack"))
     need = 2 * (1 + DIFFERENCE) ** 2 * (1 + 2 * UNIT) * symbol("x") * symbol("y") * symbol("slack")
-    return [Inequality("side beyond a slack", evaluator.variables["margin"].least, need, [without_flushing])]
+    yield Inequality("side beyond a slack", evaluator.variables["margin"].least, need, [without_flushing])
 
 
 def bounded(name):
@@ -94,9 +91,6 @@ def outlines(sources):
     orientations = [value for name in ("overA", "overB") for row in out[name] for value in row]
     steps = [without_flushing, at_most({"W": symbol("E") * (1 / (24 * UNIT))})]
     return [Inequality(f"orientation {i}", out["bound"].least, v.error, steps) for i, v in enumerate(orientations)]
-
-
-# ---- placements ------------------------------------------------------------------------------------------------------
 
 
 def placement(sources):
@@ -145,18 +139,14 @@ def relative_placement(sources):
     axes = {"rows": rows, "residual": vector("residual", nonnegative=True)}
     relative.call("RelativePlacement::RelativePlacement", axes, {"linear": linear("A")}, motion, 1)
     matrix, offset, travel, bound = (relative.variables[name] for name in ("matrix", "offset", "travel", "rounding"))
-    inequalities = []
     for k in range(3):
         need = offset[k].error + travel[k].error + total(matrix[k][j].error for j in range(3)) * 2
         # Of a placement's error, half is needed, as `placement` proves.
         need += total(symbol(f"n{k}{i}") * (symbol(f"eA{i}") + symbol(f"eB{i}")) for i in range(3)) * Fraction(51, 100)
         need += (symbol(f"residual{k}") + residual[k].error) * 2
         rules = at_most({f"residual{k}": residual[k].size.without("flushed")})
-        inequalities.append(Inequality(f"axis {k}", bound[k].least, need, [without_flushing, rules]))
-    return inequalities
+        yield Inequality(f"axis {k}", bound[k].least, need, [without_flushing, rules])
 
-
-# ----------------------------------------------------------------------------------------------------------------------
 
 ROUNDING_FILE, VECTOR_FILE = "engine/math/rounding.h", "engine/math/vector.h"
 MOTION_FILES = [ROUNDING_FILE, VECTOR_FILE, "engine/cpu/pair_motion.cpp"]

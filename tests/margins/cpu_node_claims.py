@@ -62,15 +62,10 @@ def by_roots(sources):
     evaluator.call("narrow", times, relative_placement(), own, other)
     # Of an axis, the last of the values that half has: there are four.
     halves = evaluator.values["half"][3::4]
-    inequalities = []
     for k, (middle, half) in enumerate(zip(evaluator.values["way"], halves, strict=True)):
         need = widths(k) + middle.error + (middle.size + half.size + symbol(f"travel{k}") * 2) * UNIT
         steps = [without_flushing, *within("O", REACH), *within("X", REACH)]
-        inequalities.append(Inequality(f"axis {k}", half.least, need, steps))
-    return inequalities
-
-
-# ---- nodes -----------------------------------------------------------------------------------------------------------
+        yield Inequality(f"axis {k}", half.least, need, steps)
 
 
 class NodeAxes:
@@ -144,15 +139,13 @@ def by_boxes(real, sources):
     """
     axes = NodeAxes(sources, real)
     cuts, _ = axes.cut("cutByBox", [node("O"), node("X")])
-    inequalities = []
     for k, (middle, half) in enumerate(cuts):
         middle, half = (number.times(symbol(f"u{k}")) for number in (middle, half))
         need = widths(k) + symbol("raised") + middle.error + axes.ends()
         rules = {"m": middle.size, "h": half.size}
         rules |= {f"u{k}": symbol(f"travel{k}") + symbol("raised"), "raised": axes.least}
         steps = [axes.underflow, at_most(rules), axes.underflow, *within("O", REACH), *within("X", REACH)]
-        inequalities.append(Inequality(f"axis {k}", half.least, need, steps))
-    return inequalities
+        yield Inequality(f"axis {k}", half.least, need, steps)
 
 
 def by_normals(real, sources):
@@ -206,10 +199,7 @@ def by_normals(real, sources):
         # a = g.o, so the sum over j of |a o_j| is at most the root of 3 times the norm of g.
         Shared([("a", f"o{j}") for j in range(3)], g * ROOT_OF_3),
     ]
-    return [Inequality("normal", h.least, need, steps)]
-
-
-# ---- triangles of two leaves -----------------------------------------------------------------------------------------
+    yield Inequality("normal", h.least, need, steps)
 
 
 class LeafAxes:
@@ -306,16 +296,13 @@ def by_triangles(real, sources):
     if len(axes.added) != len(areas):
         place = sources.function("Margin").place
         raise SourceError(f"{place}: LeafTest adds another number of axes than the claim knows")
-    inequalities, ends = [], axes.ends()
+    ends = axes.ends()
     for (middle, half, speed, margin, number), area in zip(axes.added, areas):
         need = middle.error + half.error + symbol("tau") * (speed.error + margin["speed"].size)
         need += ends + symbol("c") * area * HELD
         rules = at_most({"m": middle.size, "h": half.size, "q": margin["width"].size})
-        inequalities.append(Inequality(f"axis {number}", margin["width"].least, need, [rules]))
-    return inequalities
+        yield Inequality(f"axis {number}", margin["width"].least, need, [rules])
 
-
-# ----------------------------------------------------------------------------------------------------------------------
 
 NODE_FILES = [ROUNDING_FILE, "engine/cpu/node_test.h", "engine/cpu/node_test.cpp"]
 LEAF_FILES = NODE_FILES + ["engine/cpu/leaf_test.h", "engine/cpu/leaf_test.cpp"]

@@ -41,7 +41,7 @@ def bounded_vector(name):
 def plane_of(sources):
     vectors = [vector(name, DIFFERENCE) for name in "xyz"]
     plane = Evaluator(sources, DEVICE_DOUBLES).call("planeOf", *vectors, vector("d"))
-    return [Inequality("error of x . (y cross z)", plane["error"].least, plane["value"].error, [underflow])]
+    yield Inequality("error of x . (y cross z)", plane["error"].least, plane["value"].error, [underflow])
 
 
 def quotient_of(sources):
@@ -62,10 +62,7 @@ def side_beyond(sources):
     # x and y are rounded differences. The sum's rounding takes a share of e, of which planeOf has a fifth to spare.
     need = 2 * (1 + DIFFERENCE) ** 2 * symbol("x") * symbol("y") * symbol("slack") + symbol("e") * (1 - 2 * UNIT)
     margin = evaluator.variables["margin"].least
-    return [Inequality("side beyond the slack", margin, need, [without_flushing])]
-
-
-# ---- bounds that become floats ---------------------------------------------------------------------------------------
+    yield Inequality("side beyond the slack", margin, need, [without_flushing])
 
 
 def as_float(number):
@@ -78,7 +75,7 @@ SWEEP = {"type": "Sweep", "scale": positive("scale", scales=True), "directionLen
 def scaled_down(sources):
     evaluator = Evaluator(sources, DEVICE_DOUBLES, contracts={"float": as_float})
     low = evaluator.call("scaledDown", positive("low"), SWEEP)
-    return [Inequality("lower bound as a float", symbol("low") * symbol("scale"), low.size, [without_flushing])]
+    yield Inequality("lower bound as a float", symbol("low") * symbol("scale"), low.size, [without_flushing])
 
 
 def lower_hi(sources):
@@ -89,7 +86,7 @@ def lower_hi(sources):
     evaluator.call("lowerHi", UNKNOWN, SWEEP, positive("by"))
     # `by` is a rounded sum, and so is the length rounded.
     exact = symbol("by") * symbol("length") * symbol("scale") * (1 + DIFFERENCE) ** 2
-    return [Inequality("upper bound as a float", floats[0].least, exact, [without_flushing])]
+    yield Inequality("upper bound as a float", floats[0].least, exact, [without_flushing])
 
 
 REFINED = "max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded)"
@@ -101,17 +98,14 @@ def rounded_down(sources):
     m = {"earliest": positive("s"), "unknown": positive("s")}
     low = Evaluator(sources, DEVICE_DOUBLES).expression("main", REFINED, m=m, sweep=SWEEP)
     exact = symbol("s") * symbol("length") * (1 - DIFFERENCE)
-    return [Inequality("lower bound of a pair", exact, low.size, [without_flushing])]
+    yield Inequality("lower bound of a pair", exact, low.size, [without_flushing])
 
 
 def rounded_up(sources):
     c = {"at": positive("at"), "error": positive("error")}
     limit = Evaluator(sources, DEVICE_DOUBLES).expression("summarise", LIMIT, c=c, length=positive("length"))
     exact = (symbol("at") + symbol("error")) * symbol("length") * (1 + DIFFERENCE)
-    return [Inequality("upper bound of a pair", limit.least, exact, [without_flushing])]
-
-
-# ---- operations on numbers with bounds -------------------------------------------------------------------------------
+    yield Inequality("upper bound of a pair", limit.least, exact, [without_flushing])
 
 
 def operation(name, one, other, sources):
@@ -140,10 +134,8 @@ def allowed(sources):
     largest, slack = bounded("n", nonnegative=True), bounded("slack", nonnegative=True)
     variables = {"slack": slack, "largest": largest["value"], "error": largest["error"]}
     result = Evaluator(sources, DEVICE_DOUBLES).expression("depthsAlong", ALLOWED, **variables)
-    return [Inequality("slack along a normal", result["error"].least, result["value"].error, [underflow])]
+    yield Inequality("slack along a normal", result["error"].least, result["value"].error, [underflow])
 
-
-# ----------------------------------------------------------------------------------------------------------------------
 
 BOUNDS = "shaders/shared/triangle_pair_bounds.glsl"
 LOWER_HI = "shaders/contact/lower_hi.glsl"

@@ -176,7 +176,6 @@ def along_axes(sources):
     gap at the start. If it leads apart, it must approach across n, so n.v is at most 2.2e-3 |n|: then |n| c is at most
     the gap at the start and 2.2e-3 |n| s.
     """
-    inequalities = []
     for pair in (Pair(sources, own) for own in "AB"):
         own, other = pair.own, pair.other
         # The inverse's error is charged below. Along the axes that are not looked at, anything.
@@ -195,8 +194,7 @@ def along_axes(sources):
         evaluator.call("approachOf", values, node("A"), node("B"), UNKNOWN)
         kept = [evaluator.values[name][0] for name in names]
         ends = evaluator.variables["enter"], evaluator.variables["leave"]
-        inequalities += [along_axis(pair, k, *(vectors[k] for vectors in kept), ends) for k in range(3)]
-    return inequalities
+        yield from (along_axis(pair, k, *(vectors[k] for vectors in kept), ends) for k in range(3))
 
 
 def along_axis(pair, k, gap, middle, reach, ends):
@@ -304,15 +302,13 @@ def boxes_of_objects(sources):
     evaluator = Evaluator(sources, FLOATS, names=names)
     middle, size = (Vector(v + [UNKNOWN]) for v in (vector("middle"), vector("size", nonnegative=True)))
     ends = evaluator.call("meetsBox", box, middle, size)
-    inequalities = []
     for k in range(3):
         at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
         relative = (DIRECTION + DIVISION) * (1 + 4 * UNIT)
         need = symbol(f"size{k}") + symbol(f"half{k}") + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")
         rules = at_most({f"at{k}": at.size, f"extent{k}": reach.size})
-        inequalities.append(Inequality(f"axis {k} of the world", reach.least, need, [rules]))
-    return inequalities
+        yield Inequality(f"axis {k} of the world", reach.least, need, [rules])
 
 
 def claims():

@@ -79,10 +79,6 @@ class Polynomial:
         """The monomials with negative coefficients, as a polynomial of positive ones."""
         return (-self).positive()
 
-    def is_no_less_than(self, other):
-        """Whether every coefficient is at least the other's. Then so is the value, whatever the sizes."""
-        return not (self - other).negative().terms
-
     def __repr__(self):
         ordered = sorted(self.terms.items(), key=lambda term: (len(term[0]), term[0]))
         return " + ".join(f"{float(c):.6g} {' '.join(m)}".strip() for m, c in ordered) or "0"

@@ -51,12 +51,9 @@ def positive(name):
 SIGN = exactly(1)
 
 
-# ---- expressions with bounds -----------------------------------------------------------------------------------------
-
-
 def face_of(sources):
     area = Evaluator(sources, DEVICE_FLOATS).call("faceOf", vector("x"), vector("y"), positive("E"))
-    return [Inequality("error of z of x cross y", area["error"].least, area["value"].error, [FLUSHING])]
+    yield Inequality("error of z of x cross y", area["error"].least, area["value"].error, [FLUSHING])
 
 
 def plane_of(sources):
@@ -64,7 +61,7 @@ def plane_of(sources):
     arguments = vector("g"), vector("x"), vector("y"), positive("E")
     plane = Evaluator(sources, DEVICE_FLOATS).call("planeOf", *arguments)
     need = plane["value"].error + FLUSHED * 2
-    return [Inequality("error of gap . (x cross y)", plane["error"].least, need, [EDGES + FLUSHING])]
+    yield Inequality("error of gap . (x cross y)", plane["error"].least, need, [EDGES + FLUSHING])
 
 
 def quotient(sources, arithmetic, bounded, **conditions):
@@ -86,19 +83,15 @@ def quotient(sources, arithmetic, bounded, **conditions):
     # |above / below| as it is, from the value as computed; 1 / (|below| - b) from its rounded inverse.
     unit, division = arithmetic.unit, arithmetic.division
     need = (a + v * b * (1 / (1 - division))) * inverse * (1 + unit) + v * (division / (1 - division))
-    return [Inequality("error of the quotient", quotient["error"].least.without("flushed"), need)]
+    yield Inequality("error of the quotient", quotient["error"].least.without("flushed"), need)
 
 
 def quotient_of(sources):
     return quotient(sources, DEVICE_FLOATS, "BoundedFloat", assumptions={"nonzero": True})
 
 
-# ---- tests -----------------------------------------------------------------------------------------------------------
-
-
 def edge_separates(sources):
     """s < -margin implies that the exact s is below -clearance |edge|, for each corner, whatever the others are."""
-    inequalities = []
     for i in range(3):
         names = {f"d{k}": vector(f"d{k}", "xy", counts=k == i) for k in range(3)}
         evaluator = Evaluator(sources, DEVICE_FLOATS, names=names | {"e": vector("e", "xy")})
@@ -107,8 +100,7 @@ def edge_separates(sources):
         evaluator.call("edgeSeparates", *edge, SIGN, other, positive("E"), positive("c"))
         margin, s = (evaluator.variables[name] for name in ("margin", f"s{i}"))
         need = s.error + symbol("c") * (symbol("ex") + symbol("ey") + 2 * E)
-        inequalities.append(Inequality(f"corner {i} beyond the edge", margin.least, need, [FLUSHING]))
-    return inequalities
+        yield Inequality(f"corner {i} beyond the edge", margin.least, need, [FLUSHING])
 
 
 def plane_keeps_apart(sources):
@@ -124,7 +116,6 @@ def plane_keeps_apart(sources):
         """Symbols n0 to n2 for what each component is at least."""
         return Vector(replace(n, least=symbol(f"n{k}") - FLUSHED) for k, n in enumerate(components))
 
-    inequalities = []
     for i in range(3):
         names = {"n": name_normal}
         evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names)
@@ -139,12 +130,8 @@ def plane_keeps_apart(sources):
         rules += at_most({f"n{k}": c.size for k, c in enumerate(n)})
         behind = h.error + symbol("c") * length
         beyond = behind + symbol("l") * (symbol("t") + symbol("b"))
-        inequalities.append(Inequality(f"height {i} behind the plane", margin.least, behind, [rules]))
-        inequalities.append(Inequality(f"height {i} beyond the plane", reached.least, beyond, [rules]))
-    return inequalities
-
-
-# ---- the corners' errors ---------------------------------------------------------------------------------------------
+        yield Inequality(f"height {i} behind the plane", margin.least, behind, [rules])
+        yield Inequality(f"height {i} beyond the plane", reached.least, beyond, [rules])
 
 
 def frame_of(sources, texel, apart, **conditions):
@@ -193,13 +180,11 @@ def placed_triangle(sources, side, counting):
 
 def corner_error(sources):
     """A corner's error and its share of a difference's rounding are at most `error`, of which E is twice the sum."""
-    inequalities = []
     for side, i in ((side, i) for side in "AB" for i in range(3)):
         triangle = placed_triangle(sources, side, i)
         for k, value in enumerate(triangle["corners"][i]):
             need = (value.error + value.size * UNIT) * (1 + 3 * UNIT)
-            inequalities.append(Inequality(f"corner {i} of {side}, component {k}", triangle["error"].least, need))
-    return inequalities
+            yield Inequality(f"corner {i} of {side}, component {k}", triangle["error"].least, need)
 
 
 def boxes(sources):
@@ -208,12 +193,11 @@ def boxes(sources):
     a and b bound coordinates; the errors of corners are at least 23 kUnit of them. Where a pair is dropped, the
     clearance is at most the distance of the boxes.
     """
-    inequalities = []
     for side in "AB":
         triangle = placed_triangle(sources, side, 0)
         for value in triangle["corners"][0]:
             what = f"error of a corner of {side} against a coordinate"
-            inequalities.append(Inequality(what, triangle["error"].least, value.size * 23 * NEAREST))
+            yield Inequality(what, triangle["error"].least, value.size * 23 * NEAREST)
 
     def triangle_of(size, rest):
         error = rest + size * (23 * NEAREST)
@@ -233,8 +217,7 @@ def boxes(sources):
     rules = at_most({"c": (a + b) * (1 + Fraction(1, 10**6))})
     for text, left, right in evaluator.compared:
         need = left.error + right.error
-        inequalities.append(Inequality(text, evaluator.variables["error"].least, need, [rules]))
-    return inequalities
+        yield Inequality(text, evaluator.variables["error"].least, need, [rules])
 
 
 def error_of_a_row(sources):
@@ -290,20 +273,16 @@ def positions(sources):
         sources.value("kTexelFrame") + 1: Vector(map(exactly, (1, 1, 1, 0))),
     }
     frame = frame_of(sources, lambda _, number: texels.get(number, ones), exactly(0))
-    inequalities = []
     for side in "AB":
         # The terms of the rows' sizes add up to Z, whatever the columns: the greatest coefficient counts.
         of_size = max(error.coefficient((f"m{side}{j}", f"r{side}{j}")) for j in range(3))
         need = symbol("Z") * of_size + symbol("S") * error.coefficient((f"P{side}",)) * ROOT_OF_3
         margin = frame[f"error{side}"].least
-        inequalities.append(Inequality(f"position of {side}", margin - margin.coefficient(()), need))
+        yield Inequality(f"position of {side}", margin - margin.coefficient(()), need)
     expected = {(f"m{side}{j}", f"r{side}{j}") for side in "AB" for j in range(3)} | {("PA",), ("PB",)}
     if error.terms.keys() - expected:
         raise SourceError(f"the error of rowApart has terms that the claim does not know: {error}")
-    return inequalities
 
-
-# ----------------------------------------------------------------------------------------------------------------------
 
 EDGE = ["6.0 * kUlp", "1.0001 * (error", "4.0 * kFlushed"]
 PLANE = ["12.0 * kUlp", "1.0001 * given", "6.0 + 6.0 * g", "6.0 * g"]

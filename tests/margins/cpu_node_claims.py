@@ -7,7 +7,6 @@ from claims import Claim, Inequality, Shared, at_most, without_flushing
 from cpu_claims import MOTION_FILES, ROUNDING_FILE, UNIT
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, total
-from reader import SourceError
 from rounding import CPU_DOUBLES, CPU_FLOATS, converted, exactly, plain, roughly, symbol
 from sizes import ROOT_OF_3, positive, symbols, together, vector, within
 
@@ -293,11 +292,8 @@ def by_triangles(real, sources):
     axes = LeafAxes(sources, real)
     x, y = total(symbols("x")), total(symbols("y"))
     areas = [x * x, y * y] + [x * y] * 9
-    if len(axes.added) != len(areas):
-        place = sources.function("Margin").place
-        raise SourceError(f"{place}: LeafTest adds another number of axes than the claim knows")
     ends = axes.ends()
-    for (middle, half, speed, margin, number), area in zip(axes.added, areas):
+    for (middle, half, speed, margin, number), area in zip(axes.added, areas, strict=True):
         need = middle.error + half.error + symbol("tau") * (speed.error + margin["speed"].size)
         need += ends + symbol("c") * area * HELD
         rules = at_most({"m": middle.size, "h": half.size, "q": margin["width"].size})

@@ -9,16 +9,9 @@ _ON_INTEGERS = {
     "+": operator.add,
     "-": operator.sub,
     "*": operator.mul,
-    "/": operator.floordiv,
     "%": operator.mod,
     "<": operator.lt,
-    ">": operator.gt,
-    "<=": operator.le,
-    ">=": operator.ge,
     "==": operator.eq,
-    "!=": operator.ne,
-    "&&": lambda p, q: p and q,
-    "||": lambda p, q: p or q,
 }
 
 
@@ -97,7 +90,7 @@ class Evaluator:
     globals: by name, values of variables outside functions, and functions; they need not be used.
 
     What takes a place is a value, a Python function of the value or of the arguments, or an iterator that gives another
-    of these each time.
+    of these each time, as often as the sources have it.
 
     values: by the text of a variable, the values that it had, before others took their places.
     variables: those of the function that has been called, at its end.
@@ -117,9 +110,9 @@ class Evaluator:
         """The result of a function of the sources. `members`: those of its object."""
         self.called = name
         result, self.variables = self._run(self._function(name, arguments), arguments, dict(members))
-        unused = (self.names.keys() | self.contracts.keys() | self.assumptions.keys()) - self.used
-        if unused:
-            raise SourceError(f"{name}: nothing in the sources corresponds to the claim's {sorted(unused)}")
+        for text, other in (self.names | self.contracts | self.assumptions).items():
+            if text not in self.used or (hasattr(other, "__next__") and next(other, None) is not None):
+                raise SourceError(f"{name}: the sources have no use, or not enough, for the claim's '{text}'")
         return result
 
     def expression(self, owner, text, **variables):
@@ -181,7 +174,7 @@ class Evaluator:
         try:
             self._execute(node, scope)
         except (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-            raise SourceError(f"{node.place}: not understood: {type(error).__name__}: {error}") from error
+            raise SourceError(f"{node.token.place}: not understood: {type(error).__name__}: {error}") from error
 
     def _execute(self, node, scope):
         parts = node.parts
@@ -213,7 +206,7 @@ class Evaluator:
             case "return":
                 raise Returned(self.evaluate(parts[0], scope) if parts else None)
             case _:
-                raise SourceError(f"{node.place}: '{node.kind}' is not understood here")
+                raise SourceError(f"{node.token.place}: '{node.kind}' is not understood here")
 
     def _initial(self, node, base, scope):
         """The value that a variable is declared with."""
@@ -234,7 +227,7 @@ class Evaluator:
             case "index":
                 self._holder(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
             case _:
-                raise SourceError(f"{target.place}: cannot assign to this")
+                raise SourceError(f"{target.token.place}: cannot assign to this")
 
     def _holder(self, node, scope):
         """The vector or struct of which an element or a member is assigned; a new vector where there was nothing."""
@@ -256,7 +249,7 @@ class Evaluator:
         value = self.evaluate(node, scope)
         if isinstance(value, int):
             return bool(value)
-        raise SourceError(f"{node.place}: whether '{node.text}' holds is neither known nor assumed")
+        raise SourceError(f"{node.token.place}: whether '{node.text}' holds is neither known nor assumed")
 
     def evaluate(self, node, scope):
         match node.kind:
@@ -297,7 +290,7 @@ class Evaluator:
                 return -values[0] if isinstance(values[0], int) else each(values[0], self.rounding.negated)
             case "unary" if node.name == "!" and isinstance(values[0], bool):
                 return not values[0]
-        raise SourceError(f"{node.place}: '{node.text}' is not understood here")
+        raise SourceError(f"{node.token.place}: '{node.text}' is not understood here")
 
     def _variable(self, node, scope):
         name = node.name
@@ -306,7 +299,7 @@ class Evaluator:
                 return variables[name]
         if name in self.sources.constants:
             return self.evaluate(self.sources.constant(name), {"function": name})
-        raise SourceError(f"{node.place}: '{name}' is not known")
+        raise SourceError(f"{node.token.place}: '{name}' is not known")
 
     def _binary(self, node, name, p, q):
         if isinstance(p, int) and isinstance(q, int):
@@ -370,7 +363,7 @@ class Evaluator:
     def _struct(self, node, name, values):
         members = self.sources.structs[name]
         if len(values) != len(members):
-            raise SourceError(f"{node.place}: {name} has {len(members)} members, not {len(values)}")
+            raise SourceError(f"{node.token.place}: {name} has {len(members)} members, not {len(values)}")
         return dict(zip(members, values), type=name)
 
     def _vector(self, n, values):

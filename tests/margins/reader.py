@@ -56,10 +56,6 @@ class Node:
     name: str = ""
     value: object = None
 
-    @property
-    def place(self):
-        return self.token.place
-
 
 @dataclass
 class Function:
@@ -68,10 +64,6 @@ class Function:
     tokens: list  # of the body, braces included
     initialisers: list  # tokens of a constructor's members
     body: Node = None
-
-    @property
-    def place(self):
-        return self.tokens[0].place
 
 
 def tokens_of(text, file):
@@ -420,7 +412,7 @@ class Sources:
     def function(self, name, matches=lambda function: True):
         found = [f for f in self.functions.get(name, []) if matches(f)]
         if len(found) != 1:
-            places = ", ".join(f.place for f in self.functions.get(name, [])) or "no function of that name"
+            places = ", ".join(f.tokens[0].place for f in self.functions.get(name, [])) or "no function of that name"
             raise SourceError(f"the function {name} is needed once, found {len(found)} times that fit: {places}")
         return found[0]
 
@@ -449,10 +441,7 @@ class Sources:
 
     def value(self, name):
         """The value of a constant that is a number."""
-        node = self.constant(name)
-        if node.kind != "number":
-            raise SourceError(f"{node.place}: {name} is expected to be a number")
-        return node.value
+        return self.constant(name).value
 
     def expression(self, owner, text):
         """The expression `text`, which the function `owner` contains exactly once."""

@@ -71,14 +71,10 @@ def quotient(sources, arithmetic, bounded, **conditions):
     That is algebra (docs/exact.md); here is that the rounded margin is no less. The divisor as computed is named d.
     Flushing is left out. In floats, it may take one FLUSHED from a + |value| b: plane_of proves that a has it to spare.
     """
-    names = {
-        "divisor": plain("d", nonnegative=True, divides=True),
-        "value": plain("v"),
-    }
-    evaluator = Evaluator(sources, arithmetic, names=names, **conditions)
+    names = {"divisor": plain("d", nonnegative=True, divides=True), "value": plain("v")}
     above = {"type": bounded, "value": plain("n"), "error": plain("a", nonnegative=True)}
     below = {"type": bounded, "value": plain("t", divides=True), "error": plain("b", nonnegative=True)}
-    quotient = evaluator.call("quotientOf", above, below, UNKNOWN)
+    quotient = Evaluator(sources, arithmetic, names=names, **conditions).call("quotientOf", above, below, UNKNOWN)
     a, b, v, inverse = map(symbol, ("a", "b", "v", "1/d"))
     # |above / below| as it is, from the value as computed; 1 / (|below| - b) from its rounded inverse.
     unit, division = arithmetic.unit, arithmetic.division
@@ -211,13 +207,9 @@ def boxes(sources):
     a, b = symbol("a"), symbol("b")
     triangles = triangle_of(a, symbol("A")), triangle_of(b, symbol("B"))
     evaluator.call("mayMeet", *triangles, positive("c"), positive("l"))
-    if len(evaluator.compared) != 6:
-        place = sources.function("mayMeet").place
-        raise SourceError(f"{place}: mayMeet has another number of comparisons than the claim knows")
     rules = at_most({"c": (a + b) * (1 + Fraction(1, 10**6))})
-    for text, left, right in evaluator.compared:
-        need = left.error + right.error
-        yield Inequality(text, evaluator.variables["error"].least, need, [rules])
+    for (text, left, right), _ in zip(evaluator.compared, range(6), strict=True):
+        yield Inequality(text, evaluator.variables["error"].least, left.error + right.error, [rules])
 
 
 def error_of_a_row(sources):
@@ -245,15 +237,9 @@ def error_of_a_row(sources):
 
     sizes = total(symbol(f"m{side}{j}") * symbol(f"r{side}{j}") * 2 for side in "AB" for j in range(3))
     names = {"high": exactly(0), "low": fine(sizes, 20, Fraction(1, 1 << 40))}
-    # As many exact terms are added as the claim knows.
-    additions = iter([UNKNOWN] * 7)
-    evaluator = Evaluator(sources, FLOATS, contracts={"addExactly": additions}, names=names)
+    evaluator = Evaluator(sources, FLOATS, contracts={"addExactly": iter([UNKNOWN] * 7)}, names=names)
     coarse = Vector([UNKNOWN] * 4)
-    row = evaluator.call("rowApart", coarse, fine_row("A"), anchor("A"), coarse, fine_row("B"), anchor("B"))
-    if next(additions, None) is not None:
-        place = sources.function("rowApart").place
-        raise SourceError(f"{place}: rowApart adds fewer exact terms than the claim knows")
-    return row.error
+    return evaluator.call("rowApart", coarse, fine_row("A"), anchor("A"), coarse, fine_row("B"), anchor("B")).error
 
 
 def positions(sources):

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from claims import Claim, Inequality, Rule, at_most, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
-from polynomial import Polynomial, total
+from polynomial import Polynomial, summed, total
 from rounding import CPU_DOUBLES, Number, Rounding, exactly, plain, roughly, symbol
 from sizes import positive, vector
 
@@ -122,7 +122,7 @@ def relative_placement(sources):
         return [vector(f"{name}{i}") for i in range(3)]
 
     def placed(name):
-        sums = (2 * total(symbol(f"{name}{i}{j}") for j in range(3)) for i in range(3))
+        sums = (2 * summed("{name}{i}{j}", name=name, i=i) for i in range(3))
         return {"error": vector(f"e{name}", nonnegative=True), "extent": Vector(roughly(s, 4 * UNIT) for s in sums)}
 
     rows = linear("n")
@@ -142,7 +142,7 @@ def relative_placement(sources):
     for k in range(3):
         need = offset[k].error + travel[k].error + total(matrix[k][j].error for j in range(3)) * 2
         # Of a placement's error, half is needed, as `placement` proves.
-        need += total(symbol(f"n{k}{i}") * (symbol(f"eA{i}") + symbol(f"eB{i}")) for i in range(3)) * Fraction(51, 100)
+        need += (summed("n{k}{i} eA{i}", k=k) + summed("n{k}{i} eB{i}", k=k)) * Fraction(51, 100)
         need += (symbol(f"residual{k}") + residual[k].error) * 2
         rules = at_most({f"residual{k}": residual[k].size.without("flushed")})
         yield Inequality(f"axis {k}", bound[k].least, need, [without_flushing, rules])

@@ -6,9 +6,9 @@ from functools import partial
 from claims import Claim, Inequality, Shared, at_most, without_flushing
 from cpu_claims import MOTION_FILES, ROUNDING_FILE, UNIT
 from evaluator import UNKNOWN, Evaluator, Vector
-from polynomial import Polynomial, total
+from polynomial import Polynomial, summed, total
 from rounding import CPU_DOUBLES, CPU_FLOATS, converted, exactly, plain, roughly, symbol
-from sizes import ROOT_OF_3, positive, symbols, together, vector, within
+from sizes import ROOT_OF_3, positive, together, vector, within
 
 # A node's centre and half extent, together, of normalised vertices, which are below 2.
 REACH = [Polynomial.constant(2)] * 3
@@ -23,8 +23,8 @@ def relative_placement():
     """A RelativePlacement. Inputs, exact: P, its matrix; offset, travel, slack; its magnitude is a rounded sum."""
 
     def magnitude(k):
-        terms = 2 + 2 * total(symbols(f"P{k}")) + symbol(f"offset{k}") + symbol(f"travel{k}")
-        return roughly(terms, 8 * UNIT)
+        terms = 2 * summed("P{k}{j}", k=k) + symbol(f"offset{k}") + symbol(f"travel{k}")
+        return roughly(2 + terms, 8 * UNIT)
 
     return {
         "matrix": [vector(f"P{k}") for k in range(3)],
@@ -42,8 +42,7 @@ def node(letter):
 
 def widths(k):
     """What half of an interval along axis k must hold: both boxes, and what the slack is for."""
-    other = total(symbol(f"P{k}{j}") * symbol(f"halfX{j}") for j in range(3))
-    return symbol(f"halfO{k}") + other + symbol(f"slack{k}") * HELD
+    return symbol(f"halfO{k}") + summed("P{k}{j} halfX{j}", k=k) + symbol(f"slack{k}") * HELD
 
 
 def by_roots(sources):
@@ -150,8 +149,8 @@ def by_boxes(real, sources):
 def by_normals(real, sources):
     """Contact at t, from 0 to 1, is within the interval that cutByNormal computes.
 
-    Along own's normal n, with g = n P, any a = `along` and r = g - a o, for the other's unit normal o: |own middle -
-    n.offset - a mu - r.centre - t n.travel| <= own slab + sum |n_k| slack_k + |a| h + |r| halves, mu and h being the
+    Along own's normal n, with g = n P, any a = `along` and r = g - a o, for the other's unit normal o: |own_middle -
+    n.offset - a mu - r.centre - t n.travel| <= own_slab + sum |n_k| slack_k + |a| h + |r| halves, mu and h being the
     other's slab. A slab's middle and half width are at most 2 |n| together. All is multiplied by v, the speed, which is
     at least `least`; so the sum n.u, u being the speeds that have been raised, is off by at most that.
     """
@@ -166,8 +165,8 @@ def by_normals(real, sources):
         "max(abs(speed), least)": positive("v", divides=True),
         "inverse": positive("1/v"),
     }
-    own = node("O") | {"normal": vector("n"), "slabMiddle": plain("own middle"), "slabHalf": positive("own slab")}
-    other = node("X") | {"normal": vector("o"), "slabMiddle": plain("mu"), "slabHalf": positive("other slab")}
+    own = node("O") | {"normal": vector("n"), "slabMiddle": plain("own_middle"), "slabHalf": positive("own_slab")}
+    other = node("X") | {"normal": vector("o"), "slabMiddle": plain("mu"), "slabHalf": positive("other_slab")}
     ((middle, _),), evaluator = axes.cut(
         "cutByNormal",
         [own, other],
@@ -177,26 +176,24 @@ def by_normals(real, sources):
     )
     middle = middle.times(symbol("v"))
     m, h, s = (evaluator.values[name][0] for name in ("middle", "half", "speed"))
-    n, r = symbols("n"), evaluator.variables["rest"]
-    need = symbol("own slab") + symbol("a") * symbol("other slab")
-    need += total((symbol(f"r{j}") + r[j].error) * symbol(f"halfX{j}") for j in range(3))
-    need += total(n[k] * (symbol(f"slack{k}") * HELD + symbol("raised")) for k in range(3))
+    rest = evaluator.variables["rest"]
+    need = symbol("own_slab") + summed("a other_slab") + summed("n{k} slack{k}") * HELD + summed("n{k} raised")
+    need += total((symbol(f"r{j}") + rest[j].error) * symbol(f"halfX{j}") for j in range(3))
     # The inverse is off by a rounding, relative to the ends; that of half is left out.
     need += middle.error + (middle.size + h.size) * (real.division + real.unit) * (1 + 4 * real.unit)
     need += m.error + s.error + axes.least + axes.ends()
-    g = total(n[k] * symbol(f"P{k}{j}") for k in range(3) for j in range(3))
     rests = {f"r{j}": value.size for j, value in enumerate(evaluator.values["rest[j]"])}
     speeds = {f"u{k}": symbol(f"travel{k}") + symbol("raised") for k in range(3)}
     steps = [
         at_most({"m": m.size, "h": h.size}),
         at_most(rests),
         axes.underflow,
-        together("own middle", "own slab", total(n) * REACH[0]),
-        together("mu", "other slab", total(symbols("o")) * REACH[0]),
+        together("own_middle", "own_slab", summed("n{k}") * REACH[0]),
+        together("mu", "other_slab", summed("o{j}") * REACH[0]),
         *within("X", REACH),
         at_most(speeds | {"raised": axes.least}),
         # a = g.o, so the sum over j of |a o_j| is at most the root of 3 times the norm of g.
-        Shared([("a", f"o{j}") for j in range(3)], g * ROOT_OF_3),
+        Shared([("a", f"o{j}") for j in range(3)], summed("n{k} P{k}{j}") * ROOT_OF_3),
     ]
     yield Inequality("normal", h.least, need, steps)
 
@@ -232,7 +229,7 @@ class LeafAxes:
             "b_": self._side("y", 1),
             "offset_": vector("offset"),
             "travel_": vector("w", real.unit),
-            "travelSize_": roughly(total(symbols("w")), 4 * real.unit),
+            "travelSize_": roughly(summed("w{k}"), 4 * real.unit),
             "positionError_": positive("p"),
             "edgeError_": positive("e"),
             "clearance_": positive("c"),
@@ -259,7 +256,7 @@ class LeafAxes:
 
     def _side(self, name, roundings):
         edges = [self._off(name, symbol("e") * HELD, roundings) for _ in range(3)]
-        size = roughly(total(symbols(name)) + 4 * symbol("e"), 8 * self.real.unit)
+        size = roughly(summed(name + "{k}") + 4 * symbol("e"), 8 * self.real.unit)
         evaluator = self._evaluator()
         normal = evaluator.settled(evaluator.cross(*edges[:2]))
         return {"edge": edges, "corner": vector("corner"), "size": size, "normal": normal}
@@ -290,7 +287,7 @@ def by_triangles(real, sources):
     |middle - t speed| <= half, of exact numbers. A speed below that of the margin is raised to it.
     """
     axes = LeafAxes(sources, real)
-    x, y = total(symbols("x")), total(symbols("y"))
+    x, y = summed("x{k}"), summed("y{k}")
     areas = [x * x, y * y] + [x * y] * 9
     ends = axes.ends()
     for (middle, half, speed, margin, number), area in zip(axes.added, areas, strict=True):

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from claims import Claim, Inequality, Shared, at_most
 from evaluator import UNKNOWN, Evaluator, Matrix, Vector
-from polynomial import Polynomial, total
+from polynomial import Polynomial, summed, total
 from rounding import DEVICE_FLOATS, ZERO, Number, exactly, plain, symbol
 from sizes import WITHIN, positive, symbols, together, vector, within
 
@@ -121,11 +121,8 @@ class Pair:
             names[f"inverse{letter}"] = matrix(f"n{letter}", 0)
         return names
 
-    def n(self, k, j):
-        return symbol(f"n{self.own}{k}{j}")
-
     def row(self, k):
-        return total(self.n(k, j) for j in range(3))
+        return summed("n{own}{k}{j}", own=self.own, k=k)
 
     def needs(self, k):
         """What a slack along axis k must hold: the residual, half of the placements' errors, the clearance."""
@@ -206,11 +203,8 @@ def along_axis(pair, k, gap, middle, reach, ends):
     division = (symbol(f"v{k}") + symbol(f"raised{k}")) * DIVISION
     need = halves + pair.needs(k) + gap.error + middle.error + of_ends(*ends, f"middle{k}", f"extent{k}")
     need += pair.latest * (pair.velocity[k].error + symbol(f"raised{k}") + division)
-
-    def distance(i):
-        return total(symbol(f"m{other}{i}{j}") * symbol(f"reach{other}{j}") for j in range(3)) + symbol(f"apart{i}")
-
-    start = symbol(f"reach{own}{k}") + total(pair.n(k, i) * distance(i) for i in range(3))
+    start = symbol(f"reach{own}{k}") + summed("n{own}{k}{i} apart{i}", own=own, k=k)
+    start += summed("n{own}{k}{i} m{other}{i}{j} reach{other}{j}", own=own, other=other, k=k)
     steps = [
         at_most({f"middle{k}": middle.size, f"extent{k}": reach.size, f"gap{k}": gap.size}),
         pair.rules(k),
@@ -247,7 +241,7 @@ def along_normal(pair, negative):
         "inverse": plain("1/held"),
     }
     evaluator = Evaluator(pair.sources, FLOATS, names=names, assumptions={"way < 0.0": negative})
-    own_node = node(own, normal=vector("g"), middle=plain("own middle"), slab=positive("own slab"))
+    own_node = node(own, normal=vector("g"), middle=plain("own_middle"), slab=positive("own_slab"))
     other_node = node(other, normal=vector("o"), middle=plain("mu"), slab=positive("h"))
     velocity = Vector(plain(f"v{k}", v.error) for k, v in enumerate(pair.velocity))
     offset, slack = pair.values[f"offset{other}"], pair.values[f"slack{other}"]
@@ -257,9 +251,9 @@ def along_normal(pair, negative):
     kept = {name: evaluator.values[name][0] for name in ("way", "gap", "reach")}
     rest, *ends = (evaluator.variables[name] for name in ("rest", "enter", "leave"))
 
-    gap, way, raised, a = map(symbol, ("gap", "way", "raised", "a"))
-    g, r, halves, centres = map(symbols, ("g", "r", f"half{other}", f"centre{other}"))
-    slabs = symbol("own slab") + a * symbol("h")
+    gap, way, raised = map(symbol, ("gap", "way", "raised"))
+    g, r, halves = map(symbols, ("g", "r", f"half{other}"))
+    slabs = symbol("own_slab") + summed("a h")
     # What the inverse and the last sum are off by is relative to an end of the interval, s |way|: at most f |way|, and
     # at most gap + extent. The last sum's is in the ends' errors; two fifths of both are charged to the motion instead.
     motion = Fraction(2, 5)
@@ -270,18 +264,15 @@ def along_normal(pair, negative):
     enter, leave = (end.times(symbol("held")).error for end in ends)
     need += (enter + leave) * Fraction(1, 2)
 
-    reaches = total(g[k] * symbol(f"reach{own}{k}") for k in range(3)) * WITHIN
-    along = {}
-    for j in range(3):
-        n = total(g[k] * symbol(f"w{k}{j}") for k in range(3)) * (1 + 4 * UNIT)
-        along["a", f"o{j}"] = n + r[j] * (1 + 2 * UNIT)
-    start = symbol("own middle") + slabs + a * symbol("mu")
-    start += total(r[j] * (centres[j] + halves[j]) for j in range(3))
-    start += total(g[k] * pair.n(k, i) * symbol(f"apart{i}") for k in range(3) for i in range(3))
+    reaches = summed("g{k} reach{own}{k}", own=own) * WITHIN
+    n = [summed("g{k} w{k}{j}", j=j) * (1 + 4 * UNIT) for j in range(3)]
+    along = {("a", f"o{j}"): n[j] + r[j] * (1 + 2 * UNIT) for j in range(3)}
+    start = symbol("own_middle") + slabs + summed("a mu") + summed("g{k} n{own}{k}{i} apart{i}", own=own)
+    start += summed("r{j} centre{other}{j}", other=other) + summed("r{j} half{other}{j}", other=other)
     steps = [
         at_most({"extent": kept["reach"].size, "gap": kept["gap"].size, "way": kept["way"].size}),
         pair.clearance_paid(start, {k: (f"g{k}",) for k in range(3)}),
-        together("own middle", "own slab", reaches),
+        together("own_middle", "own_slab", reaches),
         [rule for k in range(3) for rule in pair.rules(k)] + at_most(along),
         *within(other, symbols(f"reach{other}")),
     ]

@@ -1,4 +1,6 @@
 """Polynomials in symbols for sizes, which are not negative, with exact coefficients."""
+import itertools
+import re
 from fractions import Fraction
 from functools import lru_cache
 
@@ -90,6 +92,15 @@ def polynomial(value):
 
 def total(polynomials):
     return Polynomial(term for p in polynomials for term in polynomial(p).terms.items())
+
+
+def summed(text, **fixed):
+    """A product of symbols, added up over the indices that braces in its text leave free, each from 0 to 2."""
+    free = sorted(set(re.findall(r"{(\w+)}", text)) - fixed.keys())
+    products = (
+        text.format(**fixed, **dict(zip(free, indices))) for indices in itertools.product(range(3), repeat=len(free))
+    )
+    return Polynomial((tuple(sorted(product.split())), Fraction(1)) for product in products)
 
 
 def merged(choose, p, q):

@@ -264,8 +264,7 @@ class LeafAxes:
     def _margin(self, *arguments):
         constructor = self.sources.function("Margin")
         scope = {name: value for (_, name, _), value in zip(constructor.parameters, arguments, strict=True)}
-        members = self.sources.initialisers(constructor)
-        evaluator = self._evaluator()
+        evaluator, members = self._evaluator(), constructor.initialised()
         return {name: evaluator.evaluate(value, scope | {"function": "Margin"}) for name, value in members.items()}
 
     def ends(self):

@@ -6,12 +6,7 @@ from rounding import Number, Rounding, exactly
 
 _SWIZZLES = {c: i for i, c in enumerate("xyzw")}
 _ON_INTEGERS = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "%": operator.mod,
-    "<": operator.lt,
-    "==": operator.eq,
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "%": operator.mod, "<": operator.lt, "==": operator.eq
 }
 
 
@@ -132,7 +127,7 @@ class Evaluator:
         for (_, name, _), value in zip(function.parameters, arguments):
             scope[name] = self._renamed(scope, name, value)
         outer, self.precise = self.precise, False
-        result = self._returned(self.sources.body(function), scope)
+        result = self._returned(function.body, scope)
         self.precise = outer
         return result, scope
 

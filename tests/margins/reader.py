@@ -8,7 +8,7 @@ import re
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,11 +38,7 @@ class Token:
     kind: str
     text: str
     file: str
-    line: int
-
-    @property
-    def place(self):
-        return f"{self.file}:{self.line}"
+    place: str
 
 
 @dataclass
@@ -63,7 +59,19 @@ class Function:
     parameters: list  # (type, name, whether the caller sees changes)
     tokens: list  # of the body, braces included
     initialisers: list  # tokens of a constructor's members
-    body: Node = None
+
+    @cached_property
+    def body(self):
+        return Parser(self.tokens).statement()
+
+    def initialised(self):
+        """The members that a constructor initialises, with their expressions."""
+        parser, found = Parser(self.initialisers), {}
+        while parser.accept(":", ","):
+            member = parser.name().text
+            parser.expect("(")
+            found[member] = parser.bracketed(")")
+        return found
 
 
 def tokens_of(text, file):
@@ -73,7 +81,7 @@ def tokens_of(text, file):
         if not match:
             raise SourceError(f"{file}:{line}: no token begins with {text[at]!r}")
         if match.lastgroup != "space":
-            tokens.append(Token(match.lastgroup, match.group(), file, line))
+            tokens.append(Token(match.lastgroup, match.group(), file, f"{file}:{line}"))
         line += match.group().count("\n")
         at = match.end()
     return tokens
@@ -95,11 +103,12 @@ class Parser:
     """A recursive-descent parser over a list of tokens."""
 
     def __init__(self, tokens):
-        end = Token("end", "", tokens[-1].file if tokens else "", tokens[-1].line if tokens else 0)
-        self.tokens, self.at = tokens + [end] * 2, 0
+        self.tokens, self.at = tokens, 0
+        self.end = Token("end", "", "", tokens[-1].place if tokens else "")
 
     def peek(self, ahead=0):
-        return self.tokens[min(self.at + ahead, len(self.tokens) - 1)]
+        at = self.at + ahead
+        return self.tokens[at] if at < len(self.tokens) else self.end
 
     def next(self):
         token = self.peek()
@@ -109,10 +118,11 @@ class Parser:
     def accept(self, *texts):
         return self.next() if self.peek().text in texts else None
 
-    def expect(self, text):
-        token = self.next()
-        if token.text != text:
-            raise SourceError(f"{token.place}: expected '{text}', found '{token.text}'")
+    def expect(self, *texts):
+        for text in texts:
+            token = self.next()
+            if token.text != text:
+                raise SourceError(f"{token.place}: expected '{text}', found '{token.text}'")
 
     def name(self):
         token = self.next()
@@ -174,9 +184,7 @@ class Parser:
             return self.node("block", start, parts)
         if self.accept("if"):
             self.expect("(")
-            parts = [self.expression()]
-            self.expect(")")
-            parts.append(self.statement())
+            parts = [self.bracketed(")"), self.statement()]
             if self.accept("else"):
                 parts.append(self.statement())
             return self.node("if", start, parts)
@@ -201,8 +209,7 @@ class Parser:
         while not parts or self.accept(","):
             here, name, value = self.at, self.name().text, []
             while self.accept("["):
-                self.expression()
-                self.expect("]")
+                self.bracketed("]")
             if self.accept("=") or self.peek().text == "{":
                 value = [self.initialiser()]
             elif self.accept("("):
@@ -218,11 +225,8 @@ class Parser:
             raise SourceError(f"{self.peek().place}: a loop must declare its counter")
         counter = self.name().text
         self.expect("=")
-        parts = [self.expression()]
-        self.expect(";")
-        parts.append(self.expression())
-        for text in (";", "++", counter, ")"):
-            self.expect(text)
+        parts = [self.bracketed(";"), self.bracketed(";")]
+        self.expect("++", counter, ")")
         return self.node("for", start, parts + [self.statement()], counter)
 
     def assignment(self, start):
@@ -250,9 +254,13 @@ class Parser:
     def expression(self):
         start, node = self.at, self.binary(0)
         if self.accept("?"):
-            parts = [node, self.expression()]
-            self.expect(":")
-            node = self.node("choose", start, parts + [self.expression()])
+            node = self.node("choose", start, [node, self.bracketed(":"), self.expression()])
+        return node
+
+    def bracketed(self, end):
+        """An expression and what follows it."""
+        node = self.expression()
+        self.expect(end)
         return node
 
     def binary(self, level):
@@ -274,9 +282,7 @@ class Parser:
             if self.accept(".", "->"):
                 node = self.node("member", start, [node], self.name().text)
             elif self.accept("["):
-                parts = [node, self.expression()]
-                self.expect("]")
-                node = self.node("index", start, parts)
+                node = self.node("index", start, [node, self.bracketed("]")])
             elif node.kind == "member" and self.accept("("):
                 node = self.node("method", start, node.parts + self.arguments(")"), node.name)
             else:
@@ -285,8 +291,7 @@ class Parser:
     def closure(self, start):
         """C++'s [&](type name, ...) { ... }."""
         self.accept("&")
-        self.expect("]")
-        self.expect("(")
+        self.expect("]", "(")
         names = [name for _, name, _ in self.parameters()]
         self.expect(")")
         return self.node("closure", start, [self.statement()], value=names)
@@ -294,9 +299,7 @@ class Parser:
     def primary(self, start):
         token = self.next()
         if token.text == "(":
-            node = self.expression()
-            self.expect(")")
-            return node
+            return self.bracketed(")")
         if token.kind == "number":
             return self.node("number", start, value=number_of(token))
         if token.text == "[":
@@ -329,6 +332,12 @@ def _up_to(tokens, at, ends):
     return at
 
 
+def _only(what, found):
+    if len(found) != 1:
+        raise SourceError(f"{what} is needed once, and was found {len(found)} times")
+    return found[0]
+
+
 class Sources:
     """The functions, structs and constants of some files. `replaced`: by token, other values of literals."""
 
@@ -359,7 +368,7 @@ class Sources:
     def add(self, text, file):
         """Finds definitions at any depth of namespaces; bodies are not parsed yet."""
         tokens = tokens_of(text, file)
-        tokens += [Token("end", ";", file, tokens[-1].line)] * 3
+        tokens += [Token("mark", ";", file, file)] * 3
         at = 0
         while at < len(tokens) - 3:
             text, following = tokens[at].text, tokens[at + 1]
@@ -410,34 +419,11 @@ class Sources:
         return at
 
     def function(self, name, matches=lambda function: True):
-        found = [f for f in self.functions.get(name, []) if matches(f)]
-        if len(found) != 1:
-            places = ", ".join(f.tokens[0].place for f in self.functions.get(name, [])) or "no function of that name"
-            raise SourceError(f"the function {name} is needed once, found {len(found)} times that fit: {places}")
-        return found[0]
-
-    @staticmethod
-    def body(function):
-        if function.body is None:
-            function.body = Parser(function.tokens).statement()
-        return function.body
-
-    @staticmethod
-    def initialisers(function):
-        """The members that a constructor initialises, with their expressions."""
-        parser, found = Parser(function.initialisers), {}
-        while parser.accept(":", ","):
-            member = parser.name().text
-            parser.expect("(")
-            found[member] = parser.expression()
-            parser.expect(")")
-        return found
+        return _only(f"the function {name}", [f for f in self.functions.get(name, []) if matches(f)])
 
     def constant(self, name):
         """The expression of a constant."""
-        if len(self.constants[name]) != 1:
-            raise SourceError(f"{self.constants[name][1][0].place}: {name} has another definition")
-        return Parser(self.constants[name][0]).initialiser()
+        return Parser(_only(f"the constant {name}", self.constants.get(name, []))).initialiser()
 
     def value(self, name):
         """The value of a constant that is a number."""
@@ -461,7 +447,4 @@ class Sources:
         wanted = [t.text for t in tokens_of(text, owner)]
         bodies = [f.initialisers + f.tokens for f in self.functions.get(owner, [])] + self.constants.get(owner, [])
         pieces = (body[i : i + len(wanted)] for body in bodies for i in range(len(body)))
-        found = [piece for piece in pieces if [t.text for t in piece] == wanted]
-        if len(found) != 1:
-            raise SourceError(f"'{text}' is expected once in {owner}, found {len(found)} times")
-        return found[0]
+        return _only(f"'{text}' in {owner}", [piece for piece in pieces if [t.text for t in piece] == wanted])

@@ -229,12 +229,7 @@ class Rounding:
 
     @staticmethod
     def _one_of(p, q, lower, nonnegative):
-        return Number(
-            greatest(p.size, q.size),
-            greatest(p.error, q.error),
-            lower,
-            nonnegative=nonnegative,
-        )
+        return Number(greatest(p.size, q.size), greatest(p.error, q.error), lower, nonnegative=nonnegative)
 
     def named(self, number, name):
         """The same number, with a symbol for its absolute value as computed.

@@ -126,8 +126,8 @@ def relative_placement(sources):
         return {"error": vector(f"e{name}", nonnegative=True), "extent": Vector(roughly(s, 4 * UNIT) for s in sums)}
 
     rows = linear("n")
-    own = evaluator_of(sources)
-    own.call("MeshAxes::MeshAxes", linear("B"), members={"rows": rows})
+    own = evaluator_of(sources, contracts={"roughInverse": rows})
+    own.call("MeshAxes::MeshAxes", linear("B"))
     residual = own.variables["residual"]
     motion = {"gap": vector("g", DIFFERENCE), "travel": vector("t", 10 * UNIT)}
     variables = motion | {"a": placed("A"), "b": placed("B"), "span": positive("span")}

@@ -78,18 +78,11 @@ class NodeAxes:
         # No axis is used whose numbers may exceed this.
         self.most = 1 << (30 if real is CPU_FLOATS else 200)
         self.assumptions = {IS_FLOAT: real is CPU_FLOATS}
-        names = {
-            "used": iter(vector("u", divides=True)),
-            "std::abs(used - relative.travel[k])": positive("raised"),
-        }
-        evaluator = Evaluator(
-            sources,
-            CPU_DOUBLES,
-            contracts={"std::copysign": lambda x, y: x},
-            assumptions=self.assumptions | {"usable": True},
-            names=names,
-            globals={"Real": self.convert, "static_cast": self.convert},
-        )
+        self.globals = dict.fromkeys(("Real", "Lanes", "static_cast"), self.convert)
+        names = {"used": iter(vector("u", divides=True)), "std::abs(used - relative.travel[k])": positive("raised")}
+        contracts, assumptions = {"std::copysign": lambda x, y: x}, self.assumptions | {"usable": True}
+        conditions = {"contracts": contracts, "assumptions": assumptions, "globals": self.globals}
+        evaluator = Evaluator(sources, CPU_DOUBLES, names=names, **conditions)
         evaluator.call("Axes::Axes", relative_placement(), members={"complete": UNKNOWN})
         self.values = evaluator.variables
 
@@ -102,9 +95,9 @@ class NodeAxes:
 
     def cut(self, function, arguments, **conditions):
         """Middle and half width of the intervals that a function hands to `cut`; its evaluator."""
-        cuts, globals_ = [], {"Real": self.convert, "Lanes": self.convert, "static_cast": self.convert}
+        cuts = []
         contracts = {"cut": lambda times, middle, half: cuts.append((middle, half))} | conditions.pop("contracts", {})
-        evaluator = Evaluator(self.sources, self.real, contracts=contracts, globals=globals_, **conditions)
+        evaluator = Evaluator(self.sources, self.real, contracts=contracts, globals=self.globals, **conditions)
         evaluator.call(function, UNKNOWN, *arguments, self.values)
         return cuts, evaluator
 
@@ -149,8 +142,8 @@ def by_boxes(real, sources):
 def by_normals(real, sources):
     """Contact at t, from 0 to 1, is within the interval that cutByNormal computes.
 
-    Along own's normal n, with g = n P, any a = `along` and r = g - a o, for the other's unit normal o: |own_middle -
-    n.offset - a mu - r.centre - t n.travel| <= own_slab + sum |n_k| slack_k + |a| h + |r| halves, mu and h being the
+    Along own's normal n, with g = n P, any a = `along` and r = g - a o, for the other's unit normal o: |own middle -
+    n.offset - a mu - r.centre - t n.travel| <= own slab + sum |n_k| slack_k + |a| h + |r| halves, mu and h being the
     other's slab. A slab's middle and half width are at most 2 |n| together. All is multiplied by v, the speed, which is
     at least `least`; so the sum n.u, u being the speeds that have been raised, is off by at most that.
     """
@@ -167,13 +160,8 @@ def by_normals(real, sources):
     }
     own = node("O") | {"normal": vector("n"), "slabMiddle": plain("own_middle"), "slabHalf": positive("own_slab")}
     other = node("X") | {"normal": vector("o"), "slabMiddle": plain("mu"), "slabHalf": positive("other_slab")}
-    ((middle, _),), evaluator = axes.cut(
-        "cutByNormal",
-        [own, other],
-        assumptions=axes.assumptions,
-        contracts={"withSignOf": lambda x, y: x},
-        names=names,
-    )
+    conditions = {"assumptions": axes.assumptions, "contracts": {"withSignOf": lambda x, y: x}}
+    ((middle, _),), evaluator = axes.cut("cutByNormal", [own, other], names=names, **conditions)
     middle = middle.times(symbol("v"))
     m, h, s = (evaluator.values[name][0] for name in ("middle", "half", "speed"))
     rest = evaluator.variables["rest"]
@@ -213,7 +201,6 @@ class LeafAxes:
                 "showA": UNKNOWN,
                 "showB": UNKNOWN,
                 "lanesOf": UNKNOWN,
-                "Margin": self._margin,
                 "add": lambda *arguments: self.added.append(arguments),
                 "possible": UNKNOWN,
             },
@@ -261,12 +248,6 @@ class LeafAxes:
         normal = evaluator.settled(evaluator.cross(*edges[:2]))
         return {"edge": edges, "corner": vector("corner"), "size": size, "normal": normal}
 
-    def _margin(self, *arguments):
-        constructor = self.sources.function("Margin")
-        scope = {name: value for (_, name, _), value in zip(constructor.parameters, arguments, strict=True)}
-        evaluator, members = self._evaluator(), constructor.initialised()
-        return {name: evaluator.evaluate(value, scope | {"function": "Margin"}) for name, value in members.items()}
-
     def ends(self):
         """What an interval's ends are off by, times v: for a middle m, a half width h and a margin's width, q."""
         evaluator = self._evaluator(
@@ -287,8 +268,7 @@ def by_triangles(real, sources):
     """
     axes = LeafAxes(sources, real)
     x, y = summed("x{k}"), summed("y{k}")
-    areas = [x * x, y * y] + [x * y] * 9
-    ends = axes.ends()
+    areas, ends = [x * x, y * y] + [x * y] * 9, axes.ends()
     for (middle, half, speed, margin, number), area in zip(axes.added, areas, strict=True):
         need = middle.error + half.error + symbol("tau") * (speed.error + margin["speed"].size)
         need += ends + symbol("c") * area * HELD

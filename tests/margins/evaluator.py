@@ -122,14 +122,16 @@ class Evaluator:
         return self.sources.function(name, takes)
 
     def _run(self, function, arguments, members):
-        """The result of a function, and the values of its variables."""
+        """The result of a function, or the members that a constructor initialises; and the values of its variables."""
         scope = members | {"function": function.name}
         for (_, name, _), value in zip(function.parameters, arguments):
             scope[name] = self._renamed(scope, name, value)
         outer, self.precise = self.precise, False
+        made = {member: self.evaluate(value, scope) for member, value in function.initialised().items()}
+        scope |= made
         result = self._returned(function.body, scope)
         self.precise = outer
-        return result, scope
+        return result or made, scope
 
     def _returned(self, body, scope):
         try:
@@ -344,7 +346,7 @@ class Evaluator:
             return called(*arguments)
         if node.name in self.contracts:
             return self._in_place(self.contracts, node.name, *map(self.settled, arguments))
-        if node.name in self.sources.structs:
+        if node.name in self.sources.structs and node.name not in self.sources.functions:
             return self._struct(node, node.name, arguments)
         if name in _BUILT_IN and node.name not in self.sources.functions:
             return _BUILT_IN[name](self, *arguments)

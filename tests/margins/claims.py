@@ -1,4 +1,5 @@
 """What is to be proved, and how: a claim is one or more inequalities between polynomials."""
+import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -9,17 +10,14 @@ from reader import SourceError, Sources
 @dataclass
 class Rule:
     """A fact: the product of the symbols `factor` is at most `bound`. Pays for what a margin lacks in monomials with
-    that factor, unless they contain one of `unless`."""
+    that factor."""
 
     factor: tuple
     bound: Polynomial
-    unless: tuple = ()
 
     def bound_of(self, monomial):
         left = divided(monomial, self.factor)
-        if left is None or any(symbol in monomial for symbol in self.unless):
-            return None
-        return Polynomial([(left, 1)]) * self.bound
+        return None if left is None else Polynomial([(left, 1)]) * self.bound
 
 
 def at_most(bounds):
@@ -49,6 +47,17 @@ class Shared:
 def without_flushing(balance):
     """A step that leaves out what underflow takes."""
     return balance.without("flushed")
+
+
+def underflow(arithmetic, most):
+    """A step: what underflow takes, as a number. `most`: a bound on each symbol by which it is multiplied."""
+
+    def as_number(monomial, c):
+        if "flushed" not in monomial:
+            return monomial, c
+        return (), c * math.prod(arithmetic.flushed if s == "flushed" else most(s) for s in monomial)
+
+    return lambda balance: Polynomial(as_number(monomial, c) for monomial, c in balance.terms.items())
 
 
 def paid(balance, rules):

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from claims import Claim, Inequality, Rule, at_most, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
-from polynomial import Polynomial, summed, total
+from polynomial import summed, total
 from rounding import CPU_DOUBLES, Number, Rounding, exactly, plain, roughly, symbol
 from sizes import positive, vector
 
@@ -14,7 +14,7 @@ UNIT = CPU_DOUBLES.unit
 # A difference of exact numbers, relative to itself.
 DIFFERENCE = UNIT / (1 - UNIT)
 # What underflow takes is a number.
-UNDERFLOW = [Rule(("flushed",), Polynomial.constant(CPU_DOUBLES.flushed))]
+UNDERFLOW = [Rule(("flushed",), CPU_DOUBLES.flushed)]
 
 
 def evaluator_of(sources, **conditions):

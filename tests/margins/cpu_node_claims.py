@@ -1,9 +1,10 @@
 """The margins of the CPU's tests of nodes and leaves, read from their C++, for both number types."""
+import re
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
-from claims import Claim, Inequality, Shared, at_most, without_flushing
+from claims import Claim, Inequality, Shared, at_most, underflow, without_flushing
 from cpu_claims import MOTION_FILES, ROUNDING_FILE, UNIT
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, summed, total
@@ -75,8 +76,11 @@ class NodeAxes:
     def __init__(self, sources, real):
         self.sources, self.real = sources, real
         self.least = Fraction(1, 1 << (20 if real is CPU_FLOATS else 40))
-        # No axis is used whose numbers may exceed this.
-        self.most = 1 << (30 if real is CPU_FLOATS else 200)
+        # No axis is used whose numbers, or inverse speeds, may exceed this.
+        most = 1 << (30 if real is CPU_FLOATS else 200)
+        # Normals and coordinates of nodes are at most 4.
+        small = re.compile("[nor].|centre.*|half.*")
+        self.underflow = underflow(real, lambda symbol: 4 if small.fullmatch(symbol) else most)
         self.assumptions = {IS_FLOAT: real is CPU_FLOATS}
         self.globals = dict.fromkeys(("Real", "Lanes", "static_cast"), self.convert)
         names = {"used": iter(vector("u", divides=True)), "std::abs(used - relative.travel[k])": positive("raised")}
@@ -106,21 +110,6 @@ class NodeAxes:
         interval = {"from": exactly(0), "to": exactly(0)}
         Evaluator(self.sources, self.real).call("cut", interval, plain("m"), plain("h"))
         return (interval["from"].error + interval["to"].error) * Fraction(1, 2)
-
-    def underflow(self, balance):
-        """A step: what underflow takes, as a number. It is multiplied by numbers of an axis that is used, and by
-        inverse speeds, all at most `most`, and by normals and coordinates of nodes, at most 4.
-        """
-
-        def as_number(monomial, c):
-            powers = monomial.count("flushed")
-            if powers == 0:
-                return monomial, c
-            small = sum((len(s) == 2 and s[0] in "nor") or s.startswith(("centre", "half")) for s in monomial)
-            large = len(monomial) - powers - small
-            return (), c * self.real.flushed**powers * self.most**large * 4**small
-
-        return Polynomial(as_number(monomial, c) for monomial, c in balance.terms.items())
 
 
 def by_boxes(real, sources):

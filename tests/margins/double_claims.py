@@ -1,9 +1,8 @@
 """The margins of tests in doubles on a device, and of bounds that become floats."""
 from functools import partial
 
-from claims import Claim, Inequality, without_flushing
+from claims import Claim, Inequality, underflow, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
-from polynomial import Polynomial
 from rounding import DEVICE_DOUBLES, DEVICE_FLOATS, Rounding, converted, plain, symbol
 from sizes import positive, vector
 from triangle_claims import quotient
@@ -11,21 +10,8 @@ from triangle_claims import quotient
 UNIT = DEVICE_DOUBLES.unit
 # A difference of exact numbers, relative to itself.
 DIFFERENCE = UNIT / (1 - UNIT)
-# Bound on coordinates in doubles (docs/method.md, "Ranges"): their products, and what underflow takes, multiplied by
-# them.
-MOST_COORDINATE = 10**25
-
-
-def underflow(balance):
-    """What underflow takes, as a number: FLUSHED times coordinates."""
-
-    def as_number(monomial, c):
-        powers = monomial.count("flushed")
-        if powers == 0:
-            return monomial, c
-        return (), c * DEVICE_DOUBLES.flushed**powers * MOST_COORDINATE ** (len(monomial) - powers)
-
-    return Polynomial(as_number(monomial, c) for monomial, c in balance.terms.items())
+# Coordinates in doubles are at most 10^25 (docs/method.md, "Ranges").
+UNDERFLOW = underflow(DEVICE_DOUBLES, lambda symbol: 10**25)
 
 
 def bounded(name, **more):
@@ -41,7 +27,7 @@ def bounded_vector(name):
 def plane_of(sources):
     vectors = [vector(name, DIFFERENCE) for name in "xyz"]
     plane = Evaluator(sources, DEVICE_DOUBLES).call("planeOf", *vectors, vector("d"))
-    yield Inequality("error of x . (y cross z)", plane["error"].least, plane["value"].error, [underflow])
+    yield Inequality("error of x . (y cross z)", plane["error"].least, plane["value"].error, [UNDERFLOW])
 
 
 def quotient_of(sources):
@@ -118,7 +104,7 @@ def operation(name, one, other, sources):
     names = {"value": "value"} if is_difference else {}
     result = Evaluator(sources, DEVICE_DOUBLES, names=names).call(name, one, other)
     values, errors = (x if isinstance(x, Vector) else [x] for x in (result["value"], result["error"]))
-    steps = [without_flushing if is_difference else underflow]
+    steps = [without_flushing if is_difference else UNDERFLOW]
     return [
         Inequality(f"component {k}", error.least, value.error, steps)
         for k, (value, error) in enumerate(zip(values, errors, strict=True))
@@ -134,7 +120,7 @@ def allowed(sources):
     largest, slack = bounded("n", nonnegative=True), bounded("slack", nonnegative=True)
     variables = {"slack": slack, "largest": largest["value"], "error": largest["error"]}
     result = Evaluator(sources, DEVICE_DOUBLES).expression("depthsAlong", ALLOWED, **variables)
-    yield Inequality("slack along a normal", result["error"].least, result["value"].error, [underflow])
+    yield Inequality("slack along a normal", result["error"].least, result["value"].error, [UNDERFLOW])
 
 
 BOUNDS = "shaders/shared/triangle_pair_bounds.glsl"

@@ -104,18 +104,9 @@ def summed(text, **fixed):
 
 
 def merged(choose, p, q):
-    """The polynomial whose coefficients are chosen from those of p and q."""
+    """The polynomial whose coefficients are the greater of p's and q's, which is a bound on both if none is negative,
+    or the lesser: neither is below that."""
     return Polynomial((m, choose(p.coefficient(m), q.coefficient(m))) for m in p.terms.keys() | q.terms.keys())
-
-
-def greatest(p, q):
-    """A bound on both, for polynomials without negative coefficients."""
-    return merged(max, p, q)
-
-
-def least(p, q):
-    """A polynomial that neither is below."""
-    return merged(min, p, q)
 
 
 def product_of_lower_bounds(p, q):

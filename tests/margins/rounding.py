@@ -19,7 +19,7 @@ contraction to a fused multiply-add omits roundings, so it has these bounds, too
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from polynomial import Polynomial, greatest, least, product_of_lower_bounds, total
+from polynomial import Polynomial, merged, product_of_lower_bounds, total
 
 symbol = Polynomial.symbol
 FLUSHED = symbol("flushed")
@@ -205,7 +205,6 @@ class Rounding:
             size * (1 + unit) + self.lost,
             p.error * inverse + size * unit + self.lost,
             p.least * inverse * (1 - unit) - self.lost,
-            ideal=p.ideal * inverse,
             nonnegative=p.nonnegative and q.nonnegative,
         )
 
@@ -222,14 +221,14 @@ class Rounding:
     def minimum(self, p, q):
         p, q = self.settled(p), self.settled(q)
         nonnegative = p.nonnegative and q.nonnegative
-        lower = least(p.least, q.least) if nonnegative else ZERO
+        lower = merged(min, p.least, q.least) if nonnegative else ZERO
         if nonnegative and q.constant is not None:  # it is at most either
             return Number(p.size, p.error, lower, nonnegative=True)
         return self._one_of(p, q, lower, nonnegative)
 
     @staticmethod
     def _one_of(p, q, lower, nonnegative):
-        return Number(greatest(p.size, q.size), greatest(p.error, q.error), lower, nonnegative=nonnegative)
+        return Number(merged(max, p.size, q.size), merged(max, p.error, q.error), lower, nonnegative=nonnegative)
 
     def named(self, number, name):
         """The same number, with a symbol for its absolute value as computed.

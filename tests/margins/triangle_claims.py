@@ -35,7 +35,7 @@ FLUSHING = [
     Rule(("flushed", "E"), _FLUSHED * (Fraction(1, 1 << 40) + E * E * E * (1 << 80))),
 ]
 # E holds 48 kUnit times a triangle's distance from its anchor, of which edges are at most twice.
-EDGES = [Rule(("flushed", f"{edge}{axis}"), FLUSHED * E * 10**6, unless=("E",)) for edge in "xy" for axis in AXES]
+EDGES = [Rule(("flushed", f"{edge}{axis}"), FLUSHED * E * 10**6) for edge in "xy" for axis in AXES]
 
 
 def vector(name, axes=AXES, counts=True):

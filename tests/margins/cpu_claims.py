@@ -11,8 +11,7 @@ from rounding import CPU_DOUBLES, Number, Rounding, exactly, plain, roughly, sym
 from sizes import positive, vector
 
 UNIT = CPU_DOUBLES.unit
-# A difference of exact numbers, relative to itself.
-DIFFERENCE = UNIT / (1 - UNIT)
+DIFFERENCE = CPU_DOUBLES.of_result
 # What underflow takes is a number.
 UNDERFLOW = [Rule(("flushed",), CPU_DOUBLES.flushed)]
 

@@ -8,8 +8,7 @@ from sizes import positive, vector
 from triangle_claims import quotient
 
 UNIT = DEVICE_DOUBLES.unit
-# A difference of exact numbers, relative to itself.
-DIFFERENCE = UNIT / (1 - UNIT)
+DIFFERENCE = DEVICE_DOUBLES.of_result
 # Coordinates in doubles are at most 10^25 (docs/method.md, "Ranges").
 UNDERFLOW = underflow(DEVICE_DOUBLES, lambda symbol: 10**25)
 

@@ -2,23 +2,17 @@
 
 Flushing is left out here: 1e-18 is for that, and what is too large or too small is refused (by hand).
 """
-from dataclasses import replace
 from fractions import Fraction
 
 from claims import Claim, Inequality, Shared, at_most
 from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial, summed, total
-from rounding import DEVICE_FLOATS, ZERO, Number, exactly, plain, symbol
+from rounding import ZERO, Number, exactly, plain, symbol
 from sizes import WITHIN, positive, symbols, together, vector, within
+from triangle_claims import COMPONENT, FLOATS, HOST, ROUNDED, UNIT
 
 FILES = ["shaders/shared/two_floats.glsl", "shaders/contact/nodes.glsl", "shaders/contact/node_pair.glsl"]
-HOST = ["engine/scene/placement.cpp"]
-FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
-UNIT, DIVISION, NEAREST = FLOATS.unit, FLOATS.division, Fraction(1, 1 << 24)
-# A rounding, relative to its result.
-ROUNDED = UNIT / (1 - UNIT)
-# A direction of unit length, whose components are rounded to floats; 1 stands for their sizes.
-DIRECTION = NEAREST + Fraction(1, 1 << 50)
+DIVISION = FLOATS.division
 # The sum of |n_j| is rounded twice, but to no less than the greatest |n_j|. If the others are less than 2^-12 of that,
 # |n| is within a quarter of an ulp of it; else the sum is above |n| by more. So this times the sum is no less than |n|,
 # as computed.
@@ -88,12 +82,11 @@ class Pair:
             return Vector(ONES + [last])
 
         errors = positive(f"e{letter}"), positive(f"size{letter}")
-        direction = Number(Polynomial.constant(1), DIRECTION)
         table = {
             texel("kTexelReach"): Vector(vector(f"reach{letter}", nonnegative=True) + [UNKNOWN]),
             texel("kTexelOrigin"): row(exactly(1)),
             texel("kTexelError"): Vector([*errors, UNKNOWN, UNKNOWN]),
-            texel("kTexelDirection"): Vector([direction] * 3 + [exactly(1)]),
+            texel("kTexelDirection"): Vector([COMPONENT] * 3 + [exactly(1)]),
             texel("kTexelCentre"): row(positive("D")),
             texel("kTexelMask"): row(exactly(1)),
         }
@@ -295,7 +288,7 @@ def boxes_of_objects(sources):
     ends = evaluator.call("meetsBox", box, middle, size)
     for k in range(3):
         at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
-        relative = (DIRECTION + DIVISION) * (1 + 4 * UNIT)
+        relative = (COMPONENT.error + DIVISION) * (1 + 4 * UNIT)
         need = symbol(f"size{k}") + symbol(f"half{k}") + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")
         rules = at_most({f"at{k}": at.size, f"extent{k}": reach.size})

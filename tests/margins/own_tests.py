@@ -34,6 +34,7 @@ def _stopping():
         "a renamed function": lambda: _evaluate("float h(float x) { return x; }"),
         "a function twice": lambda: _evaluate("float f(float x) { return x; } float f(float x) { return x * x; }"),
         "a name that the source lacks": lambda: _evaluate(identity, names={"y": "y"}),
+        "a value that the source has no place for": lambda: _evaluate(identity, names={"z": iter("yz")}),
         "a constant that the source lacks": lambda: _sources(identity).literal("f", "3.0 * x"),
     }
     for what, case in cases.items():

@@ -34,6 +34,11 @@ class Arithmetic:
     sums_lose: bool  # whether sums lose FLUSHED, too; they are exact where numbers below the normal range are kept
     ordered: bool = False  # sums have the order that is written
 
+    @property
+    def of_result(self):
+        """A rounding of a sum or product, relative to the result."""
+        return self.unit / (1 - self.unit)
+
 
 _ANY_DIRECTION = Fraction(2) ** -23
 # Floats on a device. Vulkan fixes neither the rounding direction nor whether subnormal numbers are flushed.

@@ -19,8 +19,9 @@ HOST = ["engine/scene/placement.cpp"]
 # Where flushing is left out.
 FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
 UNIT, NEAREST = DEVICE_FLOATS.unit, Fraction(1, 1 << 24)
-# A rounding, relative to its result.
-ROUNDED = UNIT / (1 - UNIT)
+ROUNDED = DEVICE_FLOATS.of_result
+# A component of a direction of unit length, rounded to nearest; 1 stands for its size.
+COMPONENT = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50))
 AXES = "xyz"
 
 E = symbol("E")
@@ -144,16 +145,15 @@ def placed_triangle(sources, side, counting):
     - m00 to m22, the matrix: its two parts are added with one rounding, and hold it to 2^-39;
     - apart0 to apart2, the rows of the anchors' difference: only their last rounding is charged to the margin checked
       here;
-    - the frame's axes: unit vectors, whose components were rounded to floats; 1 stands for their sizes;
+    - the frame's axes;
     - q0x to q2z, the corners less the anchor: (vertex - origin) perUnit is exact.
     """
-    axis = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50))
     # Only nonnegative numbers, which do not matter here.
     other = plain("other", nonnegative=True, scales=True)
     error_texel = sources.value("kTexelError")
 
     def texel(_, number):
-        return Vector([other] * 4) if number == error_texel else Vector([axis] * 3 + [other])
+        return Vector([other] * 4) if number == error_texel else Vector([COMPONENT] * 3 + [other])
 
     def entry(name, error):
         return plain(name, symbol(name) * error)

@@ -40,13 +40,13 @@ TABLES = {
 }
 
 
-def report(claim, constant):
-    """Prints a row of the table, and returns a complaint or none."""
-    token, value = claim.token(constant), claim.sources.number(constant.owner, constant.text)
-    least = claim.least_that_proves(constant)
+def report(claim, owner, text):
+    """Prints a row of the table, and returns a list of a complaint or none."""
+    token, value = claim.sources.literal(owner, text), claim.sources.number(owner, text)
+    least = claim.least_that_proves(owner, text)
     room = f"{float(value / least):.7g}" if least else "-"
-    owner = constant.owner.split("::")[-1]
-    print(f"  {claim.name:29} {owner:18} {constant.text[:44]:45} {float(value):12.8g} {float(least):12.8g}  {room}")
+    owner = owner.split("::")[-1]
+    print(f"  {claim.name:29} {owner:18} {text[:44]:45} {float(value):12.8g} {float(least):12.8g}  {room}")
     if least == 0:
         wrong = "holds without this constant"
     elif not claim.lacking({token: least * Fraction(3, 4)}):
@@ -55,7 +55,7 @@ def report(claim, constant):
         wrong = "does not hold with the least constant found"
     else:
         return []
-    return [f"{token.place}: {constant.text}: '{claim.name}' {wrong}"]
+    return [f"{token.place}: {text}: '{claim.name}' {wrong}"]
 
 
 def main():
@@ -70,7 +70,7 @@ def main():
                 complaints.append(f"{place}: {what}: it lacks {str(lacks)[:400]}")
             if not lacking:
                 proved += 1
-                complaints += [complaint for constant in claim.constants for complaint in report(claim, constant)]
+                complaints += [complaint for constant in claim.constants for complaint in report(claim, *constant)]
     print(f"{proved} claims proved")
     for complaint in complaints:
         print(complaint, file=sys.stderr)

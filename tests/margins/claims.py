@@ -110,19 +110,11 @@ class Inequality:
 
 
 @dataclass
-class Constant:
-    """A constant of a margin: the first number in `text`, in a function or constant of the sources."""
-
-    owner: str
-    text: str
-
-
-@dataclass
 class Claim:
     """Bounds the error of what a function computes by its margin.
 
-    constants: texts, in the function, or pairs of another owner and a text. statement: from the sources of the files to
-    inequalities.
+    constants: of the margin, each the first number in a text in the function, or in another function or constant, with
+    which it makes a pair. statement: from the sources of the files to inequalities.
     """
 
     name: str
@@ -132,7 +124,7 @@ class Claim:
     statement: object
 
     def __post_init__(self):
-        self.constants = [Constant(*c) if isinstance(c, tuple) else Constant(self.function, c) for c in self.constants]
+        self.constants = [c if isinstance(c, tuple) else (self.function, c) for c in self.constants]
         self.sources = Sources.of(*self.files)
 
     def inequalities(self, replaced):
@@ -140,26 +132,21 @@ class Claim:
         try:
             return list(self.statement(self.sources.replacing(replaced)))
         except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
-            raise SourceError(
-                f"{self.token(self.constants[0]).place}: the claim '{self.name}' does not understand {self.function}: "
-                f"{type(error).__name__}: {error}"
-            ) from error
+            what = f"the claim '{self.name}' does not understand {self.function}: {type(error).__name__}: {error}"
+            raise SourceError(f"{self.sources.literal(*self.constants[0]).place}: {what}") from error
 
     def lacking(self, replaced=None):
         """The inequalities that do not hold, with what they lack."""
         balances = [(inequality.what, inequality.lacking()) for inequality in self.inequalities(replaced or {})]
         return [(what, lacks) for what, lacks in balances if lacks.terms]
 
-    def token(self, constant):
-        return self.sources.literal(constant.owner, constant.text)
-
-    def least_that_proves(self, constant):
+    def least_that_proves(self, owner, text):
         """The least value of the constant with which the claim holds, 0 if it is not needed: from above, up to a 256th
         of the room, or a part in 2^20.
 
         Margins are affine in each constant, so two values give those for all others.
         """
-        token, value = self.token(constant), self.sources.number(constant.owner, constant.text)
+        token, value = self.sources.literal(owner, text), self.sources.number(owner, text)
         low, high = value * Fraction(1025, 1024), value * Fraction(1281, 1024)
         pairs = zip(self.inequalities({token: low}), self.inequalities({token: high}), strict=True)
         depending = [(p, q) for p, q in pairs if (p.margin - q.margin).terms or (p.need - q.need).terms]

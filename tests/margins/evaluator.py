@@ -10,11 +10,8 @@ _ON_INTEGERS = {
 }
 
 
-class Unknown:
-    """A condition, integer or text that the evaluation does not follow. Only an assumption decides it."""
-
-
-UNKNOWN = Unknown()
+# A condition, integer or text that the evaluation does not follow. Only an assumption decides it.
+UNKNOWN = object()
 
 
 class Vector(list):
@@ -211,7 +208,7 @@ class Evaluator:
         if not node.parts:
             return {"type": base} if is_struct else Vector()
         value = self.evaluate(node.parts[0], scope)
-        return self._struct(node, base, value) if is_struct and node.parts[0].kind == "list" else value
+        return self._struct(base, value) if is_struct and node.parts[0].kind == "list" else value
 
     def _assign(self, target, value, scope):
         value = self._renamed(scope, target.text, self.settled(value))
@@ -274,7 +271,7 @@ class Evaluator:
                 return Vector(values)
             case "binary":
                 return self._binary(node, node.name, *values)
-            case "unary" | "member" | "index" if isinstance(values[0], Unknown):
+            case "unary" | "member" | "index" if values[0] is UNKNOWN:
                 return UNKNOWN
             case "index":
                 return values[0][values[1]]
@@ -303,7 +300,7 @@ class Evaluator:
             return _ON_INTEGERS[name](p, q)
         if name in ("<", ">", "<=", ">=") and isinstance(p, Number) and isinstance(q, Number):
             self.compared.append((node.text, self.settled(p), self.settled(q)))
-        if name not in ("+", "-", "*", "/") or isinstance(p, Unknown) or isinstance(q, Unknown):
+        if name not in ("+", "-", "*", "/") or p is UNKNOWN or q is UNKNOWN:
             return UNKNOWN
         if name == "*":
             return self._multiply(p, q)
@@ -347,7 +344,7 @@ class Evaluator:
         if node.name in self.contracts:
             return self._in_place(self.contracts, node.name, *map(self.settled, arguments))
         if node.name in self.sources.structs and node.name not in self.sources.functions:
-            return self._struct(node, node.name, arguments)
+            return self._struct(node.name, arguments)
         if name in _BUILT_IN and node.name not in self.sources.functions:
             return _BUILT_IN[name](self, *arguments)
         function = self._function(name, arguments)
@@ -357,11 +354,8 @@ class Evaluator:
                 self._assign(part, inner[parameter], scope)
         return result
 
-    def _struct(self, node, name, values):
-        members = self.sources.structs[name]
-        if len(values) != len(members):
-            raise SourceError(f"{node.token.place}: {name} has {len(members)} members, not {len(values)}")
-        return dict(zip(members, values), type=name)
+    def _struct(self, name, values):
+        return dict(zip(self.sources.structs[name], values, strict=True), type=name)
 
     def _vector(self, n, values):
         flat = [x for value in values for x in (value if isinstance(value, Vector) else [_real(value)])]

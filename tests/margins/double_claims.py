@@ -1,10 +1,8 @@
 """The margins of tests in doubles on a device, and of bounds that become floats."""
-from functools import partial
-
 from claims import Claim, Inequality, underflow, without_flushing
 from evaluator import UNKNOWN, Evaluator, Vector
 from rounding import DEVICE_DOUBLES, DEVICE_FLOATS, Rounding, converted, plain, symbol
-from sizes import positive, vector
+from sizes import holds, positive, vector
 from triangle_claims import quotient
 
 UNIT = DEVICE_DOUBLES.unit
@@ -21,12 +19,6 @@ def bounded(name, **more):
 def bounded_vector(name):
     numbers = [bounded(f"{name}{k}") for k in range(3)]
     return {"type": "BoundedVector"} | {part: Vector(n[part] for n in numbers) for part in ("value", "error")}
-
-
-def plane_of(sources):
-    vectors = [vector(name, DIFFERENCE) for name in "xyz"]
-    plane = Evaluator(sources, DEVICE_DOUBLES).call("planeOf", *vectors, vector("d"))
-    yield Inequality("error of x . (y cross z)", plane["error"].least, plane["value"].error, [UNDERFLOW])
 
 
 def quotient_of(sources):
@@ -93,23 +85,6 @@ def rounded_up(sources):
     yield Inequality("upper bound of a pair", limit.least, exact, [without_flushing])
 
 
-def operation(name, one, other, sources):
-    """The bounds of a result hold.
-
-    What a difference loses is relative to the result; and it loses nothing to underflow, since numbers are 0 or far
-    from it.
-    """
-    is_difference = name in ("minus", "difference")
-    names = {"value": "value"} if is_difference else {}
-    result = Evaluator(sources, DEVICE_DOUBLES, names=names).call(name, one, other)
-    values, errors = (x if isinstance(x, Vector) else [x] for x in (result["value"], result["error"]))
-    steps = [without_flushing if is_difference else UNDERFLOW]
-    return [
-        Inequality(f"component {k}", error.least, value.error, steps)
-        for k, (value, error) in enumerate(zip(values, errors, strict=True))
-    ]
-
-
 ALLOWED = """Bounded(slack.value * largest, (slack.error * (largest + error) + slack.value * error +
     kHalfUlp * slack.value * largest) * kMore + kTiny)"""
 
@@ -138,9 +113,14 @@ def claims():
     refine = [LOWER_HI, "shaders/contact/refine.comp.glsl"]
     certificate = [BOUNDS, "shaders/contact/certificate.glsl"]
     vectors = bounded_vector("p"), bounded_vector("q")
-    minus = partial(operation, "minus", bounded("p"), bounded("q"))
-    exact = partial(operation, "difference", vector("p"), vector("q"))
-    inner, cross = (partial(operation, name, *vectors) for name in ("inner", "crossProduct"))
+    directions = *(vector(name, DIFFERENCE) for name in "xyz"), vector("d")
+    # What a difference loses is relative to the result; and it loses nothing to underflow, since numbers are 0 or far
+    # from it.
+    relative = {"steps": [without_flushing], "names": {"value": "value"}}
+    minus = holds(DEVICE_DOUBLES, "minus", bounded("p"), bounded("q"), **relative)
+    exact = holds(DEVICE_DOUBLES, "difference", vector("p"), vector("q"), **relative)
+    operations = ("planeOf", directions), ("inner", vectors), ("crossProduct", vectors)
+    plane_of, inner, cross = (holds(DEVICE_DOUBLES, f, *arguments, steps=[UNDERFLOW]) for f, arguments in operations)
     return [
         Claim("x . (y cross z)", "planeOf (doubles)", TRIPLE, bounds, plane_of),
         Claim("quotient of bounded numbers", "quotientOf", QUOTIENT, bounds, quotient_of),

@@ -135,7 +135,7 @@ class Parser:
         text = "".join(token.text for token in self.tokens[start : self.at])
         return Node(kind, self.tokens[start], text, list(parts), name, value)
 
-    # ---- types
+    # Types
 
     def skip_template_arguments(self):
         """Steps over <...> if it holds only names and numbers."""
@@ -173,7 +173,7 @@ class Parser:
             self.accept(",")
         return found
 
-    # ---- statements
+    # Statements
 
     def statement(self):
         start, token = self.at, self.peek()
@@ -191,7 +191,7 @@ class Parser:
         if self.accept("for"):
             return self.loop(start)
         if self.accept("using"):
-            while self.next().text != ";":
+            while self.next().text not in (";", ""):
                 pass
             return self.node("block", start)
         if self.accept("return", "break", "continue"):
@@ -235,7 +235,7 @@ class Parser:
             return self.node("assign", start, [target, self.initialiser()], operator.text)
         return self.node("evaluate", start, [target])
 
-    # ---- expressions
+    # Expressions
 
     def initialiser(self):
         start = self.at

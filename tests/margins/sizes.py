@@ -1,8 +1,8 @@
 """Inputs that claims of several files have."""
 from fractions import Fraction
 
-from claims import Shared
-from evaluator import Vector
+from claims import Inequality, Shared
+from evaluator import Evaluator, Vector
 from rounding import plain, symbol
 
 # A node's centre and half extent are at most this times the mesh's reach, together.
@@ -22,6 +22,18 @@ def vector(name, relative=0, **more):
 
 def symbols(name):
     return [symbol(f"{name}{k}") for k in range(3)]
+
+
+def holds(arithmetic, function, *arguments, steps, spare=0, **conditions):
+    """A statement: the error of what a function returns, a value or a vector, is at most its bound less `spare`."""
+
+    def statement(sources):
+        result = Evaluator(sources, arithmetic, **conditions).call(function, *arguments)
+        values, errors = (x if isinstance(x, Vector) else [x] for x in (result["value"], result["error"]))
+        for k, (value, error) in enumerate(zip(values, errors, strict=True)):
+            yield Inequality(f"error of component {k} of {function}", error.least, value.error + spare, steps)
+
+    return statement
 
 
 def together(one, other, bound):

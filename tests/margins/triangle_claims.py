@@ -7,7 +7,7 @@ from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial, total
 from reader import SourceError
 from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, exactly, given, known, plain, symbol
-from sizes import ROOT_OF_3
+from sizes import ROOT_OF_3, holds
 
 FILES = [
     "shaders/shared/triangle_pair_bounds.glsl",
@@ -52,25 +52,12 @@ def positive(name):
 SIGN = exactly(1)
 
 
-def face_of(sources):
-    area = Evaluator(sources, DEVICE_FLOATS).call("faceOf", vector("x"), vector("y"), positive("E"))
-    yield Inequality("error of z of x cross y", area["error"].least, area["value"].error, [FLUSHING])
-
-
-def plane_of(sources):
-    """Two FLUSHED are to spare, of which quotientOf may lose one."""
-    arguments = vector("g"), vector("x"), vector("y"), positive("E")
-    plane = Evaluator(sources, DEVICE_FLOATS).call("planeOf", *arguments)
-    need = plane["value"].error + FLUSHED * 2
-    yield Inequality("error of gap . (x cross y)", plane["error"].least, need, [EDGES + FLUSHING])
-
-
 def quotient(sources, arithmetic, bounded, **conditions):
     """Of N / T, with |N - above| <= a and |T - below| <= b: it is at most (a + |above / below| b) / (|below| - b) from
     above / below.
 
     That is algebra (docs/exact.md); here is that the rounded margin is no less. The divisor as computed is named d.
-    Flushing is left out. In floats, it may take one FLUSHED from a + |value| b: plane_of proves that a has it to spare.
+    Flushing is left out. In floats, it may take one FLUSHED from a + |value| b: planeOf has it to spare.
     """
     names = {"divisor": plain("d", nonnegative=True, divides=True), "value": plain("v")}
     above = {"type": bounded, "value": plain("n"), "error": plain("a", nonnegative=True)}
@@ -276,6 +263,10 @@ APART = ["12.0 * kUlp", "1.0001 * error", *PLANE[2:], "16.0 * kUlp", "2.0001 * e
 
 
 def claims():
+    edges = vector("x"), vector("y"), positive("E")
+    face_of = holds(DEVICE_FLOATS, "faceOf", *edges, steps=[FLUSHING])
+    # Two FLUSHED are to spare, of which quotientOf may lose one.
+    plane_of = holds(DEVICE_FLOATS, "planeOf", vector("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * 2)
     errors = ["1.75 * scale * sensorTexel", "1.75 * scale * objectTexel"]
     return [
         Claim("position in two parts", "placementOf", ["0x1p-44 * sum", "0x1p-35 * size"], HOST, positions),

@@ -8,8 +8,6 @@ _SWIZZLES = {c: i for i, c in enumerate("xyzw")}
 _ON_INTEGERS = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "%": operator.mod, "<": operator.lt, "==": operator.eq
 }
-
-
 # A condition, integer or text that the evaluation does not follow. Only an assumption decides it.
 UNKNOWN = object()
 
@@ -128,7 +126,7 @@ class Evaluator:
         scope |= made
         result = self._returned(function.body, scope)
         self.precise = outer
-        return result or made, scope
+        return made if result is None and made else result, scope
 
     def _returned(self, body, scope):
         try:

@@ -9,7 +9,7 @@ from cpu_claims import MOTION_FILES, ROUNDING_FILE, UNIT
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, summed, total
 from rounding import CPU_DOUBLES, CPU_FLOATS, converted, exactly, plain, roughly, symbol
-from sizes import ROOT_OF_3, positive, together, vector, within
+from sizes import ROOT_OF_3, mean_error, positive, together, vector, within
 
 # A node's centre and half extent, together, of normalised vertices, which are below 2.
 REACH = [Polynomial.constant(2)] * 3
@@ -109,7 +109,7 @@ class NodeAxes:
         """What an interval's ends are off by where its middle is m and its half width h."""
         interval = {"from": exactly(0), "to": exactly(0)}
         Evaluator(self.sources, self.real).call("cut", interval, plain("m"), plain("h"))
-        return (interval["from"].error + interval["to"].error) * Fraction(1, 2)
+        return mean_error(interval["from"], interval["to"])
 
 
 def by_boxes(real, sources):
@@ -246,8 +246,7 @@ class LeafAxes:
         margin = {"width": positive("q"), "speed": positive("least")}
         members = {"from": exactly(0), "to": exactly(0), "axis": UNKNOWN}
         evaluator.call("add", plain("m"), positive("h"), plain("s"), margin, 0, members=members)
-        ends = (evaluator.variables[name].times(symbol("v")).error for name in ("from", "to"))
-        return total(ends) * Fraction(1, 2)
+        return mean_error(evaluator.variables["from"], evaluator.variables["to"]) * symbol("v")
 
 
 def by_triangles(real, sources):

@@ -8,8 +8,8 @@ from claims import Claim, Inequality, Shared, at_most
 from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial, summed, total
 from rounding import ZERO, Number, exactly, plain, symbol
-from sizes import WITHIN, positive, symbols, together, vector, within
-from triangle_claims import COMPONENT, FLOATS, HOST, ROUNDED, UNIT
+from sizes import WITHIN, matrix, mean_error, positive, symbols, together, vector, within
+from triangle_claims import COMPONENT, FLOATS, HOST, IN_PARTS, UNIT
 
 FILES = ["shaders/shared/two_floats.glsl", "shaders/contact/nodes.glsl", "shaders/contact/node_pair.glsl"]
 DIVISION = FLOATS.division
@@ -24,14 +24,6 @@ ABOUT = 1 + Fraction(1, 1 << 18)
 ONES = Vector([exactly(1)] * 3)
 
 
-def matrix_of(entry):
-    return Matrix(Vector(entry(i, j) for i in range(3)) for j in range(3))
-
-
-def matrix(name, error):
-    return matrix_of(lambda i, j: plain(f"{name}{i}{j}", symbol(f"{name}{i}{j}") * error))
-
-
 def inverse_of_about_1(x):
     """A bound on 1 / x for x from 1 to 1.00003, and affine."""
     return 2 - x + Fraction(1, 10**9)
@@ -43,7 +35,7 @@ class Pair:
     `own` is the mesh along whose axes nodes are compared, `other` the other one; meshPairOf names by the latter.
     Inputs:
     - nA and nB, the inverse matrices: exact, since any rows will do;
-    - mA and mB, the matrices: their two parts are added with one rounding, and hold them to 2^-39;
+    - mA and mB, the matrices, in two parts;
     - h and l, the differences of the positions' high and low parts: the sensor's are set to 0;
     - reach, residual, e (the placements' errors), size, D (the distance), c (the clearance);
     - the direction.
@@ -110,7 +102,7 @@ class Pair:
             f"abs(way{other} - p.velocity{other})": "raised",
         }
         for letter in "AB":
-            names[f"matrix{letter}"] = matrix(f"m{letter}", ROUNDED + Fraction(1, 1 << 39))
+            names[f"matrix{letter}"] = matrix(f"m{letter}", IN_PARTS)
             names[f"inverse{letter}"] = matrix(f"n{letter}", 0)
         return names
 
@@ -132,7 +124,7 @@ class Pair:
 
     def named_matrix(self):
         """The relative matrix, with w for its entries as computed."""
-        return matrix_of(lambda i, j: plain(f"w{i}{j}", self.matrix[j][i].error))
+        return Matrix(Vector(plain(f"w{i}{j}", self.matrix[j][i].error) for i in range(3)) for j in range(3))
 
     def clearance_paid(self, start, normal):
         """A step: the clearance's part |n| c, with n the sum of the rows times `normal`, is at most `start`, the gap at
@@ -150,8 +142,8 @@ def node(letter, **more):
 
 def of_ends(one, other, *symbols):
     """What both ends of an interval are off by on average, in terms with one of the symbols."""
-    error = (one.error + other.error) * Fraction(1, 2)
-    return Polynomial((m, c) for m, c in error.terms.items() if any(s in symbols for s in m))
+    terms = mean_error(one, other).terms
+    return Polynomial((m, c) for m, c in terms.items() if any(s in symbols for s in m))
 
 
 def along_axes(sources):
@@ -254,8 +246,7 @@ def along_normal(pair, negative):
     need = slabs + total((r[j] + rest[j].error) * halves[j] for j in range(3))
     need += total(g[k] * pair.needs(k) for k in range(3)) + kept["gap"].error
     need += pair.latest * (kept["way"].error + raised + (way + raised) * by_motion) + (gap + symbol("extent")) * by_gap
-    enter, leave = (end.times(symbol("held")).error for end in ends)
-    need += (enter + leave) * Fraction(1, 2)
+    need += mean_error(*ends) * symbol("held")
 
     reaches = summed("g{k} reach{own}{k}", own=own) * WITHIN
     n = [summed("g{k} w{k}{j}", j=j) * (1 + 4 * UNIT) for j in range(3)]

@@ -2,7 +2,7 @@
 from fractions import Fraction
 
 from claims import Inequality, Shared
-from evaluator import Evaluator, Vector
+from evaluator import Evaluator, Matrix, Vector
 from rounding import plain, symbol
 
 # A node's centre and half extent are at most this times the mesh's reach, together.
@@ -18,6 +18,16 @@ def positive(name, **more):
 def vector(name, relative=0, **more):
     """Numbers with symbols `name` and 0 to 2, whose errors are relative to themselves."""
     return Vector(plain(f"{name}{k}", symbol(f"{name}{k}") * relative, **more) for k in range(3))
+
+
+def matrix(name, relative):
+    """A matrix of such numbers, with symbols `name` and their row and column."""
+    return Matrix(map(Vector, zip(*(vector(f"{name}{i}", relative) for i in range(3)))))
+
+
+def mean_error(one, other):
+    """What both ends of an interval are off by on average."""
+    return (one.error + other.error) * Fraction(1, 2)
 
 
 def symbols(name):

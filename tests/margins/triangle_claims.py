@@ -3,11 +3,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 from claims import Claim, Inequality, Rule, at_most
-from evaluator import UNKNOWN, Evaluator, Matrix, Vector
+from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, total
 from reader import SourceError
 from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, exactly, given, known, plain, symbol
-from sizes import ROOT_OF_3, holds
+from sizes import ROOT_OF_3, holds, matrix, vector
 
 FILES = [
     "shaders/shared/triangle_pair_bounds.glsl",
@@ -20,6 +20,8 @@ HOST = ["engine/scene/placement.cpp"]
 FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
 UNIT, NEAREST = DEVICE_FLOATS.unit, Fraction(1, 1 << 24)
 ROUNDED = DEVICE_FLOATS.of_result
+# Two parts of a matrix's entry, added with one rounding, hold it to 2^-39.
+IN_PARTS = ROUNDED + Fraction(1, 1 << 39)
 # A component of a direction of unit length, rounded to nearest; 1 stands for its size.
 COMPONENT = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50))
 AXES = "xyz"
@@ -39,7 +41,7 @@ FLUSHING = [
 EDGES = [Rule(("flushed", f"{edge}{axis}"), FLUSHED * E * 10**6) for edge in "xy" for axis in AXES]
 
 
-def vector(name, axes=AXES, counts=True):
+def difference(name, axes=AXES, counts=True):
     """A difference of coordinates, off by at most E. `counts`: margins that grow with it may be counted on."""
     return Vector(given(f"{name}{axis}", E, counts=counts) for axis in axes)
 
@@ -77,10 +79,10 @@ def quotient_of(sources):
 def edge_separates(sources):
     """s < -margin implies that the exact s is below -clearance |edge|, for each corner, whatever the others are."""
     for i in range(3):
-        names = {f"d{k}": vector(f"d{k}", "xy", counts=k == i) for k in range(3)}
-        evaluator = Evaluator(sources, DEVICE_FLOATS, names=names | {"e": vector("e", "xy")})
-        other = {"type": "PlacedTriangle", "corners": [vector("o")] * 3}
-        edge = vector("p", "xy"), vector("q", "xy")
+        names = {f"d{k}": difference(f"d{k}", "xy", counts=k == i) for k in range(3)}
+        evaluator = Evaluator(sources, DEVICE_FLOATS, names=names | {"e": difference("e", "xy")})
+        other = {"type": "PlacedTriangle", "corners": [difference("o")] * 3}
+        edge = difference("p", "xy"), difference("q", "xy")
         evaluator.call("edgeSeparates", *edge, SIGN, other, positive("E"), positive("c"))
         margin, s = (evaluator.variables[name] for name in ("margin", f"s{i}"))
         need = s.error + symbol("c") * (symbol("ex") + symbol("ey") + 2 * E)
@@ -104,9 +106,9 @@ def plane_keeps_apart(sources):
         names = {"n": name_normal}
         evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"signOf": SIGN}, names=names)
         area = {"type": "BoundedFloat", "value": given("t", normal=True), "error": positive("b")}
-        gaps = [vector(f"g{k}", counts=k == i) for k in range(3)]
+        gaps = [difference(f"g{k}", counts=k == i) for k in range(3)]
         arguments = positive("E"), positive("c"), positive("l")
-        evaluator.call("planeKeepsApart", vector("x"), vector("y"), area, *gaps, *arguments)
+        evaluator.call("planeKeepsApart", difference("x"), difference("y"), area, *gaps, *arguments)
         n, h, margin, reached = (evaluator.variables[name] for name in ("n", f"h{i}", "margin", "reached"))
         length = total(symbol(f"n{k}") + c.error.without("flushed") for k, c in enumerate(n))
         gap = total(symbol(f"g{i}{axis}") for axis in AXES)
@@ -129,11 +131,11 @@ def placed_triangle(sources, side, counting):
     """Evaluates pairFrameOf and placedTriangle for a triangle of `side`, of which corner number `counting` counts.
 
     Flushing is left out: 1e-37 and 1e-30 are for that (by hand). Inputs, in the sensor's unit of length:
-    - m00 to m22, the matrix: its two parts are added with one rounding, and hold it to 2^-39;
+    - m00 to m22, the matrix, in two parts;
     - apart0 to apart2, the rows of the anchors' difference: only their last rounding is charged to the margin checked
       here;
     - the frame's axes;
-    - q0x to q2z, the corners less the anchor: (vertex - origin) perUnit is exact.
+    - q00 to q22, the corners less the anchor: (vertex - origin) perUnit is exact.
     """
     # Only nonnegative numbers, which do not matter here.
     other = plain("other", nonnegative=True, scales=True)
@@ -142,16 +144,11 @@ def placed_triangle(sources, side, counting):
     def texel(_, number):
         return Vector([other] * 4) if number == error_texel else Vector([COMPONENT] * 3 + [other])
 
-    def entry(name, error):
-        return plain(name, symbol(name) * error)
-
     def corner(i):
-        numbers = Vector(entry(f"q{i}{axis}", ROUNDED) for axis in AXES)
+        numbers = vector(f"q{i}", ROUNDED)
         return numbers if i == counting else Vector(replace(n, least=ZERO) for n in numbers)
 
-    matrix = Matrix(Vector(entry(f"m{i}{j}", ROUNDED + Fraction(1, 1 << 39)) for i in range(3)) for j in range(3))
-    apart = Vector(entry(f"apart{k}", ROUNDED) for k in range(3))
-    names = {f"matrix{side}": matrix, "apart": apart}
+    names = {f"matrix{side}": matrix("m", IN_PARTS), "apart": vector("apart", ROUNDED)}
     frame = frame_of(sources, texel, SIGN, names=names)
     contracts = {"triangleAt": UNKNOWN, "vertexAt": UNKNOWN, "normalised": iter(map(corner, range(3)))}
     zero = Vector(exactly(0) for _ in AXES)
@@ -263,10 +260,10 @@ APART = ["12.0 * kUlp", "1.0001 * error", *PLANE[2:], "16.0 * kUlp", "2.0001 * e
 
 
 def claims():
-    edges = vector("x"), vector("y"), positive("E")
+    edges = difference("x"), difference("y"), positive("E")
     face_of = holds(DEVICE_FLOATS, "faceOf", *edges, steps=[FLUSHING])
     # Two FLUSHED are to spare, of which quotientOf may lose one.
-    plane_of = holds(DEVICE_FLOATS, "planeOf", vector("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * 2)
+    plane_of = holds(DEVICE_FLOATS, "planeOf", difference("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * 2)
     errors = ["1.75 * scale * sensorTexel", "1.75 * scale * objectTexel"]
     return [
         Claim("position in two parts", "placementOf", ["0x1p-44 * sum", "0x1p-35 * size"], HOST, positions),

@@ -5,12 +5,8 @@ small, or if a function has changed so that a claim does not understand it any m
 
 The functions are read from their sources (reader.py) and evaluated on numbers that carry bounds (evaluator.py,
 rounding.py): each is what a machine computes where the formula, on exact inputs, has another value. Bounds of its size
-and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors.
-
-The model. A float operation on a device is off by at most an ulp of 1, relative, in any direction, a division by 2.5;
-the CPU's operations and those of doubles by half an ulp. On a device, what is below the normal range may be flushed to
-0, at every use or at none, and the terms of a sum in one expression are added in any order; a variable, and what a
-function returns, is rounded as it stands. Fused multiply-adds only omit roundings.
+and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors. rounding.py states
+the model of arithmetic.
 
 A margin in the source is such a polynomial, too, of what it is at least. It is proved if none of its coefficients is
 less than the error's, after facts have been applied that a claim states: that an intermediate result has a known bound,

@@ -5,8 +5,8 @@ small, or if a function has changed so that a claim does not understand it any m
 
 The functions are read from their sources (reader.py) and evaluated on numbers that carry bounds (evaluator.py,
 rounding.py): each is what a machine computes where the formula, on exact inputs, has another value. Bounds of its size
-and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors. rounding.py states
-the model of arithmetic.
+and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors. The model of
+arithmetic stands in rounding.py.
 
 A margin in the source is such a polynomial, too, of what it is at least. It is proved if none of its coefficients is
 less than the error's, after facts have been applied that a claim states: that an intermediate result has a known bound,

@@ -9,12 +9,13 @@ bounds are polynomials:
     least   |computed| is at least this, or 0 if this is negative
 
 An operation gives the exact result on its computed operands within `unit` of it, relative, in any direction, a division
-within `division`: on a device, an ulp of 1 and 2.5 for floats; else half an ulp. Besides, it loses at most FLUSHED: the result may be flushed to 0, and so may it be in one of its
-uses but not in another, if it is below the normal range. That is charged once, where a number is made; a sum of numbers
-that are not negative loses only terms that have been charged, because a sum below the normal range has no other terms.
-A sum is rounded only where it is used for something else than a sum, or has a name, in the least favourable order: each
-of n terms passes n - 1 additions. Only what is `precise` has the order that is written, and what the CPU computes. A
-contraction to a fused multiply-add omits roundings, so it has these bounds, too.
+within `division`: for floats on a device an ulp of 1 and 2.5 of them, else half an ulp. Besides, it loses at most
+FLUSHED: the result may be flushed to 0, and so may it be in one of its uses but not in another, if it is below the
+normal range. That is charged once, where a number is made; a sum of numbers that are not negative loses only terms that
+have been charged, because a sum below the normal range has no other terms. A sum is rounded only where it is used for
+something else than a sum, or has a name, in the least favourable order: each of n terms passes n - 1 additions. Only
+what is `precise` has the order that is written, and what the CPU computes. A contraction to a fused multiply-add omits
+roundings, so it has these bounds, too.
 """
 from dataclasses import dataclass, replace
 from fractions import Fraction

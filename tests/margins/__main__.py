@@ -5,12 +5,8 @@ small, or if a function has changed so that a claim does not understand it any m
 
 The functions are read from their sources (reader.py) and evaluated on numbers that carry bounds (evaluator.py,
 rounding.py): each is what a machine computes where the formula, on exact inputs, has another value. Bounds of its size
-and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors.
-
-The model. A float operation on a device is off by at most an ulp of 1, relative, in any direction, a division by 2.5;
-the CPU's operations and those of doubles by half an ulp. On a device, what is below the normal range may be flushed to
-0, at every use or at none, and the terms of a sum in one expression are added in any order; a variable, and what a
-function returns, is rounded as it stands. Fused multiply-adds only omit roundings.
+and of its error are polynomials with exact coefficients, in symbols for the inputs' sizes and errors. The model of
+arithmetic stands in rounding.py.
 
 A margin in the source is such a polynomial, too, of what it is at least. It is proved if none of its coefficients is
 less than the error's, after facts have been applied that a claim states: that an intermediate result has a known bound,
@@ -21,59 +17,57 @@ Each constant of a margin is also lowered until the proof fails: *room* is by wh
 proves. With three quarters of that, the claim must fail.
 """
 import sys
-import time
 from fractions import Fraction
-from pathlib import Path
 
 import cpu_claims
+import cpu_node_claims
 import double_claims
 import node_claims
 import own_tests
 import triangle_claims
-from reader import SourceError, number_of
+from reader import SourceError
 
-ROOT = Path(__file__).resolve().parents[2]
-TABLES = [
-    ("Pairs of triangles, floats", triangle_claims),
-    ("Nodes, floats", node_claims),
-    ("Doubles on a device", double_claims),
-    ("The CPU", cpu_claims),
-]
+TABLES = {
+    "Pairs of triangles, floats": triangle_claims,
+    "Nodes, floats": node_claims,
+    "Doubles on a device": double_claims,
+    "The CPU": cpu_claims,
+    "Nodes and leaves, the CPU": cpu_node_claims,
+}
 
 
-def report(claim, constant):
-    """A row of the table, and a complaint or none."""
-    token = claim.token(constant)
-    value, least = Fraction(number_of(token)), claim.least_that_proves(constant)
-    complaint = None
-    if least == 0:
-        complaint = f"{token.place}: {constant.text}: '{claim.name}' holds without this constant"
-    elif not claim.lacking({token: least * Fraction(3, 4)}):
-        complaint = f"{token.place}: {constant.text}: '{claim.name}' holds with 3/4 of the least that proves it"
-    elif claim.lacking({token: least}):
-        complaint = f"{token.place}: {constant.text}: '{claim.name}' does not hold with the least constant found"
+def report(claim, owner, text):
+    """Prints a row of the table, and returns a list of a complaint or none."""
+    token, value = claim.sources.literal(owner, text), claim.sources.number(owner, text)
+    least = claim.least_that_proves(owner, text)
     room = f"{float(value / least):.7g}" if least else "-"
-    owner = constant.owner.split("::")[-1]
-    print(f"  {claim.name:29} {owner:18} {constant.text[:44]:45} " f"{float(value):12.8g} {float(least):12.8g}  {room}")
-    return complaint
+    owner = owner.split("::")[-1]
+    print(f"  {claim.name:29} {owner:18} {text[:44]:45} {float(value):12.8g} {float(least):12.8g}  {room}")
+    if least == 0:
+        wrong = "holds without this constant"
+    elif not claim.lacking({token: least * Fraction(3, 4)}):
+        wrong = "holds with 3/4 of the least that proves it"
+    elif claim.lacking({token: least}):
+        wrong = "does not hold with the least constant found"
+    else:
+        return []
+    return [f"{token.place}: {text}: '{claim.name}' {wrong}"]
 
 
 def main():
-    start, complaints, proved = time.time(), own_tests.complaints(), 0
+    complaints, proved = own_tests.complaints(), 0
     print(f"  {'claim':29} {'in':18} {'margin':45} {'constant':>12} {'least':>12}  room")
-    for title, module in TABLES:
+    for title, module in TABLES.items():
         print(f"{title}:")
-        for claim in module.claims(ROOT):
+        for claim in module.claims():
             lacking = claim.lacking()
             for what, lacks in lacking:
-                complaints.append(
-                    f"{claim.function}: a margin of '{claim.name}' is too small: {what}: it lacks {str(lacks)[:400]}"
-                )
-            if lacking:
-                continue
-            proved += 1
-            complaints += [c for c in (report(claim, constant) for constant in claim.constants) if c]
-    print(f"{proved} claims proved in {time.time() - start:.1f} s")
+                place = f"{claim.function}: a margin of '{claim.name}' is too small"
+                complaints.append(f"{place}: {what}: it lacks {str(lacks)[:400]}")
+            if not lacking:
+                proved += 1
+                complaints += [complaint for constant in claim.constants for complaint in report(claim, *constant)]
+    print(f"{proved} claims proved")
     for complaint in complaints:
         print(complaint, file=sys.stderr)
     return 1 if complaints else 0

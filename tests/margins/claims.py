@@ -1,29 +1,63 @@
 """What is to be proved, and how: a claim is one or more inequalities between polynomials."""
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from polynomial import Polynomial, polynomial
-from reader import SourceError, number_of
+from polynomial import Polynomial, divided
+from reader import SourceError, Sources
 
 
 @dataclass
 class Rule:
     """A fact: the product of the symbols `factor` is at most `bound`. Pays for what a margin lacks in monomials with
-    that factor, unless they contain one of `unless`."""
+    that factor."""
 
     factor: tuple
     bound: Polynomial
-    unless: tuple = ()
 
-    def applies(self, monomial):
-        left = list(monomial)
-        for symbol in self.factor:
-            if symbol not in left:
-                return None
-            left.remove(symbol)
-        if any(symbol in monomial for symbol in self.unless):
-            return None
-        return tuple(left)
+    def bound_of(self, monomial):
+        left = divided(monomial, self.factor)
+        return None if left is None else Polynomial([(left, 1)]) * self.bound
+
+
+def at_most(bounds):
+    """Rules from a dict, by symbols or by tuples of them."""
+    return [Rule(f if isinstance(f, tuple) else (f,), bound) for f, bound in bounds.items()]
+
+
+@dataclass
+class Shared:
+    """A step for products of symbols, `parts`, that together are at most `bound`: what a balance lacks of the part of
+    which it lacks most is paid by the bound instead. What it has to spare in the parts is left out."""
+
+    parts: list
+    bound: Polynomial
+
+    def __call__(self, balance):
+        rest, lacks = [], {}
+        for monomial, c in balance.terms.items():
+            factor = next((left for part in self.parts if (left := divided(monomial, part)) is not None), None)
+            if factor is None:
+                rest.append((monomial, c))
+            else:
+                lacks[factor] = min(lacks.get(factor, 0), c)
+        return Polynomial(rest) + Polynomial(lacks.items()) * self.bound
+
+
+def without_flushing(balance):
+    """A step that leaves out what underflow takes."""
+    return balance.without("flushed")
+
+
+def underflow(arithmetic, most):
+    """A step: what underflow takes, as a number. `most`: a bound on each symbol by which it is multiplied."""
+
+    def as_number(monomial, c):
+        if "flushed" not in monomial:
+            return monomial, c
+        return (), c * math.prod(arithmetic.flushed if s == "flushed" else most(s) for s in monomial)
+
+    return lambda balance: Polynomial(as_number(monomial, c) for monomial, c in balance.terms.items())
 
 
 def paid(balance, rules):
@@ -34,11 +68,7 @@ def paid(balance, rules):
     terms = dict(balance.terms)
 
     def bound_of(monomial):
-        bounds = [
-            rule.bound * Polynomial({left: Fraction(1)})
-            for rule in rules
-            if (left := rule.applies(monomial)) is not None
-        ]
+        bounds = [bound for rule in rules if (bound := rule.bound_of(monomial)) is not None]
         has = [bound for bound in bounds if all(terms.get(m, 0) > 0 for m in bound.terms)]
         return (has + bounds + [None])[0]
 
@@ -54,7 +84,7 @@ def paid(balance, rules):
                 terms[m] = terms.get(m, 0) + c * short
                 if terms[m] < 0:
                     lacking.append(m)
-    return Polynomial(terms)
+    return Polynomial(terms.items())
 
 
 @dataclass
@@ -73,66 +103,57 @@ class Inequality:
             balance = step(balance) if callable(step) else paid(balance, step)
         return balance.negative()
 
-
-@dataclass
-class Constant:
-    """A constant of a margin: the first number in `text`, in a function or constant of the sources."""
-
-    owner: str
-    text: str
+    def moved(self, other, share):
+        """The inequality at `share` of the way to another, in which constants have other values."""
+        margin = self.margin + (other.margin - self.margin) * share
+        return replace(self, margin=margin, need=self.need + (other.need - self.need) * share)
 
 
 @dataclass
 class Claim:
     """Bounds the error of what a function computes by its margin.
 
-    statement: from a dict of replaced literals to a list of inequalities. It raises SourceError where the sources have
-    changed their shape.
+    constants: of the margin, each the first number in a text in the function, or in another function or constant, with
+    which it makes a pair. statement: from the sources of the files to inequalities.
     """
 
     name: str
     function: str
     constants: list
-    sources: object
+    files: list
     statement: object
+
+    def __post_init__(self):
+        self.constants = [c if isinstance(c, tuple) else (self.function, c) for c in self.constants]
+        self.sources = Sources.of(*self.files)
+
+    def inequalities(self, replaced):
+        """With literals replaced, by token. Raises SourceError where the sources have changed their shape."""
+        try:
+            return list(self.statement(self.sources.replacing(replaced)))
+        except (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError) as error:
+            what = f"the claim '{self.name}' does not understand {self.function}: {type(error).__name__}: {error}"
+            raise SourceError(f"{self.sources.literal(*self.constants[0]).place}: {what}") from error
 
     def lacking(self, replaced=None):
         """The inequalities that do not hold, with what they lack."""
-        try:
-            inequalities = self.statement(replaced or {})
-        except (AttributeError, IndexError, KeyError, StopIteration, TypeError) as error:
-            raise SourceError(
-                f"{self.token(self.constants[0]).place}: the claim '{self.name}' does not understand {self.function}: "
-                f"{type(error).__name__}: {error}"
-            ) from error
-        balances = [(inequality.what, inequality.lacking()) for inequality in inequalities]
+        balances = [(inequality.what, inequality.lacking()) for inequality in self.inequalities(replaced or {})]
         return [(what, lacks) for what, lacks in balances if lacks.terms]
 
-    def token(self, constant):
-        return self.sources.literal(constant.owner, constant.text)
-
-    def least_that_proves(self, constant):
+    def least_that_proves(self, owner, text):
         """The least value of the constant with which the claim holds, 0 if it is not needed: from above, up to a 256th
         of the room, or a part in 2^20.
 
         Margins are affine in each constant, so two values give those for all others.
         """
-        token = self.token(constant)
-        value = Fraction(number_of(token))
-        samples = [value * Fraction(1025, 1024), value * Fraction(1281, 1024)]
-        at = [self.statement({token: sample}) for sample in samples]
-        depending = [(p, q) for p, q in zip(*at, strict=True) if (p.margin - q.margin).terms or (p.need - q.need).terms]
+        token, value = self.sources.literal(owner, text), self.sources.number(owner, text)
+        low, high = value * Fraction(1025, 1024), value * Fraction(1281, 1024)
+        pairs = zip(self.inequalities({token: low}), self.inequalities({token: high}), strict=True)
+        depending = [(p, q) for p, q in pairs if (p.margin - q.margin).terms or (p.need - q.need).terms]
 
         def holds(c):
-            share = (c - samples[1]) / (samples[0] - samples[1])
-            return not any(
-                Inequality(
-                    p.what, p.margin * share + q.margin * (1 - share), p.need * share + q.need * (1 - share), p.steps
-                )
-                .lacking()
-                .terms
-                for p, q in depending
-            )
+            share = (c - low) / (high - low)
+            return not any(p.moved(q, share).lacking().terms for p, q in depending)
 
         if holds(Fraction(0)):
             return Fraction(0)

@@ -1,22 +1,28 @@
 """Runs functions of the sources on Numbers. Calls are inlined, loops unrolled; conditions must be known or assumed."""
-from reader import SourceError, text_of
+import operator
+
+from reader import SourceError
 from rounding import Number, Rounding, exactly
 
 _SWIZZLES = {c: i for i, c in enumerate("xyzw")}
-
-
-class Unknown:
-    """A condition, integer or text that the evaluation does not follow. Only an assumption decides it."""
-
-
-UNKNOWN = Unknown()
+_ON_INTEGERS = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "%": operator.mod, "<": operator.lt, "==": operator.eq
+}
+# A condition, integer or text that the evaluation does not follow. Only an assumption decides it.
+UNKNOWN = object()
 
 
 class Vector(list):
-    pass
+    """Components, or any elements. Those that are assigned one by one, in their order, make a new one."""
+
+    def __setitem__(self, index, value):
+        if index == len(self):
+            self.append(value)
+        else:
+            super().__setitem__(index, value)
 
 
-class Matrix(list):
+class Matrix(Vector):
     """Columns, as in GLSL."""
 
 
@@ -25,424 +31,352 @@ class Returned(Exception):
         self.value = value
 
 
-class Evaluator:
-    """Evaluates functions under a claim's conditions; all of these must be used, or check_used() stops.
+def each(value, operation):
+    """The value with an operation applied to each Number in it."""
+    if isinstance(value, list):
+        return type(value)(each(part, operation) for part in value)
+    if isinstance(value, dict):
+        return {name: each(part, operation) for name, part in value.items()}
+    return operation(value) if isinstance(value, Number) else value
 
-    contracts: by name, Python functions that take the place of functions; they get this evaluator and the arguments.
+
+def pairwise(p, q, operation):
+    """An operation on two numbers, or on each of a vector's and a number or the other vector's."""
+    if [] in (p, q):
+        raise ValueError("a variable has no value yet")
+    if isinstance(p, Vector) and isinstance(q, Vector):
+        return type(p)(pairwise(x, y, operation) for x, y in zip(p, q, strict=True))
+    if isinstance(p, Vector):
+        return type(p)(pairwise(x, q, operation) for x in p)
+    if isinstance(q, Vector):
+        return type(q)(pairwise(p, y, operation) for y in q)
+    return operation(_real(p), _real(q))
+
+
+def _real(value):
+    return exactly(value) if isinstance(value, int) else value
+
+
+def _fits(value, base):
+    """Whether a value may be an argument for a parameter of a type."""
+    if isinstance(value, Matrix):
+        return base == "mat3" or base[0].isupper()
+    if isinstance(value, Vector):
+        return base.endswith(f"vec{len(value)}") or base[0].isupper()
+    if isinstance(value, dict):
+        return value.get("type", base) == base
+    if isinstance(value, Number):
+        return base in ("float", "double", "Real") or base[0].isupper()
+    return True
+
+
+class Evaluator:
+    """Evaluates functions under a claim's conditions. All of these must be used.
+
+    names: by the text of a variable, or of a call, of the function that is called, what takes the place of its value.
+    A text is the name of a symbol: that of the value as computed; of a vector's components, with their numbers.
+    contracts: by name, what takes the place of functions.
     assumptions: by the text of a condition, whether it holds.
-    names: by "function.variable", or by "function.call(...)" for a call in it, a Python function from the variable's
-    value to the one to go on with.
-    replaced: by token, other values of literals.
-    conversions: like contracts, but they need not be used.
-    globals: by name, values of variables outside functions.
+    globals: by name, values of variables outside functions, and functions; they need not be used.
+
+    What takes a place is a value, a Python function of the value or of the arguments, or an iterator that gives another
+    of these each time, as often as the sources have it.
+
+    values: by the text of a variable, the values that it had, before others took their places.
+    variables: those of the function that has been called, at its end.
+    compared: comparisons of Numbers: text, left, right.
     """
 
-    def __init__(
-        self,
-        sources,
-        arithmetic,
-        *,
-        contracts=None,
-        assumptions=None,
-        names=None,
-        replaced=None,
-        globals=None,
-        conversions=None,
-    ):
+    def __init__(self, sources, arithmetic, *, names=(), contracts=(), assumptions=(), globals=()):
         self.sources, self.rounding = sources, Rounding(arithmetic)
-        self.contracts, self.assumptions, self.names = contracts or {}, assumptions or {}, names or {}
-        self.replaced, self.globals, self.conversions = replaced or {}, globals or {}, conversions or {}
-        self.used = set()
-        self.compared = []  # comparisons of Numbers: text, left, right
-        self.precise = False
-
-    def check_used(self):
-        for what, entries in (("contract", self.contracts), ("assumption", self.assumptions), ("name", self.names)):
-            for entry in entries:
-                if (what, entry) not in self.used:
-                    raise SourceError(f"nothing in the sources corresponds to the claim's {what} '{entry}'")
-
-    # ---- functions
-
-    def call(self, name, *arguments, types=None):
-        """Calls a function of the sources. `types`: those of its parameters, where there are several of the name."""
-        function = self.sources.function(
-            name,
-            lambda f: len(f.parameters) == len(arguments)
-            and (types is None or tuple(p[0] for p in f.parameters) == tuple(types))
-            and all(self._fits(value, p[0]) for value, p in zip(arguments, f.parameters)),
+        self.contracts, self.globals = dict(contracts), dict(globals)
+        self.assumptions, self.names = (
+            {text.replace(" ", ""): value for text, value in dict(given).items()} for given in (assumptions, names)
         )
-        result, _ = self.run(function, arguments)
+        self.values, self.compared, self.variables = {}, [], {}
+        self.called, self.used, self.precise = None, set(), False
+
+    def call(self, name, *arguments, members=()):
+        """The result of a function of the sources. `members`: those of its object."""
+        self.called = name
+        result, self.variables = self._run(self._function(name, arguments), arguments, dict(members))
+        for text, other in (self.names | self.contracts | self.assumptions).items():
+            if text not in self.used or (hasattr(other, "__next__") and next(other, None) is not None):
+                raise SourceError(f"{name}: the sources have no use, or not enough, for the claim's '{text}'")
         return result
 
-    @staticmethod
-    def _fits(value, base):
-        if isinstance(value, Matrix):
-            return base == "mat3" or base[0].isupper()
-        if isinstance(value, Vector):
-            return base[0].isupper() or (base[-4:-1] in ("vec", "dvec") and base.endswith(f"vec{len(value)}"))
-        if isinstance(value, dict):
-            return value.get("type", base) == base
-        if isinstance(value, Number):
-            return base in ("float", "double", "Real") or base[0].isupper()
-        return True
+    def expression(self, owner, text, **variables):
+        """The value of an expression that the function `owner` contains."""
+        return self.settled(self.evaluate(self.sources.expression(owner, text), {"function": owner} | variables))
 
-    def run(self, function, arguments, members=None):
-        """The result of a function, and the values of its variables. `members`: those of its object."""
-        scope = {p[1]: value for p, value in zip(function.parameters, arguments)}
-        scope |= members or {}
-        scope["function"] = function.name
-        for parameter in function.parameters:
-            self._name(scope, parameter[1])
+    def _function(self, name, arguments):
+        def takes(function):
+            bases = [base for base, _, _ in function.parameters]
+            return len(bases) == len(arguments) and all(map(_fits, arguments, bases))
+
+        return self.sources.function(name, takes)
+
+    def _run(self, function, arguments, members):
+        """The result of a function, or the members that a constructor initialises; and the values of its variables."""
+        scope = members | {"function": function.name}
+        for (_, name, _), value in zip(function.parameters, arguments):
+            scope[name] = self._renamed(scope, name, value)
         outer, self.precise = self.precise, False
-        try:
-            self.execute(self.sources.body(function), scope)
-            result = None
-        except Returned as returned:
-            result = self.settled(returned.value)
+        made = {member: self.evaluate(value, scope) for member, value in function.initialised().items()}
+        scope |= made
+        result = self._returned(function.body, scope)
         self.precise = outer
-        return result, scope
+        return made if result is None and made else result, scope
+
+    def _returned(self, body, scope):
+        try:
+            self.execute(body, scope)
+        except Returned as returned:
+            return self.settled(returned.value)
+        return None
 
     def settled(self, value):
         """The value with its sums rounded. Variables are, and what a function returns."""
-        if isinstance(value, dict):
-            return {k: self.settled(v) for k, v in value.items()}
-        if isinstance(value, list) and not isinstance(value, (Vector, Matrix)):
-            return [self.settled(v) for v in value]
-        return self._each(value, self.rounding.settled)
+        return each(value, self.rounding.settled)
 
-    def _name(self, scope, variable):
-        entry = f"{scope['function']}.{variable}"
-        if entry in self.names:
-            self.used.add(("name", entry))
-            scope[variable] = self.names[entry](scope.get(variable))
+    def _renamed(self, scope, text, value):
+        """What a claim puts in the place of a value, or the value."""
+        if scope["function"] != self.called:
+            return value
+        self.values.setdefault(text, []).append(value)
+        if text not in self.names:
+            return value
+        other = self._in_place(self.names, text, value)
+        if not isinstance(other, str):
+            return other
+        if isinstance(value, Vector):
+            return type(value)(self.rounding.named(x, f"{other}{k}") for k, x in enumerate(value))
+        return self.rounding.named(value, other)
 
-    # ---- statements
+    def _in_place(self, conditions, key, *arguments):
+        self.used.add(key)
+        other = conditions[key]
+        if hasattr(other, "__next__"):
+            other = next(other)
+        return other(*arguments) if callable(other) else other
+
+    # Statements
 
     def execute(self, node, scope):
         try:
             self._execute(node, scope)
         except (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-            raise SourceError(f"{node.place}: not understood: {type(error).__name__}: {error}") from error
+            raise SourceError(f"{node.token.place}: not understood: {type(error).__name__}: {error}") from error
 
     def _execute(self, node, scope):
-        kind = node.kind
-        if kind == "block":
-            for part in node.parts:
-                self.execute(part, scope)
-        elif kind == "declare":
-            base, dimensions, qualifiers = node.value
-            outer, self.precise = self.precise, "precise" in qualifiers
-            value = self.evaluate(node.parts[0], scope) if node.parts else self.blank(base, dimensions, scope)
-            if base in self.sources.structs and isinstance(value, list) and node.parts and node.parts[0].kind == "list":
-                value = self._struct(node, base, value)
-            scope[node.name] = self.settled(value)
-            self.precise = outer
-            self._name(scope, node.name)
-        elif kind == "assign":
-            value = self.evaluate(node.parts[1], scope)
-            if node.name != "=":
-                value = self.binary(node, node.name[0], self.evaluate(node.parts[0], scope), value)
-            self.assign(node.parts[0], value, scope)
-        elif kind == "evaluate":
-            self.evaluate(node.parts[0], scope)
-        elif kind == "if":
-            if self.condition(node.parts[0], scope):
-                self.execute(node.parts[1], scope)
-            elif len(node.parts) > 2:
-                self.execute(node.parts[2], scope)
-        elif kind == "for":
-            scope[node.name] = self.evaluate(node.parts[0], scope)
-            while self.condition(node.parts[1], scope):
-                self.execute(node.parts[2], scope)
-                scope[node.name] += 1
-        elif kind == "return":
-            raise Returned(self.evaluate(node.parts[0], scope) if node.parts else None)
-        else:
-            raise SourceError(f"{node.place}: '{kind}' is not understood here")
+        parts = node.parts
+        match node.kind:
+            case "block":
+                for part in parts:
+                    self.execute(part, scope)
+            case "declare":
+                base, qualifiers = node.value
+                outer, self.precise = self.precise, "precise" in qualifiers
+                value = self._initial(node, base, scope)
+                scope[node.name] = self._renamed(scope, node.name, self.settled(value))
+                self.precise = outer
+            case "assign":
+                value = self.evaluate(parts[1], scope)
+                if node.name != "=":
+                    value = self._binary(node, node.name[0], self.evaluate(parts[0], scope), value)
+                self._assign(parts[0], value, scope)
+            case "evaluate":
+                self.evaluate(parts[0], scope)
+            case "if":
+                for part in parts[1:2] if self.condition(parts[0], scope) else parts[2:]:
+                    self.execute(part, scope)
+            case "for":
+                scope[node.name] = self.evaluate(parts[0], scope)
+                while self.condition(parts[1], scope):
+                    self.execute(parts[2], scope)
+                    scope[node.name] += 1
+            case "return":
+                raise Returned(self.evaluate(parts[0], scope) if parts else None)
+            case _:
+                raise SourceError(f"{node.token.place}: '{node.kind}' is not understood here")
 
-    def blank(self, base, dimensions, scope):
-        """A variable without a value."""
-        if dimensions:
-            return [self.blank(base, dimensions[1:], scope) for _ in range(self.evaluate(dimensions[0], scope))]
-        if base in self.sources.structs:
-            return {"type": base}
-        if base in ("vec3", "dvec3", "LaneVec", "Vector"):
-            return Vector([None] * 3)
-        return None
+    def _initial(self, node, base, scope):
+        """The value that a variable is declared with."""
+        is_struct = base in self.sources.structs
+        if not node.parts:
+            return {"type": base} if is_struct else Vector()
+        value = self.evaluate(node.parts[0], scope)
+        return self._struct(base, value) if is_struct and node.parts[0].kind == "list" else value
 
-    def assign(self, target, value, scope):
-        value = self.settled(value)
-        if target.kind == "name":
-            scope[target.name] = value
-            self._name(scope, target.name)
-            return
-        entry = f"{scope['function']}.{text_of(target)}"
-        if entry in self.names:
-            self.used.add(("name", entry))
-            value = self.names[entry](value)
-        if target.kind == "member":
-            holder = self.evaluate(target.parts[0], scope)
-            holder[target.name if isinstance(holder, dict) else _SWIZZLES[target.name]] = value
-        elif target.kind == "index":
-            self.evaluate(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
-        else:
-            raise SourceError(f"{target.place}: cannot assign to this")
+    def _assign(self, target, value, scope):
+        value = self._renamed(scope, target.text, self.settled(value))
+        match target.kind:
+            case "name":
+                scope[target.name] = value
+            case "member":
+                holder = self._holder(target.parts[0], scope)
+                holder[target.name if isinstance(holder, dict) else _SWIZZLES[target.name]] = value
+            case "index":
+                self._holder(target.parts[0], scope)[self.evaluate(target.parts[1], scope)] = value
+            case _:
+                raise SourceError(f"{target.token.place}: cannot assign to this")
 
-    # ---- expressions
-
-    def condition(self, node, scope):
-        text = text_of(node)
-        if text in self.assumptions:
-            self.used.add(("assumption", text))
-            return self.assumptions[text]
-        value = self.evaluate(node, scope)
-        if isinstance(value, (bool, int)):
-            return bool(value)
-        raise SourceError(f"{node.place}: whether '{text}' holds is neither known nor assumed")
-
-    def evaluate(self, node, scope):
-        value = getattr(self, f"_evaluate_{node.kind}")(node, scope)
-        if node.kind == "call":
-            entry = f"{scope['function']}.{text_of(node)}"
-            if entry in self.names:
-                self.used.add(("name", entry))
-                value = self.names[entry](self.settled(value))
-        return value
-
-    def _evaluate_name(self, node, scope):
-        name = node.name
-        if name in scope:
-            if scope[name] is None:
-                raise SourceError(f"{node.place}: '{name}' has no value yet")
-            return scope[name]
-        if name in self.globals:
-            return self.globals[name]
-        if name in self.sources.constants:
-            return self.evaluate(self.sources.constant(name), {"function": name})
-        if name in ("true", "false"):
-            return name == "true"
-        raise SourceError(f"{node.place}: '{name}' is not known")
-
-    def _evaluate_number(self, node, scope):
-        value = self.replaced.get(node.token, node.value)
-        return value if isinstance(value, int) else exactly(value)
-
-    def _evaluate_closure(self, node, scope):
-        def call(*arguments):
-            inner = scope | dict(zip(node.value, arguments))
-            try:
-                self.execute(node.parts[0], inner)
-            except Returned as returned:
-                return self.settled(returned.value)
-            raise SourceError(f"{node.place}: nothing is returned")
-
-        return call
-
-    def _evaluate_choose(self, node, scope):
-        return self.evaluate(node.parts[1 if self.condition(node.parts[0], scope) else 2], scope)
-
-    def _evaluate_list(self, node, scope):
-        return Vector(self.evaluate(part, scope) for part in node.parts)
-
-    def _evaluate_member(self, node, scope):
-        holder = self.evaluate(node.parts[0], scope)
-        if isinstance(holder, dict):
-            if node.name not in holder:
-                raise SourceError(f"{node.place}: no value for member '{node.name}'")
-            return holder[node.name]
-        if isinstance(holder, Vector) and set(node.name) <= set(_SWIZZLES):
-            picked = [holder[_SWIZZLES[c]] for c in node.name]
-            return picked[0] if len(picked) == 1 else Vector(picked)
-        if isinstance(holder, Unknown):
-            return UNKNOWN
-        raise SourceError(f"{node.place}: member '{node.name}' is not understood")
-
-    def _evaluate_index(self, node, scope):
-        holder, index = self.evaluate(node.parts[0], scope), self.evaluate(node.parts[1], scope)
-        if isinstance(holder, Unknown):
-            return UNKNOWN
+    def _holder(self, node, scope):
+        """The vector or struct of which an element or a member is assigned; a new vector where there was nothing."""
+        if node.kind == "name":
+            return scope.setdefault(node.name, Vector())
+        holder = self._holder(node.parts[0], scope)
+        if node.kind == "member":
+            return holder.setdefault(node.name, Vector())
+        index = self.evaluate(node.parts[1], scope)
+        if index == len(holder):
+            holder.append(Vector())
         return holder[index]
 
-    def _evaluate_unary(self, node, scope):
-        if node.name == "&" and node.parts[0].kind == "index":  # a pointer to an element, which is indexed
-            holder, index = (self.evaluate(part, scope) for part in node.parts[0].parts)
-            return holder[index:]
-        value = self.evaluate(node.parts[0], scope)
-        if node.name == "-":
-            return -value if isinstance(value, int) else self._each(value, self.rounding.negated)
-        if node.name == "!":
-            return not value if isinstance(value, bool) else UNKNOWN
-        return value
+    # Expressions
 
-    def _evaluate_binary(self, node, scope):
-        return self.binary(node, node.name, self.evaluate(node.parts[0], scope), self.evaluate(node.parts[1], scope))
+    def condition(self, node, scope):
+        if node.text in self.assumptions:
+            return self._in_place(self.assumptions, node.text)
+        value = self.evaluate(node, scope)
+        if isinstance(value, int):
+            return bool(value)
+        raise SourceError(f"{node.token.place}: whether '{node.text}' holds is neither known nor assumed")
 
-    def binary(self, node, operation, p, q):
+    def evaluate(self, node, scope):
+        match node.kind:
+            case "name":
+                return self._variable(node, scope)
+            case "number":
+                value = self.sources.replaced.get(node.token, node.value)
+                return value if isinstance(value, int) else exactly(value)
+            case "closure":
+                return lambda *arguments: self._returned(node.parts[0], scope | dict(zip(node.value, arguments)))
+            case "choose":
+                return self.evaluate(node.parts[1 if self.condition(node.parts[0], scope) else 2], scope)
+            case "call":
+                value = self._call(node, scope)
+                named = node.text in self.names and scope["function"] == self.called
+                return self._renamed(scope, node.text, self.settled(value)) if named else value
+            case "method":  # of an object: only contracts know any
+                return self._in_place(self.contracts, node.name, *(self.evaluate(p, scope) for p in node.parts[1:]))
+            case "unary" if node.name == "&" and node.parts[0].kind == "index":  # a pointer to what is indexed
+                holder, index = (self.evaluate(part, scope) for part in node.parts[0].parts)
+                return holder[index:]
+        values = [self.evaluate(part, scope) for part in node.parts]
+        match node.kind:
+            case "list":
+                return Vector(values)
+            case "binary":
+                return self._binary(node, node.name, *values)
+            case "unary" | "member" | "index" if values[0] is UNKNOWN:
+                return UNKNOWN
+            case "index":
+                return values[0][values[1]]
+            case "member":
+                if isinstance(values[0], dict):
+                    return values[0][node.name]
+                picked = Vector(values[0][_SWIZZLES[c]] for c in node.name)
+                return picked[0] if len(picked) == 1 else picked
+            case "unary" if node.name == "-":
+                return -values[0] if isinstance(values[0], int) else each(values[0], self.rounding.negated)
+            case "unary" if node.name == "!" and isinstance(values[0], bool):
+                return not values[0]
+        raise SourceError(f"{node.token.place}: '{node.text}' is not understood here")
+
+    def _variable(self, node, scope):
+        name = node.name
+        for variables in (scope, self.globals, {"true": True, "false": False}):
+            if name in variables:
+                return variables[name]
+        if name in self.sources.constants:
+            return self.evaluate(self.sources.constant(name), {"function": name})
+        raise SourceError(f"{node.token.place}: '{name}' is not known")
+
+    def _binary(self, node, name, p, q):
         if isinstance(p, int) and isinstance(q, int):
-            return {
-                "+": lambda: p + q,
-                "-": lambda: p - q,
-                "*": lambda: p * q,
-                "/": lambda: p // q,
-                "%": lambda: p % q,
-                "<": lambda: p < q,
-                ">": lambda: p > q,
-                "<=": lambda: p <= q,
-                ">=": lambda: p >= q,
-                "==": lambda: p == q,
-                "!=": lambda: p != q,
-                "&&": lambda: p and q,
-                "||": lambda: p or q,
-            }[operation]()
-        if operation in ("<", ">", "<=", ">=") and isinstance(p, Number) and isinstance(q, Number):
-            self.compared.append((text_of(node), self.rounding.settled(p), self.rounding.settled(q)))
-        if operation in ("<", ">", "<=", ">=", "==", "!=", "&&", "||", "&", "|", "%", "<<", ">>"):
+            return _ON_INTEGERS[name](p, q)
+        if name in ("<", ">", "<=", ">=") and isinstance(p, Number) and isinstance(q, Number):
+            self.compared.append((node.text, self.settled(p), self.settled(q)))
+        if name not in ("+", "-", "*", "/") or p is UNKNOWN or q is UNKNOWN:
             return UNKNOWN
-        if isinstance(p, Unknown) or isinstance(q, Unknown):
-            return UNKNOWN
-        p, q = self._real(p), self._real(q)
-        if operation == "*":
+        if name == "*":
             return self._multiply(p, q)
-        return self._pairwise(p, q, {"+": self._add, "-": self._subtract, "/": self.rounding.divide}[operation])
+        return pairwise(p, q, {"+": self._add, "-": self._subtract, "/": self.rounding.divide}[name])
 
     def _add(self, p, q):
         return self.rounding.add(p, q, self.precise)
 
     def _subtract(self, p, q):
-        return self.rounding.add(p, self.rounding.negated(q), self.precise)
-
-    @staticmethod
-    def _real(value):
-        return exactly(value) if isinstance(value, int) else value
-
-    def _each(self, value, operation):
-        if isinstance(value, (Vector, Matrix)):
-            return type(value)(self._each(part, operation) for part in value)
-        return operation(value) if isinstance(value, Number) else value
-
-    def _pairwise(self, p, q, operation):
-        if isinstance(p, (Vector, Matrix)) and isinstance(q, (Vector, Matrix)):
-            if len(p) != len(q):
-                raise ValueError("lengths differ")
-            return type(p)(self._pairwise(x, y, operation) for x, y in zip(p, q))
-        if isinstance(p, (Vector, Matrix)):
-            return type(p)(self._pairwise(x, q, operation) for x in p)
-        if isinstance(q, (Vector, Matrix)):
-            return type(q)(self._pairwise(p, y, operation) for y in q)
-        return operation(self._real(p), self._real(q))
-
-    def _dot(self, p, q):
-        total = None
-        for x, y in zip(p, q, strict=True):
-            product = self.rounding.multiply(self._real(x), self._real(y))
-            total = product if total is None else self._add(total, product)
-        return total
+        return self._add(p, self.rounding.negated(q))
 
     def _multiply(self, p, q):
         if isinstance(p, Matrix) and isinstance(q, Matrix):
             return Matrix(self._multiply(p, column) for column in q)
         if isinstance(p, Matrix) and isinstance(q, Vector):
-            return Vector(self._dot([column[row] for column in p], q) for row in range(3))
+            return Vector(self.dot(row, q) for row in zip(*p))
         if isinstance(p, Vector) and isinstance(q, Matrix):
-            return Vector(self._dot(p, column) for column in q)
-        return self._pairwise(p, q, self.rounding.multiply)
+            return Vector(self.dot(p, column) for column in q)
+        return pairwise(p, q, self.rounding.multiply)
 
-    # ---- calls
+    def dot(self, p, q):
+        first, *others = (self.rounding.multiply(_real(x), _real(y)) for x, y in zip(p, q, strict=True))
+        for other in others:
+            first = self._add(first, other)
+        return first
 
-    def _evaluate_call(self, node, scope):
-        name = node.name
-        arguments = [self.evaluate(part, scope) for part in node.parts]
-        if name in scope and callable(scope[name]):
-            return scope[name](*arguments)
-        if name in self.contracts:
-            self.used.add(("contract", name))
-            return self.contracts[name](self, *arguments)
-        if name in self.conversions:
-            return self.conversions[name](self, *arguments)
-        if name in self.sources.structs:
-            return self._struct(node, name, arguments)
-        plain = name.removeprefix("std::").removeprefix("radar::")
-        built_in = getattr(self, f"_call_{plain}", None)
-        if built_in is not None and not self.sources.functions.get(name):
-            return built_in(*arguments)
-        function = self.sources.function(
-            plain,
-            lambda f: len(f.parameters) == len(arguments)
-            and all(self._fits(value, p[0]) for value, p in zip(arguments, f.parameters)),
-        )
-        result, inner = self.run(function, arguments)
-        for part, parameter in zip(node.parts, function.parameters):
-            if parameter[2]:
-                self.assign(part, inner[parameter[1]], scope)
-        return result
-
-    def _evaluate_method(self, node, scope):
-        """A call of an object's function: only contracts know any."""
-        if node.name not in self.contracts:
-            raise SourceError(f"{node.place}: no claim knows what '{node.name}' does")
-        self.used.add(("contract", node.name))
-        return self.contracts[node.name](self, *(self.evaluate(part, scope) for part in node.parts[1:]))
-
-    def _struct(self, node, name, values):
-        members = self.sources.structs[name]
-        if len(values) != len(members):
-            raise SourceError(f"{node.place}: {name} has {len(members)} members, not {len(values)}")
-        return dict(zip(members, values), type=name)
-
-    def _call_abs(self, x):
-        return self._each(self._real(x), self.rounding.absolute)
-
-    def _call_min(self, x, y):
-        return min(x, y) if isinstance(x, int) and isinstance(y, int) else self._pairwise(x, y, self.rounding.minimum)
-
-    def _call_max(self, x, y):
-        return max(x, y) if isinstance(x, int) and isinstance(y, int) else self._pairwise(x, y, self.rounding.maximum)
-
-    def _call_dot(self, p, q):
-        return self._dot(p, q)
-
-    def _call_cross(self, p, q):
+    def cross(self, p, q):
         def minor(i, j):
             return self._subtract(self.rounding.multiply(p[i], q[j]), self.rounding.multiply(p[j], q[i]))
 
         return Vector([minor(1, 2), minor(2, 0), minor(0, 1)])
 
-    def _call_transpose(self, m):
-        return Matrix(Vector(column[row] for column in m) for row in range(3))
+    # Calls
 
-    def _call_mat3(self, *columns):
-        return Matrix(columns)
+    def _call(self, node, scope):
+        name = node.name.removeprefix("std::").removeprefix("radar::")
+        arguments = [self.evaluate(part, scope) for part in node.parts]
+        called = scope.get(node.name, self.globals.get(node.name))
+        if callable(called):
+            return called(*arguments)
+        if node.name in self.contracts:
+            return self._in_place(self.contracts, node.name, *map(self.settled, arguments))
+        if node.name in self.sources.structs and node.name not in self.sources.functions:
+            return self._struct(node.name, arguments)
+        if name in _BUILT_IN and node.name not in self.sources.functions:
+            return _BUILT_IN[name](self, *arguments)
+        function = self._function(name, arguments)
+        result, inner = self._run(function, arguments, {})
+        for part, (_, parameter, is_out) in zip(node.parts, function.parameters):
+            if is_out:
+                self._assign(part, inner[parameter], scope)
+        return result
+
+    def _struct(self, name, values):
+        return dict(zip(self.sources.structs[name], values, strict=True), type=name)
 
     def _vector(self, n, values):
-        flat = [x for value in values for x in (value if isinstance(value, Vector) else [self._real(value)])]
+        flat = [x for value in values for x in (value if isinstance(value, Vector) else [_real(value)])]
         return Vector(flat * n if len(flat) == 1 else flat)
 
-    def _call_vec2(self, *values):
-        return self._vector(2, values)
-
-    def _call_vec3(self, *values):
-        # GLSL's vec3[3](x, y, z) of vectors is an array.
-        return (
-            list(values)
-            if values and all(isinstance(v, Vector) for v in values) and len(values) == 3
-            else self._vector(3, values)
-        )
-
-    def _call_vec4(self, *values):
-        return self._vector(4, values)
-
-    _call_dvec3 = _call_vec3
-
-    def _call_float(self, x):
-        return self._real(x)
-
-    _call_double = _call_float
-
-    def _call_all(self, conditions):
+    def _less_than_equal(self, x, y):
+        self.compared += [("lessThanEqual", self.settled(p), self.settled(q)) for p, q in zip(x, y, strict=True)]
         return UNKNOWN
 
-    def _call_lessThanEqual(self, x, y):
-        for p, q in zip(x, y, strict=True):
-            self.compared.append(("lessThanEqual", self.rounding.settled(p), self.rounding.settled(q)))
-        return UNKNOWN
+
+_BUILT_IN = {
+    "abs": lambda e, x: each(_real(x), e.rounding.absolute),
+    "min": lambda e, x, y: pairwise(x, y, e.rounding.minimum),
+    "max": lambda e, x, y: pairwise(x, y, e.rounding.maximum),
+    "dot": Evaluator.dot,
+    "cross": Evaluator.cross,
+    "transpose": lambda e, m: Matrix(map(Vector, zip(*m))),
+    "mat3": lambda e, *columns: Matrix(columns),
+    "vec2": lambda e, *values: e._vector(2, values),
+    "vec3": lambda e, *values: e._vector(3, values),
+    "dvec3": lambda e, *values: e._vector(3, values),
+    "float": lambda e, x: _real(x),
+    "double": lambda e, x: _real(x),
+    "all": lambda e, conditions: UNKNOWN,
+    "lessThanEqual": Evaluator._less_than_equal,
+}

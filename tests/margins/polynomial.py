@@ -1,11 +1,30 @@
 """Polynomials in symbols for sizes, which are not negative, with exact coefficients."""
+import itertools
+import re
 from fractions import Fraction
 from functools import lru_cache
 
 
 @lru_cache(maxsize=None)
-def _joined(p, q):
-    return tuple(sorted(p + q))
+def product(p, q):
+    """The product of two monomials. The symbol 1/x stands for the inverse of x."""
+    symbols = sorted(p + q)
+    for symbol in q:
+        inverse = symbol.removeprefix("1/") if symbol.startswith("1/") else f"1/{symbol}"
+        if symbol in symbols and inverse in symbols:
+            symbols.remove(symbol)
+            symbols.remove(inverse)
+    return tuple(symbols)
+
+
+def divided(monomial, factor):
+    """The monomial without a factor, a tuple of symbols; None if it lacks one of these."""
+    left = list(monomial)
+    for symbol in factor:
+        if symbol not in left:
+            return None
+        left.remove(symbol)
+    return tuple(left)
 
 
 class Polynomial:
@@ -13,27 +32,28 @@ class Polynomial:
 
     __slots__ = ("terms",)
 
-    def __init__(self, terms=None):
-        self.terms = terms or {}
+    def __init__(self, terms=()):
+        """terms: pairs of a monomial and a coefficient; those of the same monomial are added up."""
+        sums = {}
+        for monomial, c in terms:
+            sums[monomial] = sums[monomial] + c if monomial in sums else c
+        self.terms = {m: c for m, c in sums.items() if c}
 
     @staticmethod
     def constant(value):
-        return Polynomial({(): Fraction(value)} if value else {})
+        return Polynomial([((), Fraction(value))])
 
     @staticmethod
     def symbol(name):
-        return Polynomial({(name,): Fraction(1)})
+        return Polynomial([((name,), Fraction(1))])
 
     def __add__(self, other):
-        terms = dict(self.terms)
-        for monomial, c in polynomial(other).terms.items():
-            terms[monomial] = terms.get(monomial, 0) + c
-        return Polynomial({m: c for m, c in terms.items() if c})
+        return Polynomial([*self.terms.items(), *polynomial(other).terms.items()])
 
     __radd__ = __add__
 
     def __neg__(self):
-        return Polynomial({m: -c for m, c in self.terms.items()})
+        return self * -1
 
     def __sub__(self, other):
         return self + -polynomial(other)
@@ -42,12 +62,8 @@ class Polynomial:
         return polynomial(other) - self
 
     def __mul__(self, other):
-        terms = {}
-        for q, d in polynomial(other).terms.items():
-            for p, c in self.terms.items():
-                monomial = _joined(p, q)
-                terms[monomial] = terms.get(monomial, 0) + c * d
-        return Polynomial({m: c for m, c in terms.items() if c})
+        factors = polynomial(other).terms.items()
+        return Polynomial((product(p, q), c * d) for q, d in factors for p, c in self.terms.items())
 
     __rmul__ = __mul__
 
@@ -56,18 +72,14 @@ class Polynomial:
 
     def without(self, symbol):
         """The part whose monomials lack the symbol: its value where the symbol is 0."""
-        return Polynomial({m: c for m, c in self.terms.items() if symbol not in m})
+        return Polynomial((m, c) for m, c in self.terms.items() if symbol not in m)
 
     def positive(self):
-        return Polynomial({m: c for m, c in self.terms.items() if c > 0})
+        return Polynomial((m, c) for m, c in self.terms.items() if c > 0)
 
     def negative(self):
         """The monomials with negative coefficients, as a polynomial of positive ones."""
-        return Polynomial({m: -c for m, c in self.terms.items() if c < 0})
-
-    def is_no_less_than(self, other):
-        """Whether every coefficient is at least the other's. Then so is the value, whatever the sizes."""
-        return all(c >= 0 for c in (self - other).terms.values())
+        return (-self).positive()
 
     def __repr__(self):
         ordered = sorted(self.terms.items(), key=lambda term: (len(term[0]), term[0]))
@@ -78,17 +90,23 @@ def polynomial(value):
     return value if isinstance(value, Polynomial) else Polynomial.constant(value)
 
 
-def greatest(p, q):
-    """A bound on both: the greater coefficients. For polynomials without negative ones."""
-    monomials = p.terms.keys() | q.terms.keys()
-    return Polynomial({m: max(p.coefficient(m), q.coefficient(m)) for m in monomials})
+def total(polynomials):
+    return Polynomial(term for p in polynomials for term in polynomial(p).terms.items())
 
 
-def least(p, q):
-    """A polynomial that neither is below: the lesser coefficients."""
-    monomials = p.terms.keys() | q.terms.keys()
-    lesser = {m: min(p.coefficient(m), q.coefficient(m)) for m in monomials}
-    return Polynomial({m: c for m, c in lesser.items() if c})
+def summed(text, **fixed):
+    """A product of symbols, added up over the indices that braces in its text leave free, each from 0 to 2."""
+    free = sorted(set(re.findall(r"{(\w+)}", text)) - fixed.keys())
+    products = (
+        text.format(**fixed, **dict(zip(free, indices))) for indices in itertools.product(range(3), repeat=len(free))
+    )
+    return Polynomial((tuple(sorted(product.split())), Fraction(1)) for product in products)
+
+
+def merged(choose, p, q):
+    """The polynomial whose coefficients are the greater of p's and q's, which is a bound on both if none is negative,
+    or the lesser: neither is below that."""
+    return Polynomial((m, choose(p.coefficient(m), q.coefficient(m))) for m in p.terms.keys() | q.terms.keys())
 
 
 def product_of_lower_bounds(p, q):

@@ -9,19 +9,21 @@ bounds are polynomials:
     least   |computed| is at least this, or 0 if this is negative
 
 An operation gives the exact result on its computed operands within `unit` of it, relative, in any direction, a division
-within `division`. Besides, it loses at most FLUSHED: the result may be flushed to 0, and so may it be in one of its
-uses but not in another, if it is below the normal range. That is charged once, where a number is made; a sum of numbers
-that are not negative loses only terms that have been charged, because a sum below the normal range has no other terms.
-A sum is rounded only where it is used for something else than a sum, or has a name, in the least favourable order: each
-of n terms passes n - 1 additions. Only what is `precise` has the order that is written, and what the CPU computes. A
-contraction to a fused multiply-add omits roundings, so it has these bounds, too.
+within `division`: for floats on a device an ulp of 1 and 2.5 of them, else half an ulp. Besides, it loses at most
+FLUSHED: the result may be flushed to 0, and so may it be in one of its uses but not in another, if it is below the
+normal range. That is charged once, where a number is made; a sum of numbers that are not negative loses only terms that
+have been charged, because a sum below the normal range has no other terms. A sum is rounded only where it is used for
+something else than a sum, or has a name, in the least favourable order: each of n terms passes n - 1 additions. Only
+what is `precise` has the order that is written, and what the CPU computes. A contraction to a fused multiply-add omits
+roundings, so it has these bounds, too.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from polynomial import Polynomial, greatest, least, polynomial, product_of_lower_bounds
+from polynomial import Polynomial, merged, product_of_lower_bounds, total
 
-FLUSHED = Polynomial.symbol("flushed")
+symbol = Polynomial.symbol
+FLUSHED = symbol("flushed")
 ZERO = Polynomial()
 
 
@@ -33,6 +35,11 @@ class Arithmetic:
     sums_lose: bool  # whether sums lose FLUSHED, too; they are exact where numbers below the normal range are kept
     ordered: bool = False  # sums have the order that is written
 
+    @property
+    def of_result(self):
+        """A rounding of a sum or product, relative to the result."""
+        return self.unit / (1 - self.unit)
+
 
 _ANY_DIRECTION = Fraction(2) ** -23
 # Floats on a device. Vulkan fixes neither the rounding direction nor whether subnormal numbers are flushed.
@@ -43,68 +50,77 @@ DEVICE_FLOATS = Arithmetic(
 _NEAREST = Fraction(2) ** -53
 DEVICE_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1022, True)
 # The CPU: to nearest, with subnormal numbers.
-CPU_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1074, False)
-CPU_FLOATS = Arithmetic(Fraction(2) ** -24, Fraction(2) ** -24, Fraction(2) ** -149, False)
+CPU_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1074, False, True)
+CPU_FLOATS = Arithmetic(Fraction(2) ** -24, Fraction(2) ** -24, Fraction(2) ** -149, False, True)
 
 
-def is_power_of_two(value):
-    value = abs(Fraction(value))
-    return (
-        value != 0 and value.numerator & (value.numerator - 1) == 0 and value.denominator & (value.denominator - 1) == 0
-    )
-
-
+@dataclass
 class Number:
-    def __init__(
-        self,
-        size,
-        error=ZERO,
-        least=ZERO,
-        *,
-        ideal=None,
-        nonnegative=False,
-        normal=False,
-        scales=False,
-        reciprocal=None,
-        constant=None,
-    ):
-        self.size, self.error, self.least = polynomial(size), polynomial(error), polynomial(least)
-        self.ideal = self.size + self.error if ideal is None else ideal
-        self.nonnegative = nonnegative
-        self.normal = normal or (
-            constant is not None and abs(constant) > Fraction(1, 1 << 126)
-        )  # not below the normal range
-        self.scales = scales  # a power of two, so that products with it are exact
-        self.reciprocal = reciprocal  # a symbol that stands for 1 / |computed|
-        self.constant = constant  # its value, if it is known
-        self.terms = None  # of a sum that is not rounded yet
-        self.arithmetic = None  # of a number that is of another type than the evaluation's
-        self.before = None  # for a name: the error before the last rounding, and that rounding's unit
+    size: Polynomial
+    error: Polynomial = ZERO
+    least: Polynomial = ZERO
+    ideal: Polynomial = None
+    nonnegative: bool = False
+    normal: bool = False  # not below the normal range
+    scales: bool = False  # a power of two, so that products with it are exact
+    divides: bool = False  # the inverse of its size is a symbol, or a number
+    constant: Fraction = None  # its value, if it is known
+    terms: list = None  # of a sum that is not rounded yet
+    arithmetic: Arithmetic = None  # of a number that is of another type than the evaluation's
+    before: tuple = None  # the error before the last rounding, and that rounding's unit
 
-    def __repr__(self):
-        return f"Number(size {self.size}; error {self.error}; least {self.least})"
+    def __post_init__(self):
+        if self.ideal is None:
+            self.ideal = self.size + self.error
+
+    def times(self, factor):
+        return Number(self.size * factor, self.error * factor, self.least * factor)
+
+
+def known(size, error=ZERO, **more):
+    """A number of which `size` is the absolute value, and which is 0 or in the normal range."""
+    return Number(size, error, size, **more)
 
 
 def exactly(value):
-    size = Polynomial.constant(abs(Fraction(value)))
-    return Number(size, least=size, nonnegative=value >= 0, scales=is_power_of_two(value), constant=Fraction(value))
+    value = Fraction(value)
+    parts = abs(value.numerator), value.denominator
+    scales = value != 0 and all(part & (part - 1) == 0 for part in parts)
+    normal = abs(value) > Fraction(1, 1 << 126)
+    conditions = {"nonnegative": value >= 0, "normal": normal, "scales": scales, "divides": value != 0}
+    return known(Polynomial.constant(abs(value)), constant=value, **conditions)
 
 
-def given(name, error=ZERO, *, nonnegative=False, normal=False, known=True, scales=False, reciprocal=None):
-    """An input, of which `name` stands for the absolute value.
+def roughly(size, share):
+    """A sum of exact numbers that are not negative, off by a share of `size` at most; what is computed counts."""
+    return Number(size * (1 + share), ZERO, size * (1 - share), nonnegative=True)
 
-    `normal`: never below the normal range. `known`: margins that grow with it may be counted on.
+
+def plain(name, error=ZERO, **more):
+    """An input that is 0 or in the normal range; `name` stands for its absolute value."""
+    return known(symbol(name), error, **more)
+
+
+def given(name, error=ZERO, *, normal=False, counts=True, **more):
+    """An input that may be flushed to 0 unless it is `normal`; `name` stands for its absolute value.
+
+    `counts`: margins that grow with it may be counted on.
     """
-    size, lost = Polynomial.symbol(name), ZERO if normal else FLUSHED
+    size, lost = symbol(name), ZERO if normal else FLUSHED
+    lower = size - lost if counts else ZERO
+    return Number(size, error + lost, lower, normal=normal, **more)
+
+
+def converted(number, arithmetic):
+    """The number, converted to another type."""
+    size, unit = number.size, arithmetic.unit
     return Number(
-        size,
-        polynomial(error) + lost,
-        size - lost if known else ZERO,
-        ideal=size + error,
-        nonnegative=nonnegative,
-        normal=normal,
-        scales=scales,
-        reciprocal=reciprocal,
+        size * (1 + unit),
+        number.error + size * unit,
+        number.least * (1 - unit),
+        ideal=number.ideal,
+        nonnegative=number.nonnegative,
+        arithmetic=arithmetic,
     )
 
 
@@ -113,7 +129,6 @@ class Rounding:
 
     def __init__(self, arithmetic):
         self.arithmetic = arithmetic
-        self.any_order = not arithmetic.ordered
         self.lost = FLUSHED if arithmetic.flushed else ZERO
 
     def add(self, p, q, precise=False):
@@ -122,99 +137,48 @@ class Rounding:
         if q.constant == 0:
             return p
         if p.constant is not None and q.constant is not None:
-            value, unit = p.constant + q.constant, self.arithmetic.unit
-            return Number(
-                abs(value) * (1 + unit),
-                abs(value) * unit,
-                abs(value) * (1 - unit),
-                nonnegative=value >= 0,
-                normal=abs(value) > Fraction(1, 1 << 126),
-            )
-        if precise or not self.any_order:
+            value = exactly(p.constant + q.constant)
+            size, lost = value.size, value.size * self.arithmetic.unit
+            return Number(size + lost, lost, size - lost, nonnegative=value.nonnegative)
+        if precise or self.arithmetic.ordered:
             return self._rounded_sum([self.settled(p), self.settled(q)])
-        result = Number(ZERO)
-        result.terms = (p.terms or [p]) + (q.terms or [q])
-        return result
+        return Number(ZERO, terms=(p.terms or [p]) + (q.terms or [q]))
 
     def settled(self, number):
         return number if number.terms is None else self._rounded_sum(number.terms)
 
-    def _arithmetic_of(self, numbers):
-        return next((n.arithmetic for n in numbers if n.arithmetic is not None), self.arithmetic)
-
-    def converted(self, number, arithmetic):
-        """The number, converted to another type."""
-        number = self.settled(number)
-        size, unit = number.size, arithmetic.unit
-        result = Number(
-            size * (1 + unit),
-            number.error + size * unit,
-            number.least * (1 - unit),
-            ideal=number.ideal,
-            nonnegative=number.nonnegative,
-        )
-        result.arithmetic = arithmetic
-        return result
-
     def _rounded_sum(self, terms):
-        a, n = self._arithmetic_of(terms), len(terms) - 1
+        a = next((t.arithmetic for t in terms if t.arithmetic is not None), self.arithmetic)
+        n = len(terms) - 1
         lost = self.lost * n if a.sums_lose else ZERO
         grows, shrinks = (1 + a.unit) ** n, (1 - a.unit) ** n
-        size = sum((t.size for t in terms), ZERO)
-        inner = sum((t.error for t in terms), ZERO)
+        size, inner = total(t.size for t in terms), total(t.error for t in terms)
         nonnegative = all(t.nonnegative for t in terms)
-        lower = sum((t.least for t in terms), ZERO) * shrinks if nonnegative else ZERO
-        result = Number(
+        return Number(
             (size + lost) * grows,
             inner + size * (grows - 1) + lost * grows,
-            lower,
-            ideal=sum((t.ideal for t in terms), ZERO),
+            total(t.least for t in terms) * shrinks if nonnegative else ZERO,
+            ideal=total(t.ideal for t in terms),
             nonnegative=nonnegative,
-            normal=nonnegative and any(t.normal for t in terms),
+            arithmetic=a if a is not self.arithmetic else None,
+            before=(inner + lost, a.unit) if n == 1 else None,
         )
-        if n == 1:
-            result.before = inner + lost, a.unit
-        result.arithmetic = a if a is not self.arithmetic else None
-        return result
 
     def negated(self, p):
-        if p.terms is not None:
-            result = Number(ZERO)
-            result.terms = [self.negated(t) for t in p.terms]
-            return result
-        return Number(
-            p.size,
-            p.error,
-            p.least,
-            ideal=p.ideal,
-            normal=p.normal,
-            scales=p.scales,
-            reciprocal=p.reciprocal,
-            constant=None if p.constant is None else -p.constant,
-        )
+        terms = p.terms and [self.negated(t) for t in p.terms]
+        constant = None if p.constant is None else -p.constant
+        return replace(p, nonnegative=False, terms=terms, constant=constant)
 
     def absolute(self, p):
         p = self.settled(p)
-        result = Number(
-            p.size,
-            p.error,
-            p.least,
-            ideal=p.ideal,
-            nonnegative=True,
-            normal=p.normal,
-            scales=p.scales,
-            reciprocal=p.reciprocal,
-            constant=None if p.constant is None else abs(p.constant),
-        )
-        result.before = p.before
-        return result
+        return replace(p, nonnegative=True, constant=None if p.constant is None else abs(p.constant))
 
     def multiply(self, p, q):
         p, q = self.settled(p), self.settled(q)
         if 0 in (p.constant, q.constant):
             return exactly(0)
         for one, other in ((p, q), (q, p)):
-            if one.constant is not None and abs(one.constant) == 1:
+            if one.constant in (1, -1):
                 return other if one.constant == 1 else self.negated(other)
         unit = 0 if p.scales or q.scales else self.arithmetic.unit
         if p.constant is not None and q.constant is not None and unit == 0:
@@ -227,90 +191,59 @@ class Rounding:
             product_of_lower_bounds(p.least, q.least) * (1 - unit) - lost,
             ideal=p.ideal * q.ideal,
             nonnegative=p.nonnegative and q.nonnegative,
-            normal=not lost.terms and p.normal and q.normal,
-            scales=p.scales and q.scales,
         )
 
     @staticmethod
     def _stays_normal(p, q):
         """Whether a factor p is at least 1, so that the product is normal or, if p is a power of two, no further off
-        than q; or whether both are constants."""
-        both = not (p.size.terms.keys() | q.size.terms.keys()) - {()}
-        return (both and p.normal and q.normal) or (
-            p.constant is not None and abs(p.constant) >= 1 and (q.normal or p.scales)
-        )
+        than q."""
+        return p.constant is not None and abs(p.constant) >= 1 and (q.normal or p.scales)
 
     def divide(self, p, q):
-        """p / q, for a constant q or one that is exact, and named so that its reciprocal has a symbol."""
+        """p / q, for an exact q."""
         p, q = self.settled(p), self.settled(q)
-        if q.constant is not None:
-            inverse = Polynomial.constant(1 / abs(q.constant))
-        elif q.reciprocal is not None:
-            inverse = Polynomial.symbol(q.reciprocal)
-        else:
-            raise ValueError("a divisor must be a constant or named with a reciprocal")
-        unit = 0 if q.scales else self.arithmetic.division
-        size = p.size * inverse
+        if not q.divides:
+            raise ValueError("a divisor must be a constant or a symbol")
+        ((monomial, c),) = q.size.terms.items()
+        inverse = Polynomial([(tuple(f"1/{symbol}" for symbol in monomial), 1 / c)])
+        size, unit = p.size * inverse, self.arithmetic.division
         return Number(
             size * (1 + unit) + self.lost,
             p.error * inverse + size * unit + self.lost,
             p.least * inverse * (1 - unit) - self.lost,
-            ideal=p.ideal * inverse,
             nonnegative=p.nonnegative and q.nonnegative,
-            scales=p.scales and q.scales,
         )
 
     def maximum(self, p, q):
         p, q = self.settled(p), self.settled(q)
-        nonnegative = p.nonnegative or q.nonnegative
         lower = ZERO
         if p.nonnegative and q.nonnegative:
-            # It is no less than either; one is taken if the other has nothing to add.
-            lower = (
-                p.least
-                if not q.least.positive().terms or p.least.is_no_less_than(q.least)
-                else q.least
-                if not p.least.positive().terms or q.least.is_no_less_than(p.least)
-                else least(p.least, q.least)
-            )
-        elif nonnegative:
+            # It is no less than either; the second is taken if the first is not known to be above 0.
+            lower = p.least if p.least.positive().terms else q.least
+        elif p.nonnegative or q.nonnegative:
             lower = p.least if p.nonnegative else q.least
-        return Number(
-            greatest(p.size, q.size),
-            greatest(p.error, q.error),
-            lower,
-            ideal=greatest(p.ideal, q.ideal),
-            nonnegative=nonnegative,
-        )
+        return self._one_of(p, q, lower, p.nonnegative or q.nonnegative)
 
     def minimum(self, p, q):
         p, q = self.settled(p), self.settled(q)
         nonnegative = p.nonnegative and q.nonnegative
+        lower = merged(min, p.least, q.least) if nonnegative else ZERO
         if nonnegative and q.constant is not None:  # it is at most either
-            return Number(p.size, p.error, least(p.least, q.least), ideal=p.ideal, nonnegative=True)
-        return Number(
-            greatest(p.size, q.size),
-            greatest(p.error, q.error),
-            least(p.least, q.least) if nonnegative else ZERO,
-            ideal=greatest(p.ideal, q.ideal),
-            nonnegative=nonnegative,
-        )
+            return Number(p.size, p.error, lower, nonnegative=True)
+        return self._one_of(p, q, lower, nonnegative)
 
-    def named(self, number, name, *, reciprocal=None, exact=False, nonnegative=False):
+    @staticmethod
+    def _one_of(p, q, lower, nonnegative):
+        return Number(merged(max, p.size, q.size), merged(max, p.error, q.error), lower, nonnegative=nonnegative)
+
+    def named(self, number, name):
         """The same number, with a symbol for its absolute value as computed.
 
-        Its last rounding is at most the unit times that, if that is all that the last operation loses. `exact`: from
-        here on, what is computed is what counts.
+        Its last rounding is at most the unit times that, if that is all that the last operation loses.
         """
         number = self.settled(number)
-        symbol, error = Polynomial.symbol(name), number.error
+        size, error = symbol(name), number.error
         if number.before is not None:
             inner, unit = number.before
-            error = inner + symbol * (unit / (1 - unit))
-        return Number(
-            symbol,
-            ZERO if exact else error,
-            symbol - (ZERO if exact else self.lost),
-            nonnegative=nonnegative or number.nonnegative,
-            reciprocal=reciprocal,
-        )
+            error = inner + size * (unit / (1 - unit))
+        return Number(size, error, size - self.lost, nonnegative=number.nonnegative)

@@ -1,50 +1,58 @@
-"""Inputs of the claims: numbers with symbols for their sizes."""
-from polynomial import Polynomial
-from rounding import ZERO, Number
+"""Inputs that claims of several files have."""
+from fractions import Fraction
 
-symbol = Polynomial.symbol
+from claims import Inequality, Shared
+from evaluator import Evaluator, Matrix, Vector
+from rounding import plain, symbol
 
-
-def plain(name, error=ZERO, **more):
-    """An input that is 0 or in the normal range; `name` stands for its absolute value."""
-    size = symbol(name)
-    return Number(size, error, size, **more)
-
-
-def total(polynomials):
-    return sum(polynomials, Polynomial())
+# A node's centre and half extent are at most this times the mesh's reach, together.
+WITHIN = 1 + Fraction(1, 1 << 22)
+# No unit vector's components add up to more.
+ROOT_OF_3 = Fraction(17321, 10000)
 
 
-def without_flushing(balance):
-    return balance.without("flushed")
+def positive(name, **more):
+    return plain(name, nonnegative=True, **more)
 
 
-class Kept(dict):
-    """Values of variables, as a claim's evaluation comes across them."""
-
-    def keep(self, name, then=lambda value: value):
-        """A function for Evaluator.names, which keeps the value under `name` and goes on with then(value)."""
-
-        def keeping(value):
-            self.setdefault(name, value)
-            return then(value)
-
-        return keeping
+def vector(name, relative=0, **more):
+    """Numbers with symbols `name` and 0 to 2, whose errors are relative to themselves."""
+    return Vector(plain(f"{name}{k}", symbol(f"{name}{k}") * relative, **more) for k in range(3))
 
 
-def times(number, name):
-    """The number, most of which is divided by `name`, multiplied by it."""
+def matrix(name, relative):
+    """A matrix of such numbers, with symbols `name` and their row and column."""
+    return Matrix(map(Vector, zip(*(vector(f"{name}{i}", relative) for i in range(3)))))
 
-    def multiplied(bound):
-        terms = {}
-        for monomial, c in bound.terms.items():
-            rest = list(monomial)
-            if f"1/{name}" in rest:
-                rest.remove(f"1/{name}")
-            else:
-                rest.append(name)
-            rest = tuple(sorted(rest))
-            terms[rest] = terms.get(rest, 0) + c
-        return Polynomial(terms)
 
-    return Number(multiplied(number.size), multiplied(number.error), multiplied(number.least))
+def mean_error(one, other):
+    """What both ends of an interval are off by on average."""
+    return (one.error + other.error) * Fraction(1, 2)
+
+
+def symbols(name):
+    return [symbol(f"{name}{k}") for k in range(3)]
+
+
+def holds(arithmetic, function, *arguments, steps, spare=0, **conditions):
+    """A statement: the error of what a function returns, a value or a vector, is at most its bound less `spare`."""
+
+    def statement(sources):
+        result = Evaluator(sources, arithmetic, **conditions).call(function, *arguments)
+        values, errors = (x if isinstance(x, Vector) else [x] for x in (result["value"], result["error"]))
+        for k, (value, error) in enumerate(zip(values, errors, strict=True)):
+            yield Inequality(f"error of component {k} of {function}", error.least, value.error + spare, steps)
+
+    return statement
+
+
+def together(one, other, bound):
+    """A step: two sizes within a reach, of which `bound` is one."""
+    return Shared([(one,), (other,)], bound * WITHIN)
+
+
+def within(letter, reach):
+    """Steps: a node's box, of vectors named centre and half and the letter, is within its mesh's reach."""
+    return [together(f"centre{letter}{k}", f"half{letter}{k}", reach[k]) for k in range(3)]
+
+

@@ -19,7 +19,7 @@ namespace {
 // Sensors of one submission, at most: what a device has in hand while the next ones are planned.
 constexpr size_t kMostSensors = 1u << 14;
 // Batches of fewer queries are answered on the CPU. A device that runs there itself is slower than its search, whatever
-// the batch (docs/benchmarks.md). On another, a submission takes the time in which a CPU answers some queries: an
+// the batch (docs/performance.md). On another, a submission takes the time in which a CPU answers some queries: an
 // estimate, as no such device has been measured.
 constexpr uint32_t kCpuBatchOnCpu = kNone, kCpuBatchElsewhere = 16;
 // Pairs that are left to the host: more of one sensor are dearer to decide than to search again.

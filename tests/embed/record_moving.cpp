@@ -2,7 +2,8 @@
 #include <vector>
 
 #include <radar/recorder.h>
-#include <vulkan/vulkan.h>
+
+#include "after_shaders.h"
 
 // Geometry that a renderer's compute shaders move: a character that they skin and crates that they push around a hall.
 struct Moving {
@@ -23,17 +24,7 @@ void addMoving(radar::Scene& scene, const radar::Device& device, const radar::Ho
 // Called once per frame, after the compute shaders have been recorded. The queries see what these shaders write.
 void recordMoving(VkCommandBuffer commands, radar::Recorder& recorder, std::span<const radar::Query> queries,
                   const Moving& moving) {
-  VkMemoryBarrier2 movedToCopy{};
-  movedToCopy.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  movedToCopy.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  movedToCopy.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  movedToCopy.dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-  movedToCopy.dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT;
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &movedToCopy;
-  vkCmdPipelineBarrier2(commands, &info);
+  afterShaders(commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const radar::DeformedMesh body{moving.body, {.buffer = moving.skinned, .stride = 32}};
   const radar::MovedObjects crates{.transforms = moving.transforms, .objects = moving.crates};
   recorder.record(commands, queries, {.meshes = {&body, 1}, .objects = {&crates, 1}});

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Checks names that a reader searches for: cmake -DROOT=... -P names.cmake. No two types in the engine's headers have one
-# name, nor do two in the headers that shaders share with it; paths in comments exist.
+# name, nor do two in the headers that shaders share with it; paths in comments exist, and what pages link to.
 set(wrong "")
 
 foreach(part engine shaders)
@@ -51,7 +51,28 @@ if(paths LESS 20)
   string(APPEND wrong "  only ${paths} paths found in comments\n")
 endif()
 
+set(links 0)
+file(GLOB pages RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md)
+foreach(page ${pages})
+  file(READ ${ROOT}/${page} text)
+  cmake_path(GET page PARENT_PATH folder)
+  # A match may have no bracket, which CMake's lists take for nesting.
+  string(REPLACE "](" "\n@" text "${text}")
+  string(REGEX MATCHALL "\n@[^)#: \n]+" named "${text}")
+  list(TRANSFORM named REPLACE "\n@" "")
+  list(FILTER named EXCLUDE REGEX "^https?$")
+  foreach(path ${named})
+    math(EXPR links "${links} + 1")
+    if(NOT EXISTS ${ROOT}/${folder}/${path})
+      string(APPEND wrong "  ${page} links to ${path}, which does not exist\n")
+    endif()
+  endforeach()
+endforeach()
+if(links LESS 20)
+  string(APPEND wrong "  only ${links} links found in pages\n")
+endif()
+
 if(wrong)
   message(FATAL_ERROR "names mislead:\n${wrong}")
 endif()
-message(STATUS "${paths} paths in comments exist")
+message(STATUS "${paths} paths in comments exist, and what ${links} links in pages lead to")

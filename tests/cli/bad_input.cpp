@@ -1,6 +1,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
@@ -76,9 +77,7 @@ TEST_CASE("a bad query file ends with status 2, a message that names the place, 
 
 TEST_CASE("the message about a missing query file names it") {
   const ScratchFolder folder;
-  const Run run = runProgram(folder, "query no.json");
-  CHECK(run.status == 2);
-  CHECK_THAT(run.err, Contains("no.json: expected a query file"));
+  checkRefused(folder, "query no.json", "no.json: expected a query file");
 }
 
 TEST_CASE("the message about an unknown option or a bad value names it") {
@@ -92,13 +91,8 @@ TEST_CASE("the message about an unknown option or a bad value names it") {
         std::pair{"--resolution 4096", "--resolution"}, std::pair{"--resolution 64x", "\"64x\""},
         std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
         std::pair{"--out no/folder.jsonl", "no/folder.jsonl"}, std::pair{"--stats no/s.json", "no/s.json"}}) {
-    CAPTURE(options);
-    const Run run = runProgram(folder, std::string("query q.json ") + options);
-    CHECK(run.status == 2);
-    CHECK(run.out.empty());
-    CHECK_THAT(run.err, Contains(words));
+    checkRefused(folder, std::string("query q.json ") + options, words);
   }
-  CHECK(folder.list() == "a.obj q.json");
 }
 
 TEST_CASE("sweep refuses bad numbers and files and names the option or the file") {
@@ -116,11 +110,7 @@ TEST_CASE("sweep refuses bad numbers and files and names the option or the file"
         std::pair{"a.obj a.obj --direction 0 0 1 --distance 1 --rotate 0 0 0 9", "--rotate"},
         std::pair{"a.obj a.obj --direction 0 0 1 --distance 1 --speed 0", "--speed"},
         std::pair{"a.obj --direction 0 0 1 --distance 1", "SENSOR"}}) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, std::string("sweep ") + arguments);
-    CHECK(run.status == 2);
-    CHECK(run.out.empty());
-    CHECK_THAT(run.err, Contains(words));
+    checkRefused(folder, std::string("sweep ") + arguments, words);
   }
 }
 
@@ -132,12 +122,8 @@ TEST_CASE("scopes names an option that is missing or does not apply") {
        {std::pair{"q.json --out p", "--query"}, std::pair{"q.json --query x --out p", "the id \"x\""},
         std::pair{"q.json --query p", "--out"}, std::pair{"a.obj a.obj --query p --out p", "--query"},
         std::pair{"q.json --query p --out p --distance 3", "--distance"}}) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, std::string("scopes ") + arguments);
-    CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains(words));
+    checkRefused(folder, std::string("scopes ") + arguments, words);
   }
-  CHECK(folder.list() == "a.obj q.json");
 }
 
 TEST_CASE("without a Vulkan driver the program explains how to get one, and mode reference still answers") {

@@ -6,6 +6,7 @@
 #include "cyber_radar/progress.h"
 #include "support/catch.h"
 
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runCommand;
@@ -28,11 +29,7 @@ TEST_CASE("a word that is no command or option is named, with the nearest that i
         std::pair{"query --statsu s q.json", "got \"--statsu\"; did you mean --stats?"},
         std::pair{"query q.json second third", "cyber-radar query: expected nothing more, got \"second third\"\n"},
         std::pair{"sweep a", "cyber-radar sweep: SENSOR is required\ncyber-radar sweep --help explains"}}) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, arguments);
-    CHECK(run.status == 2);
-    CHECK(run.out.empty());
-    CHECK_THAT(run.err, Contains(words));
+    checkRefused(folder, arguments, words);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include "support/catch.h"
+
 namespace radar::test {
 
 Run runCommand(const ScratchFolder& folder, const std::string& command) {
@@ -17,6 +19,16 @@ Run runCommand(const ScratchFolder& folder, const std::string& command) {
 
 Run runProgram(const ScratchFolder& folder, const std::string& arguments, const std::string& environment) {
   return runCommand(folder, environment + " '" RADAR_PROGRAM "' " + arguments);
+}
+
+void checkRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
+  CAPTURE(arguments);
+  const std::string before = folder.list();
+  const Run run = runProgram(folder, arguments);
+  CHECK(run.status == 2);
+  CHECK(run.out.empty());
+  CHECK_THAT(run.err, Contains(words));
+  CHECK(folder.list() == before);
 }
 
 }  // namespace radar::test

@@ -4,6 +4,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
@@ -29,21 +30,15 @@ TEST_CASE("an unknown device or a bad option ends with status 2 and a message th
   const ScratchFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
   REQUIRE(runProgram(folder, "workload table1 --boxes 20 --sensors 2 --out w").status == 0);
-  const auto refused = [&](const std::string& arguments, const std::string& what) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, arguments);
-    CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains(what));
-  };
-  refused("query w/queries.json --mode contact --device 0,7", "device 7 does not exist");
-  refused("query w/queries.json --mode contact --device 1,1", "device 1 is named twice");
-  refused("query w/queries.json --mode contact --device 0,", "--device");
-  refused("query w/queries.json --mode contact --device some", "--device");
-  refused("sweep a.obj a.obj --direction 0 0 1 --distance 1 --device 0,1", "--device");
-  refused("scale --device 9", "device 9 does not exist");
-  refused("scale missing.json", "missing.json");
-  refused("scale --out a.obj", "--out");
-  refused("scale --mode fast", "--mode");
+  checkRefused(folder, "query w/queries.json --mode contact --device 0,7", "device 7 does not exist");
+  checkRefused(folder, "query w/queries.json --mode contact --device 1,1", "device 1 is named twice");
+  checkRefused(folder, "query w/queries.json --mode contact --device 0,", "--device");
+  checkRefused(folder, "query w/queries.json --mode contact --device some", "--device");
+  checkRefused(folder, "sweep a.obj a.obj --direction 0 0 1 --distance 1 --device 0,1", "--device");
+  checkRefused(folder, "scale --device 9", "device 9 does not exist");
+  checkRefused(folder, "scale missing.json", "missing.json");
+  checkRefused(folder, "scale --out a.obj", "--out");
+  checkRefused(folder, "scale --mode fast", "--mode");
 }
 
 TEST_CASE("scale prints tables and writes a table, a chart and a trace") {

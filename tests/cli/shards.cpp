@@ -2,6 +2,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
@@ -22,15 +23,6 @@ std::string answersTo(const ScratchFolder& folder, const std::string& mode) {
 // The first line, which says what the file is part of.
 std::string headOf(const std::string& part) {
   return part.substr(0, part.find('\n') + 1);
-}
-
-void requireRefused(const ScratchFolder& folder, const std::string& arguments, const std::string& words) {
-  CAPTURE(arguments);
-  const std::string before = folder.list();
-  const Run run = runProgram(folder, arguments);
-  CHECK(run.status == 2);
-  CHECK_THAT(run.err, Contains(words));
-  CHECK(folder.list() == before);
 }
 
 }  // namespace
@@ -71,36 +63,33 @@ TEST_CASE("merge names shards that are missing, doubled, cut off or of another r
     REQUIRE(runProgram(folder, "query w/queries.json --shard " + shard + " --out " + out + more).status == 0);
   };
   for (int i = 0; i < 4; ++i) answer(std::to_string(i) + "/4", "p" + std::to_string(i));
-  requireRefused(
-      folder, "merge p0 p2 --out all.jsonl",
-      "all.jsonl: expected all 4 shards, missing: shard 1/4 (queries 15 to 29), shard 3/4 (queries 45 to 59)");
-  requireRefused(folder, "merge p0 p1 p2 p3 p1 --out all.jsonl", "got shard 1/4 (queries 15 to 29) also in p1");
+  checkRefused(folder, "merge p0 p2 --out all.jsonl",
+               "all.jsonl: expected all 4 shards, missing: shard 1/4 (queries 15 to 29), shard 3/4 (queries 45 to 59)");
+  checkRefused(folder, "merge p0 p1 p2 p3 p1 --out all.jsonl", "got shard 1/4 (queries 15 to 29) also in p1");
   answer("0/3", "third");
-  requireRefused(folder, "merge p0 third --out all.jsonl",
-                 "third: shard: expected one of 4 shards, as in p0, got shard 0/3");
+  checkRefused(folder, "merge p0 third --out all.jsonl",
+               "third: shard: expected one of 4 shards, as in p0, got shard 0/3");
   answer("1/4", "other-mode", " --mode reference");
-  requireRefused(folder, "merge p0 other-mode p2 p3 --out all.jsonl",
-                 "other-mode: mode: expected that of p0, \"contact\", got \"reference\"");
+  checkRefused(folder, "merge p0 other-mode p2 p3 --out all.jsonl",
+               "other-mode: mode: expected that of p0, \"contact\", got \"reference\"");
   const std::string part = folder.read("p1");
   folder.write("cut", part.substr(0, part.size() - 1));
-  requireRefused(folder, "merge p0 cut p2 p3 --out all.jsonl", "cut: expected 15 answers, got 14");
+  checkRefused(folder, "merge p0 cut p2 p3 --out all.jsonl", "cut: expected 15 answers, got 14");
   folder.write("long", part + "{}\n");
-  requireRefused(folder, "merge p0 long p2 p3 --out all.jsonl",
-                 "long: expected nothing after the last answer, got 3 bytes");
+  checkRefused(folder, "merge p0 long p2 p3 --out all.jsonl",
+               "long: expected nothing after the last answer, got 3 bytes");
   folder.write("odd", headOf(part) + "\n" + part.substr(headOf(part).size()));
-  requireRefused(folder, "merge p0 odd p2 p3 --out all.jsonl", "odd: answer 0: expected the answer to query 15, got");
+  checkRefused(folder, "merge p0 odd p2 p3 --out all.jsonl", "odd: answer 0: expected the answer to query 15, got");
   folder.write("whole", folder.read("p1").substr(headOf(part).size()));
-  requireRefused(folder, "merge p0 whole p2 p3 --out all.jsonl",
-                 "whole: line 1: expected the first line of a part file");
-  requireRefused(folder, "merge p0 missing --out all.jsonl",
-                 "missing: expected a shard's answer file, got no such file");
-  requireRefused(folder, "merge p0 p1 p2 p3 --out none/all.jsonl", "--out");
+  checkRefused(folder, "merge p0 whole p2 p3 --out all.jsonl", "whole: line 1: expected the first line of a part file");
+  checkRefused(folder, "merge p0 missing --out all.jsonl", "missing: expected a shard's answer file, got no such file");
+  checkRefused(folder, "merge p0 p1 p2 p3 --out none/all.jsonl", "--out");
   // Another query file: one number differs.
   std::string queries = folder.read("w/queries.json");
   queries.replace(queries.rfind("\"D\": "), 5, "\"D\": 1");
   folder.write("w/queries.json", queries);
   answer("1/4", "other-file");
-  requireRefused(folder, "merge p0 other-file p2 p3 --out all.jsonl", "other-file: fingerprint of the query file");
+  checkRefused(folder, "merge p0 other-file p2 p3 --out all.jsonl", "other-file: fingerprint of the query file");
 }
 
 TEST_CASE("a run that was killed while it wrote is finished by --resume with the bytes of one run") {
@@ -116,11 +105,11 @@ TEST_CASE("a run that was killed while it wrote is finished by --resume with the
   CHECK(partial.size() > 10 * headOf(partial).size());
   CHECK(whole.starts_with(partial.substr(headOf(partial).size())));
 
-  requireRefused(folder, query + "--out a.jsonl", "a.jsonl.partial: expected no such file");
-  requireRefused(folder, "query w/queries.json --mode contact --out a.jsonl --resume",
-                 "a.jsonl.partial: mode: expected that of this run, \"contact\", got \"reference\"");
-  requireRefused(folder, query + "--shard 0/2 --out a.jsonl --resume",
-                 "a.jsonl.partial: shard: expected shard 0/2, got all");
+  checkRefused(folder, query + "--out a.jsonl", "a.jsonl.partial: expected no such file");
+  checkRefused(folder, "query w/queries.json --mode contact --out a.jsonl --resume",
+               "a.jsonl.partial: mode: expected that of this run, \"contact\", got \"reference\"");
+  checkRefused(folder, query + "--shard 0/2 --out a.jsonl --resume",
+               "a.jsonl.partial: shard: expected shard 0/2, got all");
   CHECK(folder.read("a.jsonl.partial") == partial);
 
   REQUIRE(runProgram(folder, query + "--out a.jsonl --resume").status == 0);
@@ -146,23 +135,23 @@ TEST_CASE("a run with --resume keeps what is complete, wherever the file was cut
   // A shard that is complete is kept, so that all of an array of jobs may be submitted again. It needs no device.
   REQUIRE(runProgram(folder, query, "VK_DRIVER_FILES=/nowhere.json VK_ICD_FILENAMES=/nowhere.json").status == 0);
   CHECK(folder.read("part") == part);
-  requireRefused(folder, query + " --mode reference", "part: mode: expected that of this run");
+  checkRefused(folder, query + " --mode reference", "part: mode: expected that of this run");
   CHECK(folder.read("part") == part);
 
   std::string wrong = part;
   wrong.replace(wrong.find("teapot", head), 6, "kettle");
   folder.write("part.partial", wrong);
-  requireRefused(folder, query, "part.partial: answer 0: expected the answer to query");
+  checkRefused(folder, query, "part.partial: answer 0: expected the answer to query");
   folder.write("part.partial", part + part.substr(head));
-  requireRefused(folder, query, "part.partial: expected nothing after the last answer");
+  checkRefused(folder, query, "part.partial: expected nothing after the last answer");
 }
 
 TEST_CASE("bad shards and options without a file are refused by name") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, kWorkload).status == 0);
   for (const char* shard : {"1", "2/2", "0/0", "-1/2", "1/2/3", "a/b", "0/99999999999"}) {
-    requireRefused(folder, std::string("query w/queries.json --out a --shard ") + shard, "--shard: expected I/N");
+    checkRefused(folder, std::string("query w/queries.json --out a --shard ") + shard, "--shard: expected I/N");
   }
-  requireRefused(folder, "query w/queries.json --shard 0/2", "--shard: expected --out beside it");
-  requireRefused(folder, "query w/queries.json --resume", "--resume: expected --out beside it");
+  checkRefused(folder, "query w/queries.json --shard 0/2", "--shard: expected --out beside it");
+  checkRefused(folder, "query w/queries.json --resume", "--resume: expected --out beside it");
 }

@@ -4,6 +4,7 @@
 #include "cli/program.h"
 #include "support/catch.h"
 
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
@@ -61,21 +62,15 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   std::filesystem::create_directory(folder.path() / "broken");
   folder.write("broken/report.json", "{");
   folder.write("none.json", R"({"format": "cyber-radar-queries-1", "meshes": [], "scenes": [], "queries": []})");
-  const auto refused = [&](const std::string& arguments, const std::string& what) {
-    CAPTURE(arguments);
-    const Run run = runProgram(folder, arguments);
-    CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains(what));
-  };
-  refused("chart", "--out");
-  refused("chart --out file", "--out");
-  refused("chart --out c --render", "report.json");
-  refused("chart --out broken --render", "broken");
-  refused("chart --out c missing.json", "missing.json");
-  refused("chart --out c none.json", "queries");
-  refused("chart --out c --mesh missing.ply", "missing.ply");
-  refused("chart --out c --device 99", "99");
-  refused("chart --out c --extent huge", "--extent");
+  checkRefused(folder, "chart", "--out");
+  checkRefused(folder, "chart --out file", "--out");
+  checkRefused(folder, "chart --out c --render", "report.json");
+  checkRefused(folder, "chart --out broken --render", "broken");
+  checkRefused(folder, "chart --out c missing.json", "missing.json");
+  checkRefused(folder, "chart --out c none.json", "queries");
+  checkRefused(folder, "chart --out c --mesh missing.ply", "missing.ply");
+  checkRefused(folder, "chart --out c --device 99", "99");
+  checkRefused(folder, "chart --out c --extent huge", "--extent");
 }
 
 TEST_CASE("without gnuplot nothing is measured or written, and the error says what to install, with status 2") {

@@ -10,6 +10,7 @@
 
 using namespace radar;
 using namespace radar::tools;
+using radar::test::checkRefused;
 using radar::test::Contains;
 using radar::test::Run;
 using radar::test::runProgram;
@@ -125,17 +126,11 @@ TEST_CASE("selftest leaves its files, and refuses what makes no sense") {
   for (std::string line; std::getline(text, line);) CHECK(line.size() <= 120);
 
   folder.write("file", "taken");
-  const auto refused = [&](const std::string& arguments, const std::string& what) {
-    CAPTURE(arguments);
-    const Run one = runProgram(folder, "selftest " + arguments);
-    CHECK(one.status == 2);
-    CHECK_THAT(one.err, Contains(what));
-  };
-  refused("--out file", "expected a folder");
-  refused("--device 99 --out none", "device 99 does not exist");
-  refused("--device some --out none", "--device");
-  refused("--device 1,1 --out none", "device 1 is named twice");
-  refused("--minutes 0 --out none", "--minutes");
-  refused("--minutes nan --out none", "--minutes");
-  refused("", "--out");
+  checkRefused(folder, "selftest --out file", "expected a folder");
+  checkRefused(folder, "selftest --device 99 --out none", "device 99 does not exist");
+  checkRefused(folder, "selftest --device some --out none", "--device");
+  checkRefused(folder, "selftest --device 1,1 --out none", "device 1 is named twice");
+  checkRefused(folder, "selftest --minutes 0 --out none", "--minutes");
+  checkRefused(folder, "selftest --minutes nan --out none", "--minutes");
+  checkRefused(folder, "selftest", "--out");
 }

@@ -82,6 +82,7 @@ Json measure(const Options& options) {
                                                     : Extent::least;
   const std::vector<Case> cases = casesOf(options, extent);
   const Device device = Device::open({.index = number});
+  makeFolder("--out", options.out);
   const auto methods = [&](const std::string& section) {
     const uint32_t threads = std::max(1u, std::thread::hardware_concurrency());
     std::vector<Method> all = ours(device, section, extent, threads);
@@ -114,7 +115,6 @@ Json readReport(const std::string& folder) {
 void chart(Options options) {
   requireGnuplot();
   if (options.quick) options.extent = "quick";
-  makeFolder("--out", options.out);
   Json report = options.render ? readReport(options.out) : measure(options);
   sumUp(report, options.out);
   for (const char* name : {"workloads", "methods", "growth", "edits", "recorded"}) {

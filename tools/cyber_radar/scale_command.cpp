@@ -102,12 +102,10 @@ int scale(Options options) {
   settings.repeats = options.repeats;
   settings.resolution = options.engine.checked().resolution;
   const std::vector<uint32_t> asked = devicesFrom(options.device);
-  if (!options.out.empty()) {
-    requireGnuplot();
-    makeFolder("--out", options.out);
-  }
+  if (!options.out.empty()) requireGnuplot();
   const std::vector<ScalePoint> points = options.file.empty() ? figure7Points(options) : filePoints(options);
   const std::vector<Device> devices = openDevices(asked);
+  if (!options.out.empty()) makeFolder("--out", options.out);
   if (devices.size() == 1) {
     printWarnings({"there is one device, so nothing is compared; the tables say what limits it alone"});
   }

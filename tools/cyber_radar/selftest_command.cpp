@@ -28,8 +28,8 @@ int selftest(const Options& options) {
   const std::vector<uint32_t> numbers = devicesFrom(options.device);
   // A range check of the parser lets through what is not a number.
   if (std::isnan(options.minutes)) throw InputError("--minutes", "nan", "expected a number of minutes");
-  makeFolder("--out", options.out);
   Json report = lookAtDevices(numbers);
+  makeFolder("--out", options.out);
   const std::filesystem::path folder = options.out;
   runSelftest(report, options.minutes, [&] {
     for (const Json& part : report["parts"]) {

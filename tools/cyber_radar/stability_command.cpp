@@ -28,8 +28,8 @@ struct Options {
 };
 
 int stability(const Options& options) {
-  if (!options.out.empty()) makeFolder("--out", options.out);
   const Device device = Device::open({.index = options.device});
+  if (!options.out.empty()) makeFolder("--out", options.out);
   Json report = newReport("Cyber Radar: where methods fail", {{"device", device.name() + ", " + device.driver()}});
   bool right = false;
   {

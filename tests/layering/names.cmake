@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 # name, nor do two in the headers that shaders share with it; paths in comments exist, and what pages link to.
 set(wrong "")
 
-foreach(part engine shaders)
+foreach(part engine shaders tools)
   set(seen "")
   file(GLOB_RECURSE headers RELATIVE ${ROOT} ${ROOT}/${part}/*.h)
   foreach(header ${headers})

@@ -13,8 +13,8 @@ inline oracle::Rational begins(const radar::tools::Solid& a, const radar::tools:
                                const std::array<int, 3>& direction) {
   using oracle::Rational;
   Rational best = -1;
-  for (const radar::tools::Cell& p : a) {
-    for (const radar::tools::Cell& q : b) {
+  for (const radar::tools::Voxel& p : a) {
+    for (const radar::tools::Voxel& q : b) {
       Rational from = 0, to = 1'000'000;
       bool meets = true;
       for (int k = 0; k < 3; ++k) {

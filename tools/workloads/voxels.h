@@ -9,8 +9,8 @@
 
 namespace radar::tools {
 
-using Cell = std::array<int, 3>;  ///< the cube from this corner to the one a step further along each axis
-using Solid = std::set<Cell>;
+using Voxel = std::array<int, 3>;  ///< the cube from this corner to the one a step further along each axis
+using Solid = std::set<Voxel>;
 
 /// The boundary of a solid, wound outwards, each square cut along a random diagonal.
 MeshData boundaryOf(const Solid& solid, Random& random);

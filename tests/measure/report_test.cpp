@@ -18,10 +18,10 @@ TEST_CASE("a table is text with columns that line up, and comma-separated values
   CHECK(csvOf(Json::array()).empty());
 }
 
-TEST_CASE("columns of text that make lines too long follow below their row") {
+TEST_CASE("columns that make lines too long follow below their row") {
   const std::string sentence(110, 'x');
-  const Json table{{{"name", "a"}, {"n", 7}, {"found", sentence}, {"needed", ""}, {"so", sentence}},
-                   {{"name", "b"}, {"n", 12}, {"found", "short"}, {"needed", "this"}, {"so", "that"}}};
+  const Json table{{{"name", "a"}, {"n", 7}, {"found", sentence}, {"needed", ""}, {"so", sentence}, {"at", 8}},
+                   {{"name", "b"}, {"n", 12}, {"found", "short"}, {"needed", "this"}, {"so", "that"}, {"at", 16}}};
   CHECK(textOf(table, "  ") == "  name   n\n  a      7\n    found: " + sentence + "\n    so: " + sentence +
-                                   "\n  b     12\n    found: short; needed: this; so: that\n");
+                                   "\n    at: 8" + "\n  b     12\n    found: short; needed: this; so: that; at: 16\n");
 }

@@ -183,7 +183,7 @@ std::string textOf(const Json& table, const std::string& indent) {
   };
   size_t inLine = widths.size();
   size_t width = std::accumulate(widths.begin(), widths.end(), indent.size() + 2 * (inLine - 1));
-  for (; width > kWidth && inLine > 1 && !isRight(inLine - 1); --inLine) width -= widths[inLine - 1] + 2;
+  for (; width > kWidth && inLine > 1; --inLine) width -= widths[inLine - 1] + 2;
   std::string text;
   for (const std::vector<std::string>& cells : lines) {
     std::string line = indent;

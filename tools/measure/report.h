@@ -25,7 +25,7 @@ std::string print(const char* format, Values... values) {
 }
 
 /// Columns that line up, under their names. Fractions have four digits. Where lines would be longer than 120
-/// characters, the last columns of text follow in lines below their row. Empty for a table without rows.
+/// characters, the last columns follow in lines below their row. Empty for a table without rows.
 std::string textOf(const Json& table, const std::string& indent = "");
 
 /// A line for the names of the columns, then one for each row. Numbers read back as the same; "yes" or "no" for a

@@ -56,18 +56,19 @@ struct Inverse {
 // Asks rays. `query`: leaves out the instances that it excludes; null: none.
 class Rays : RTCRayQueryContext {
  public:
-  Rays(const Query* query, RTCRayQueryFlags flags) : query_(query) {
-    const RTCFilterFunctionN filter = query == nullptr || query->exclude.empty() ? nullptr : leaveOut;
+  Rays(const Query* query, RTCRayQueryFlags coherence) : query_(query) {
+    const RTCFilterFunctionN filterFunction = query == nullptr || query->exclude.empty() ? nullptr : leaveOut;
 #if RTC_VERSION_MAJOR < 4
     rtcInitIntersectContext(this);
-    this->flags = flags;
-    this->filter = filter;
+    flags = coherence;
+    filter = filterFunction;
 #else
     rtcInitRayQueryContext(this);
     rtcInitIntersectArguments(&arguments_);
     arguments_.context = this;
-    arguments_.flags = filter == nullptr ? flags : RTCRayQueryFlags(flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-    arguments_.filter = filter;
+    arguments_.flags =
+        filterFunction == nullptr ? coherence : RTCRayQueryFlags(coherence | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+    arguments_.filter = filterFunction;
 #endif
   }
   Rays(const Rays&) = delete;

@@ -342,9 +342,9 @@ Vector contactNormal(const Event& first, const Span& span, std::span<const Touch
     return normal(first);
   }
   if (const auto own = all.own()) return *own;
-  const auto [ofA, ofB] = placesOf(first);
+  const std::pair<Place, Place> places = placesOf(first);
   const auto rimOf = [&](std::span<const TouchingPair* const> some) {
-    const Around a(some, true, ofA), b(some, false, ofB);
+    const Around a(some, true, places.first), b(some, false, places.second);
     std::vector<const TouchingPair*> around;
     for (const TouchingPair* pair : some) {
       if (a.contains(*pair) && b.contains(*pair)) around.push_back(pair);

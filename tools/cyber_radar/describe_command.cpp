@@ -67,14 +67,14 @@ std::string patternOf(const std::vector<Entry>& entries) {
 
 std::string forBash(const std::vector<Entry>& entries) {
   std::string values, words;
-  for (const auto& [path, app] : entries) {
+  for (const Entry& entry : entries) {
     std::vector<std::string> names;
-    eachOption(*app, [&](const CLI::Option& option, const std::string& name) {
+    eachOption(*entry.app, [&](const CLI::Option& option, const std::string& name) {
       names.push_back(name);
       const std::string choices = joined(choicesOf(option), " ");
-      if (!choices.empty()) values += "    \"" + path + " " + name + "\") words=\"" + choices + "\" ;;\n";
+      if (!choices.empty()) values += "    \"" + entry.path + " " + name + "\") words=\"" + choices + "\" ;;\n";
     });
-    words += "      \"" + path + "\") words=\"" + joined(commandsOf(*app), " ") +
+    words += "      \"" + entry.path + "\") words=\"" + joined(commandsOf(*entry.app), " ") +
              "\"\n        [[ $now == -* ]] && words=\"" + joined(names, " ") + "\" ;;\n";
   }
   return R"(# bash completion of cyber-radar

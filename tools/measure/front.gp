@@ -13,6 +13,12 @@ note(wrong) = (Name[column('linetype')] = strcol('name'), worst = max(worst, col
                leastWrong = wrong > 0 ? min(leastWrong, wrong) : leastWrong, column('us'))
 stats csv using (note(column('wrong_percent'))) nooutput
 set xrange [STATS_min / 1.5 : STATS_max * 1.5]
+# Releases of gnuplot choose ticks of short logarithmic axes differently.
+set xtics 10
+if (STATS_max < 500 * STATS_min) {
+  set xtics ()
+  do for [e = -3:7] { set xtics add (10.0**e, 2 * 10.0**e, 5 * 10.0**e) }
+}
 
 us(n) = column('linetype') == n ? column('us') : NaN
 wrongOr(otherwise) = column('wrong_percent') > 0 ? column('wrong_percent') : otherwise

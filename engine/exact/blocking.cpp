@@ -160,7 +160,7 @@ class Pair {
 bool haveSafeRange(const Triangle& a, const Triangle& b, const Vector* direction, double slack) {
   bool safe = hasSafeRange(slack);
   for (size_t k = 0; k < 3; ++k) {
-    safe &= hasSafeRange(a[1][k] - a[0][k]) & hasSafeRange(a[2][k] - a[0][k]);
+    for (size_t i = 1; i < 3; ++i) safe &= hasSafeRange(a[i][k] - a[0][k]);
     for (size_t i = 0; i < 3; ++i) safe &= hasSafeRange(b[i][k] - a[0][k]);
     if (direction != nullptr) safe &= hasSafeRange((*direction)[k]);
   }

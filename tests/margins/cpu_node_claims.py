@@ -5,7 +5,7 @@ from fractions import Fraction
 from functools import partial
 
 from claims import Claim, Inequality, Shared, at_most, underflow, without_flushing
-from cpu_claims import MOTION_FILES, ROUNDING_FILE, UNIT
+from cpu_claims import HELD, MOTION_FILES, ROUNDING_FILE, UNIT
 from evaluator import UNKNOWN, Evaluator, Vector
 from polynomial import Polynomial, summed, total
 from rounding import CPU_DOUBLES, CPU_FLOATS, converted, exactly, plain, roughly, symbol
@@ -13,9 +13,6 @@ from sizes import ROOT_OF_3, mean_error, positive, together, vector, within
 
 # A node's centre and half extent, together, of normalised vertices, which are below 2.
 REACH = [Polynomial.constant(2)] * 3
-# What a slack must hold is at most this share of it: see relative_placement, and the 1.01 of clearances. So it is with
-# positionError_, edgeError_ and clearance_ of leaves.
-HELD = Fraction(100, 101)
 # The condition on which numbers of a template are those of floats.
 IS_FLOAT = "sizeof(Real) == sizeof(float)"
 
@@ -264,6 +261,35 @@ def by_triangles(real, sources):
         yield Inequality(f"axis {number}", margin["width"].least, need, [rules])
 
 
+def of_leaves(real, sources):
+    """edgeError_ holds the errors of two placed vertices; positionError_ that of one, and what a gap loses in doubles.
+
+    The largest of the axes counts: it is no less if the numbers of the others are left out.
+    """
+    convert = {"Real": None, "static_cast": lambda x: converted(x, real) if real is CPU_FLOATS else x}
+    for k in range(3):
+        relative = relative_placement() | {"rounding": vector("rounding", nonnegative=True)}
+        matrix, offset, travel = (relative[name] for name in ("matrix", "offset", "travel"))
+        for name in ("magnitude", "rounding"):
+            relative[name] = Vector(x if j == k else exactly(0) for j, x in enumerate(relative[name]))
+        assumptions = {"!usable_": False, IS_FLOAT: real is CPU_FLOATS}
+        evaluator = Evaluator(sources, CPU_DOUBLES, assumptions=assumptions, globals=convert)
+        evaluator.call("LeafTest", UNKNOWN, UNKNOWN, relative, members={"usable_": UNKNOWN})
+        edge, position = (evaluator.variables[name].least * HELD for name in ("edgeError_", "positionError_"))
+        rounding = symbol(f"rounding{k}")
+        yield Inequality(f"edge, axis {k}", edge, rounding * 2, [without_flushing])
+
+        evaluator = Evaluator(sources, CPU_DOUBLES, globals={"D": lambda x: x})
+        placing = "D(row[0]) * own.first[0] + D(row[1]) * own.first[1] + D(row[2]) * own.first[2]"
+        corner = evaluator.expression("showA", placing, row=matrix[k], own={"first": vector("p")})
+        moving = {"offset_": offset, "travel_": travel, "begin": plain("begin"), "k": k}
+        moved = evaluator.expression("operator()", "offset_[k] + double(begin) * travel_[k]", **moving)
+        corners = {"a_": {"corner": {k: corner}}, "b_": {"corner": vector("q")}, "moved": moved, "k": k}
+        gap = evaluator.expression("operator()", "b_.corner[k] - (a_.corner[k] + moved)", **corners)
+        rules = at_most({f"{name}{j}": REACH[j] for name in "pq" for j in range(3)} | {"begin": Polynomial.constant(1)})
+        yield Inequality(f"position, axis {k}", position, rounding + gap.error, [without_flushing, rules])
+
+
 NODE_FILES = [ROUNDING_FILE, "engine/cpu/node_test.h", "engine/cpu/node_test.cpp"]
 LEAF_FILES = NODE_FILES + ["engine/cpu/leaf_test.h", "engine/cpu/leaf_test.cpp"]
 
@@ -271,10 +297,12 @@ LEAF_FILES = NODE_FILES + ["engine/cpu/leaf_test.h", "engine/cpu/leaf_test.cpp"]
 def claims():
     found = [Claim("boxes of roots", "narrow", ["32 * kUnit"], MOTION_FILES, by_roots)]
     triangles = ["32 * kRounding", ("Margin", "3) * error")]
+    errors = ["2 * relative.rounding[k])", "2 * relative.rounding[k] + 16", "16 * kUnit"]
     for title, owner, constants, files, statement in (
         ("boxes of nodes", "Axes::Axes", ["16 * kRounding"], NODE_FILES, by_boxes),
         ("normals of nodes", "Axes::Axes", ["128 * kRounding"], NODE_FILES, by_normals),
         ("triangles of leaves", "operator()", triangles, LEAF_FILES, by_triangles),
+        ("errors of leaves", "LeafTest", errors, LEAF_FILES, of_leaves),
     ):
         for numbers, real in (("floats", CPU_FLOATS), ("doubles", CPU_DOUBLES)):
             found.append(Claim(f"{title}, {numbers}", owner, constants, files, partial(statement, real)))

@@ -196,7 +196,7 @@ TEST_CASE("modes contact and reference report the same contacts") {
 TEST_CASE("help shows examples, and a call without a command points to the help") {
   const ScratchFolder folder;
   CHECK_THAT(runProgram(folder, "--help").out, Contains("cyber-radar demo"));
-  for (const char* command : {"sweep", "query", "scopes", "workload"}) {
+  for (const char* command : {"sweep", "query", "scopes", "view", "workload"}) {
     const Run run = runProgram(folder, std::string(command) + " --help");
     CHECK(run.status == 0);
     CHECK_THAT(run.out, Contains("Examples:"));

@@ -8,7 +8,7 @@ file(GLOB deb ${FOLDER}/cyber-radar_${VERSION}_*.deb)
 
 execute_process(COMMAND dpkg-deb -f ${deb} OUTPUT_VARIABLE fields COMMAND_ERROR_IS_FATAL ANY)
 foreach(expected "Package: cyber-radar\n" "Version: ${VERSION}\n" "Section: libdevel\n" "Maintainer: [^\n]+@"
-        "Depends:[^\n]* libvulkan1" "Depends:[^\n]* libassimp" "Depends:[^\n]* libcairo2" "Depends:[^\n]* libc6 [(]>="
+        "Depends:[^\n]* libvulkan1" "Depends:[^\n]* libassimp" "Depends:[^\n]* libc6 [(]>="
         "Recommends: libvulkan-dev\n" "Description: [^\n]+\n [^\n]+")
   if(NOT fields MATCHES "${expected}")
     message(FATAL_ERROR "expected \"${expected}\" among the fields of ${deb}:\n${fields}")

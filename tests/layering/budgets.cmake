@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Holds folders and pages to budgets.txt: cmake -DROOT=... -P budgets.cmake. Lines of *.cpp, *.h, *.glsl and *.py of a folder
-# with its subfolders, words of a page. A limit far above what is there must be lowered.
+# Holds folders and pages to budgets.txt: cmake -DROOT=... -P budgets.cmake. Lines of *.cpp, *.h, *.glsl, *.js and *.py of
+# a folder with its subfolders, words of a page. A limit far above what is there must be lowered.
 set(wrong "")
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/budgets.txt rows REGEX "^[^#]")
 foreach(row ${rows})
@@ -15,7 +15,8 @@ foreach(row ${rows})
     set(files ${ROOT}/${path})
     set(unit "[^ \n]+")
   else()
-    file(GLOB_RECURSE files ${ROOT}/${path}/*.cpp ${ROOT}/${path}/*.h ${ROOT}/${path}/*.glsl ${ROOT}/${path}/*.py)
+    file(GLOB_RECURSE files ${ROOT}/${path}/*.cpp ${ROOT}/${path}/*.h ${ROOT}/${path}/*.glsl
+      ${ROOT}/${path}/*.js ${ROOT}/${path}/*.py)
     set(unit "\n")
   endif()
   set(count 0)

@@ -18,6 +18,7 @@ void addSelftestCommand(CLI::App& app, int& status);
 void addStabilityCommand(CLI::App& app, int& status);
 void addChartCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app, int& status);
+void addViewCommand(CLI::App& app, int& status);
 void addWorkloadCommand(CLI::App& app);
 /// `completion` and `man`, which describe all commands of `app`; it must outlive the parsing.
 void addDescribeCommands(CLI::App& app);

@@ -52,6 +52,7 @@ int main(int argc, char** argv) try {
   radar::tools::addBasics(app);
   int status = 0;
   radar::tools::addSweepCommand(app, status);
+  radar::tools::addViewCommand(app, status);
   radar::tools::addQueryCommand(app, status);
   radar::tools::addMergeCommand(app, status);
   radar::tools::addScopesCommand(app);

@@ -2,11 +2,11 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/atomic_file.h"
-#include "measure/clock.h"
 #include "commit/commit.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/query_run.h"
 #include "cyber_radar/words.h"
+#include "measure/clock.h"
 #include "measure/timing.h"
 #include "workloads/query_fields.h"
 

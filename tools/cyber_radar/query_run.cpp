@@ -5,8 +5,8 @@
 #include <future>
 #include <iostream>
 
-#include "measure/clock.h"
 #include "commit/commit.h"
+#include "measure/clock.h"
 
 namespace radar::tools {
 

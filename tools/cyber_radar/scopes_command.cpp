@@ -6,9 +6,9 @@
 #include "batch/answer_file.h"
 #include "batch/atomic_file.h"
 #include "batch/query_file.h"
+#include "cyber_radar/answer_page.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
-#include "cyber_radar/scope_picture.h"
 #include "cyber_radar/words.h"
 #include "measure/report.h"
 
@@ -20,7 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar scopes batch.json --query ring/0 --out pictures
   cyber-radar scopes ring.obj peg.stl --direction 0 0 1 --distance 8 --out pictures --raw
 
-Writes R.png, M.png, L.png and scopes.png, which holds all three. With --raw also R.f32, M.f32 and L.f32: the values as
+Writes scopes.html, a page with the three pictures and the scene. With --raw also R.f32, M.f32 and L.f32: the values as
 little-endian 32-bit floats, row by row from the window's lower left corner, NaN where a pixel has no value; and
 scopes.json, which gives width, height, the side of a pixel, d, the sensor's length along the motion, the window's
 corner and axes in the world, and the answer.)";
@@ -49,7 +49,7 @@ Workload load(Options& options) {
   }
   std::vector<std::string> warnings;
   Outputs outputs;
-  outputs.addIn("--out", options.out, {"scopes.json", "R.f32", "M.f32", "L.f32"});
+  outputs.addIn("--out", options.out, {"scopes.html", "scopes.json", "R.f32", "M.f32", "L.f32"});
   Workload workload = QueryFile(options.files[0], warnings, outputs).all();
   printWarnings(warnings);
   return workload;
@@ -89,8 +89,9 @@ void writeRaw(const std::filesystem::path& folder, const Workload& workload, con
 
 void drawScopes(Options& options) {
   const AnsweringOptions engine = options.engine.checked();
-  const Workload workload = load(options);
-  const QuerySpec& query = findQuery(workload, options);
+  Workload workload = load(options);
+  workload.queries = {findQuery(workload, options)};
+  const QuerySpec& query = workload.queries.front();
   ScenePlayer player(workload);
   player.show(query.scene);
   const Device device = Device::open({.index = engine.device});
@@ -109,28 +110,26 @@ void drawScopes(Options& options) {
   const std::string title = query.id + ":  d = " + inDigits(scopes.d) + ",  D = " + inDigits(query.distance) +
                             ",  min(L) = " + leastFreeDistance(scopes) + ",  " + std::to_string(scopes.width) + " x " +
                             std::to_string(scopes.height) + " pixels of " + inDigits(scopes.pixel);
-  writeScopePicture(folder / "R.png", title, scopes, "R");
-  writeScopePicture(folder / "M.png", title, scopes, "M");
-  writeScopePicture(folder / "L.png", title, scopes, "L");
-  writeScopePicture(folder / "scopes.png", title, scopes);
+  const Answer answer{scopes.result, AnswerMode::sampled, {}, {}};
+  const std::string page = (folder / "scopes.html").string();
+  writePage(page, query.id, workload, {&answer, 1}, {.device = &device});
   if (options.raw) writeRaw(folder, workload, query, scopes);
   std::cout << title << "\n"
-            << inWords(workload, query, {scopes.result, AnswerMode::sampled, {}})
-            << "pictures: " << (folder / "scopes.png").string() << ", R.png, M.png, L.png"
+            << inWords(workload, query, answer) << "page: " << page
             << (options.raw ? "; values: R.f32, M.f32, L.f32, scopes.json" : "") << "\n";
 }
 
 }  // namespace
 
 void addScopesCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("scopes", "Draws the paper's scopes R, M and L of one query");
+  CLI::App* command = app.add_subcommand("scopes", "Shows the paper's scopes R, M and L of one query");
   command->footer(kExamples);
   auto options = std::make_shared<Options>();
   command->add_option("FILES", options->files, "A query file; or two mesh files, scene and sensor")
       ->required()
       ->expected(1, 2);
   command->add_option("--query", options->query, "Which query of the query file")->type_name("ID");
-  command->add_option("--out", options->out, "Folder for the pictures")->required()->type_name("DIR");
+  command->add_option("--out", options->out, "Folder for the page")->required()->type_name("DIR");
   options->sweep.addMotionTo(*command);
   options->engine.addResolutionTo(*command);
   command->add_flag("--raw", options->raw, "Writes the 32-bit values too");

@@ -1,9 +1,11 @@
 #include <iostream>
 
 #include "batch/answer_rows.h"
+#include "cyber_radar/answer_page.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
 #include "cyber_radar/words.h"
+#include "import/mesh_import.h"
 
 namespace radar::tools {
 
@@ -14,6 +16,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep ring.obj peg.stl --at 0 0 -3 --rotate 0 1 0 15 --direction 0 0 1 --distance 8 --speed 0.5
   cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --json | python3 -m json.tool
+  cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --view sweep.html
 
 SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit; FILE#3 or FILE#NAME is one
 node of a file, in its own frame. The scene stands as it is; the sensor is turned (--rotate), put in its place (--at)
@@ -22,6 +25,7 @@ and moved along --direction for --distance.)";
 struct Options {
   EngineOptions engine;
   SweepOptions sweep;
+  std::string view;
   bool json = false;
 };
 
@@ -37,6 +41,13 @@ std::string introduction(const Workload& workload) {
 
 int sweep(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
+  Outputs outputs;
+  if (!options.view.empty()) {
+    outputs.add("--view", options.view);
+    for (const std::string& mesh : {options.sweep.scene, options.sweep.sensor}) {
+      outputs.requireNone(splitMeshName(mesh).file);
+    }
+  }
   const Workload workload = options.sweep.load();
   Answering answering(workload, modesOf(workload), engine);
   const Answer answer = answersTo(workload, answering, "sweeping").front();
@@ -49,6 +60,11 @@ int sweep(const Options& options) {
       std::cout << "  " << resolution << (engine.resolution == 0 ? " (chosen)" : "") << " on "
                 << answering.answerer().devices()[0].name() << "\n";
     }
+  }
+  if (!options.view.empty()) {
+    const std::span<const Device> devices = answering.answerer().devices();
+    writePage(options.view, options.sweep.sensor + " in " + options.sweep.scene, workload, {&answer, 1},
+              {.device = devices.empty() ? nullptr : &devices[0]});
   }
   return someInvalid({&answer, 1}) ? kStatusSomeInvalid : 0;
 }
@@ -64,6 +80,8 @@ void addSweepCommand(CLI::App& app, int& status) {
   options->sweep.addMotionTo(*command);
   options->sweep.addFieldsTo(*command);
   options->engine.addTo(*command);
+  command->add_option("--view", options->view, "Writes a page here that shows the answer in any browser")
+      ->type_name("FILE.html");
   command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
   command->callback([options, &status] { status = sweep(*options); });
 }

@@ -41,6 +41,10 @@ std::string inDigits(const std::array<double, 3>& vector) {
   return "(" + inDigits(vector[0]) + ", " + inDigits(vector[1]) + ", " + inDigits(vector[2]) + ")";
 }
 
+std::string leastFreeDistance(const Scopes& scopes) {
+  return std::isnan(scopes.result.paperMinL) ? "none" : inDigits(scopes.result.paperMinL);
+}
+
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
   if (!answer.listed.overlapping.empty()) {
     return "skipped: the surfaces cross at the start, so nothing is left to meet\n";

@@ -11,6 +11,9 @@ namespace radar::tools {
 std::string inDigits(double value);
 std::string inDigits(const std::array<double, 3>& vector);  ///< (x, y, z)
 
+/// min(L) in words.
+std::string leastFreeDistance(const Scopes& scopes);
+
 /// What is hit, where and when, in a few lines; `workload` gives the names.
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer);
 

@@ -71,10 +71,6 @@ foreach(key IN LISTS newest)
 endforeach()
 file(WRITE ${root}/lib/replaceable/needed "${needed}")
 
-# A font, for machines without.
-set(font /usr/share/fonts/truetype/dejavu/DejaVuSans.ttf)
-file(COPY ${font} ${CMAKE_CURRENT_LIST_DIR}/fonts.conf DESTINATION ${root}/share/fonts)
-
 # Something to try it with: the paper's boxes and teapots.
 execute_process(COMMAND ${PROGRAM} workload figure7 --teapots 6 --boxes 60 --steps 4 --out ${root}/meshes
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
@@ -91,7 +87,7 @@ foreach(map ${PROGRAM}.map ${LAUNCHER}.map)
   list(TRANSFORM loaded REPLACE "^LOAD " "")
   list(APPEND origins ${loaded})
 endforeach()
-list(APPEND origins ${font} /usr/include/CLI/CLI.hpp /usr/include/nlohmann/json.hpp /usr/include/vulkan/vulkan.h)
+list(APPEND origins /usr/include/CLI/CLI.hpp /usr/include/nlohmann/json.hpp /usr/include/vulkan/vulkan.h)
 foreach(origin IN LISTS origins)
   file(REAL_PATH ${origin} file)
   # dpkg knows some files by their place before /lib moved to /usr.

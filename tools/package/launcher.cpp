@@ -27,7 +27,6 @@ constexpr const char* kMachineFolders[] = {
     "/lib/x86_64-linux-gnu", "/usr/lib/x86_64-linux-gnu", "/lib64", "/usr/lib64", "/lib", "/usr/lib"};
 constexpr const char* kLinker = "ld-linux-x86-64.so.2";  // at /lib64 by the ABI
 constexpr const char* kLibc = "libc.so.6";
-constexpr const char* kFontSettings = "/etc/fonts/fonts.conf";
 
 [[noreturn]] void fail(const std::string& message) {
   std::fprintf(stderr, "cyber-radar: %s\n", message.c_str());
@@ -92,7 +91,6 @@ int main(int, char** argv) {
     search += ":" + std::string(given);
   }
   search += ":/lib64:/usr/lib64";  // the archive's linker, which is Debian's, does not look there by itself
-  if (access(kFontSettings, R_OK) != 0) setenv("FONTCONFIG_FILE", (folder / "share/fonts/fonts.conf").c_str(), 0);
 
   const fs::path program = lib / "cyber-radar";
   std::vector<const char*> arguments{linker.c_str(), "--library-path", search.c_str(),

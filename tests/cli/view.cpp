@@ -1,0 +1,119 @@
+// Pages of answers, as far as their data goes; tests/view looks at them in a browser.
+#include "cli/page_data.h"
+#include "cli/program.h"
+#include "support/catch.h"
+
+using radar::test::checkRefused;
+using radar::test::pageData;
+using radar::test::Run;
+using radar::test::runProgram;
+using radar::test::ScratchFolder;
+
+namespace {
+
+constexpr const char* kTriangle = "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n";
+
+/// A query file of one object at z = 5, and these queries.
+std::string queryFile(const std::string& queries) {
+  return R"({"format": "cyber-radar-queries-1", "meshes": ["a.obj"],
+    "scenes": [{"instances": [[0, 1,0,0,0, 0,1,0,0, 0,0,1,5]]}], "queries": [)" +
+         queries + "]}";
+}
+
+std::string query(const std::string& id, const std::string& more) {
+  return R"({"id": ")" + id + R"(", "scene": 0, "sensor": [0], )" + more + "}";
+}
+
+}  // namespace
+
+TEST_CASE("a page is the same whether its answers are found, or read as lines or as records") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kTriangle);
+  folder.write("steps.json",
+               queryFile(query("up", R"("motion": [0, 0, 10])") + "," + query("down", R"("motion": [0, 0, -1])") + "," +
+                         query("any", R"("motion": [0, 0, 9], "decide": true)")));
+  REQUIRE(runProgram(folder, "workload soup --objects 40 --sensors 50 --out soup").status == 0);
+  REQUIRE(runProgram(folder, "workload figure7 --teapots 3 --boxes 40 --steps 2 --out flight").status == 0);
+  for (const std::string file : {"steps.json", "soup/queries.json", "flight/queries.json"}) {
+    CAPTURE(file);
+    REQUIRE(runProgram(folder, "view " + file + " --mode reference --out found.html").status == 0);
+    for (const std::string answers : {"answers.jsonl", "answers.npy"}) {
+      CAPTURE(answers);
+      REQUIRE(runProgram(folder, "query " + file + " --mode reference --out " + answers).status == 0);
+      const Run run = runProgram(folder, "view " + file + " " + answers + " --out read.html");
+      INFO(run.err);
+      REQUIRE(run.status == 0);
+      CHECK(folder.read("read.html") == folder.read("found.html"));
+    }
+  }
+  const auto data = pageData(folder.read("found.html"));
+  CHECK(data["queries"]["count"] == 6);
+  CHECK(data["scenes"].size() == 3);
+  CHECK(data["queries"]["ignored"]["2"] == nlohmann::json({42}));
+  CHECK(data["notes"].empty());
+}
+
+TEST_CASE("text of a query file cannot leave the page's data") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kTriangle);
+  const std::string hostile = "</script><script>document.title = 'mine'</script><!--";
+  folder.write("q.json", queryFile(query(hostile, R"("dir": [0,0,1], "D": 8)")));
+  REQUIRE(runProgram(folder, "view q.json --mode reference --out q.html").status == 0);
+  const std::string page = folder.read("q.html");
+  CHECK(page.find(hostile) == std::string::npos);
+  CHECK(pageData(page)["queries"]["id"] == nlohmann::json({hostile}));
+}
+
+TEST_CASE("what is too much for a page is cut, and the page says so") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, "workload scale --boxes 100001 --sensors 10001 --shape box --out w").status == 0);
+  REQUIRE(runProgram(folder, "view w/queries.json --mode reference --out w.html").status == 0);
+  const auto data = pageData(folder.read("w.html"));
+  CHECK(data["queries"]["count"] == 10'000);
+  CHECK(data["notes"] == nlohmann::json({"The first 10000 of 10001 queries.",
+                                         "Scene boxes: 100000 of 100001 objects, with all that are touched."}));
+}
+
+TEST_CASE("answers that are not those of the queries are refused") {
+  const ScratchFolder folder;
+  folder.write("a.obj", kTriangle);
+  folder.write("q.json",
+               queryFile(query("p", R"("dir": [0,0,1], "D": 8)") + "," + query("q", R"("dir": [0,0,1], "D": 1)")));
+  REQUIRE(runProgram(folder, "query q.json --mode reference --out good.jsonl").status == 0);
+  REQUIRE(runProgram(folder, "query q.json --mode reference --shard 0/2 --out part.npy").status == 0);
+  const std::string good = folder.read("good.jsonl"), first = good.substr(0, good.find('\n') + 1);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  folder.write("short.jsonl", first);
+  folder.write("long.jsonl", good + first);
+  folder.write("order.jsonl", good.substr(first.size()) + first);
+  folder.write("status.jsonl", changed("\"hit\"", "\"hurt\""));
+  folder.write("object.jsonl", changed("\"object\": 0", "\"object\": 1"));
+  folder.write("triangle.jsonl", changed("\"tri_a\": 0", "\"tri_a\": -1"));
+  folder.write("point.jsonl", changed("\"point\": [", "\"point\": [0, "));
+  folder.write("text.jsonl", changed("\"t\": 5", "\"t\": \"5\""));
+  folder.write("cut.jsonl", good.substr(0, good.size() - 9));
+  folder.write("other.npy", "what is no array\n");
+  for (const auto& [answers, words] :
+       {std::pair{"short.jsonl", "short.jsonl: expected 2 answers, one for each query, got 1"},
+        std::pair{"long.jsonl", "long.jsonl: expected 2 answers, one for each query, got 3"},
+        std::pair{"order.jsonl", "order.jsonl: line 1: expected the answer to query \"p\", got that to \"q\""},
+        std::pair{"status.jsonl", "status.jsonl: line 1: status: expected hit, clear, overlap, undecided or invalid"},
+        std::pair{"object.jsonl", "object.jsonl: line 1: object: expected a whole number below 1"},
+        std::pair{"triangle.jsonl", "triangle.jsonl: line 1: tri_a: expected a whole number below 1"},
+        std::pair{"point.jsonl", "point.jsonl: line 1: point: expected three numbers"},
+        std::pair{"text.jsonl", "text.jsonl: line 1: t: expected a finite number"},
+        std::pair{"cut.jsonl", "cut.jsonl: line 2"}, std::pair{"other.npy", "other.npy: "},
+        std::pair{"part.npy", "part.npy: expected an array"}, std::pair{"none.jsonl", "none.jsonl: expected"}}) {
+    checkRefused(folder, std::string("view q.json ") + answers + " --out page.html", words);
+  }
+  checkRefused(folder, "view q.json good.jsonl --out good.jsonl",
+               "--out: good.jsonl: expected another file than those");
+  checkRefused(folder, "view q.json --out a.obj", "--out: a.obj: expected another file than those");
+  checkRefused(folder, "view q.json --out nowhere/page.html", "--out: nowhere/page.html: expected");
+  checkRefused(folder, "view q.json", "--out");
+  checkRefused(folder, "sweep a.obj a.obj --direction 0 0 1 --distance 1 --view a.obj",
+               "--view: a.obj: expected another");
+}

@@ -1,0 +1,277 @@
+"""Looks at pages of answers in Chromium, which draws with software. RADAR_PROGRAM and CHROMEDRIVER name programs."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+
+import pytest
+from selenium.webdriver import ActionChains, Chrome, ChromeOptions
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
+
+CUBE = """v -1 -1 -1
+v 1 -1 -1
+v 1 1 -1
+v -1 1 -1
+v -1 -1 1
+v 1 -1 1
+v 1 1 1
+v -1 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+"""
+
+
+def at(mesh, x, y, z):
+    return [mesh, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z]
+
+
+# A row of cubes at x = 0, 10, 20, 30; sensors move along x, at y = 0, or beside them, at y = 50.
+QUERIES = [
+    {"id": "short", "sensor": at(0, -5, 0, 0), "dir": [1, 0, 0], "D": 10},
+    {"id": "long", "sensor": at(0, -9, 0, 0), "dir": [1, 0, 0], "D": 20},
+    {"id": "free", "sensor": at(0, -5, 50, 0), "dir": [1, 0, 0], "D": 10},
+    {"id": "inside", "sensor": at(0, 10.5, 0.5, 0.5), "dir": [1, 0, 0], "D": 10},
+    {"id": "back", "sensor": at(0, 35, 0, 0), "dir": [-1, 0, 0], "D": 10, "exclude": [1]},
+]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    options = ChromeOptions()
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+        "--window-size=1200,800",
+    ):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    chrome = Chrome(options=options, service=Service(os.environ["CHROMEDRIVER"]))
+    yield chrome
+    chrome.quit()
+
+
+class View:
+    """A page in the browser."""
+
+    def __init__(self, browser, file):
+        self.browser = browser
+        browser.get_log("browser")
+        browser.get(file.as_uri())
+        self.wait("window.view && view.stage.items && !view.flight && !view.stale")
+
+    def run(self, script, *arguments):
+        return self.browser.execute_script(script, *arguments)
+
+    def wait(self, condition):
+        WebDriverWait(self.browser, 60, 0.05).until(lambda _: self.run(f"return {condition}"))
+
+    def choose(self, query):
+        self.run("view.choose(arguments[0], {fly: true})", query)
+        self.wait("!view.flight && !view.stale")
+
+    def pixel_of(self, place):
+        """Where a place is on the canvas, by the numbers of the camera alone."""
+        camera, width, height = self.run("return [view.camera, view.canvas.clientWidth, view.canvas.clientHeight]")
+        c, s = math.cos(camera["yaw"]), math.sin(camera["yaw"])
+        cp, sp = math.cos(camera["pitch"]), math.sin(camera["pitch"])
+        right, up, forward = (-s, c, 0), (-c * sp, -s * sp, cp), (-c * cp, -s * cp, -sp)
+        eye = [t - camera["distance"] * f for t, f in zip(camera["target"], forward)]
+        x, y, depth = (sum((p - e) * a for p, e, a in zip(place, eye, axis)) for axis in (right, up, forward))
+        scale = height / (2 * math.tan(math.pi / 9) * depth)
+        return width / 2 + scale * x, height / 2 - scale * y
+
+    def colour_at(self, place):
+        x, y = self.pixel_of(place)
+        script = """
+            view.draw(4e6);
+            const {gl} = view.renderer, colour = new Uint8Array(4);
+            const [x, y] = [...arguments].map((value) => Math.round(value * devicePixelRatio));
+            gl.readPixels(x, gl.drawingBufferHeight - 1 - y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, colour);
+            return [...colour];"""
+        return self.run(script, x, y)[:3]
+
+    def rows(self):
+        """The texts of the rows in sight: status, id, t, width, object."""
+        return self.run("return [...document.querySelectorAll('.room .row')].map((r) => [...r.children].map((c) => c.textContent))")
+
+    def ids(self):
+        return [row[1] for row in self.rows()]
+
+    def click(self, place):
+        x, y = self.pixel_of(place)
+        canvas = self.browser.find_element(By.ID, "scene")
+        size = canvas.size
+        ActionChains(self.browser).move_to_element_with_offset(
+            canvas, round(x - size["width"] / 2), round(y - size["height"] / 2)
+        ).click().perform()
+
+    def errors(self):
+        return [entry for entry in self.browser.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+
+
+def make_page(folder, queries, *options):
+    (folder / "cube.obj").write_text(CUBE)
+    batch = {
+        "format": "cyber-radar-queries-1",
+        "meshes": ["cube.obj"],
+        "scenes": [{"instances": [at(0, 10 * i, 0, 0) for i in range(4)]}],
+        "queries": [{"scene": 0, **query} for query in queries],
+    }
+    (folder / "batch.json").write_text(json.dumps(batch))
+    page = folder / "page.html"
+    program = os.environ["RADAR_PROGRAM"]
+    command = [program, "view", folder / "batch.json", "--out", page, *(options or ["--mode", "reference"])]
+    subprocess.run(command, check=True, stdout=subprocess.PIPE)
+    return page
+
+
+@pytest.fixture()
+def view(browser, tmp_path):
+    shown = View(browser, make_page(tmp_path, QUERIES))
+    yield shown
+    assert shown.errors() == []
+
+
+def is_like(colour, name):
+    """Whether a lit surface has the hue of one of the page's colours: hit is orange, objects are grey, touched blue."""
+    red, green, blue = colour
+    return {
+        "hit": red > 1.6 * green > 3 * blue,
+        "object": max(colour) < 1.35 * min(colour),
+        "touched": blue > 1.3 * red,
+    }[name]
+
+
+def test_the_table_says_what_the_answers_say(view):
+    rows = view.rows()
+    assert [[status, identity, t, touched] for status, identity, t, _, touched in rows] == [
+        ["● hit", "short", "3", "0"],
+        ["● hit", "long", "7", "0"],
+        ["○ clear", "free", "∞", ""],
+        ["✕ overlap", "inside", "0", "1"],
+        ["● hit", "back", "3", "3"],
+    ]
+    assert all(float(width) < 1e-12 for *_, width, _ in rows if width)
+
+
+def test_the_chosen_sensor_is_drawn_where_the_answer_says(view):
+    view.choose(1)
+    view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    # Places on the sides that the camera sees.
+    assert is_like(view.colour_at((-2 + 0.5, -1, 0.6)), "hit")  # it stops at x = -2
+    assert is_like(view.colour_at((0.5, -1, 0.6)), "touched")
+    assert not is_like(view.colour_at((-9 + 0.5, -1, 0.6)), "hit")  # where it starts, it is like glass
+    view.run("view.whole(false)")
+    assert is_like(view.colour_at((10.5, -1, 0.6)), "object")
+    words = view.browser.find_element(By.ID, "chosen").text
+    assert "Free for 7, then it touches object 0." in words
+
+
+def test_it_says_which_objects_take_no_part(view):
+    view.choose(4)
+    assert "Takes no account of object 1" in view.browser.find_element(By.ID, "chosen").text
+
+
+def test_the_table_filters_and_sorts(view):
+    chips = {chip.text.split()[1]: chip for chip in view.browser.find_elements(By.CLASS_NAME, "chip")}
+    assert sorted(chips) == ["clear", "hit", "overlap"]
+    chips["hit"].click()
+    assert view.ids() == ["short", "long", "back"]
+    identity, number = view.browser.find_elements(By.CSS_SELECTOR, ".filters input")
+    number.send_keys("0")
+    assert view.ids() == ["short", "long"]
+    identity.send_keys("LO")
+    assert view.ids() == ["long"]
+    # The scene shows no others.
+    view.run("view.choose(-1); view.whole(false)")
+    view.wait("!view.stale")
+    assert view.run("return view.stage.items.length") == 5
+    identity.send_keys(Keys.BACKSPACE * 2)
+    number.send_keys(Keys.BACKSPACE)
+    chips["hit"].click()
+    heads = view.browser.find_elements(By.CSS_SELECTOR, ".heads button")
+    heads[2].click()
+    assert view.ids() == ["inside", "short", "back", "long", "free"]
+    heads[2].click()
+    assert view.ids() == ["free", "long", "short", "back", "inside"]
+
+
+def test_a_click_chooses_what_is_under_it(view):
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.whole(false)")
+    view.wait("!view.stale")
+    view.click((33 - 0.5, -1, 0.5))  # the sensor "back", which stops at x = 32
+    assert view.run("return view.look.chosen") == 4
+    assert view.browser.find_element(By.CSS_SELECTOR, ".row.chosen").text.split("\n")[1] == "back"
+    view.click((20.5, -1, 0.5))
+    assert view.run("return [view.look.chosen, view.look.object]") == [-1, 2]
+    assert view.browser.find_element(By.CSS_SELECTOR, "#chosen h2").text == "Object 2"
+    # A row flies there.
+    view.browser.find_element(By.CSS_SELECTOR, ".room .row").click()
+    view.wait("!view.flight && !view.stale")
+    assert view.run("return view.look.chosen") == 0
+    assert view.run("return view.camera.target[0]") == pytest.approx(-3.5)
+
+
+def test_keys_choose_and_play(view):
+    body = view.browser.find_element(By.TAG_NAME, "body")
+    body.send_keys(Keys.ARROW_DOWN)
+    assert view.run("return view.look.chosen") == 0
+    body.send_keys(Keys.ARROW_DOWN)
+    assert view.run("return view.look.chosen") == 1
+    view.wait("!view.flight")
+    view.run("view.setAlone(true); view.seek(0.5)")
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert is_like(view.colour_at((-5.5 + 0.5, -1, 0.6)), "hit")  # half of the way of 7 from x = -9
+    view.run("view.seek(1)")
+    body.send_keys(" ")
+    assert view.run("return view.playing")
+    view.wait("!view.playing")
+    assert view.run("return view.look.time") == 1
+    body.send_keys(Keys.ESCAPE)
+    assert view.run("return view.look.chosen") == -1
+
+
+def test_text_of_a_batch_is_text(browser, tmp_path):
+    hostile = "<img src=x onerror=\"document.title='mine'\"></script>"
+    view = View(browser, make_page(tmp_path, [{**QUERIES[0], "id": hostile}]))
+    assert view.ids() == [hostile]
+    view.choose(0)
+    assert view.browser.find_element(By.CSS_SELECTOR, "#chosen h2").text == f"● {hostile}"
+    assert view.run("return document.images.length") == 0
+    assert view.browser.title.endswith("batch.json")
+    assert view.errors() == []
+
+
+def test_mode_sampled_shows_the_scopes(browser, tmp_path):
+    view = View(browser, make_page(tmp_path, QUERIES[:1], "--mode", "sampled", "--resolution", "64"))
+    view.choose(0)
+    words = view.browser.find_element(By.ID, "chosen").text
+    for part in ("64 × 64 pixels", "R: ", "M: ", "L: ", "An exact search: free for 3, then it touches object 0."):
+        assert part in words
+    picture = view.browser.find_elements(By.CSS_SELECTOR, "figure canvas")[2]
+    view.run("arguments[0].scrollIntoView()", picture)
+    ActionChains(view.browser).move_to_element(picture).perform()
+    under = view.browser.find_elements(By.CLASS_NAME, "under")[2].text
+    assert under.startswith("pixel 32, 3") and float(under.split(": ")[1]) == pytest.approx(3, abs=1e-4)
+    assert view.errors() == []
+
+
+def test_a_page_without_queries_shows_its_scene(browser, tmp_path):
+    view = View(browser, make_page(tmp_path, []))
+    assert view.rows() == []
+    assert view.run("return view.stage.items.length") == 4
+    view.browser.find_element(By.TAG_NAME, "body").send_keys(Keys.ARROW_DOWN, "f", " ")
+    view.wait("!view.playing")
+    assert view.errors() == []

@@ -1,0 +1,283 @@
+// The page: the scene and the table beside it, and what keys, mouse and buttons do to them.
+
+class Page {
+  constructor(text) {
+    const data = new Data(text), canvas = document.querySelector("#scene");
+    this.data = data;
+    this.camera = new Camera();
+    this.renderer = new Renderer(canvas);
+    this.stage = new Stage(data, this.camera, canvas);
+    this.look = new Look(data);
+    Object.assign(this, { canvas, budget: 300000, playing: false, frames: [], flight: null });
+    document.querySelector("h1").textContent = document.title = data.title;
+    document.querySelector("#note").textContent = data.notes.join(" ");
+    this.table = new Table(data, document.querySelector("#table"), {
+      choose: (query) => this.choose(query, { fly: true }),
+      show: (visible) => this.change({ visible }),
+    });
+    this.listen();
+    this.whole(false);
+    this.tour = data.tour;
+    this.follow(data.tour[0] ?? {});
+    requestAnimationFrame(() => this.frame());
+  }
+
+  /** Something to be seen has changed. */
+  change(changes = {}) {
+    Object.assign(this.look, changes);
+    this.stale = true;
+    this.restless = performance.now();
+  }
+
+  /** Chooses a query; -1: none. */
+  choose(query, { fly = false } = {}) {
+    if (query === undefined) return;
+    this.change({ chosen: query, object: -1, scene: query < 0 ? this.look.scene : this.data.queries.scene[query] });
+    this.table.mark(query);
+    this.describe();
+    if (fly && query >= 0) this.flyTo(query);
+  }
+
+  seek(time) {
+    this.change({ time });
+    document.querySelector("#time").value = time;
+  }
+
+  play(playing = !this.playing) {
+    if (playing && this.look.time >= 1) this.seek(0);
+    this.playing = playing;
+    document.querySelector("#play").textContent = playing ? "❚❚" : "▶";
+    this.change();
+  }
+
+  // Where to look
+
+  /** Places to be seen together: their middle and reach. */
+  lookAt(places, smooth = true) {
+    const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
+    for (const [place, radius] of places) {
+      for (let k = 0; k < 3; ++k) {
+        lo[k] = Math.min(lo[k], place[k] - radius);
+        hi[k] = Math.max(hi[k], place[k] + radius);
+      }
+    }
+    if (!(lo[0] <= hi[0])) return;
+    const reach = 0.5 * lengthOf(minus(hi, lo)) || 1;
+    const end = { target: between(lo, hi, 0.5), distance: (1.15 * reach) / Math.sin(Math.atan(this.camera.slope)) };
+    if (!smooth || matchMedia("(prefers-reduced-motion: reduce)").matches) Object.assign(this.camera, end);
+    else this.flight = { from: { ...this.camera }, end, begun: performance.now() };
+    this.change();
+  }
+  whole(smooth = true) {
+    const { data, look } = this, { objects } = data.scene(look.scene), places = [];
+    for (let i = 0; i < objects.count; ++i) places.push([objects.centreOf(i), objects.radius[i]]);
+    for (let i = 0; i < data.queries.count; ++i) {
+      if (data.queries.scene[i] === look.scene) places.push([data.sensors.centreOf(i), data.sensors.radius[i]]);
+    }
+    this.lookAt(places, smooth);
+  }
+  flyTo(query) {
+    const { data } = this, { sensors } = data, start = sensors.centreOf(query), radius = sensors.radius[query];
+    const shares = [0, data.share(query), data.otherShare(query) ?? 0];
+    this.lookAt(shares.map((share) => [plus(start, times(share, data.way(query))), radius]));
+  }
+  fly(now) {
+    const { from, end, begun } = this.flight, share = Math.min((now - begun) / 500, 1), s = share * share * (3 - 2 * share);
+    this.camera.target = between(from.target, end.target, s);
+    this.camera.distance = from.distance * (end.distance / from.distance) ** s;
+    if (share === 1) this.flight = null;
+    this.change();
+  }
+
+  // Drawing
+
+  frame() {
+    const now = performance.now(), passed = now - (this.last ?? now);
+    this.last = now;
+    const { clientWidth, clientHeight } = this.canvas, scale = devicePixelRatio;
+    if (this.canvas.width !== Math.round(clientWidth * scale) || this.canvas.height !== Math.round(clientHeight * scale)) {
+      Object.assign(this.canvas, { width: Math.round(clientWidth * scale), height: Math.round(clientHeight * scale) });
+      this.change();
+    }
+    if (this.flight) this.fly(now);
+    if (this.playing) this.advance(Math.min(passed, 200));
+    if (this.stale) {
+      // What moves gets as many triangles as can be drawn in time.
+      if (this.wasStale && passed > 0) {
+        this.frames.push(passed);
+        if (this.frames.length > 60) this.frames.shift();
+        this.budget = Math.min(Math.max(this.budget * (passed > 60 ? 0.8 : passed < 30 ? 1.1 : 1), 20000), 4e6);
+      }
+      this.draw(this.budget);
+    } else if (this.stage.simplified && now - this.restless > 250) {
+      this.draw(4e6);
+    }
+    this.wasStale = this.stale;
+    this.stale = false;
+    requestAnimationFrame(() => this.frame());
+  }
+  draw(budget) {
+    this.stage.begin(budget);
+    this.look.fill(this.stage);
+    this.stage.settle();
+    this.stage.drawWith(this.renderer);
+  }
+
+  advance(passed) {
+    const time = this.look.time + passed / 3000;
+    this.seek(Math.min(time, 1));
+    if (time < 1) return;
+    this.play(false);
+    this.tour.shift();
+    if (this.tour.length > 0) setTimeout(() => this.tour.length > 0 && this.follow(this.tour[0]), 2500);
+  }
+  /** A part of the tour: {query, play: "alone" or "all"}. */
+  follow({ query, play }) {
+    if (query !== undefined) this.choose(query, { fly: true });
+    if (!play) return;
+    if (play === "all") {
+      this.choose(-1);
+      this.whole();
+    }
+    this.setAlone(play === "alone");
+    this.seek(0);
+    this.play(true);
+  }
+  setAlone(alone) {
+    document.querySelector("#alone").checked = alone;
+    this.change({ alone });
+  }
+
+  // In words
+
+  describe() {
+    const { data, look } = this, place = document.querySelector("#chosen"), query = look.chosen;
+    place.replaceChildren();
+    if (look.object >= 0) {
+      const { objects, meshes } = data.scene(look.scene), number = objects.number[look.object];
+      made(place, "h2", "", `Object ${number}`);
+      const name = data.scenes[look.scene].names[number];
+      if (name) made(place, "p", "", name);
+      made(place, "p", "", this.sizeInWords("Mesh", meshes[objects.mesh[look.object]]));
+      const only = made(place, "button", "", "Show what stops at it");
+      only.onclick = () => this.table.filter({ object: `${number}` });
+    }
+    if (query < 0) return;
+    const status = data.status(query), { queries } = data;
+    const head = made(place, "h2", status, `${SYMBOLS[status]} ${queries.id[query]}`);
+    head.title = status;
+    for (const line of this.words(query)) made(place, "p", "", line);
+    if (data.scopes[query]) drawScopes(place, data.scopes[query]);
+  }
+
+  sizeInWords(what, mesh) {
+    const sides = mesh.half.map((half) => inDigits(2 * half, 4)).join(" × ");
+    return `${what} ${mesh.name}: ${mesh.triangles} triangles, ${sides}`;
+  }
+  words(query) {
+    const { data } = this, { answers, queries } = data, t = (value) => inDigits(value, 9);
+    const object = answers.object[query], touches = object === data.none ? "" : `object ${data.nameOf(query, object)}`;
+    const unit = queries.step[query] ? " of the step" : "", lines = [];
+    switch (data.status(query)) {
+      case "hit": lines.push(`Free for ${t(answers.t[query])}${unit}, then it touches ${touches || "something"}.`); break;
+      case "clear": lines.push(`Touches nothing within ${t(queries.whole[query])}${unit}.`); break;
+      case "overlap": lines.push(`Touches ${touches || "something"} where it starts.`); break;
+      case "undecided": lines.push(`Free for ${t(answers.lo[query])}${unit}; contact after that is possible.`); break;
+      default: lines.push("Not answered.");
+    }
+    if (data.reasons[query]) lines.push(data.reasons[query]);
+    const [lo, hi] = [answers.lo[query], answers.hi[query]];
+    if (lo < hi && Number.isFinite(lo)) {
+      const isClose = t(lo) === t(hi);
+      lines.push(isClose ? `The bracket is ${inDigits(hi - lo, 2)} wide.` : `The bracket: ${t(lo)} to ${t(hi)}.`);
+    }
+    if (answers.triA[query] !== data.none) {
+      lines.push(`Its triangle ${answers.triA[query]} meets the object's triangle ${answers.triB[query]} (yellow).`);
+    }
+    const numbers = (name) => [...answers[name].subarray(3 * query, 3 * query + 3)];
+    for (const name of ["point", "normal"]) {
+      if (numbers(name).every(Number.isFinite)) lines.push(`${name} ${numbers(name).map((x) => inDigits(x)).join(", ")}`);
+    }
+    if (data.others[query]) lines.push(data.others[query].words);
+    lines.push(this.sizeInWords("Sensor", data.meshes[queries.mesh[query]]));
+    const ignored = queries.ignored[query];
+    if (ignored) lines.push(`Takes no account of ${ignored.length > 9 ? `${ignored.length} objects` : `object ${ignored.join(", ")}`} (like glass).`);
+    return lines;
+  }
+
+  // Hands on
+
+  pick(x, y) {
+    const { data, look } = this, scale = devicePixelRatio;
+    this.stage.drawWith(this.renderer, true);
+    const number = this.renderer.numberAt(Math.floor(x * scale), Math.floor(y * scale));
+    const objects = data.scene(look.scene).objects.count;
+    this.change();
+    if (number > objects) {
+      this.choose(number - 1 - objects);
+    } else {
+      this.choose(-1);
+      this.change({ object: number - 1 });
+      this.describe();
+    }
+  }
+
+  listen() {
+    const { canvas, camera } = this, on = (name, act) => document.querySelector(name).addEventListener("input", act);
+    let moved = 0;
+    canvas.onpointerdown = (event) => {
+      moved = 0;
+      canvas.setPointerCapture(event.pointerId);
+    };
+    canvas.onpointermove = ({ buttons, shiftKey, movementX: x, movementY: y }) => {
+      if (!buttons) return;
+      moved += Math.abs(x) + Math.abs(y);
+      this.flight = null;
+      if (buttons > 1 || shiftKey) {
+        const [right, up] = camera.axes(), scale = (2 * camera.slope * camera.distance) / canvas.clientHeight;
+        camera.target = plus(camera.target, plus(times(-x * scale, right), times(y * scale, up)));
+      } else {
+        camera.yaw -= 0.006 * x;
+        camera.pitch = Math.min(Math.max(camera.pitch + 0.006 * y, -1.57), 1.57);
+      }
+      this.change();
+    };
+    canvas.onpointerup = ({ offsetX, offsetY }) => moved < 4 && this.pick(offsetX, offsetY);
+    canvas.oncontextmenu = (event) => event.preventDefault();
+    canvas.onwheel = (event) => {
+      event.preventDefault();
+      this.flight = null;
+      camera.distance *= Math.exp(0.0015 * event.deltaY);
+      this.change();
+    };
+    on("#time", ({ target }) => this.seek(Number(target.value)));
+    on("#alone", ({ target }) => this.setAlone(target.checked));
+    on("#by", ({ target }) => this.change({ by: target.value }));
+    document.querySelector("#play").onclick = () => this.play();
+    document.onkeydown = (event) => {
+      if (event.target.matches("input[placeholder]") || event.ctrlKey || event.altKey || event.metaKey) return;
+      const act = this.keys()[event.key];
+      if (!act) return;
+      event.preventDefault();
+      act();
+    };
+  }
+  keys() {
+    return {
+      " ": () => this.play(),
+      ArrowDown: () => this.choose(this.table.beside(1), { fly: true }),
+      ArrowUp: () => this.choose(this.table.beside(-1), { fly: true }),
+      f: () => this.look.chosen >= 0 && this.flyTo(this.look.chosen),
+      a: () => this.setAlone(!this.look.alone),
+      h: () => this.whole(),
+      Escape: () => this.choose(-1),
+    };
+  }
+}
+
+try {
+  window.view = new Page(document.querySelector("#data").textContent);
+} catch (error) {
+  document.querySelector("#note").textContent = error.message;
+  throw error;
+}

@@ -1,0 +1,335 @@
+#include "view/page.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "view/page_text.h"
+#include "workloads/shapes.h"
+
+namespace radar::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr uint32_t kMostObjects = 100'000, kMostQueries = 10'000, kMostTriangles = 3'000'000;
+// Vertices need 12 bytes, so that a page of this many is about 50 MB.
+
+std::string base64(std::string_view bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(4 * (bytes.size() + 2) / 3);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = std::min<size_t>(3, bytes.size() - i);
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// {"f4": "..."}, as data.js reads it.
+template <class Value>
+Json array(const std::vector<Value>& values) {
+  static_assert(std::endian::native == std::endian::little);
+  const char* type = std::is_same_v<Value, float>      ? "f4"
+                     : std::is_same_v<Value, double>   ? "f8"
+                     : std::is_same_v<Value, uint32_t> ? "u4"
+                                                       : "u1";
+  return {{type, base64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)})}};
+}
+
+/// Things in a row, each with a mesh and a pose.
+struct Poses {
+  std::vector<uint32_t> mesh;
+  std::vector<float> linear;  // nine a pose, by rows
+  std::vector<double> at;     // three a pose
+
+  void add(uint32_t meshNumber, const Transform& pose) {
+    mesh.push_back(meshNumber);
+    for (size_t i = 0; i < 12; ++i) {
+      if (i % 4 == 3) {
+        at.push_back(pose.m[i]);
+      } else {
+        linear.push_back(static_cast<float>(pose.m[i]));
+      }
+    }
+  }
+  Json json() const { return {{"mesh", array(mesh)}, {"linear", array(linear)}, {"at", array(at)}}; }
+};
+
+/// How far a sensor moves, and the greatest time of its answer.
+struct Course {
+  Vec3 way{};
+  double whole = 1;
+
+  explicit Course(const QuerySpec& query) {
+    if (query.motion) {
+      way = *query.motion;
+      return;
+    }
+    whole = query.distance;
+    // A direction may be so long, or so short, that its square is no double.
+    double largest = 0;
+    for (double value : query.direction) largest = std::max(largest, std::abs(value));
+    Vec3 scaled = query.direction;
+    for (double& value : scaled) value /= largest;
+    way = (whole / lengthOf(scaled)) * scaled;
+  }
+};
+
+/// Chooses what a page can hold, and says what it leaves out.
+class Cut {
+ public:
+  Cut(const Workload& workload, std::span<const Result> answers) : workload_(workload) {
+    queries_ = std::min<size_t>(workload.queries.size(), kMostQueries);
+    if (queries_ < workload.queries.size()) {
+      note("The first " + std::to_string(queries_) + " of " + std::to_string(workload.queries.size()) + " queries.");
+    }
+    for (size_t i = 0; i < queries_; ++i) {
+      scenes_.insert(workload.queries[i].scene);
+      if (answers[i].object != kNone) touched_[workload.queries[i].scene].insert(answers[i].object);
+    }
+    if (workload.queries.empty()) {
+      for (uint32_t scene = 0; scene < workload.scenes.size(); ++scene) scenes_.insert(scene);
+    }
+    cutMeshes();
+  }
+
+  size_t queries() const { return queries_; }
+  bool isBoxed(size_t mesh) const { return boxed_.contains(mesh); }
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// A scene that neither a query nor another scene needs is left out.
+  bool hasScene(uint32_t scene) const {
+    const auto needs = [&](uint32_t other) { return other == scene || workload_.scenes[other].base == scene; };
+    return std::ranges::any_of(scenes_, needs);
+  }
+  /// Numbers among the scene's own instances, of which the first has the number `first`.
+  std::vector<uint32_t> objects(uint32_t scene, uint32_t first) {
+    const std::vector<Instance>& instances = workload_.scenes[scene].instances;
+    const size_t room = kMostObjects - std::min(kMostObjects, first);
+    std::vector<uint32_t> kept;
+    size_t others = room - std::min<size_t>(room, touched_[scene].size());
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+      if (instances[i].mesh == kNone) continue;
+      const bool isTouched = touched_[scene].contains(first + i);
+      if (isTouched || others > 0) kept.push_back(i);
+      others -= !isTouched && others > 0;
+    }
+    if (instances.size() > room) {
+      note("Scene " + workload_.scenes[scene].id + ": " + std::to_string(kept.size()) + " of " +
+           std::to_string(instances.size()) + " objects, with all that are touched.");
+    }
+    return kept;
+  }
+
+ private:
+  void note(const std::string& sentence) { notes_.push_back(sentence); }
+  // The largest meshes become boxes until the others fit.
+  void cutMeshes() {
+    std::vector<size_t> largest(workload_.meshes.size());
+    std::iota(largest.begin(), largest.end(), size_t{0});
+    const auto triangles = [&](size_t mesh) { return workload_.meshes[mesh].triangleCount(); };
+    std::ranges::stable_sort(largest, std::greater<>(), triangles);
+    uint64_t sum = 0;
+    for (size_t mesh : largest) sum += triangles(mesh);
+    for (size_t i = 0; sum > kMostTriangles; ++i) {
+      sum -= triangles(largest[i]);
+      boxed_.insert(largest[i]);
+    }
+    if (!boxed_.empty()) {
+      note("The boxes of the largest " + std::to_string(boxed_.size()) + " of " +
+           std::to_string(workload_.meshes.size()) + " meshes.");
+    }
+  }
+
+  const Workload& workload_;
+  size_t queries_ = 0;
+  std::set<uint32_t> scenes_;
+  std::map<uint32_t, std::set<uint32_t>> touched_;
+  std::set<size_t> boxed_;
+  std::vector<std::string> notes_;
+};
+
+Json meshJson(const std::string& name, const MeshData& mesh) {
+  return {{"name", name}, {"positions", array(mesh.positions)}, {"indices", array(mesh.indices)}};
+}
+
+MeshData boxOf(const MeshData& mesh) {
+  Vec3 lo = INFINITY * kFull, hi = -1 * lo;
+  for (const uint32_t vertex : mesh.indices) {
+    for (size_t k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], double{mesh.positions[3 * vertex + k]});
+      hi[k] = std::max(hi[k], double{mesh.positions[3 * vertex + k]});
+    }
+  }
+  MeshData box = makeBox(hi - lo);
+  for (size_t i = 0; i < box.positions.size(); ++i) {
+    box.positions[i] += static_cast<float>(0.5 * (lo[i % 3] + hi[i % 3]));
+  }
+  return box;
+}
+
+Json sceneJson(const Workload& workload, uint32_t number, Cut& cut) {
+  const SceneSpec& scene = workload.scenes[number];
+  const auto first = static_cast<uint32_t>(workload.baseOf(number).size());
+  Poses poses;
+  std::vector<uint32_t> numbers;
+  Json names = Json::object();
+  if (cut.hasScene(number)) {
+    for (const uint32_t i : cut.objects(number, first)) {
+      poses.add(scene.instances[i].mesh, scene.instances[i].worldFromMesh);
+      numbers.push_back(first + i);
+    }
+  }
+  const std::vector<std::string> all = workload.objectNames(number);
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].empty()) names[std::to_string(i)] = all[i];
+  }
+  std::vector<uint32_t> moving;
+  std::vector<double> ways;
+  for (const auto& [object, way] : scene.motions) {
+    moving.push_back(object);
+    ways.insert(ways.end(), way.begin(), way.end());
+  }
+  Json deforms = Json::array();
+  for (const Deformation& deformed : scene.deforms) {
+    if (cut.isBoxed(deformed.mesh)) continue;
+    deforms.push_back({{"mesh", deformed.mesh}, {"positions", array(deformed.positions)}});
+  }
+  Json json = poses.json();
+  json["number"] = array(numbers);
+  json["id"] = scene.id;
+  json["base"] = scene.base ? Json(*scene.base) : Json(nullptr);
+  json["names"] = std::move(names);
+  json["moving"] = array(moving);
+  json["ways"] = array(ways);
+  json["deforms"] = std::move(deforms);
+  return json;
+}
+
+/// Objects that take no part in a query: excluded, or without a bit of its mask.
+std::vector<uint32_t> ignoredBy(const QuerySpec& query, const SceneSpec& scene) {
+  std::vector<uint32_t> ignored = query.exclude;
+  for (const auto& [object, bits] : scene.masks) {
+    if ((bits & query.mask) == 0) ignored.push_back(object);
+  }
+  return ignored;
+}
+
+Json queriesJson(const Workload& workload, std::span<const QuerySpec> queries) {
+  Poses poses;
+  Json ignored = Json::object();
+  Json ids = Json::array();
+  std::vector<uint32_t> scenes;
+  std::vector<double> ways, wholes;
+  std::vector<uint8_t> steps;
+  for (const QuerySpec& query : queries) {
+    const Course course(query);
+    poses.add(query.mesh, query.worldFromMesh);
+    ids.push_back(query.id);
+    scenes.push_back(query.scene);
+    ways.insert(ways.end(), course.way.begin(), course.way.end());
+    wholes.push_back(course.whole);
+    steps.push_back(query.motion.has_value());
+    const std::vector<uint32_t> left = ignoredBy(query, workload.scenes[query.scene]);
+    if (!left.empty()) ignored[std::to_string(scenes.size() - 1)] = left;
+  }
+  Json json = poses.json();
+  json["count"] = queries.size();
+  json["id"] = std::move(ids);
+  json["scene"] = array(scenes);
+  json["way"] = array(ways);
+  json["whole"] = array(wholes);
+  json["step"] = array(steps);
+  json["ignored"] = std::move(ignored);
+  return json;
+}
+
+Json answersJson(std::span<const Result> answers) {
+  std::vector<uint8_t> status;
+  std::vector<uint32_t> object, triA, triB;
+  std::vector<double> t, lo, hi, point, normal;
+  for (const Result& answer : answers) {
+    status.push_back(static_cast<uint8_t>(answer.status));
+    t.push_back(answer.t);
+    lo.push_back(answer.lo);
+    hi.push_back(answer.hi);
+    object.push_back(answer.object);
+    triA.push_back(answer.triA);
+    triB.push_back(answer.triB);
+    point.insert(point.end(), answer.point.begin(), answer.point.end());
+    normal.insert(normal.end(), answer.normal.begin(), answer.normal.end());
+  }
+  return {{"status", array(status)}, {"t", array(t)},           {"lo", array(lo)},
+          {"hi", array(hi)},         {"object", array(object)}, {"triA", array(triA)},
+          {"triB", array(triB)},     {"point", array(point)},   {"normal", array(normal)}};
+}
+
+Json scopesJson(const Scopes& scopes) {
+  return {{"width", scopes.width},   {"height", scopes.height}, {"pixel", scopes.pixel}, {"d", scopes.d},
+          {"length", scopes.length}, {"R", array(scopes.R)},    {"M", array(scopes.M)},  {"L", array(scopes.L)},
+          {"origin", scopes.origin}, {"right", scopes.right},   {"up", scopes.up},       {"forward", scopes.forward}};
+}
+
+Json otherJson(const OtherAnswer& other) {
+  // A number that JSON does not have becomes null.
+  return {{"words", other.words}, {"t", other.result.t}, {"object", other.result.object}};
+}
+
+/// An object with an entry for each query that the map names, made by `json`.
+template <class Value, class Make>
+Json byQuery(const std::map<uint32_t, Value>& entries, size_t queries, const Make& json) {
+  Json object = Json::object();
+  for (const auto& [query, value] : entries) {
+    if (query < queries) object[std::to_string(query)] = json(value);
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string pageOf(const Workload& workload, std::span<const Result> answers, const PageContent& content) {
+  Cut cut(workload, answers);
+  const size_t count = cut.queries();
+  const auto asItIs = [](const std::string& text) { return text; };
+  Json json;
+  json["title"] = content.title;
+#define RADAR_CODE(name, value) #name,
+  json["statuses"] = {RADAR_STATUSES(RADAR_CODE)};
+#undef RADAR_CODE
+  json["none"] = kNone;
+  json["meshes"] = Json::array();
+  for (size_t i = 0; i < workload.meshes.size(); ++i) {
+    const MeshData& mesh = workload.meshes[i];
+    json["meshes"].push_back(meshJson(mesh.name, cut.isBoxed(i) ? boxOf(mesh) : mesh));
+  }
+  json["scenes"] = Json::array();
+  for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));
+  json["queries"] = queriesJson(workload, std::span(workload.queries).first(count));
+  json["answers"] = answersJson(answers.first(count));
+  json["reasons"] = byQuery(content.reasons, count, asItIs);
+  json["others"] = byQuery(content.others, count, otherJson);
+  json["scopes"] = byQuery(content.scopes, count, scopesJson);
+  json["tour"] = Json::array();
+  if (content.tour) json["tour"] = {{{"query", *content.tour}, {"play", "alone"}}, {{"play", "all"}}};
+  json["notes"] = cut.notes();
+
+  // No text of the data can end the element that holds it.
+  std::string page = kPageBefore;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      page += "\\u003c";
+    } else {
+      page += c;
+    }
+  }
+  return page + kPageAfter;
+}
+
+}  // namespace radar::tools

@@ -1,0 +1,40 @@
+// Points and vectors are arrays of three numbers.
+
+const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const times = (s, a) => [s * a[0], s * a[1], s * a[2]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const lengthOf = (a) => Math.hypot(a[0], a[1], a[2]);
+const unit = (a) => times(1 / (lengthOf(a) || 1), a);
+const between = (a, b, share) => plus(a, times(share, minus(b, a)));
+
+/** An orbit around a target, seen in perspective; z is up. */
+class Camera {
+  constructor() {
+    Object.assign(this, { target: [0, 0, 0], distance: 1, yaw: -0.9, pitch: 0.5, slope: Math.tan(Math.PI / 9) });
+  }
+  /** Right, up and forward. */
+  axes() {
+    const [c, s, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
+    return [[-s, c, 0], [-c * sp, -s * sp, cp], [-c * cp, -s * cp, -sp]];
+  }
+  eye() {
+    return minus(this.target, times(this.distance, this.axes()[2]));
+  }
+  /** Columns of the matrix from places relative to the eye to clip coordinates. */
+  clipFromEye(aspect, farthest) {
+    const [right, up, forward] = this.axes();
+    const near = Math.max(1e-3 * this.distance, 1e-5 * farthest), far = farthest + near;
+    const x = 1 / (this.slope * aspect), y = 1 / this.slope;
+    const depth = (far + near) / (far - near), shift = (-2 * far * near) / (far - near);
+    const columns = [0, 1, 2].map((k) => [x * right[k], y * up[k], depth * forward[k], forward[k]]);
+    return new Float32Array([...columns.flat(), 0, 0, shift, 0]);
+  }
+  /** Where a place is on a canvas of that size, in pixels from the upper left corner; its depth. */
+  pixel(place, width, height) {
+    const [right, up, forward] = this.axes(), from = minus(place, this.eye()), depth = dot(from, forward);
+    const scale = height / (2 * this.slope * depth);
+    return [0.5 * width + scale * dot(from, right), 0.5 * height - scale * dot(from, up), depth];
+  }
+}

@@ -256,8 +256,8 @@ class Contacts {
       for (const auto& [x, y] : edgesOf(pair->placed)) {
         const Plane plane(direction_, x, y);
         if (!plane.isSound() || !isFirstApart(plane)) continue;
-        const auto isSame = [&, &x = x, &y = y](const Plane& p) {
-          return p(x.first, x.second) == 0 && p(y.first, y.second) == 0;
+        const auto isSame = [&, &one = x, &other = y](const Plane& p) {
+          return p(one.first, one.second) == 0 && p(other.first, other.second) == 0;
         };
         if (std::any_of(tried.begin(), tried.end(), isSame)) continue;
         if (areApart(plane)) return unitOf(plane.normal());

@@ -31,8 +31,8 @@ BufferView viewOf(const Device::Impl& device, VkBuffer buffer, VkDeviceSize byte
                                     .format = VK_FORMAT_R32G32B32A32_UINT,
                                     .range = bytes};
   VkBufferView view;
-  check(device.vk.CreateBufferView(device.device(), &info, device.host.allocator, &view),
-        std::string("vkCreateBufferView (") + name + ", " + std::to_string(bytes) + " bytes)");
+  check(device.vk.CreateBufferView(device.device(), &info, device.host.allocator, &view), "vkCreateBufferView", name,
+        bytes);
   BufferView owned(device, view);
   device.setName(VK_OBJECT_TYPE_BUFFER_VIEW, view, name);
   return owned;
@@ -69,12 +69,11 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   const VkDeviceSize wanted = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
                                        roundedUp(capacity_ + capacity_ / 2, 256));
   const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), most);
-  const std::string what = std::string(name_) + ", " + std::to_string(size) + " bytes";
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   DeviceMemory owned;  // outlives the buffer in it, old or new
   VkBuffer handle;
-  check(device_->vk.CreateBuffer(device_->device(), &info, device_->host.allocator, &handle),
-        "vkCreateBuffer (" + what + ")");
+  check(device_->vk.CreateBuffer(device_->device(), &info, device_->host.allocator, &handle), "vkCreateBuffer", name_,
+        size);
   BufferHandle buffer(*device_, handle);
   device_->setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
   VkMemoryRequirements requirements;
@@ -89,13 +88,13 @@ bool Buffer::reserve(VkDeviceSize bytes) {
                                     : domain_ == BufferDomain::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                                                         : 0)};
   VkDeviceMemory memory;
-  check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory),
-        "vkAllocateMemory (" + what + ")");
+  check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory), "vkAllocateMemory",
+        name_, size);
   owned = {*device_, memory};
-  check(device_->vk.BindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory (" + what + ")");
+  check(device_->vk.BindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory", name_, size);
   void* mapped = nullptr;
   if (!onDevice) {
-    check(device_->vk.MapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory (" + what + ")");
+    check(device_->vk.MapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory", name_, size);
   }
   BufferView view;
   if ((usage_ & kAsTexels) != 0) view = viewOf(*device_, handle, size, name_);

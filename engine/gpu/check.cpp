@@ -30,9 +30,13 @@ const char* resultName(VkResult result) {
   }
 }
 
-void check(VkResult result, const std::string& call) {
+void check(VkResult result, const char* call, const char* about, uint64_t size, const char* unit) {
   if (result >= VK_SUCCESS) return;
-  throw Error(call + ": " + resultName(result) + " (" + std::to_string(result) + ")", result);
+  std::string text = call;
+  if (about) text += std::string(" (") + about;
+  if (size > 0) text += (about ? ", " : " (") + std::to_string(size) + " " + unit;
+  if (about || size > 0) text += ")";
+  throw Error(text + ": " + resultName(result) + " (" + std::to_string(result) + ")", result);
 }
 
 bool isOutOfMemory(const Error& error) {

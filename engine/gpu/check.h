@@ -1,7 +1,7 @@
 // Errors: a failed VkResult becomes a radar::Error that names the call.
 #pragma once
 
-#include <string>
+#include <cstdint>
 
 #include <vulkan/vulkan_core.h>
 
@@ -17,8 +17,10 @@ class LimitError : public Error {
 
 const char* resultName(VkResult result);
 
-/// Throws if `result` is an error. `call` names the call and the size requested, if any.
-void check(VkResult result, const std::string& call);
+/// Throws if `result` is an error, naming the call, and what it was for: "vkCreateBuffer (nodes, 64 bytes)". Makes text
+/// for an error only: memory may run out between a call and what is to own the object that it made.
+void check(VkResult result, const char* call, const char* about = nullptr, uint64_t size = 0,
+           const char* unit = "bytes");
 
 /// Whether a call failed for lack of memory, of the device or of the host.
 bool isOutOfMemory(const Error& error);

@@ -92,7 +92,7 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
                                .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                         VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
   VkImage image;
-  check(device.vk.CreateImage(device.device(), &info, device.host.allocator, &image), "vkCreateImage (" + what + ")");
+  check(device.vk.CreateImage(device.device(), &info, device.host.allocator, &image), "vkCreateImage", what.c_str());
   image_ = {device, image};
   device.setName(VK_OBJECT_TYPE_IMAGE, image, name);
   VkMemoryRequirements requirements;
@@ -102,10 +102,10 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
       .allocationSize = requirements.size,
       .memoryTypeIndex = memoryType(device, requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
   VkDeviceMemory memory;
-  check(device.vk.AllocateMemory(device.device(), &allocate, device.host.allocator, &memory),
-        "vkAllocateMemory (" + what + ")");
+  check(device.vk.AllocateMemory(device.device(), &allocate, device.host.allocator, &memory), "vkAllocateMemory",
+        what.c_str());
   memory_ = {device, memory};
-  check(device.vk.BindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory (" + what + ")");
+  check(device.vk.BindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory", what.c_str());
   view_ = layerView(device, image, 0, layers);
 }
 
@@ -131,7 +131,7 @@ void DepthArray::beginPass(const Commands& commands, uint32_t first, uint32_t co
                                        .layers = count};
     VkFramebuffer framebuffer;
     check(device_->vk.CreateFramebuffer(device_->device(), &info, device_->host.allocator, &framebuffer),
-          "vkCreateFramebuffer (" + std::to_string(count) + " layers)");
+          "vkCreateFramebuffer", nullptr, count, "layers");
     target.framebuffer = {*device_, framebuffer};
   }
   const VkClearValue clear{.depthStencil = {1.0f, 0}};

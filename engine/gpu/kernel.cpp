@@ -29,7 +29,7 @@ DescriptorSetLayout makeSetLayout(const Device::Impl& device, const Shader& shad
                                              .pBindings = bindings.data()};
   VkDescriptorSetLayout layout;
   check(device.vk.CreateDescriptorSetLayout(device.device(), &info, device.host.allocator, &layout),
-        std::string("vkCreateDescriptorSetLayout ") + shader.name);
+        "vkCreateDescriptorSetLayout", shader.name);
   DescriptorSetLayout owned(device, layout);
   device.setName(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, layout, shader.name);
   return owned;
@@ -44,7 +44,7 @@ PipelineLayout makePipelineLayout(const Device::Impl& device, VkDescriptorSetLay
                                         .pPushConstantRanges = &range};
   VkPipelineLayout layout;
   check(device.vk.CreatePipelineLayout(device.device(), &info, device.host.allocator, &layout),
-        std::string("vkCreatePipelineLayout ") + shader.name);
+        "vkCreatePipelineLayout", shader.name);
   PipelineLayout owned(device, layout);
   device.setName(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout, shader.name);
   return owned;
@@ -59,8 +59,8 @@ DescriptorPool makePool(const Device::Impl& device, const Shader& shader) {
                                         .poolSizeCount = static_cast<uint32_t>(sizes.size()),
                                         .pPoolSizes = sizes.data()};
   VkDescriptorPool pool;
-  check(device.vk.CreateDescriptorPool(device.device(), &info, device.host.allocator, &pool),
-        std::string("vkCreateDescriptorPool ") + shader.name);
+  check(device.vk.CreateDescriptorPool(device.device(), &info, device.host.allocator, &pool), "vkCreateDescriptorPool",
+        shader.name);
   DescriptorPool owned(device, pool);
   device.setName(VK_OBJECT_TYPE_DESCRIPTOR_POOL, pool, shader.name);
   return owned;
@@ -70,8 +70,8 @@ ShaderModule shaderModule(const Device::Impl& device, std::span<const uint32_t> 
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   VkShaderModule module;
-  check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module),
-        std::string("vkCreateShaderModule ") + name);
+  check(device.vk.CreateShaderModule(device.device(), &info, device.host.allocator, &module), "vkCreateShaderModule",
+        name);
   ShaderModule owned(device, module);
   device.setName(VK_OBJECT_TYPE_SHADER_MODULE, module, name);
   return owned;
@@ -131,7 +131,7 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std:
   VkPipeline pipeline;
   check(device.vk.CreateGraphicsPipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
                                           &pipeline),
-        std::string("vkCreateGraphicsPipelines ") + name);
+        "vkCreateGraphicsPipelines", name);
   Pipeline owned(device, pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
   return owned;
@@ -158,7 +158,7 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
   VkPipeline pipeline;
   check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
                                          &pipeline),
-        std::string("vkCreateComputePipelines ") + name);
+        "vkCreateComputePipelines", name);
   Pipeline owned(device, pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
   return owned;
@@ -234,8 +234,8 @@ Passes::Set& Passes::add(const Program& program) {
                                          .descriptorPool = set.pool.get(),
                                          .descriptorSetCount = 1,
                                          .pSetLayouts = &layout};
-  check(device_->vk.AllocateDescriptorSets(device_->device(), &info, &set.handle),
-        std::string("vkAllocateDescriptorSets ") + shader.name);
+  check(device_->vk.AllocateDescriptorSets(device_->device(), &info, &set.handle), "vkAllocateDescriptorSets",
+        shader.name);
   device_->setName(VK_OBJECT_TYPE_DESCRIPTOR_SET, set.handle, shader.name);
   sets_.push_back(std::move(set));
   return sets_.back();

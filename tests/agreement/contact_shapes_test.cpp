@@ -73,10 +73,10 @@ TEST_CASE("meshes in units so small or large that float cannot hold their poses 
   for (float& x : ball.positions) x = static_cast<float>(x * unit);
   const MeshId mesh = add(scene, ball);
   const double scale = world / unit;
-  const auto pose = [&, world = world] {
+  const auto pose = [&, side = world] {
     const Vec3 place = random.inBox({-4, -4, -4}, {4, 4, 4});
     return tools::makePose(random.rotation(), {scale, scale, scale},
-                           {world * place[0], world * place[1], world * place[2]});
+                           {side * place[0], side * place[1], side * place[2]});
   };
   for (int i = 0; i < 8; ++i) scene.addObject({mesh, pose(), ~0u});
   std::vector<Query> queries;

@@ -1,11 +1,14 @@
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
 #include "batch/answer_reader.h"
+#include "batch/atomic_file.h"
 #include "batch/query_file.h"
 #include "cyber_radar/answer_page.h"
 #include "cyber_radar/commands.h"
 #include "cyber_radar/options.h"
+#include "view/gltf.h"
 
 namespace radar::tools {
 
@@ -14,18 +17,27 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   cyber-radar view batch.json --out view.html                 answers the queries first
   cyber-radar view batch.json answers.jsonl --out view.html   answers of cyber-radar query
+  cyber-radar view batch.json --gltf view.glb                 for Blender
 
 The page is one file, which any browser shows without a network: the scene, each sensor where it stops, and a table.)";
 
 struct Options {
-  std::string file, answers, out;
+  std::string file, answers, out, gltf;
   EngineOptions engine;
 };
+
+std::string inMegabytes(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f MB", 1e-6 * static_cast<double>(bytes));
+  return text;
+}
 
 int view(const Options& options) {
   const AnsweringOptions engine = options.engine.checked();
   Outputs outputs;
-  outputs.add("--out", options.out);
+  if (options.out.empty() && options.gltf.empty()) throw InputError("--out", "", "expected it, or --gltf, got neither");
+  if (!options.out.empty()) outputs.add("--out", options.out);
+  if (!options.gltf.empty()) outputs.add("--gltf", options.gltf);
   if (!options.answers.empty()) outputs.requireNone(options.answers);
   std::vector<std::string> warnings;
   const Workload workload = QueryFile(options.file, warnings, outputs).all();
@@ -41,10 +53,21 @@ int view(const Options& options) {
   } else {
     answers = readAnswers(options.answers, workload);
   }
-  writePage(options.out, options.file, workload, answers, {.device = device});
-  std::cout << options.out << ": " << counted(workload.queries.size(), "query", "queries") << ", "
-            << counted(workload.scenes.size(), "scene") << ", "
-            << (std::filesystem::file_size(options.out) + 99'999) / 100'000 * 0.1 << " MB\n";
+  const auto say = [&](const std::string& file) {
+    std::cout << file << ": " << counted(workload.queries.size(), "query", "queries") << ", "
+              << counted(workload.scenes.size(), "scene") << ", " << inMegabytes(std::filesystem::file_size(file))
+              << "\n";
+  };
+  if (!options.out.empty()) {
+    writePage(options.out, options.file, workload, answers, {.device = device});
+    say(options.out);
+  }
+  if (!options.gltf.empty()) {
+    std::vector<Result> results;
+    for (const Answer& answer : answers) results.push_back(answer.result);
+    writeAtomically(options.gltf, gltfOf(workload, results));
+    say(options.gltf);
+  }
   return someInvalid(answers) ? kStatusSomeInvalid : 0;
 }
 
@@ -57,7 +80,9 @@ void addViewCommand(CLI::App& app, int& status) {
   command->add_option("FILE.json", options->file, "Query file")->required();
   command->add_option("ANSWERS", options->answers,
                       "Its answers, as cyber-radar query --out wrote them; else they are found now");
-  command->add_option("--out", options->out, "Where the page goes")->required()->type_name("FILE.html");
+  command->add_option("--out", options->out, "Where the page goes")->type_name("FILE.html");
+  command->add_option("--gltf", options->gltf, "Writes an animated scene for Blender and others here, as glTF 2.0")
+      ->type_name("FILE.glb");
   options->engine.addTo(*command);
   command->callback([options, &status] { status = view(*options); });
 }

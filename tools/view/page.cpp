@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "view/course.h"
 #include "view/page_text.h"
 #include "workloads/shapes.h"
 
@@ -61,26 +62,6 @@ struct Poses {
     }
   }
   Json json() const { return {{"mesh", array(mesh)}, {"linear", array(linear)}, {"at", array(at)}}; }
-};
-
-/// How far a sensor moves, and the greatest time of its answer.
-struct Course {
-  Vec3 way{};
-  double whole = 1;
-
-  explicit Course(const QuerySpec& query) {
-    if (query.motion) {
-      way = *query.motion;
-      return;
-    }
-    whole = query.distance;
-    // A direction may be so long, or so short, that its square is no double.
-    double largest = 0;
-    for (double value : query.direction) largest = std::max(largest, std::abs(value));
-    Vec3 scaled = query.direction;
-    for (double& value : scaled) value /= largest;
-    way = (whole / lengthOf(scaled)) * scaled;
-  }
 };
 
 /// Chooses what a page can hold, and says what it leaves out.

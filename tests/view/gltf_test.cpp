@@ -1,0 +1,127 @@
+// Answers as glTF, loaded again by assimp.
+#include "view/gltf.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <map>
+
+#include "radar/cpu_sweeper.h"
+#include "support/catch.h"
+#include "view/course.h"
+#include "workloads/generate.h"
+
+namespace {
+
+using namespace radar;
+using namespace radar::tools;
+
+struct Loaded {
+  Assimp::Importer importer;
+  const aiScene* scene = nullptr;
+  std::map<std::string, const aiNode*> nodes;
+
+  explicit Loaded(const std::string& bytes) {
+    scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_ValidateDataStructure, "glb");
+    INFO(importer.GetErrorString());
+    REQUIRE(scene != nullptr);
+    add(scene->mRootNode);
+  }
+  /// From a node to the node that turns z upwards.
+  Transform poseOf(const aiNode* node) const {
+    aiMatrix4x4 all;
+    for (; std::string(node->mName.C_Str()) != "z up"; node = node->mParent) all = node->mTransformation * all;
+    Transform pose;
+    for (unsigned i = 0; i < 12; ++i) pose.m[i] = all[i / 4][i % 4];
+    return pose;
+  }
+  /// The vertices of a node's mesh, in the world, in the order of its triangles.
+  std::vector<Vec3> corners(const std::string& name) const {
+    const aiNode* node = nodes.at(name);
+    const Transform pose = poseOf(node);
+    std::vector<Vec3> out;
+    const aiMesh* mesh = scene->mMeshes[node->mMeshes[0]];
+    for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
+      for (unsigned i = 0; i < mesh->mFaces[f].mNumIndices; ++i) {
+        const aiVector3D& p = mesh->mVertices[mesh->mFaces[f].mIndices[i]];
+        out.push_back(transformPoint(pose, &p.x));
+      }
+    }
+    return out;
+  }
+
+ private:
+  void add(const aiNode* node) {
+    nodes[node->mName.C_Str()] = node;
+    for (unsigned i = 0; i < node->mNumChildren; ++i) add(node->mChildren[i]);
+  }
+};
+
+/// Checks corners of a mesh's triangles, for floats.
+void checkPlaced(const std::vector<Vec3>& found, const MeshData& mesh, const Transform& pose) {
+  REQUIRE(found.size() == mesh.indices.size());
+  double farthest = 10, worst = 0;
+  for (const float value : mesh.positions) farthest = std::max(farthest, std::abs(double{value}));
+  for (size_t i = 0; i < found.size(); ++i) {
+    worst = std::max(worst, lengthOf(found[i] - transformPoint(pose, &mesh.positions[3 * mesh.indices[i]])));
+  }
+  CHECK(worst < 1e-6 * farthest);
+}
+
+}  // namespace
+
+TEST_CASE("a glTF file has every object where it is, and every sensor on its way to its contact") {
+  Workload workload = makeWorkload(Soups{.objects = 30, .sensors = 40});  // many poses have shear
+  workload.scenes[0].motions = {{3, {1, 2, 3}}};
+  workload.scenes[0].names.assign(30, "");
+  workload.scenes[0].names[4] = "a name";
+  Scene scene;
+  replaceBy(workload, 0, scene);
+  const std::vector<Result> answers = CpuSweeper(scene).run(queriesOf(workload.queries)).results;
+  const Loaded loaded(gltfOf(workload, answers));
+
+  for (uint32_t i = 0; i < 30; ++i) {
+    const Instance& instance = workload.instance(0, i);
+    const std::string name = "object " + std::to_string(i) + (i == 4 ? " a name" : "");
+    CAPTURE(name);
+    checkPlaced(loaded.corners(name), workload.meshes[instance.mesh], instance.worldFromMesh);
+  }
+  REQUIRE(loaded.scene->mNumAnimations == 1);
+  const aiAnimation& animation = *loaded.scene->mAnimations[0];
+  CHECK(animation.mNumChannels == 41);
+  std::map<std::string, const aiNodeAnim*> channels;
+  for (unsigned i = 0; i < animation.mNumChannels; ++i) {
+    channels[animation.mChannels[i]->mNodeName.C_Str()] = animation.mChannels[i];
+  }
+  size_t hits = 0;
+  for (size_t i = 0; i < workload.queries.size(); ++i) {
+    const QuerySpec& query = workload.queries[i];
+    CAPTURE(query.id, answers[i].status);
+    checkPlaced(loaded.corners(query.id), workload.meshes[query.mesh], query.worldFromMesh);
+    const Course course(query);
+    const aiNodeAnim& moves = *channels.at("sensor " + query.id);
+    const aiVectorKey& last = moves.mPositionKeys[moves.mNumPositionKeys - 1];
+    const bool isHit = answers[i].status == Status::hit;
+    const double gone = isHit ? answers[i].t : answers[i].status == Status::clear ? query.distance : 0;
+    hits += isHit;
+    const Vec3 end{last.mValue.x, last.mValue.y, last.mValue.z};
+    CHECK(lengthOf(end - (gone / query.distance) * course.way) < 1e-5);
+    CHECK(last.mTime / animation.mTicksPerSecond == Approx(3 * gone / query.distance).margin(1e-3));
+  }
+  CHECK(hits > 5);
+  const aiVectorKey& moved = channels.at("object 3 moves")->mPositionKeys[1];
+  CHECK(lengthOf(Vec3{moved.mValue.x, moved.mValue.y, moved.mValue.z} - Vec3{1, 2, 3}) < 1e-6);
+}
+
+TEST_CASE("meshes are stored once, whatever their statuses, but deformed or sheared ones") {
+  const Workload workload = makeWorkload(Figure7{.teapots = 6, .boxes = 50, .steps = 4});
+  Scene scene;
+  replaceBy(workload, 1, scene);
+  const std::vector<Result> answers(workload.queries.size());
+  const std::string bytes = gltfOf(workload, answers);
+  CHECK(bytes.size() < 400'000);  // a teapot has 120,000
+  const Loaded loaded(bytes);
+  CHECK(loaded.nodes.contains("object 55"));
+}

@@ -1,0 +1,254 @@
+#include "view/gltf.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#include <tiny_gltf.h>
+
+#include "view/course.h"
+#include "workloads/vectors.h"
+
+namespace radar::tools {
+
+namespace {
+
+constexpr double kSeconds = 3;  // of a whole way
+
+/// Whether the columns of a pose are not at right angles.
+bool isSheared(const Transform& pose) {
+  const Rotation linear = linearPart(pose);
+  const auto column = [&](size_t k) { return Vec3{linear[k], linear[3 + k], linear[6 + k]}; };
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 a = column(k), b = column((k + 1) % 3);
+    if (std::abs(dot(a, b)) > 1e-6 * lengthOf(a) * lengthOf(b)) return true;
+  }
+  return false;
+}
+
+class Writer {
+ public:
+  Writer(const Workload& workload, std::span<const Result> answers) : workload_(workload), answers_(answers) {
+    model_.asset.version = "2.0";
+    model_.asset.generator = "cyber-radar";
+    model_.buffers.resize(1);
+    addMaterial("object", {0.68, 0.72, 0.78});
+    addMaterial("hit", {0.9, 0.42, 0.05});
+    addMaterial("clear", {0.1, 0.6, 0.47});
+    addMaterial("overlap", {0.85, 0.13, 0.5});
+    addMaterial("undecided", {0.85, 0.65, 0});
+    addMaterial("invalid", {0.35, 0.35, 0.35});
+  }
+
+  std::string text() {
+    std::set<uint32_t> scenes;
+    for (const QuerySpec& query : workload_.queries) scenes.insert(query.scene);
+    if (scenes.empty()) {
+      for (uint32_t scene = 0; scene < workload_.scenes.size(); ++scene) scenes.insert(scene);
+    }
+    for (const uint32_t scene : scenes) addScene(scene);
+    model_.defaultScene = 0;
+    std::ostringstream stream;
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, stream, false, true)) {
+      throw std::runtime_error("glTF: expected a model that can be written");
+    }
+    return stream.str();
+  }
+
+ private:
+  void addMaterial(const std::string& name, const Vec3& colour) {
+    tinygltf::Material material;
+    material.name = name;
+    material.doubleSided = true;
+    material.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1};
+    material.pbrMetallicRoughness.metallicFactor = 0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.8;
+    model_.materials.push_back(std::move(material));
+  }
+
+  /// The number of an accessor to values of `width` components, appended to the buffer.
+  template <class Value>
+  int addAccessor(const std::vector<Value>& values, int type, int width, int target) {
+    tinygltf::BufferView view;
+    std::vector<unsigned char>& bytes = model_.buffers[0].data;
+    const auto* const first = reinterpret_cast<const unsigned char*>(values.data());
+    view.buffer = 0;
+    view.byteOffset = bytes.size();
+    view.byteLength = values.size() * sizeof(Value);
+    view.target = target;
+    bytes.insert(bytes.end(), first, first + view.byteLength);
+    model_.bufferViews.push_back(view);
+    tinygltf::Accessor accessor;
+    accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+    accessor.componentType =
+        std::is_same_v<Value, float> ? TINYGLTF_COMPONENT_TYPE_FLOAT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    accessor.count = values.size() / static_cast<size_t>(width);
+    accessor.type = type;
+    if constexpr (std::is_same_v<Value, float>) {
+      accessor.minValues.assign(static_cast<size_t>(width), INFINITY);
+      accessor.maxValues.assign(static_cast<size_t>(width), -INFINITY);
+      for (size_t i = 0; i < values.size(); ++i) {
+        const size_t part = i % static_cast<size_t>(width);
+        accessor.minValues[part] = std::min(accessor.minValues[part], double{values[i]});
+        accessor.maxValues[part] = std::max(accessor.maxValues[part], double{values[i]});
+      }
+    }
+    model_.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+
+  /// A mesh of the workload, as deformed in a scene, and placed if `pose` is given.
+  int addMesh(uint32_t scene, uint32_t number, size_t material, const Transform* pose) {
+    const MeshData& mesh = workload_.meshes[number];
+    const std::vector<float>* positions = &mesh.positions;
+    bool isDeformed = false;
+    for (const Deformation& deformed : workload_.scenes[scene].deforms) {
+      if (deformed.mesh != number) continue;
+      positions = &deformed.positions;
+      isDeformed = true;
+    }
+    const auto key = std::tuple(isDeformed ? scene + 1 : 0, number, material);
+    if (const auto found = meshes_.find(key); !pose && found != meshes_.end()) return found->second;
+    if (!indices_.contains(number)) {
+      indices_[number] = addAccessor(mesh.indices, TINYGLTF_TYPE_SCALAR, 1, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    }
+    std::vector<float> placed;
+    if (pose) {
+      for (size_t i = 0; i < positions->size(); i += 3) {
+        for (const double value : transformPoint(*pose, &(*positions)[i])) placed.push_back(static_cast<float>(value));
+      }
+      positions = &placed;
+    }
+    const auto own = std::pair(isDeformed ? scene + 1 : 0, number);
+    if (pose || !positions_.contains(own)) {
+      positions_[own] = addAccessor(*positions, TINYGLTF_TYPE_VEC3, 3, TINYGLTF_TARGET_ARRAY_BUFFER);
+    }
+    tinygltf::Primitive primitive;
+    primitive.attributes["POSITION"] = positions_[own];
+    primitive.indices = indices_[number];
+    primitive.material = static_cast<int>(material);
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    if (pose) positions_.erase(own);
+    tinygltf::Mesh made;
+    made.name = mesh.name;
+    made.primitives.push_back(std::move(primitive));
+    model_.meshes.push_back(std::move(made));
+    const int last = static_cast<int>(model_.meshes.size()) - 1;
+    if (!pose) meshes_[key] = last;
+    return last;
+  }
+
+  int addNode(tinygltf::Node node) {
+    model_.nodes.push_back(std::move(node));
+    return static_cast<int>(model_.nodes.size()) - 1;
+  }
+
+  int addPlaced(const std::string& name, uint32_t scene, const Instance& instance, size_t material) {
+    tinygltf::Node node;
+    node.name = name;
+    const Transform& pose = instance.worldFromMesh;
+    const bool isBaked = isSheared(pose);
+    node.mesh = addMesh(scene, instance.mesh, material, isBaked ? &pose : nullptr);
+    if (!isBaked) {
+      for (size_t column = 0; column < 4; ++column) {  // glTF's matrices go by columns
+        for (size_t row = 0; row < 3; ++row) node.matrix.push_back(pose.m[4 * row + column]);
+        node.matrix.push_back(column == 3 ? 1 : 0);
+      }
+    }
+    return addNode(std::move(node));
+  }
+
+  /// A node around another, which moves in the time of a way to `share` of it.
+  int addMoving(const std::string& name, int child, const Vec3& way, double share, tinygltf::Animation& animation) {
+    tinygltf::Node node;
+    node.name = name;
+    node.children = {child};
+    node.translation = {0, 0, 0};
+    const int number = addNode(std::move(node));
+    // One key alone would be no motion.
+    const double arrival = std::max(kSeconds * share, 1e-3);
+    const Vec3 end = share * way;
+    std::vector<float> times{0, static_cast<float>(arrival)}, places(3);
+    for (const double value : end) places.push_back(static_cast<float>(value));
+    tinygltf::AnimationSampler sampler;
+    sampler.input = addAccessor(times, TINYGLTF_TYPE_SCALAR, 1, 0);
+    sampler.output = addAccessor(places, TINYGLTF_TYPE_VEC3, 3, 0);
+    sampler.interpolation = "LINEAR";
+    tinygltf::AnimationChannel channel;
+    channel.sampler = static_cast<int>(animation.samplers.size());
+    channel.target_node = number;
+    channel.target_path = "translation";
+    animation.samplers.push_back(std::move(sampler));
+    animation.channels.push_back(std::move(channel));
+    return number;
+  }
+
+  void addScene(uint32_t number) {
+    tinygltf::Animation animation;
+    animation.name = "motion";
+    tinygltf::Node root;
+    root.name = "z up";
+    root.rotation = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+    const std::vector<std::string> names = workload_.objectNames(number);
+    std::map<uint32_t, Vec3> motions(workload_.scenes[number].motions.begin(), workload_.scenes[number].motions.end());
+    for (uint32_t i = 0; i < workload_.objectCount(number); ++i) {
+      const Instance& instance = workload_.instance(number, i);
+      if (instance.mesh == kNone) continue;
+      std::string name = "object " + std::to_string(i);
+      if (!names.empty() && !names[i].empty()) name += " " + names[i];
+      int node = addPlaced(name, number, instance, 0);
+      if (motions.contains(i)) node = addMoving(name + " moves", node, motions[i], 1, animation);
+      root.children.push_back(node);
+    }
+    for (size_t i = 0; i < workload_.queries.size(); ++i) {
+      if (workload_.queries[i].scene == number) root.children.push_back(addSensor(i, animation));
+    }
+    tinygltf::Scene scene;
+    scene.name = workload_.scenes[number].id;
+    scene.nodes = {addNode(std::move(root))};
+    model_.scenes.push_back(std::move(scene));
+    if (!animation.channels.empty()) model_.animations.push_back(std::move(animation));
+  }
+
+  int addSensor(size_t i, tinygltf::Animation& animation) {
+    const QuerySpec& query = workload_.queries[i];
+    const Result& answer = answers_[i];
+    const Course course(query);
+    const auto status = static_cast<size_t>(answer.status);
+    const int body = addPlaced(query.id, query.scene, query.sensor(), 1 + status);
+    const int node = addMoving("sensor " + query.id, body, course.way, course.share(answer), animation);
+    tinygltf::Value::Object extras{{"status", tinygltf::Value(model_.materials[1 + status].name)}};
+    const auto add = [&](const char* name, double value) {
+      if (std::isfinite(value)) extras.insert({name, tinygltf::Value(value)});
+    };
+    add("t", answer.t);
+    add("lo", answer.lo);
+    add("hi", answer.hi);
+    if (answer.object != kNone) extras.insert({"object", tinygltf::Value(static_cast<int>(answer.object))});
+    model_.nodes[static_cast<size_t>(node)].extras = tinygltf::Value(extras);
+    return node;
+  }
+
+  const Workload& workload_;
+  std::span<const Result> answers_;
+  tinygltf::Model model_;
+  std::map<uint32_t, int> indices_;                               // accessors by mesh
+  std::map<std::pair<uint32_t, uint32_t>, int> positions_;        // accessors by deforming scene + 1, or 0, and mesh
+  std::map<std::tuple<uint32_t, uint32_t, size_t>, int> meshes_;  // the same and material
+};
+
+}  // namespace
+
+std::string gltfOf(const Workload& workload, std::span<const Result> answers) {
+  return Writer(workload, answers).text();
+}
+
+}  // namespace radar::tools

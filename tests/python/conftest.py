@@ -1,5 +1,9 @@
 """Shapes and scenes of the tests. A message of the validation layers is a warning, and every warning fails a test."""
 
+import json
+import pathlib
+import re
+
 import numpy as np
 import pytest
 
@@ -54,6 +58,12 @@ def same_answers(a: cyber_radar.Casts, b: cyber_radar.Casts, but: tuple[str, ...
         "normal",
     }
     return all(same_bits(getattr(a, name), getattr(b, name)) for name in names - set(but))
+
+
+def page_data(file: pathlib.Path) -> dict:
+    """What a page shows: the JSON in it."""
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', file.read_text(encoding="utf-8"))
+    return json.loads(found[1])
 
 
 def fill(scene: cyber_radar.Scene) -> int:

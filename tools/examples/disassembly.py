@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Takes an assembly apart: which parts block which, in what order they come out, and a film of it.
+"""Takes an assembly apart: which parts block which, in what order they come out, and a page that plays it.
 
     PYTHONPATH=build/release/python python3 tools/examples/disassembly.py --out burr
     ... disassembly.py engine.glb --out engine --directions 26
 
-Without a file, the assembly is a burr puzzle, whose pieces touch exactly. Writes graph.json, film.png, which a browser
-plays, and its frames.
+Without a file, the assembly is a burr puzzle, whose pieces touch exactly. Writes graph.json, and steps.html, a page for any
+browser.
 
 A part is blocked in a direction by the parts that its surface would run into, were it moved out straight: what it
 leaves or slides along does not block. Parts whose surfaces cross at the start interpenetrate; what a motion does to
@@ -25,8 +25,6 @@ import numpy as np
 
 import burr
 import cyber_radar
-import picture
-import png
 
 
 @dataclasses.dataclass
@@ -58,7 +56,7 @@ def all_directions(count: int) -> np.ndarray:
 def blocking_graph(scene: cyber_radar.Scene, directions: np.ndarray, mode: str) -> Graph:
     """One cast for each part and direction, out of the assembly."""
     held = scene.objects()
-    points = np.concatenate(corners(scene)).reshape(-1, 3)
+    points = corners(scene)
     casts = scene.cast(
         held.meshes,
         held.transforms,
@@ -116,51 +114,34 @@ def _smallest_free(graph: Graph, parts: list[int]) -> tuple[list[int], int] | No
     return None if best is None else best[1:]
 
 
-def check(scene: cyber_radar.Scene, graph: Graph, steps: list[Step], mode: str) -> None:
-    """Casts every step again, with what is left then, and nothing may be in the way."""
+def check(scene: cyber_radar.Scene, graph: Graph, steps: list[Step], mode: str) -> cyber_radar.Casts:
+    """Casts every step again, with what is left then: nothing may be in the way. What leaves first goes farthest."""
     held = scene.objects()
-    for step in steps:
-        alone = np.setdiff1d(held.ids, step.taken_from)
-        casts = scene.cast(
-            held.meshes[step.parts],
-            held.transforms[step.parts],
-            graph.directions[step.direction] * 1e3 * np.ptp(np.concatenate(corners(scene)).reshape(-1, 3)),
-            exclude_from_all=alone,
-            ignore_leaving=True,
-            skip_overlapping=True,
-            mode=mode,
-        )
-        if casts.touches.any():
-            raise RuntimeError(f"parts {step.parts} are not free along {graph.directions[step.direction]}")
+    parts = np.array([part for step in steps for part in step.parts], int)
+    of_step = np.repeat(np.arange(len(steps)), [len(step.parts) for step in steps])
+    left = np.array([np.isin(held.ids, step.taken_from) for step in steps]).reshape(len(steps), len(held.ids))
+    ways = graph.directions[[step.direction for step in steps]].reshape(-1, 3)
+    far = np.ptp(corners(scene), axis=0).max() * (2 - np.arange(len(steps)) / max(len(steps), 1))
+    casts = scene.cast(
+        held.meshes[parts],
+        held.transforms[parts],
+        (ways * far[:, None])[of_step],
+        exclude_from_each=np.where(left, -1, held.ids)[of_step],
+        ignore_leaving=True,
+        skip_overlapping=True,
+        mode=mode,
+    )
+    if casts.touches.any():
+        part = int(parts[casts.touches][0])
+        raise RuntimeError(f"part {part} is not free when its turn comes")
+    return casts
 
 
-def corners(scene: cyber_radar.Scene) -> list[np.ndarray]:
-    """The placed triangles of each object, (n, 3, 3)."""
-    placed = []
-    for mesh, transform in zip(scene.objects().meshes, scene.objects().transforms):
-        vertices, faces = scene.mesh(int(mesh))
-        placed.append((vertices @ transform[:3, :3].T + transform[:3, 3])[faces])
-    return placed
-
-
-def film(triangles: list[np.ndarray], graph: Graph, steps: list[Step], size: tuple[int, int], count: int):
-    """The steps one after the other, in this many pictures."""
-    side = np.ptp(np.concatenate(triangles).reshape(-1, 3), axis=0).max()
-    ends = np.zeros((len(steps), len(triangles), 3))
-    for number, step in enumerate(steps):
-        # What leaves first goes farthest, so that parts that leave in one direction come to rest in a row.
-        way = graph.directions[step.direction] * side * (0.4 + 0.6 * (1 - number / len(steps)))
-        ends[number:, step.parts] += way
-    colours = np.repeat(picture.colours_of(len(triangles)), [len(part) for part in triangles], axis=0)
-    spread = [part + end for part, end in zip(triangles, ends[-1])] if len(steps) else []
-    points = np.concatenate([*triangles, *spread]).reshape(-1, 3)
-    camera = picture.Camera(picture.view_from((2.0, -3.0, 1.6)), points, size)
-    for moment in np.linspace(0, len(steps), count):
-        done = min(int(moment), len(steps) - 1)
-        before = ends[done - 1] if done > 0 else np.zeros_like(ends[0])
-        part_way = moment - done
-        now = before + (ends[done] - before) * part_way**2 * (3 - 2 * part_way)
-        yield picture.draw(camera, np.concatenate([part + at for part, at in zip(triangles, now)]), colours)
+def corners(scene: cyber_radar.Scene) -> np.ndarray:
+    """The vertices of all objects in the world, (n, 3)."""
+    held = scene.objects()
+    placed = [scene.mesh(int(mesh))[0] @ t[:3, :3].T + t[:3, 3] for mesh, t in zip(held.meshes, held.transforms)]
+    return np.concatenate(placed)
 
 
 def described(scene: cyber_radar.Scene, graph: Graph, steps: list[Step], locked: list[list[int]]) -> dict:
@@ -203,22 +184,16 @@ def main() -> None:
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder to write to")
     parser.add_argument("--directions", type=int, choices=(6, 26), default=6, help="along the axes, or diagonals, too")
     parser.add_argument("--mode", choices=("contact", "reference"), default="contact")
-    parser.add_argument("--frames", type=int, default=60, help="pictures of the film")
-    parser.add_argument("--size", type=int, nargs=2, default=(480, 400), metavar=("WIDTH", "HEIGHT"))
     options = parser.parse_args()
     scene = load(options.file)
     graph = blocking_graph(scene, all_directions(options.directions), options.mode)
     steps, locked = removal_order(graph)
-    check(scene, graph, steps, options.mode)
+    casts = check(scene, graph, steps, options.mode)
 
-    (options.out / "frames").mkdir(parents=True, exist_ok=True)
+    options.out.mkdir(parents=True, exist_ok=True)
     told = described(scene, graph, steps, locked)
     (options.out / "graph.json").write_text(json.dumps(told, indent=1) + "\n")
-    pictures = []
-    for frame in film(corners(scene), graph, steps, tuple(options.size), options.frames):
-        png.write(options.out / "frames" / f"{len(pictures):03}.png", frame)
-        pictures.append(frame)
-    png.write_animation(options.out / "film.png", pictures, 70, 2000)
+    casts.show(options.out / "steps.html", title=f"{len(steps)} steps")
     print(f"{len(told['parts'])} parts, {len(told['interpenetrating'])} pairs interpenetrate, {len(steps)} steps")
     for step in told["steps"]:
         names = ", ".join(told["parts"][part] for part in step["parts"])
@@ -227,7 +202,7 @@ def main() -> None:
         print(f"  {names}: along {way}{crossing}")
     for group in locked:
         print(f"  locked in these directions: {', '.join(told['parts'][part] for part in group)}")
-    print(f"written: {options.out}/graph.json, film.png, frames/")
+    print(f"written: {options.out}/graph.json, steps.html")
 
 
 if __name__ == "__main__":

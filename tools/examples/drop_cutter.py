@@ -9,8 +9,9 @@ The part is a mesh file, or "relief" or "cube", which are made here. The cutter 
 mill, a cone, or any mesh file with its tip at the origin. A round cutter is cast twice, as a mesh inside it and as a mesh
 around it: its exact height lies between the two. The higher one is driven, so that it never cuts too deep.
 
-Writes heights.npy (the tip's height at each point, row by row), heights.png, path.ngc (G-code, millimetres), report.json,
-of a round cutter also surface.png (what is left of the stock), and with a holder holder.csv (where it would touch first).
+Writes heights.npy (the tip's height at each point, row by row), heights.png, path.ngc (G-code, millimetres),
+report.json, drops.html (a page that shows some of the casts), of a round cutter also surface.png (what is left of the
+stock), and with a holder holder.csv (where it would touch first).
 """
 
 from __future__ import annotations
@@ -57,8 +58,10 @@ class Machine:
         ticks = [np.arange(low[k], high[k] + 0.5 * step, step) for k in range(2)]
         self.raster = Raster(*ticks, top=high[2] + 1.0, floor=low[2])
 
-    def drop(self, tool: Mesh, mode: str | None = None, resolution: int = 0) -> tuple[np.ndarray, float, int]:
-        """Heights of the tip, (ny, nx), the seconds that took, and how many casts were undecided."""
+    def drop(
+        self, tool: Mesh, mode: str | None = None, resolution: int = 0, page: pathlib.Path | None = None
+    ) -> tuple[np.ndarray, float, int]:
+        """Heights of the tip, (ny, nx), the seconds that took, and how many casts were undecided. page: shows some."""
         mesh = self.scene.add_mesh(*tool)
         poses, way = self.raster.poses(), [0, 0, self.raster.floor - self.raster.top]
         mode = mode or self.mode
@@ -66,6 +69,9 @@ class Machine:
         start = time.perf_counter()
         casts = self.scene.cast(mesh, poses, way, mode=mode, resolution=resolution)
         seconds = time.perf_counter() - start
+        if page is not None:
+            every = 1 + int(np.sqrt(casts.status.size / 2500))
+            casts[::every, ::every].show(page, title="A cutter falls onto a part")
         self.scene.remove_mesh(mesh)
         heights = np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)
         return heights, seconds, int((casts.status == cyber_radar.Status.UNDECIDED).sum())
@@ -178,10 +184,10 @@ def machine_part(options: argparse.Namespace) -> dict:
     report: dict = {"part": options.part, "triangles": len(part[1]), "cutter": options.cutter, "mode": options.mode}
     if cutter is None:
         tool = cyber_radar.read_mesh(options.cutter)
-        heights, seconds, _ = machine.drop(tool)
+        heights, seconds, _ = machine.drop(tool, page=options.out / "drops.html")
     else:
         tool = cutter.circumscribed(options.segments, options.arc_steps)
-        heights, seconds, _ = machine.drop(tool)
+        heights, seconds, _ = machine.drop(tool, page=options.out / "drops.html")
         deepest, _, _ = machine.drop(cutter.inscribed(options.segments, options.arc_steps))
         report["tessellation_error_um"] = 1e3 * cutter.tessellation_error(options.segments, options.arc_steps)
         report["widest_bracket_um"] = 1e3 * float((heights - deepest).max())

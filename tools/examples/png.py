@@ -1,4 +1,4 @@
-"""PNG files, still and animated, from arrays (height, width, 3) of bytes. Browsers play the animated ones."""
+"""PNG files from arrays (height, width, 3) of bytes."""
 
 from __future__ import annotations
 
@@ -12,23 +12,6 @@ import numpy as np
 def write(file: pathlib.Path, picture: np.ndarray) -> None:
     """Writes one picture."""
     file.write_bytes(_SIGNATURE + _header(picture) + _chunk(b"IDAT", _packed(picture)) + _chunk(b"IEND", b""))
-
-
-def write_animation(file: pathlib.Path, pictures: list[np.ndarray], milliseconds: int, last_milliseconds: int) -> None:
-    """Writes pictures that follow each other, again and again; the last one is shown for longer."""
-    parts = [_SIGNATURE, _header(pictures[0]), _chunk(b"acTL", struct.pack(">II", len(pictures), 0))]
-    height, width, _ = pictures[0].shape
-    number = 0
-    for i, picture in enumerate(pictures):
-        shown = last_milliseconds if i == len(pictures) - 1 else milliseconds
-        parts.append(_chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, shown, 1000, 0, 0)))
-        number += 1
-        if i == 0:
-            parts.append(_chunk(b"IDAT", _packed(picture)))
-        else:
-            parts.append(_chunk(b"fdAT", struct.pack(">I", number) + _packed(picture)))
-            number += 1
-    file.write_bytes(b"".join([*parts, _chunk(b"IEND", b"")]))
 
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"

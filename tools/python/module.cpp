@@ -10,6 +10,8 @@
 #include "commit/commit.h"
 #include "import/mesh_import.h"
 #include "python/batch.h"
+#include "python/page.h"
+#include "view/page.h"
 #include "workloads/query_fields.h"
 
 namespace py = pybind11;
@@ -310,6 +312,31 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
   return listsFor(input.options, std::move(found), makeArrays);
 }
 
+/// What _engine.pyi says of page().
+std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
+                      const std::string& title, uint64_t count, const std::vector<std::string>& names,
+                      const py::dict& arrays, const std::map<uint32_t, std::string>& reasons) {
+  const size_t shown = names.size();
+  ShownCasts casts{.count = count, .names = names, .reasons = reasons};
+  casts.meshes = output<uint32_t>(arrays, "mesh", shown);
+  casts.poses = output<double>(arrays, "poses", 16 * shown);
+  casts.directions = output<double>(arrays, "displacements", 3 * shown);
+  casts.distances = output<double>(arrays, "distances", shown);
+  const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
+  casts.excludedCount = static_cast<size_t>(excluded.shape(1));
+  casts.excluded = excluded.data();
+  const BatchOutput answers = outputFrom(arrays, shown);
+  casts.status = answers.status;
+  casts.t = answers.distance;
+  casts.lo = answers.lo;
+  casts.hi = answers.hi;
+  casts.object = answers.object;
+  casts.triangles = answers.triangles;
+  casts.point = answers.point;
+  casts.normal = answers.normal;
+  return pageOf(scene, objectNames, title, casts);
+}
+
 // ------------------------------------------------------------------------------------------------- devices and files
 
 py::list deviceReports() {
@@ -392,6 +419,7 @@ PYBIND11_MODULE(_engine, module) {
   }
   module.attr("OPTIONS") = options;
   module.attr("MAX_RESOLUTION") = radar::kMaxResolution;
+  module.attr("MOST_SHOWN") = radar::tools::kMostShownQueries;
   py::class_<CastingScene>(module, "Scene")
       .def(py::init(&makeScene), py::arg("device"), py::arg("pool"), py::arg("cpu_batch"), py::arg("threads"))
       .def("add_mesh", &addMesh)
@@ -416,7 +444,8 @@ PYBIND11_MODULE(_engine, module) {
              for (const radar::Device& device : scene.devices()) names.push_back(device.name());
              return names;
            })
-      .def("cast", &castArrays);
+      .def("cast", &castArrays)
+      .def("page", &castsPage);
   module.def("first_singular", &firstSingular);
   module.def("devices", &deviceReports);
   module.def("read_mesh", &readMesh);

@@ -120,7 +120,32 @@ class Data {
     placed.place = new Map([...objects.number].map((object, i) => [object, i]));
     const ways = new Map();
     own.moving.forEach((object, i) => ways.set(placed.place.get(object), own.ways.subarray(3 * i, 3 * i + 3)));
-    return { meshes, objects: placed, ways };
+    return { meshes, objects: placed, ways, reach: this.reachOf(number, placed) };
+  }
+  /** The diagonal of the box around objects and sensors. */
+  reachOf(number, objects) {
+    const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
+    const add = (placed, i) => {
+      for (let k = 0; k < 3; ++k) {
+        lo[k] = Math.min(lo[k], placed.centre[3 * i + k] - placed.radius[i]);
+        hi[k] = Math.max(hi[k], placed.centre[3 * i + k] + placed.radius[i]);
+      }
+    };
+    for (let i = 0; i < objects.count; ++i) add(objects, i);
+    for (let i = 0; i < this.queries.count; ++i) if (this.queries.scene[i] === number) add(this.sensors, i);
+    return lo[0] <= hi[0] ? lengthOf(minus(hi, lo)) : 1;
+  }
+  /** The object that is the query's sensor: ignored, and where it starts. Its place in the scene, or undefined. */
+  ownObject(query) {
+    this.own ??= Array.from({ length: this.queries.count }, (_, i) => this.findOwn(i));
+    return this.own[query];
+  }
+  findOwn(query) {
+    const { objects } = this.scene(this.queries.scene[query]), { sensors } = this;
+    const isSame = (i) => i !== undefined && objects.mesh[i] === sensors.mesh[query] &&
+      [0, 1, 2].every((k) => objects.at[3 * i + k] === sensors.at[3 * query + k]) &&
+      objects.linear.subarray(9 * i, 9 * i + 9).every((value, k) => value === sensors.linear[9 * query + k]);
+    return (this.queries.ignored[query] ?? []).map((object) => objects.place.get(object)).find(isSame);
   }
   nameOf(query, object) {
     const { names } = this.scenes[this.queries.scene[query]];
@@ -129,12 +154,12 @@ class Data {
   status(query) {
     return this.statuses[this.answers.status[query]];
   }
-  /** The part of its way that a sensor can go, 0 to 1. */
+  /** The part of its way that a sensor can go, 0 to 1; of a free way, no more than leads out of the scene. */
   share(query) {
     switch (this.status(query)) {
       case "hit": return this.fractionOf(query, this.answers.t[query]);
       case "undecided": return this.fractionOf(query, this.answers.lo[query]);
-      case "clear": return 1;
+      case "clear": return Math.min(1, this.scene(this.queries.scene[query]).reach / (lengthOf(this.way(query)) || 1));
     }
     return 0;
   }

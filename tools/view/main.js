@@ -72,7 +72,9 @@ class Page {
     const { data, look } = this, { objects } = data.scene(look.scene), places = [];
     for (let i = 0; i < objects.count; ++i) places.push([objects.centreOf(i), objects.radius[i]]);
     for (let i = 0; i < data.queries.count; ++i) {
-      if (data.queries.scene[i] === look.scene) places.push([data.sensors.centreOf(i), data.sensors.radius[i]]);
+      if (data.queries.scene[i] !== look.scene) continue;
+      const start = data.sensors.centreOf(i), end = plus(start, times(data.share(i), data.way(i)));
+      for (const place of [start, end]) places.push([place, data.sensors.radius[i]]);
     }
     this.lookAt(places, smooth);
   }

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kMostObjects = 100'000, kMostQueries = 10'000, kMostTriangles = 3'000'000;
+constexpr uint32_t kMostObjects = 100'000, kMostTriangles = 3'000'000;
 // Vertices need 12 bytes, so that a page of this many is about 50 MB.
 
 std::string base64(std::string_view bytes) {
@@ -67,10 +67,11 @@ struct Poses {
 /// Chooses what a page can hold, and says what it leaves out.
 class Cut {
  public:
-  Cut(const Workload& workload, std::span<const Result> answers) : workload_(workload) {
-    queries_ = std::min<size_t>(workload.queries.size(), kMostQueries);
-    if (queries_ < workload.queries.size()) {
-      note("The first " + std::to_string(queries_) + " of " + std::to_string(workload.queries.size()) + " queries.");
+  /// `all`: how many queries there are.
+  Cut(const Workload& workload, std::span<const Result> answers, uint64_t all) : workload_(workload) {
+    queries_ = std::min<size_t>(workload.queries.size(), kMostShownQueries);
+    if (queries_ < all) {
+      note("The first " + std::to_string(queries_) + " of " + std::to_string(all) + " queries.");
     }
     for (size_t i = 0; i < queries_; ++i) {
       scenes_.insert(workload.queries[i].scene);
@@ -276,7 +277,7 @@ Json byQuery(const std::map<uint32_t, Value>& entries, size_t queries, const Mak
 }  // namespace
 
 std::string pageOf(const Workload& workload, std::span<const Result> answers, const PageContent& content) {
-  Cut cut(workload, answers);
+  Cut cut(workload, answers, std::max<uint64_t>(content.queries, workload.queries.size()));
   const size_t count = cut.queries();
   const auto asItIs = [](const std::string& text) { return text; };
   Json json;

@@ -193,7 +193,10 @@ class Look {
   colourOf(query) {
     const { data, by } = this, { object, t } = data.answers;
     if (by === "t") return Number.isFinite(t[query]) ? viridis(t[query] / (this.farthest() || 1)) : COLOURS.invalid;
-    if (by === "object") return object[query] === data.none ? COLOURS.invalid : hashed(object[query]);
+    if (by === "object") {
+      const own = data.ownObject(query), number = own === undefined ? object[query] : data.scene(this.scene).objects.number[own];
+      return number === data.none ? COLOURS.invalid : hashed(number);
+    }
     return COLOURS[data.status(query)];
   }
   farthest() {
@@ -213,7 +216,10 @@ class Look {
     const { objects, ways, meshes } = scene, rest = [0, 0, 0], isMoving = ways.size > 0, passed = this.passed();
     const touched = chosen >= 0 ? objects.place.get(data.touched(chosen)) : undefined;
     const ignored = new Set(data.queries.ignored[chosen]), seen = this.seen(stage);
+    const shown = this.visible.filter((query) => data.queries.scene[query] === this.scene);
+    const drawn = this.alone && chosen >= 0 ? [chosen] : shown, moves = new Set(drawn.map((query) => data.ownObject(query)));
     for (let i = 0; i < objects.count; ++i) {
+      if (moves.has(i)) continue;
       let colour = this.by === "object" ? hashed(objects.number[i]) : COLOURS.object;
       if (i === touched || i === this.object) colour = COLOURS.touched;
       const moved = isMoving && ways.has(i) ? times(passed, ways.get(i)) : rest;
@@ -224,8 +230,7 @@ class Look {
         stage.mark(plus(objects.centreOf(i), moved), COLOURS.touched, 22, "ring");
       }
     }
-    const shown = this.visible.filter((query) => data.queries.scene[query] === this.scene);
-    for (const query of this.alone && chosen >= 0 ? [chosen] : shown) {
+    for (const query of drawn) {
       const colour = this.colourOf(query), way = data.way(query), pale = chosen >= 0 && query !== chosen;
       if (query === chosen) this.explain(stage, scene);
       if (data.status(query) !== "invalid") {
@@ -241,7 +246,7 @@ class Look {
   }
 
   /** The chosen query: where its sensor starts, its bracket, what it touches. */
-  explain(stage, { meshes, objects, ways }) {
+  explain(stage, { meshes, objects, ways, reach }) {
     const { data, chosen } = this, { sensors, answers, queries } = data, way = data.way(chosen);
     const colour = COLOURS[data.status(chosen)], mesh = meshes[queries.mesh[chosen]], start = sensors.centreOf(chosen);
     stage.put(stage.ghosts, mesh, { placed: sensors, i: chosen, moved: [0, 0, 0], colour, id: 0 });
@@ -251,7 +256,8 @@ class Look {
       }
     }
     const at = (share) => plus(start, times(share, way)), share = data.share(chosen);
-    stage.line(at(share), at(1), [...COLOURS.path, 0.5], 1.5, 4);
+    const beyond = Math.min(1, Math.max(share, reach / (lengthOf(way) || 1)));
+    stage.line(at(share), at(beyond), [...COLOURS.path, 0.5], 1.5, 4);
     const across = times(0.25 * sensors.radius[chosen], unit(cross(way, stage.forward)));
     for (const t of [answers.lo[chosen], answers.hi[chosen]]) {
       if (!Number.isFinite(t)) continue;

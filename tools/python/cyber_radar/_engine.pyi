@@ -15,6 +15,7 @@ version: str
 commit: str
 OPTIONS: list[str]
 MAX_RESOLUTION: int
+MOST_SHOWN: int
 
 class Error(RuntimeError):
     reasons: list[str]
@@ -43,6 +44,16 @@ class Scene:
         after_chunk: Callable[[int], object] | None,
     ) -> tuple[tuple[dict[str, Any], _Ids] | None, tuple[_Ids, _Ids] | None, dict[str, _Ids]]:
         """The hits' arrays and offsets, if any are asked for; what overlaps, likewise; positions by reason."""
+    def page(
+        self,
+        object_names: dict[int, str],
+        title: str,
+        count: int,
+        names: list[str],
+        arrays: dict[str, npt.NDArray[Any]],
+        reasons: dict[int, str],
+    ) -> str:
+        """`count` casts, of which `names` and `arrays`, C-contiguous, are the first: what was asked, and the answers."""
 
 def first_singular(matrices: _Doubles) -> tuple[int, str] | None: ...
 def devices() -> list[dict[str, Any]]: ...

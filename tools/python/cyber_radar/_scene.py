@@ -27,6 +27,7 @@ from ._arguments import (
 from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals, whole_numbers
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
 from ._files import Path, read_mesh
+from ._show import Asked
 from ._warnings import MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
@@ -318,6 +319,7 @@ class Scene:
         casts.hits = None if hits is None else Hits(**hits[0], offsets=hits[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
         casts.reasons = reasons
+        casts._asked = Asked.of(self, arguments, shape)
         return casts
 
     @property

@@ -1,0 +1,101 @@
+"""Casts as a page for a browser."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+import os
+import pathlib
+import tempfile
+import webbrowser
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _engine
+
+if TYPE_CHECKING:
+    from ._casts import Casts
+    from ._scene import Scene
+
+_LARGEST_IN_NOTEBOOKS = 4_000_000
+
+
+@dataclasses.dataclass(frozen=True)
+class Asked:
+    """What casts were asked, for a page: arrays of their leading shape, and their places in the whole batch."""
+
+    scene: Scene
+    arrays: dict[str, npt.NDArray[Any]]
+    number: npt.NDArray[np.int64]  #: in C order, of `shape`
+    shape: tuple[int, ...]
+
+    @classmethod
+    def of(cls, scene: Scene, arguments: dict[str, Any], shape: tuple[int, ...]) -> Asked:
+        count = int(np.prod(shape, dtype=np.int64))
+        given = {name: array for name, array in arguments.items() if array is not None}
+        return cls(scene, given, np.arange(count).reshape(shape), shape)
+
+    def __getitem__(self, places: Any) -> Asked:
+        arrays = {name: array[places] for name, array in self.arrays.items()}
+        return Asked(self.scene, arrays, self.number[places], self.shape)
+
+
+def page_of(casts: Casts, asked: Asked | None, title: str) -> str:
+    """The page, HTML; ValueError if it is not known what was asked."""
+    if asked is None:
+        raise ValueError("show: expected casts that Scene.cast() has answered, got some that were unpickled or made")
+    numbers = np.ascontiguousarray(asked.number).reshape(-1)
+    shown = min(numbers.size, _engine.MOST_SHOWN + 1)
+
+    def first(array: npt.NDArray[Any], inner: int) -> npt.NDArray[Any]:
+        """The first casts' numbers; `inner`: dimensions of each."""
+        own = array.shape[array.ndim - inner :]
+        return np.array(np.ascontiguousarray(array).reshape(numbers.size, *own)[:shown])
+
+    inner = {"poses": 2, "displacements": 1, "exclude_from_each": 1}
+    arrays = {name: first(array, inner.get(name, 0)) for name, array in asked.arrays.items()}
+    for name, array in casts.to_dict().items():
+        arrays[name] = first(array, array.ndim - casts.status.ndim)
+    ways = np.array(arrays["displacements"])
+    lengths = np.linalg.norm(ways, axis=-1)
+    arrays.setdefault("distances", lengths)
+    ways[~(lengths > 0)] = (0, 0, 1)
+    arrays["displacements"] = ways
+    places = np.stack(np.unravel_index(numbers[:shown], asked.shape), axis=-1) if asked.shape else np.empty((shown, 0))
+    names = [", ".join(map(str, place)) or "cast" for place in places.tolist()]
+    reasons = {int(i): reason for reason, found in casts.reasons.items() for i in found if i < shown}
+    scene = asked.scene
+    with scene._reading() as engine:
+        return engine.page(scene.names, title, numbers.size, names, arrays, reasons)
+
+
+def write(page: str, file: str | os.PathLike[str]) -> pathlib.Path:
+    """Leaves what was there if the page cannot be written."""
+    path = pathlib.Path(file)
+    beside = tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=path.parent, suffix=".html", delete=False)
+    try:
+        with beside:
+            beside.write(page)
+        os.chmod(beside.name, 0o644)
+        os.replace(beside.name, path)
+    except BaseException:
+        os.unlink(beside.name)
+        raise
+    return path
+
+
+def open_in_browser(page: str) -> pathlib.Path:
+    number, name = tempfile.mkstemp(prefix="cyber-radar-", suffix=".html")
+    os.close(number)
+    path = write(page, name)
+    webbrowser.open(path.as_uri())
+    return path
+
+
+def in_notebook(page: str, words: str) -> str:
+    """HTML for a cell of a notebook; in words if the page would make the notebook large."""
+    if len(page) > _LARGEST_IN_NOTEBOOKS:
+        return f"<p>{html.escape(words)} show() opens the page ({1e-6 * len(page):.0f} MB).</p>"
+    return f'<iframe srcdoc="{html.escape(page)}" style="width: 100%; height: 600px; border: 0"></iframe>'

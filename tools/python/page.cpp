@@ -1,0 +1,75 @@
+#include "python/page.h"
+
+#include "view/page.h"
+
+namespace radar::python {
+
+namespace {
+
+using tools::Workload;
+
+/// Numbers of meshes and objects are the scene's.
+Workload workloadOf(const Scene& scene, const std::map<uint32_t, std::string>& objectNames) {
+  Workload workload;
+  for (MeshId id = 0; id < scene.meshLimit(); ++id) {
+    tools::MeshData& mesh = workload.meshes.emplace_back();
+    mesh.name = std::to_string(id);
+    if (!scene.hasMesh(id)) continue;
+    const MeshView view = scene.mesh(id);
+    mesh.positions.assign(view.positions.begin(), view.positions.end());
+    mesh.indices.assign(view.indices.begin(), view.indices.end());
+  }
+  tools::SceneSpec& spec = workload.scenes.emplace_back();
+  for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
+    tools::Instance& instance = spec.instances.emplace_back();
+    instance.mesh = kNone;
+    if (!scene.hasObject(id)) continue;
+    const Object& object = scene.object(id);
+    instance = {object.mesh, object.worldFromMesh};
+    if (object.motion != std::array<double, 3>{}) spec.motions.emplace_back(id, object.motion);
+    if (object.mask != ~0u) spec.masks.emplace_back(id, object.mask);
+  }
+  if (!objectNames.empty()) spec.names.resize(spec.instances.size());
+  for (const auto& [id, name] : objectNames) spec.names.at(id) = name;
+  return workload;
+}
+
+uint32_t idFrom(int64_t number) {
+  return number < 0 ? kNone : static_cast<uint32_t>(number);
+}
+
+}  // namespace
+
+std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
+                   const std::string& title, const ShownCasts& casts) {
+  Workload workload = workloadOf(scene.scene(), objectNames);
+  std::vector<Result> results;
+  for (size_t i = 0; i < casts.names.size(); ++i) {
+    tools::QuerySpec& query = workload.queries.emplace_back();
+    query.id = casts.names[i];
+    query.mesh = casts.meshes[i];
+    std::copy_n(casts.poses + 16 * i, 12, query.worldFromMesh.m.begin());
+    std::copy_n(casts.directions + 3 * i, 3, query.direction.begin());
+    query.distance = casts.distances[i];
+    for (size_t k = 0; k < casts.excludedCount; ++k) {
+      const int64_t object = casts.excluded[casts.excludedCount * i + k];
+      if (object >= 0) query.exclude.push_back(idFrom(object));
+    }
+    Result& result = results.emplace_back(static_cast<Status>(casts.status[i]));
+    result.t = casts.t[i];
+    result.lo = casts.lo[i];
+    result.hi = casts.hi[i];
+    result.object = idFrom(casts.object[i]);
+    result.triA = idFrom(casts.triangles[2 * i]);
+    result.triB = idFrom(casts.triangles[2 * i + 1]);
+    std::copy_n(casts.point + 3 * i, 3, result.point.begin());
+    std::copy_n(casts.normal + 3 * i, 3, result.normal.begin());
+  }
+  tools::PageContent content;
+  content.title = title;
+  content.queries = casts.count;
+  content.reasons = casts.reasons;
+  return tools::pageOf(workload, results, content);
+}
+
+}  // namespace radar::python

@@ -1,0 +1,30 @@
+// Casts as a page for a browser.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "python/casting_scene.h"
+
+namespace radar::python {
+
+/// What a page shows of casts: a number for each of them, or as many as stated, adjacent. Absent ids are -1.
+struct ShownCasts {
+  uint64_t count = 0;  ///< of casts; there may be fewer names, and of each array as many as names
+  std::vector<std::string> names;
+  const uint32_t* meshes = nullptr;
+  const double *poses = nullptr, *directions = nullptr, *distances = nullptr;  ///< 16, 3, 1
+  const int64_t* excluded = nullptr;                                           ///< `excludedCount` of them
+  size_t excludedCount = 0;
+  const uint8_t* status = nullptr;
+  const double *t = nullptr, *lo = nullptr, *hi = nullptr, *point = nullptr, *normal = nullptr;  ///< 1, 1, 1, 3, 3
+  const int64_t *object = nullptr, *triangles = nullptr;                                         ///< 1, 2
+  std::map<uint32_t, std::string> reasons;                                                       ///< by cast
+};
+
+/// The page, HTML, of a scene as it is now.
+std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::string>& objectNames,
+                   const std::string& title, const ShownCasts& casts);
+
+}  // namespace radar::python

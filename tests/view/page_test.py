@@ -3,7 +3,7 @@
 import json
 import math
 import os
-import pathlib
+import struct
 import subprocess
 
 import pytest
@@ -129,10 +129,14 @@ def make_page(folder, queries, *options):
         "scenes": [{"instances": [at(0, 10 * i, 0, 0) for i in range(4)]}],
         "queries": [{"scene": 0, **query} for query in queries],
     }
+    return write_page(folder, batch, *(options or ["--mode", "reference"]))
+
+
+def write_page(folder, batch, *options):
     (folder / "batch.json").write_text(json.dumps(batch))
     page = folder / "page.html"
     program = os.environ["RADAR_PROGRAM"]
-    command = [program, "view", folder / "batch.json", "--out", page, *(options or ["--mode", "reference"])]
+    command = [program, "view", folder / "batch.json", "--out", page, *options]
     subprocess.run(command, check=True, stdout=subprocess.PIPE)
     return page
 
@@ -274,4 +278,37 @@ def test_a_page_without_queries_shows_its_scene(browser, tmp_path):
     assert view.run("return view.stage.items.length") == 4
     view.browser.find_element(By.TAG_NAME, "body").send_keys(Keys.ARROW_DOWN, "f", " ")
     view.wait("!view.playing")
+    assert view.errors() == []
+
+
+def test_objects_move_and_deform_and_steps_have_scenes_of_their_own(browser, tmp_path):
+    lines = [line.split() for line in CUBE.splitlines()]
+    corners = [[float(x) for x in rest] for kind, *rest in lines if kind == "v"]
+    faces = [[int(x) - 1 for x in rest] for kind, *rest in lines if kind == "f"]
+    header = ["ply", "format ascii 1.0", "element vertex 8", *(f"property float {axis}" for axis in "xyz")]
+    header += ["element face 6", "property list uchar int vertex_indices", "end_header"]
+    rows = [" ".join(map(str, row)) for row in [*corners, *([4, *face] for face in faces)]]
+    (tmp_path / "cube.ply").write_text("\n".join([*header, *rows, ""]))
+    stretched = [3 * x for corner in corners for x in corner]
+    (tmp_path / "stretched.f32").write_bytes(struct.pack(f"<{len(stretched)}f", *stretched))
+    scenes = [
+        {"id": "moving", "instances": [at(0, 0, 0, 0), at(0, 20, 0, 0)], "motions": [[1, -4, 0, 0]]},
+        {"id": "deformed", "base": 0, "instances": [at(0, 0, 40, 0)], "deforms": [[0, "stretched.f32"]]},
+    ]
+    queries = [
+        {"id": "meets", "scene": 0, "sensor": at(0, 8, 0, 0), "motion": [16, 0, 0]},
+        {"id": "grown", "scene": 1, "sensor": at(0, 8, 40, 0), "dir": [-1, 0, 0], "D": 10},
+    ]
+    batch = {"format": "cyber-radar-queries-1", "meshes": ["cube.ply"], "scenes": scenes, "queries": queries}
+    view = View(browser, write_page(tmp_path, batch, "--mode", "reference"))
+    view.choose(0)
+    assert "Free for 0.5 of the step, then it touches object 1." in view.browser.find_element(By.ID, "chosen").text
+    view.run("view.setAlone(true); view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert is_like(view.colour_at((16 + 0.5, -1, 0.6)), "hit")
+    assert is_like(view.colour_at((18 + 0.5, -1, 0.6)), "touched")  # halfway through the step
+    view.choose(1)
+    assert view.run("return view.data.scene(view.look.scene).objects.count") == 3
+    view.run("view.camera.yaw = -1.2; view.camera.pitch = 0.4; view.change()")
+    assert view.rows()[1][2] == "2"
+    assert is_like(view.colour_at((2.5, 37, 2.5)), "touched")  # three times as large
     assert view.errors() == []

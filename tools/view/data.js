@@ -63,14 +63,14 @@ function creasesOf(mesh) {
   return lines;
 }
 
-/** Things in a row: of each a mesh and a pose, world = linear * local + at. */
+/** Things in a row: of each a mesh, among those that `meshesOf` gives for it, and a pose, world = linear * local + at. */
 class Placed {
-  constructor(meshes, { mesh, linear, at }) {
-    Object.assign(this, { meshes, mesh, linear, at, count: mesh.length });
+  constructor(meshesOf, { mesh, linear, at }) {
+    Object.assign(this, { meshesOf, mesh, linear, at, count: mesh.length });
     this.centre = new Float64Array(3 * this.count);
     this.radius = new Float64Array(this.count);
     for (let i = 0; i < this.count; ++i) {
-      const { middle, half } = meshes[mesh[i]];
+      const { middle, half } = this.meshOf(i);
       let square = 0;
       for (let k = 0; k < 3; ++k) {
         const row = linear.subarray(9 * i + 3 * k, 9 * i + 3 * k + 3);
@@ -79,6 +79,9 @@ class Placed {
       }
       this.radius[i] = Math.sqrt(square);
     }
+  }
+  meshOf(i) {
+    return this.meshesOf(i)[this.mesh[i]];
   }
   centreOf(i) {
     return [...this.centre.subarray(3 * i, 3 * i + 3)];
@@ -100,7 +103,7 @@ class Data {
     Object.assign(this, JSON.parse(text, decodeArray));
     this.meshes = this.meshes.map((mesh) => new Mesh(mesh.name, mesh.positions, mesh.indices));
     this.shown = new Map();
-    this.sensors = new Placed(this.meshes, this.queries);
+    this.sensors = new Placed((i) => this.scene(this.queries.scene[i]).meshes, this.queries);
   }
   /** The meshes of a scene, some deformed; its objects, as Placed; and how each moves during a step. */
   scene(number) {
@@ -115,14 +118,18 @@ class Data {
     }
     const parts = ["mesh", "linear", "at", "number"];
     const objects = Object.fromEntries(parts.map((p) => [p, base ? joined(base[p], own[p]) : own[p]]));
-    const placed = new Placed(meshes, objects);
+    const placed = new Placed(() => meshes, objects);
     placed.number = objects.number;
     placed.place = new Map([...objects.number].map((object, i) => [object, i]));
     const ways = new Map();
     own.moving.forEach((object, i) => ways.set(placed.place.get(object), own.ways.subarray(3 * i, 3 * i + 3)));
-    return { meshes, objects: placed, ways, reach: this.reachOf(number, placed) };
+    return { meshes, objects: placed, ways };
   }
-  /** The diagonal of the box around objects and sensors. */
+  /** The diagonal of the box around a scene's objects and sensors. */
+  reach(number) {
+    const scene = this.scene(number);
+    return (scene.reach ??= this.reachOf(number, scene.objects));
+  }
   reachOf(number, objects) {
     const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
     const add = (placed, i) => {
@@ -159,7 +166,7 @@ class Data {
     switch (this.status(query)) {
       case "hit": return this.fractionOf(query, this.answers.t[query]);
       case "undecided": return this.fractionOf(query, this.answers.lo[query]);
-      case "clear": return Math.min(1, this.scene(this.queries.scene[query]).reach / (lengthOf(this.way(query)) || 1));
+      case "clear": return Math.min(1, this.reach(this.queries.scene[query]) / (lengthOf(this.way(query)) || 1));
     }
     return 0;
   }

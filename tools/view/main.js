@@ -156,11 +156,11 @@ class Page {
     const { data, look } = this, place = document.querySelector("#chosen"), query = look.chosen;
     place.replaceChildren();
     if (look.object >= 0) {
-      const { objects, meshes } = data.scene(look.scene), number = objects.number[look.object];
+      const { objects } = data.scene(look.scene), number = objects.number[look.object];
       made(place, "h2", "", `Object ${number}`);
       const name = data.scenes[look.scene].names[number];
       if (name) made(place, "p", "", name);
-      made(place, "p", "", this.sizeInWords("Mesh", meshes[objects.mesh[look.object]]));
+      made(place, "p", "", this.sizeInWords("Mesh", objects.meshOf(look.object)));
       const only = made(place, "button", "", "Show what stops at it");
       only.onclick = () => this.table.filter({ object: `${number}` });
     }
@@ -201,7 +201,7 @@ class Page {
       if (numbers(name).every(Number.isFinite)) lines.push(`${name} ${numbers(name).map((x) => inDigits(x)).join(", ")}`);
     }
     if (data.others[query]) lines.push(data.others[query].words);
-    lines.push(this.sizeInWords("Sensor", data.meshes[queries.mesh[query]]));
+    lines.push(this.sizeInWords("Sensor", data.sensors.meshOf(query)));
     const ignored = queries.ignored[query];
     if (ignored) lines.push(`Takes no account of ${ignored.length > 9 ? `${ignored.length} objects` : `object ${ignored.join(", ")}`} (like glass).`);
     return lines;

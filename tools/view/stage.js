@@ -51,7 +51,7 @@ class Stage {
   }
 
   /** One of `placed`, moved; drawn if it may be in sight. */
-  add(placed, i, moved, colour, id, meshes = placed.meshes) {
+  add(placed, i, moved, colour, id) {
     // Called for every object in every picture: without arrays that live for a call.
     const { eye, forward, up, right } = this, { centre } = placed;
     const x = centre[3 * i] + moved[0] - eye[0], y = centre[3 * i + 1] + moved[1] - eye[1];
@@ -63,7 +63,7 @@ class Stage {
     if (Math.abs(x * right[0] + y * right[1] + z * right[2]) > most * this.aspect + side) return;
     this.farthest = Math.max(this.farthest, depth + radius);
     const pixels = (radius * this.focal) / Math.max(depth, radius);
-    this.items.push({ placed, i, moved, colour, id, pixels, bin: binOf(pixels), mesh: meshes[placed.mesh[i]] });
+    this.items.push({ placed, i, moved, colour, id, pixels, bin: binOf(pixels), mesh: placed.meshOf(i) });
   }
 
   /** Whether something is between the eye and a place. */
@@ -213,7 +213,7 @@ class Look {
   /** Puts everything on a stage. */
   fill(stage) {
     const { data, chosen } = this, { sensors } = data, scene = data.scene(this.scene);
-    const { objects, ways, meshes } = scene, rest = [0, 0, 0], isMoving = ways.size > 0, passed = this.passed();
+    const { objects, ways } = scene, rest = [0, 0, 0], isMoving = ways.size > 0, passed = this.passed();
     const touched = chosen >= 0 ? objects.place.get(data.touched(chosen)) : undefined;
     const ignored = new Set(data.queries.ignored[chosen]), seen = this.seen(stage);
     const shown = this.visible.filter((query) => data.queries.scene[query] === this.scene);
@@ -224,7 +224,7 @@ class Look {
       if (i === touched || i === this.object) colour = COLOURS.touched;
       const moved = isMoving && ways.has(i) ? times(passed, ways.get(i)) : rest;
       const isGlass = (ignored.size > 0 && ignored.has(objects.number[i])) || (i !== touched && seen && stage.hides(objects, i, moved, seen));
-      if (isGlass) stage.put(stage.ghosts, meshes[objects.mesh[i]], { placed: objects, i, moved, colour, id: 0 });
+      if (isGlass) stage.put(stage.ghosts, objects.meshOf(i), { placed: objects, i, moved, colour, id: 0 });
       else stage.add(objects, i, moved, colour, 1 + i);
       if (i === touched && objects.radius[i] < 0.02 * stage.camera.distance) {
         stage.mark(plus(objects.centreOf(i), moved), COLOURS.touched, 22, "ring");
@@ -235,7 +235,7 @@ class Look {
       if (query === chosen) this.explain(stage, scene);
       if (data.status(query) !== "invalid") {
         const tint = pale ? between(colour, [0.9, 0.9, 0.92], 0.55) : colour;
-        stage.add(sensors, query, times(this.gone(query), way), tint, 1 + objects.count + query, meshes);
+        stage.add(sensors, query, times(this.gone(query), way), tint, 1 + objects.count + query);
       }
       if (shown.length > 2000 && query !== chosen) continue;
       const start = sensors.centreOf(query), end = plus(start, times(data.share(query), way));
@@ -246,9 +246,9 @@ class Look {
   }
 
   /** The chosen query: where its sensor starts, its bracket, what it touches. */
-  explain(stage, { meshes, objects, ways, reach }) {
-    const { data, chosen } = this, { sensors, answers, queries } = data, way = data.way(chosen);
-    const colour = COLOURS[data.status(chosen)], mesh = meshes[queries.mesh[chosen]], start = sensors.centreOf(chosen);
+  explain(stage, { objects, ways }) {
+    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
+    const colour = COLOURS[data.status(chosen)], mesh = sensors.meshOf(chosen), start = sensors.centreOf(chosen);
     stage.put(stage.ghosts, mesh, { placed: sensors, i: chosen, moved: [0, 0, 0], colour, id: 0 });
     if (mesh.triangles <= 20000) {
       for (const [a, b] of mesh.creases()) {
@@ -256,7 +256,7 @@ class Look {
       }
     }
     const at = (share) => plus(start, times(share, way)), share = data.share(chosen);
-    const beyond = Math.min(1, Math.max(share, reach / (lengthOf(way) || 1)));
+    const beyond = Math.min(1, Math.max(share, data.reach(this.scene) / (lengthOf(way) || 1)));
     stage.line(at(share), at(beyond), [...COLOURS.path, 0.5], 1.5, 4);
     const across = times(0.25 * sensors.radius[chosen], unit(cross(way, stage.forward)));
     for (const t of [answers.lo[chosen], answers.hi[chosen]]) {
@@ -264,7 +264,7 @@ class Look {
       const tick = at(data.fractionOf(chosen, t));
       stage.line(minus(tick, across), plus(tick, across), COLOURS.path, 2);
     }
-    this.explainContact(stage, { meshes, objects, ways }, share);
+    this.explainContact(stage, objects, ways, share);
     const other = data.otherShare(chosen);
     if (other !== null && Math.abs(other - share) > 1e-3) {
       const moved = times(other, way);
@@ -277,20 +277,19 @@ class Look {
     }
   }
 
-  explainContact(stage, { meshes, objects, ways }, share) {
-    const { data, chosen } = this, { sensors, answers, queries } = data, way = data.way(chosen);
+  explainContact(stage, objects, ways, share) {
+    const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
     const object = objects.place.get(answers.object[chosen]);
     if (object === undefined) return;
-    const place = (placed, i, mesh, triangle, moved) =>
-      mesh.corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
+    const place = (placed, i, triangle, moved) =>
+      placed.meshOf(i).corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
     const moved = ways.has(object) ? times(share, ways.get(object)) : [0, 0, 0];
     const triangles = [];
     if (answers.triA[chosen] !== data.none) {
-      const mesh = meshes[queries.mesh[chosen]];
-      triangles.push(place(sensors, chosen, mesh, answers.triA[chosen], times(share, way)));
+      triangles.push(place(sensors, chosen, answers.triA[chosen], times(share, way)));
     }
     if (answers.triB[chosen] !== data.none) {
-      triangles.push(place(objects, object, meshes[objects.mesh[object]], answers.triB[chosen], moved));
+      triangles.push(place(objects, object, answers.triB[chosen], moved));
     }
     for (const corners of triangles) {
       stage.triangle(corners, COLOURS.triangle);

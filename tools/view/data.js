@@ -16,8 +16,9 @@ function decodeArray(key, value) {
 
 /** A triangle mesh with the sphere around its box. */
 class Mesh {
-  constructor(name, positions, indices) {
-    Object.assign(this, { name, positions, indices, triangles: indices.length / 3 });
+  /** `isBox`: only the box of a mesh of so many triangles is known. */
+  constructor({ name, positions, indices, triangles = indices.length / 3, isBox = false }) {
+    Object.assign(this, { name, positions, indices, triangles, isBox, drawn: indices.length / 3 });
     const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
     for (const vertex of indices) {
       for (let k = 0; k < 3; ++k) {
@@ -50,7 +51,7 @@ function creasesOf(mesh) {
     if (!ids.has(key)) ids.set(key, ids.size);
     return ids.get(key);
   };
-  for (let t = 0; t < mesh.triangles; ++t) {
+  for (let t = 0; t < mesh.drawn; ++t) {
     const corners = mesh.corners(t), id = corners.map(idOf);
     const normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
     for (let i = 0; i < 3; ++i) {
@@ -101,7 +102,7 @@ function joined(first, second) {
 class Data {
   constructor(text) {
     Object.assign(this, JSON.parse(text, decodeArray));
-    this.meshes = this.meshes.map((mesh) => new Mesh(mesh.name, mesh.positions, mesh.indices));
+    this.meshes = this.meshes.map((mesh) => new Mesh(mesh));
     this.shown = new Map();
     this.sensors = new Placed((i) => this.scene(this.queries.scene[i]).meshes, this.queries);
   }
@@ -114,7 +115,7 @@ class Data {
     const own = this.scenes[number], base = own.base === null ? null : this.scenes[own.base];
     const meshes = [...this.meshes];
     for (const { mesh, positions } of own.deforms) {
-      meshes[mesh] = new Mesh(meshes[mesh].name, positions, meshes[mesh].indices);
+      meshes[mesh] = new Mesh({ ...meshes[mesh], positions });
     }
     const parts = ["mesh", "linear", "at", "number"];
     const objects = Object.fromEntries(parts.map((p) => [p, base ? joined(base[p], own[p]) : own[p]]));

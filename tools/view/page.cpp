@@ -74,11 +74,11 @@ class Cut {
       note("The first " + std::to_string(queries_) + " of " + std::to_string(all) + " queries.");
     }
     for (size_t i = 0; i < queries_; ++i) {
-      scenes_.insert(workload.queries[i].scene);
-      if (answers[i].object != kNone) touched_[workload.queries[i].scene].insert(answers[i].object);
-    }
-    if (workload.queries.empty()) {
-      for (uint32_t scene = 0; scene < workload.scenes.size(); ++scene) scenes_.insert(scene);
+      const uint32_t scene = workload.queries[i].scene;
+      for (const uint32_t part : {scene, workload.scenes[scene].base.value_or(scene)}) {
+        scenes_.insert(part);
+        if (answers[i].object != kNone) touched_[part].insert(answers[i].object);
+      }
     }
     cutMeshes();
   }
@@ -86,20 +86,19 @@ class Cut {
   size_t queries() const { return queries_; }
   bool isBoxed(size_t mesh) const { return boxed_.contains(mesh); }
   const std::vector<std::string>& notes() const { return notes_; }
-  /// A scene that neither a query nor another scene needs is left out.
-  bool hasScene(uint32_t scene) const {
-    const auto needs = [&](uint32_t other) { return other == scene || workload_.scenes[other].base == scene; };
-    return std::ranges::any_of(scenes_, needs);
-  }
+  /// A scene that neither a query nor such a scene needs is left out.
+  bool hasScene(uint32_t scene) const { return workload_.queries.empty() || scenes_.contains(scene); }
   /// Numbers among the scene's own instances, of which the first has the number `first`.
   std::vector<uint32_t> objects(uint32_t scene, uint32_t first) {
     const std::vector<Instance>& instances = workload_.scenes[scene].instances;
     const size_t room = kMostObjects - std::min(kMostObjects, first);
     std::vector<uint32_t> kept;
-    size_t others = room - std::min<size_t>(room, touched_[scene].size());
+    const std::set<uint32_t>& touched = touched_[scene];
+    const auto from = touched.lower_bound(first), to = touched.lower_bound(first + uint32_t(instances.size()));
+    size_t others = room - std::min<size_t>(room, static_cast<size_t>(std::distance(from, to)));
     for (uint32_t i = 0; i < instances.size(); ++i) {
       if (instances[i].mesh == kNone) continue;
-      const bool isTouched = touched_[scene].contains(first + i);
+      const bool isTouched = touched.contains(first + i);
       if (isTouched || others > 0) kept.push_back(i);
       others -= !isTouched && others > 0;
     }
@@ -125,8 +124,9 @@ class Cut {
       boxed_.insert(largest[i]);
     }
     if (!boxed_.empty()) {
-      note("The boxes of the largest " + std::to_string(boxed_.size()) + " of " +
-           std::to_string(workload_.meshes.size()) + " meshes.");
+      const size_t count = boxed_.size();
+      note(count == 1 ? "The largest mesh is shown as its box."
+                      : "The largest " + std::to_string(count) + " meshes are shown as their boxes.");
     }
   }
 
@@ -138,8 +138,13 @@ class Cut {
   std::vector<std::string> notes_;
 };
 
-Json meshJson(const std::string& name, const MeshData& mesh) {
-  return {{"name", name}, {"positions", array(mesh.positions)}, {"indices", array(mesh.indices)}};
+Json meshJson(const MeshData& mesh, const MeshData* box) {
+  const MeshData& shown = box ? *box : mesh;
+  return {{"name", mesh.name},
+          {"triangles", mesh.triangleCount()},
+          {"isBox", box != nullptr},
+          {"positions", array(shown.positions)},
+          {"indices", array(shown.indices)}};
 }
 
 MeshData boxOf(const MeshData& mesh) {
@@ -289,7 +294,9 @@ std::string pageOf(const Workload& workload, std::span<const Result> answers, co
   json["meshes"] = Json::array();
   for (size_t i = 0; i < workload.meshes.size(); ++i) {
     const MeshData& mesh = workload.meshes[i];
-    json["meshes"].push_back(meshJson(mesh.name, cut.isBoxed(i) ? boxOf(mesh) : mesh));
+    std::optional<MeshData> box;
+    if (cut.isBoxed(i)) box = boxOf(mesh);
+    json["meshes"].push_back(meshJson(mesh, box ? &*box : nullptr));
   }
   json["scenes"] = Json::array();
   for (uint32_t i = 0; i < workload.scenes.size(); ++i) json["scenes"].push_back(sceneJson(workload, i, cut));

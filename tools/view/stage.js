@@ -25,10 +25,16 @@ function hashed(number) {
   return [0, 1 / 3, 2 / 3].map((shift) => 0.45 + 0.4 * Math.cos(2 * Math.PI * (hue + shift)));
 }
 
-const BOX = new Mesh("box", new Float32Array([0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) =>
-  [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)))), new Uint32Array([
-  0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5]));
-const TRIANGLE = new Mesh("triangle", new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), new Uint32Array([0, 1, 2]));
+const BOX = new Mesh({
+  name: "box",
+  positions: new Float32Array([0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1, i & 2, i & 4].map((bit) => (bit ? 1 : -1)))),
+  indices: new Uint32Array([
+    0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+  ]),
+});
+const TRIANGLE = new Mesh({
+  name: "triangle", positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]),
+});
 
 // Bins of apparent size in pixels, each 1.25 times the last.
 const BINS = 64, binOf = (pixels) => Math.min(BINS - 1, Math.max(0, Math.floor(Math.log(pixels) / Math.log(1.25)) + 8));
@@ -80,8 +86,8 @@ class Stage {
   settle() {
     const whole = new Float64Array(BINS), boxes = new Float64Array(BINS);
     for (const item of this.items) {
-      whole[item.bin] += item.mesh.triangles;
-      boxes[item.bin] += Math.min(item.mesh.triangles, 12);
+      whole[item.bin] += item.mesh.drawn;
+      boxes[item.bin] += Math.min(item.mesh.drawn, 12);
     }
     const leastBin = (triangles, budget) => {
       let bin = BINS;
@@ -250,7 +256,7 @@ class Look {
     const { data, chosen } = this, { sensors, answers } = data, way = data.way(chosen);
     const colour = COLOURS[data.status(chosen)], mesh = sensors.meshOf(chosen), start = sensors.centreOf(chosen);
     stage.put(stage.ghosts, mesh, { placed: sensors, i: chosen, moved: [0, 0, 0], colour, id: 0 });
-    if (mesh.triangles <= 20000) {
+    if (mesh.drawn <= 20000) {
       for (const [a, b] of mesh.creases()) {
         stage.line(sensors.toWorld(chosen, a), sensors.toWorld(chosen, b), [...colour, 0.8], 1);
       }
@@ -284,13 +290,11 @@ class Look {
     const place = (placed, i, triangle, moved) =>
       placed.meshOf(i).corners(triangle).map((corner) => plus(placed.toWorld(i, corner), moved));
     const moved = ways.has(object) ? times(share, ways.get(object)) : [0, 0, 0];
-    const triangles = [];
-    if (answers.triA[chosen] !== data.none) {
-      triangles.push(place(sensors, chosen, answers.triA[chosen], times(share, way)));
-    }
-    if (answers.triB[chosen] !== data.none) {
-      triangles.push(place(objects, object, answers.triB[chosen], moved));
-    }
+    // A mesh of which the page has only the box has other triangles.
+    const has = (placed, i, triangle) => triangle !== data.none && !placed.meshOf(i).isBox;
+    const triangles = [], [a, b] = [answers.triA[chosen], answers.triB[chosen]];
+    if (has(sensors, chosen, a)) triangles.push(place(sensors, chosen, a, times(share, way)));
+    if (has(objects, object, b)) triangles.push(place(objects, object, b, moved));
     for (const corners of triangles) {
       stage.triangle(corners, COLOURS.triangle);
       for (let k = 0; k < 3; ++k) stage.line(corners[k], corners[(k + 1) % 3], COLOURS.path, 2);

@@ -94,3 +94,13 @@ def test_a_browser_is_opened_and_notebooks_show_the_page(tmp_path, monkeypatch):
     large = scene.add_mesh(np.random.default_rng(1).normal(size=(300_000, 3)).astype("f4"), np.arange(300_000).reshape(-1, 3))
     scene.add(large, at([0.0, 0, 99]))
     assert "show() opens the page" in casts._repr_html_()
+
+
+def test_of_a_large_batch_the_first_casts_are_remembered(tmp_path):
+    scene, cube = row()
+    casts = scene.cast(cube, at(np.zeros((101, 1000, 3))), [20.0, 0, 0], mode="reference")
+    shown = page_data(casts.show(tmp_path / "page.html"))
+    assert shown["queries"]["count"] == 10_000 and shown["queries"]["id"][-1] == "9, 999"
+    assert shown["notes"] == ["The first 10000 of 101000 queries."]
+    with pytest.raises(ValueError, match="a part of more than 100,000"):
+        casts[0].show(tmp_path / "part.html")

@@ -22,22 +22,39 @@ if TYPE_CHECKING:
 _LARGEST_IN_NOTEBOOKS = 4_000_000
 
 
+_MOST_REMEMBERED = 100_000  # casts, whose inputs are kept whole, so that parts of them can be shown, too
+
+
+def _first(array: npt.NDArray[Any], shape: tuple[int, ...], count: int) -> npt.NDArray[Any]:
+    """A copy of what the first casts of this leading shape have, one after the other."""
+    return np.array(array[np.unravel_index(np.arange(count), shape)] if shape else array[None], order="C")
+
+
 @dataclasses.dataclass(frozen=True)
 class Asked:
-    """What casts were asked, for a page: arrays of their leading shape, and their places in the whole batch."""
+    """What casts were asked, for a page: arrays of their leading shape, and their places in the whole batch. Of a large
+    batch, what the page can show, one after the other."""
 
     scene: Scene
     arrays: dict[str, npt.NDArray[Any]]
     number: npt.NDArray[np.int64]  #: in C order, of `shape`
     shape: tuple[int, ...]
+    is_cut: bool = False
 
     @classmethod
     def of(cls, scene: Scene, arguments: dict[str, Any], shape: tuple[int, ...]) -> Asked:
         count = int(np.prod(shape, dtype=np.int64))
-        given = {name: array for name, array in arguments.items() if array is not None}
-        return cls(scene, given, np.arange(count).reshape(shape), shape)
+        arrays = {name: array for name, array in arguments.items() if array is not None}
+        if count <= _MOST_REMEMBERED:
+            return cls(scene, arrays, np.arange(count).reshape(shape), shape)
+        kept = _engine.MOST_SHOWN
+        arrays = {name: _first(array, shape, kept) for name, array in arrays.items()}
+        return cls(scene, arrays, np.arange(kept), shape, True)
 
-    def __getitem__(self, places: Any) -> Asked:
+    def __getitem__(self, places: Any) -> Asked | None:
+        """None: of a large batch."""
+        if self.is_cut:
+            return None
         arrays = {name: array[places] for name, array in self.arrays.items()}
         return Asked(self.scene, arrays, self.number[places], self.shape)
 
@@ -45,30 +62,24 @@ class Asked:
 def page_of(casts: Casts, asked: Asked | None, title: str) -> str:
     """The page, HTML; ValueError if it is not known what was asked."""
     if asked is None:
-        raise ValueError("show: expected casts that Scene.cast() has answered, got some that were unpickled or made")
-    numbers = np.ascontiguousarray(asked.number).reshape(-1)
-    shown = min(numbers.size, _engine.MOST_SHOWN + 1)
-
-    def first(array: npt.NDArray[Any], inner: int) -> npt.NDArray[Any]:
-        """The first casts' numbers; `inner`: dimensions of each."""
-        own = array.shape[array.ndim - inner :]
-        return np.array(np.ascontiguousarray(array).reshape(numbers.size, *own)[:shown])
-
-    inner = {"poses": 2, "displacements": 1, "exclude_from_each": 1}
-    arrays = {name: first(array, inner.get(name, 0)) for name, array in asked.arrays.items()}
-    for name, array in casts.to_dict().items():
-        arrays[name] = first(array, array.ndim - casts.status.ndim)
-    ways = np.array(arrays["displacements"])
+        raise ValueError(
+            "show: expected casts that Scene.cast() has answered, got some that were unpickled or made, or a part of "
+            f"more than {_MOST_REMEMBERED:,}"
+        )
+    shown = min(asked.number.size, _engine.MOST_SHOWN)
+    arrays = {name: _first(array, asked.number.shape, shown) for name, array in asked.arrays.items()}
+    arrays |= {name: _first(array, casts.shape, shown) for name, array in casts.to_dict().items()}
+    ways = arrays["displacements"]
     lengths = np.linalg.norm(ways, axis=-1)
     arrays.setdefault("distances", lengths)
     ways[~(lengths > 0)] = (0, 0, 1)
-    arrays["displacements"] = ways
-    places = np.stack(np.unravel_index(numbers[:shown], asked.shape), axis=-1) if asked.shape else np.empty((shown, 0))
+    numbers = asked.number.reshape(-1)[:shown]
+    places = np.stack(np.unravel_index(numbers, asked.shape), axis=-1) if asked.shape else np.empty((1, 0))
     names = [", ".join(map(str, place)) or "cast" for place in places.tolist()]
     reasons = {int(i): reason for reason, found in casts.reasons.items() for i in found if i < shown}
     scene = asked.scene
     with scene._reading() as engine:
-        return engine.page(scene.names, title, numbers.size, names, arrays, reasons)
+        return engine.page(scene.names, title, casts.status.size, names, arrays, reasons)
 
 
 def write(page: str, file: str | os.PathLike[str]) -> pathlib.Path:

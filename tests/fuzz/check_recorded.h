@@ -7,8 +7,21 @@
 
 namespace radar::fuzz {
 
-/// Throws std::logic_error unless each answer is the expected one, or its flag says which limit was too small.
-void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected);
+/// How many answers of recordings are what.
+struct Outcomes {
+  size_t answered = 0, hits = 0;                       ///< of those: with the bits of the exact answer
+  size_t unresolved = 0, lacking = 0, outOfRange = 0;  ///< of those without an answer: by their flags
+  size_t reordered = 0, listed = 0;                    ///< contacts that come less than a rounding later; listed ones
+};
+
+/// Throws std::logic_error unless each answer is the expected one, or its flag says which limit was too small. Adds to
+/// the outcomes.
+void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected,
+                   Outcomes& outcomes);
+inline void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected) {
+  Outcomes outcomes;
+  checkRecorded(queries, recorded, expected, outcomes);
+}
 
 /// Whether a limit was too small for an answer.
 bool isTooSmall(const Answers& recorded);

@@ -10,7 +10,7 @@
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
-#include "soak/model.h"
+#include "support/scene_model.h"
 #include "support/test_device.h"
 
 namespace radar::fuzz {
@@ -44,21 +44,18 @@ std::vector<Query> recordable(SceneCalls& calls, Recorder& recorder, const Capac
   const auto isInvalid = [&](const Query& query) {
     return !validate(query, calls.scene()).empty() || !test::isRecordable(query, calls.scene());
   };
-  if (queries.size() > capacity.queries || std::ranges::any_of(queries, isInvalid)) {
-    try {
-      test::execute(test::device(), recorder, queries);
-      require(false, "an invalid recording is accepted");
-    } catch (const Error&) {
-      std::erase_if(queries, isInvalid);
-      queries.resize(std::min<size_t>(queries.size(), capacity.queries));
-    }
+  const auto record = [&](const auto& all) { test::execute(test::device(), recorder, all); };
+  leaveValid(queries, isInvalid, record);
+  if (queries.size() > capacity.queries) {
+    requireRefused([&] { record(queries); });
+    queries.resize(capacity.queries);
   }
   return queries;
 }
 
 /// Vertices that a host deforms, and the scene as it then is.
 struct Deformation {
-  Deformation(Choices& choices, const Scene& scene) : truth(soak::Model::of(scene).build()) {
+  Deformation(Choices& choices, const Scene& scene) : truth(test::SceneModel::of(scene).build()) {
     for (MeshId id = 0; id < scene.meshLimit(); ++id) {
       if (!scene.hasMesh(id) || scene.impl().meshes[id].deforms || !choices.oneIn(2)) continue;
       const std::span<const float> rest = scene.mesh(id).positions;

@@ -7,7 +7,10 @@
 
 #include "faults/host_memory.h"
 #include "faults/vulkan_calls.h"
+#include "fuzz/target.h"
 #include "gpu/check.h"
+#include "gpu/submission.h"
+#include "radar/recorder.h"
 #include "soak/tally.h"
 #include "workloads/random.h"
 
@@ -71,24 +74,31 @@ FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const 
   return outcome;
 }
 
-/// The same for a call of a Recorder, which throws an Error if a Vulkan call fails.
-struct Recording {
-  FaultOutcome outcome;
-  bool isRefused = false;  ///< with that Error
-  bool mustRepeat() const { return isRefused || outcome.threw; }
-};
-template <class Record>
-Recording recordUnder(const FaultPlan& plan, Tally& tally, const Record& record) {
-  Recording recording;
-  recording.outcome = under(plan, tally, [&] {
+/// Records under a fault in the engine's calls, or without a submission, and after these again; submits, and reads.
+template <class Queries>
+Answers record(Recorder& recorder, const Device& device, const Queries& queries, const HostGeometry& geometry,
+               tools::Random& random, Tally& tally) {
+  const FaultPlan plan = chooseFault(random, false);
+  gpu::Submission submission(device.impl(), false);
+  bool isRefused = false;
+  const gpu::Commands commands = submission.begin();
+  const FaultOutcome outcome = under(plan, tally, [&] {
     try {
-      record();
+      recorder.record(commands, queries, geometry);
     } catch (const Error& error) {
       if (!plan.fault || error.vulkan != plan.result || plan.result == VK_SUCCESS) throw;
-      recording.isRefused = true;
+      isRefused = true;
     }
   });
-  return recording;
+  fuzz::require(isRefused <= outcome.happened, "a failure that was not made");
+  const bool isLeft = !outcome.happened && random.oneIn(12);
+  if (isLeft) tally.add(Fault::notSubmitted);
+  if (isRefused || outcome.threw || isLeft) {
+    recorder.reset();
+    recorder.record(submission.begin(), queries, geometry);
+  }
+  submission.submitAndWait();
+  return recorder.read();
 }
 
 }  // namespace radar::soak

@@ -82,18 +82,7 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
   CpuSweeper cpu(world_.truth, 1);
   const Answers exact = cpu.run(queries);
   for (Recorder* recorder : {&recorder_, &sharing_}) {
-    const FaultPlan plan = chooseFault(*random_, false);
-    gpu::Submission submission(device_->impl(), false);
-    gpu::Commands commands = submission.begin();
-    const Recording recording =
-        recordUnder(plan, *tally_, [&] { recorder->record(commands, recorded, world_.geometry()); });
-    if (recording.mustRepeat()) {
-      recorder->reset();
-      commands = submission.begin();
-      recorder->record(commands, recorded, world_.geometry());
-    }
-    submission.submitAndWait();
-    const Answers found = recorder->read();
+    const Answers found = record(*recorder, *device_, recorded, world_.geometry(), *random_, *tally_);
     fuzz::require(recorder->boundsViolation().empty(), recorder->boundsViolation());
     fuzz::checkRecorded(queries, found, exact);
     tally_->limited += fuzz::isTooSmall(found);

@@ -3,24 +3,18 @@
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <vector>
 
 #include <vulkan/vulkan.h>
 
 #include "support/test_device.h"
+#include "support/watched_vulkan.h"
 
 namespace radar::test {
 
 namespace {
 
-Counts counted;
-std::mutex mutex;
-std::atomic<int64_t> allocations, live;
-PFN_vkGetDeviceProcAddr getDeviceProcAddr;
-PFN_vkQueueSubmit2 queueSubmit2;
-PFN_vkWaitForFences waitForFences;
-PFN_vkCreateComputePipelines createComputePipelines;
+std::atomic<int64_t> allocated, live;
 
 void require(VkResult result, const char* call) {
   if (result != VK_SUCCESS) throw Error(std::string("the host's ") + call + " failed", result);
@@ -32,59 +26,6 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
   return VK_FALSE;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
-  const std::lock_guard lock(mutex);
-  ++counted.submissions;
-  return queueSubmit2(queue, count, infos, fence);
-}
-
-// Takes the lock of submit(): if one thread submits while another waits, synchronization validation sometimes misses
-// the wait and reports false hazards.
-VKAPI_ATTR VkResult VKAPI_CALL waitFor(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
-                                       uint64_t timeout) {
-  const std::lock_guard lock(mutex);
-  ++counted.waits;
-  return waitForFences(device, count, fences, all, timeout);
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL makePipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
-                                             const VkComputePipelineCreateInfo* infos,
-                                             const VkAllocationCallbacks* allocator, VkPipeline* pipelines) {
-  {
-    const std::lock_guard lock(mutex);
-    counted.cache = cache;
-  }
-  return createComputePipelines(device, cache, count, infos, allocator, pipelines);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) {
-  const std::lock_guard lock(mutex);
-  counted.lookedUp.insert(name);
-  const PFN_vkVoidFunction found = getDeviceProcAddr(device, name);
-  if (std::strcmp(name, "vkQueueSubmit2") == 0) {
-    queueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(submit);
-  }
-  if (std::strcmp(name, "vkWaitForFences") == 0) {
-    waitForFences = reinterpret_cast<PFN_vkWaitForFences>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(waitFor);
-  }
-  if (std::strcmp(name, "vkCreateComputePipelines") == 0) {
-    createComputePipelines = reinterpret_cast<PFN_vkCreateComputePipelines>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(makePipelines);
-  }
-  return found;
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
-  const std::lock_guard lock(mutex);
-  counted.lookedUp.insert(name);
-  const PFN_vkVoidFunction found = vkGetInstanceProcAddr(instance, name);
-  if (std::strcmp(name, "vkGetDeviceProcAddr") != 0) return found;
-  getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(found);
-  return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
-}
-
 // Least number of bytes before a block. They hold its size, which reallocation needs, and its offset.
 constexpr size_t kHeader = 64;
 
@@ -94,7 +35,7 @@ VKAPI_ATTR void* VKAPI_CALL allocate(void*, size_t size, size_t alignment, VkSys
   if (block == nullptr) return nullptr;
   std::memcpy(block + step - sizeof(size), &size, sizeof(size));
   std::memcpy(block + step - 2 * sizeof(size), &step, sizeof(step));
-  ++allocations;
+  ++allocated;
   ++live;
   return block + step;
 }
@@ -153,6 +94,8 @@ Host::Host(Mode mode, uint32_t index) {
   vkGetPhysicalDeviceFeatures(handles.physicalDevice, &features);
   handles.doubles = features.shaderFloat64 == VK_TRUE && wantsDoubles();
   handles.sampled = mode == Mode::sampled;
+  handles.debugNames = true;
+  handles.getInstanceProcAddr = watchedLoader();
   Requirements needed = requirements(mode, handles.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
@@ -170,19 +113,22 @@ Host::~Host() {
   vkDestroyInstance(handles.instance, nullptr);
 }
 
-Counts counts() {
-  counted.allocations = allocations;
-  counted.live = live;
-  return counted;
+Device Host::own() const {
+  HostDevice unwatched = handles;
+  unwatched.getInstanceProcAddr = vkGetInstanceProcAddr;
+  return Device::adopt(unwatched);
 }
 
-void resetCounts() {
-  counted = {};
-  allocations = 0;
+const Device& watchedDevice() {
+  struct Watched {
+    Host host;
+    Device device = Device::adopt(host.handles);
+  };
+  return onceInRun([] { return Watched(); }).device;
 }
 
-PFN_vkGetInstanceProcAddr countingLoader() {
-  return instanceFunction;
+Allocations allocations() {
+  return {allocated, live};
 }
 
 const VkAllocationCallbacks* countingAllocator() {

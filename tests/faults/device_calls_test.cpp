@@ -1,7 +1,8 @@
 // Every call of the device that may fail does so in turn, for lack of memory, and every submission because the device
 // is lost. Answers are right, or invalid with the reason; afterwards the same objects answer with the same bits.
-#include "embed/moved_world.h"
-#include "faults/adopted.h"
+#include "embed/host.h"
+#include "embed/host_world.h"
+#include "faults/host_memory.h"
 #include "faults/scenario.h"
 #include "fuzz/check_recorded.h"
 #include "gpu/check.h"
@@ -9,9 +10,10 @@
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
+#include "support/small_scenes.h"
 #include "support/test_device.h"
+#include "support/watched_vulkan.h"
 #include "sweep/sweeper.h"
-#include "workloads/shapes.h"
 
 namespace {
 
@@ -76,7 +78,7 @@ class Growing {
 
 TEST_CASE(
     "whichever call of the device fails while a scene grows, answers are right or invalid, and later ones right") {
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   const test::BothModes queries;
   for (const bool hasNewMesh : {false, true}) {
     Growing grown;
@@ -106,7 +108,7 @@ TEST_CASE(
 TEST_CASE(
     "whichever call of the device fails while a recorder records, it is named, and the same recorder then records "
     "right answers") {
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   const std::vector<Query> queries = test::recordableQueries();
   Growing grown;
   grown.grow(false);
@@ -148,17 +150,11 @@ TEST_CASE(
     "whichever call of the device, or allocation, fails while a recorder lists what a host moves and deforms, the same "
     "recorder then records right answers") {
   const bool isBounded = GENERATE(true, false);
-  const Device& device = test::adopted().device;
-  const auto always = [](ObjectId) { return true; };
-  const auto never = [](ObjectId) { return false; };
+  const Device& device = test::watchedDevice();
   constexpr Capacity kRoom{.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10};
   gpu::Submission submission(device.impl(), false);
-  tools::MeshData box = tools::makeBox({1, 1, 1}), deformed = box;
-  std::vector<std::byte> bytes;
-  for (float& x : deformed.positions) test::append<float>(bytes, {x *= 4});
-  const test::OnDevice positions(bytes, device);
   const auto failing = [&](int64_t n, const auto& failAt) {
-    test::MovedWorld world(3, 5, {1, 4, 0}, always, never, device);
+    test::MovedWorld world(3, 5, {1, 4, 0}, test::always, test::never, device);
     Recorder recorder(device, world.scene, kRoom);
     recorder.record(submission.begin(), world.queries(16), world.geometry());
     submission.submitAndWait();
@@ -166,18 +162,13 @@ TEST_CASE(
     // Others are moved, and more than there was room for, and a mesh is deformed.
     std::optional<Bounds> bounds;
     if (isBounded) bounds = Bounds{{-4, -4, -4}, {4, 4, 4}};
-    const MeshId mesh = world.scene.addMesh(box.positions, box.indices, bounds);
-    REQUIRE(world.truth.addMesh(deformed.positions, deformed.indices) == mesh);
-    for (uint32_t i = 0; i < 300; ++i) {
-      const Object object{mesh, {}, 3};
-      world.moved.push_back(world.scene.addObject(object));
-      world.truth.addObject(object);
-    }
+    const MeshId mesh = test::addMesh(world.scene, tools::makeBox({1, 1, 1}), bounds);
+    REQUIRE(test::addBox(world.truth, 4) == mesh);
+    world.deformed = {mesh};
+    for (uint32_t i = 0; i < 300; ++i) world.moved.push_back(world.add({mesh, {}, 3}));
     world.moveAgain();
-    const DeformedMesh deforming{mesh, {.buffer = positions.get()}};
-    HostGeometry geometry = world.geometry();
-    geometry.meshes = {&deforming, 1};
-    std::vector<Query> queries = world.queries(16);
+    const HostGeometry geometry = world.geometry();
+    const std::vector<Query> queries = world.queries(16);
     const gpu::Commands commands = submission.begin();
     const bool failed = failAt(n, [&] { recorder.record(commands, queries, geometry); });
     if (failed) {
@@ -187,8 +178,7 @@ TEST_CASE(
     submission.submitAndWait();
     const Answers found = recorder.read();
     CHECK(recorder.boundsViolation().empty());
-    CpuSweeper cpu(world.truth, 1);
-    fuzz::checkRecorded(queries, found, cpu.run(queries));
+    fuzz::checkRecorded(queries, found, CpuSweeper(world.truth, 1).run(queries));
     return failed;
   };
   CHECK(failEach([&](int64_t n) {
@@ -219,7 +209,7 @@ TEST_CASE(
 }
 
 TEST_CASE("whichever call of the device fails while setting up, it is named, and nothing is left") {
-  test::FaultyHost host;
+  test::Host host;
   const VkQueue queue = host.handles.queue;
   Scene scene;
   test::SceneEdits().make(scene);
@@ -252,7 +242,7 @@ TEST_CASE("whichever call of the device fails while setting up, it is named, and
 }
 
 TEST_CASE("if the device is lost at any submission, each answer is right or says so, and a new sweeper answers") {
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   Scene scene;
   test::SceneEdits().make(scene);
   for (const bool drawn : {false, true}) {

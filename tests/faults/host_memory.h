@@ -5,31 +5,9 @@
 
 #include <cstdint>
 
+#include "support/engine_work.h"
+
 namespace radar::test {
-
-/// Lets the requests of this thread count.
-class EngineWork {
- public:
-  EngineWork();
-  ~EngineWork();
-  EngineWork(const EngineWork&) = delete;
-  EngineWork& operator=(const EngineWork&) = delete;
-
- private:
-  bool before_;
-};
-
-/// Lets the requests of this thread not count.
-class OthersWork {
- public:
-  OthersWork();
-  ~OthersWork();
-  OthersWork(const OthersWork&) = delete;
-  OthersWork& operator=(const OthersWork&) = delete;
-
- private:
-  bool before_;
-};
 
 namespace host_memory {
 

@@ -5,12 +5,14 @@
 #include <functional>
 #include <new>
 
-#include "faults/adopted.h"
+#include "embed/host.h"
+#include "faults/host_memory.h"
 #include "faults/scenario.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
 #include "support/catch.h"
+#include "support/watched_vulkan.h"
 #include "sweep/sweeper.h"
 
 namespace {
@@ -127,7 +129,7 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
   positions.assign(scene.mesh(1).positions.begin(), scene.mesh(1).positions.end());
   for (size_t i = 0; i < positions.size(); i += 2) positions[i] *= 3;
   CpuSweeper following(scene, 1);
-  Sweeper onDevice(test::adopted().device, scene, {.cpuBatch = 0});
+  Sweeper onDevice(test::watchedDevice(), scene, {.cpuBatch = 0});
   int64_t failed = 0;
   for (const auto& edit : edits) {
     CAPTURE(edit.first);
@@ -182,7 +184,7 @@ TEST_CASE("if threads cannot be started, a parallel loop does its work on those 
 
 TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper then answers it with the same bits") {
   Changing changing;
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
   const test::BothModes queries;
   std::array<Answers, 2> expected;
@@ -214,7 +216,7 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
     queries[i].hits = kAllHits;
   }
   const std::vector<Query> later(queries.rbegin(), queries.rbegin() + 5);
-  Sweeper sweeper(test::adopted().device, scene, {.cpuBatch = 0});
+  Sweeper sweeper(test::watchedDevice(), scene, {.cpuBatch = 0});
   const Answers expected = sweeper.run(later);
   const int64_t failed = failEach([&](int64_t n) {
     const Attempt made = attempt(n, [&] { sweeper.run(queries); });
@@ -226,7 +228,7 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
 
 TEST_CASE("whichever allocation of a recording fails, the same recorder then records and reads the same answers") {
   Changing changing;
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   Recorder recorder(device, changing.scene, test::kScenarioRoom);
   gpu::Submission submission(device.impl(), false);
   const std::vector<Query> queries = test::recordableQueries();
@@ -251,7 +253,7 @@ TEST_CASE("whichever allocation of a recording fails, the same recorder then rec
 }
 
 TEST_CASE("whichever allocation of setting up fails, what was made before is given back") {
-  test::FaultyHost host;
+  test::Host host;
   Changing changing;
   const VkQueue queue = host.handles.queue;
   host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines

@@ -35,7 +35,8 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact, O
   }
   outcomes.outOfRange += found.flags == Flag::range;
   outcomes.unresolved += found.flags == Flag::unresolved;
-  outcomes.lacking += (found.flags & (Flag::candidates | Flag::rounds)) != 0;
+  outcomes.candidates += (found.flags & Flag::candidates) != 0;
+  outcomes.rounds += (found.flags & Flag::rounds) != 0;
   require((found.flags & ~(kTooSmall | Flag::range)) == 0, "another flag: " + inWords(query, found));
   require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
   if (found.flags != Flag::unresolved) {

@@ -9,9 +9,12 @@ namespace radar::fuzz {
 
 /// How many answers of recordings are what.
 struct Outcomes {
-  size_t answered = 0, hits = 0;                       ///< of those: with the bits of the exact answer
-  size_t unresolved = 0, lacking = 0, outOfRange = 0;  ///< of those without an answer: by their flags
-  size_t reordered = 0, listed = 0;                    ///< contacts that come less than a rounding later; listed ones
+  size_t answered = 0, hits = 0, listed = 0;          ///< hits of answers; entries of their lists
+  size_t reordered = 0;                               ///< contacts with another object, less than a rounding apart
+  size_t candidates = 0, rounds = 0, unresolved = 0;  ///< no answers, by the limit that was too small
+  size_t outOfRange = 0;                              ///< no answers, because of their numbers
+  size_t lacking() const { return candidates + rounds + unresolved; }
+  bool areExact() const { return lacking() + outOfRange + reordered == 0; }
 };
 
 /// Throws std::logic_error unless each answer is the expected one, or its flag says which limit was too small. Adds to

@@ -99,6 +99,7 @@ void compare(const SceneCalls& calls, Recorder& recorder, const std::vector<Quer
     recorded = test::execute(test::device(), larger, queries, geometry);
     checkRecorded(queries, recorded, expected);
     enough = enoughFor(larger);
+    require(enough.rounds % 2 == 0, "an odd number of rounds");
   }
   require(!isTooSmall(recorded), "what needed() gives is not enough");
 }
@@ -138,6 +139,8 @@ void run(std::string_view input) {
   try {
     Recorder recorder(test::device(), calls.scene(), capacity);
     require(isValid(capacity), "an invalid capacity is accepted");
+    const bool isChosen = capacity.candidates == 0;
+    require(isChosen || recorder.needed().candidates == capacity.candidates, "nothing recorded, but more needed");
     for (int i = 0; i < 40 && !choices.areOver(); ++i) {
       if (choices.oneIn(4)) {
         ask(calls, recorder, capacity);

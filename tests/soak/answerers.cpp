@@ -140,12 +140,12 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
 void Answerers::askPool(const Batch& batch) {
   const FaultPlan plan = chooseFault(*random_, true);
   const Device& failing = pooled_[random_->below(static_cast<uint32_t>(pooled_.size()))];
-  const HostDevice device = random_->oneIn(2) ? failing.handles() : HostDevice{};
+  const HostDevice& device = failing.handles();
   if (random_->oneIn(8)) cancel(batch);
   PoolAnswers answers;
   const auto ask = [&] { answers = pool_->submit(batch.queries, batch.mode).get(); };
   const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
-  const FaultOutcome outcome = under(plan, *tally_, ask, device);
+  const FaultOutcome outcome = under(plan, *tally_, ask, random_->oneIn(2) ? &device : nullptr);
   if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
   if (!outcome.happened) return;
   const std::vector<PoolDevice> devices = pool_->devices();

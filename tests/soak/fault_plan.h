@@ -6,7 +6,7 @@
 #include <string>
 
 #include "faults/host_memory.h"
-#include "faults/vulkan_calls.h"
+#include "support/watched_vulkan.h"
 #include "fuzz/target.h"
 #include "gpu/check.h"
 #include "gpu/submission.h"
@@ -44,9 +44,9 @@ struct FaultOutcome {
   std::string reason{};  ///< what an answer that is invalid must name
 };
 
-/// Makes a call under a fault. `device`: only its Vulkan calls fail.
+/// Makes a call under a fault. `device`: if given, only its Vulkan calls fail.
 template <class Call>
-FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const HostDevice& device = {}) {
+FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const HostDevice* device = nullptr) {
   FaultOutcome outcome;
   if (!plan.fault) {
     call();
@@ -65,7 +65,7 @@ FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const 
     outcome.happened = test::host_memory::requests() > plan.number;
   } else {
     const auto when = *plan.fault == Fault::lost ? test::VulkanFault::When::lost : test::VulkanFault::When::once;
-    const test::VulkanFault fault(plan.number, plan.result, when, device.device, device.queue);
+    const test::VulkanFault fault(plan.number, plan.result, when, {.device = device});
     call();
     outcome.happened = fault.happened();
     outcome.reason = gpu::resultName(plan.result);

@@ -1,60 +1,26 @@
-// Every allocation of host memory, and every start of a thread, fails in turn. The call that made it throws
-// std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing has leaked.
+// Every allocation of host memory for edits and batches, and every start of a thread, fails in turn. The call that made
+// it throws std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing
+// has leaked.
 #include <array>
 #include <atomic>
 #include <functional>
-#include <new>
 
 #include "embed/host.h"
-#include "faults/host_memory.h"
+#include "faults/attempt.h"
 #include "faults/scenario.h"
-#include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
-#include "support/catch.h"
-#include "support/watched_vulkan.h"
 #include "sweep/sweeper.h"
 
 namespace {
 
 using namespace radar;
+using test::Attempt;
+using test::attempt;
+using test::failEach;
+using test::Of;
 using test::sameBits;
 using test::sameContacts;
-
-// One request fails.
-struct Attempt {
-  bool threw = false;   // std::bad_alloc, and nothing else
-  bool failed = false;  // there were enough requests for one to fail
-};
-template <class Part>
-Attempt attempt(int64_t n, const Part& part) {
-  Attempt made;
-  {
-    const test::EngineWork counting;
-    test::host_memory::failAt(n);
-    try {
-      part();
-    } catch (const std::bad_alloc&) {
-      made.threw = true;
-    }
-  }
-  made.failed = test::host_memory::requests() > n;
-  test::host_memory::failAt(-1);
-  return made;
-}
-
-// Calls attemptAt(0), attemptAt(step), ... until no request was left to fail; returns how many failed.
-template <class AttemptAt>
-int64_t failEach(const AttemptAt& attemptAt, int64_t step = 1) {
-  for (int64_t n = 0, failed = 0;; n += step, ++failed) {
-    CAPTURE(n);
-    const Attempt made = attemptAt(n);
-    if (!made.failed) {
-      CHECK_FALSE(made.threw);
-      return failed;
-    }
-  }
-}
 
 // What a scene holds, for comparison.
 Answers answersOf(const Scene& scene) {
@@ -141,7 +107,7 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
       CHECK(sameContacts(onDevice.run(queries), expected));
     };
     failed += failEach([&](int64_t n) {
-      const Attempt made = attempt(n, [&] { change(scene); });
+      const Attempt made = attempt(Of::host, n, [&] { change(scene); });
       if (made.threw) {
         CHECK(scene.meshLimit() <= reference.meshLimit() + 1);
         checkSame();
@@ -164,7 +130,7 @@ TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper th
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
-    const Attempt made = attempt(n, [&] { found = sweeper.run(queries); });
+    const Attempt made = attempt(Of::host, n, [&] { found = sweeper.run(queries); });
     if (made.threw) found = sweeper.run(queries);
     CHECK(sameBits(found, answersOf(changing.scene)));
     return made;
@@ -175,8 +141,9 @@ TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper th
 TEST_CASE("if threads cannot be started, a parallel loop does its work on those that run") {
   for (int64_t n = 0; n < 12; ++n) {
     std::atomic<size_t> done = 0;
-    const Attempt made = attempt(
-        n, [&] { parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; }); });
+    const Attempt made = attempt(Of::host, n, [&] {
+      parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; });
+    });
     CAPTURE(n);
     if (!made.threw) CHECK(done == 1000);
   }
@@ -197,7 +164,7 @@ TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper
   const int64_t failed = failEach([&](int64_t n) {
     changing.change();
     Answers found;
-    const Attempt made = attempt(n, [&] { found = queries.answersBy(sweeper); });
+    const Attempt made = attempt(Of::host, n, [&] { found = queries.answersBy(sweeper); });
     if (made.threw) found = queries.answersBy(sweeper);
     CHECK(sameBits(found, expected.at(changing.isChanged)));
     return made;
@@ -219,60 +186,9 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
   Sweeper sweeper(test::watchedDevice(), scene, {.cpuBatch = 0});
   const Answers expected = sweeper.run(later);
   const int64_t failed = failEach([&](int64_t n) {
-    const Attempt made = attempt(n, [&] { sweeper.run(queries); });
+    const Attempt made = attempt(Of::host, n, [&] { sweeper.run(queries); });
     CHECK(sameBits(sweeper.run(later), expected));
     return made;
   });
   CHECK(failed > 30);
-}
-
-TEST_CASE("whichever allocation of a recording fails, the same recorder then records and reads the same answers") {
-  Changing changing;
-  const Device& device = test::watchedDevice();
-  Recorder recorder(device, changing.scene, test::kScenarioRoom);
-  gpu::Submission submission(device.impl(), false);
-  const std::vector<Query> queries = test::recordableQueries();
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    gpu::Commands commands = submission.begin();
-    const Attempt recorded = attempt(n, [&] { recorder.record(commands, queries); });
-    if (recorded.threw) {
-      CHECK(recorder.read().results.empty());
-      recorder.reset();
-      commands = submission.begin();
-      recorder.record(commands, queries);
-    }
-    submission.submitAndWait();
-    const Attempt read = attempt(n, [&] { found = recorder.read(); });
-    if (read.threw) found = recorder.read();
-    CHECK(sameContacts(found, CpuSweeper(changing.scene, 1).run(queries)));
-    return Attempt{recorded.threw || read.threw, recorded.failed || read.failed};
-  });
-  CHECK(failed > 30);
-}
-
-TEST_CASE("whichever allocation of setting up fails, what was made before is given back") {
-  test::Host host;
-  Changing changing;
-  const VkQueue queue = host.handles.queue;
-  host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines
-  const test::HollowPipelines hollow;
-  const auto setUp = [&] {
-    const Device device = Device::adopt(host.handles);
-    const Recorder recorder(device, changing.scene, test::kScenarioRoom);
-    device.impl().host.queue = queue;
-    Sweeper::Impl sweeper(device.impl(), changing.scene, {.timestamps = true},
-                          std::make_shared<GpuScene>(device.impl()));
-    sweeper.sampled();
-  };
-  setUp();
-  const int64_t live = test::host_memory::live(), objects = test::liveVulkanObjects();
-  const int64_t failed = failEach([&](int64_t n) {
-    const Attempt made = attempt(n, setUp);
-    CHECK(test::host_memory::live() == live);
-    CHECK(test::liveVulkanObjects() == objects);
-    return made;
-  });
-  CHECK(failed > 1000);
 }

@@ -5,7 +5,6 @@
 #include "embed/renderer.h"
 #include "radar/host.h"
 #include "radar/pool.h"
-#include "support/resident.h"
 #include "support/small_scenes.h"
 
 namespace {
@@ -186,30 +185,29 @@ TEST_CASE(
   CHECK_FALSE(std::ranges::equal(back, there, test::sameBits));
 }
 
-TEST_CASE("three recorders that share a scene's copy need its memory once", "[.long]") {
+TEST_CASE("three recorders that share a scene's copy need its memory once") {
   tools::Random random(4);
-  const tools::MeshData soup = tools::makeSoup(tools::Soup::plain, 300'000, random);
   Scene scene;
-  const MeshId mesh = test::addMesh(scene, soup);
+  const MeshId mesh = test::addMesh(scene, tools::makeSoup(tools::Soup::plain, 30'000, random));
   scene.addObject({.mesh = mesh});
   const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 1};
-  const auto memoryOf = [&](auto&& make) {
+  const Device& device = test::watchedDevice();
+  SceneCopy copy(device, scene);
+  const auto bytesOf = [&](auto&& make) {
     std::vector<Recorder> recorders;
-    std::vector<size_t> sizes;
+    uint64_t first = 0;
     for (int i = 0; i < 3; ++i) {
       recorders.push_back(make());
-      gpu::Submission submission(test::device().impl(), false);
+      gpu::Submission submission(device.impl(), false);
       recorders.back().record(submission.begin(), {&query, 1});
       submission.submitAndWait();
-      sizes.push_back(test::residentBytes());
+      if (i == 0) first = test::allocatedDeviceBytes();
     }
-    return sizes[2] - sizes[0];  // of the second and the third
+    return test::allocatedDeviceBytes() - first;  // for the second and the third
   };
-  SceneCopy copy(test::device(), scene);
-  const size_t shared = memoryOf([&] { return Recorder(copy); });
-  const size_t own = memoryOf([&] { return Recorder(test::device(), scene); });
-  WARN("two more recorders need " << shared / 1e6 << " MB with a shared copy, " << own / 1e6 << " MB with their own");
-  CHECK(shared < own / 4);
+  constexpr Capacity kSmall{.queries = 1, .candidates = 64, .rounds = 2, .unresolvedPairs = 64};
+  const uint64_t shared = bytesOf([&] { return Recorder(copy, kSmall); });
+  CHECK(shared < bytesOf([&] { return Recorder(device, scene, kSmall); }) / 4);
 }
 
 TEST_CASE("an engine without a queue records, submits nothing, and names the queue when it refuses what submits") {

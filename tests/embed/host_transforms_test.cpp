@@ -8,12 +8,11 @@
 #include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/exact_placement.h"
-#include "workloads/shapes.h"
+#include "support/small_scenes.h"
 
 namespace {
 
 using namespace radar;
-using test::execute;
 using test::OnDevice;
 
 struct Named {
@@ -21,12 +20,7 @@ struct Named {
   TransformLayout layout;
   size_t floats;  ///< that a transform has
 };
-
-const std::vector<Named>& layouts() {
-  static const std::vector<Named> all{
-      {"rows", kRowMajor, 12}, {"columns", kColumnMajor, 16}, {"columns of three", {4, 12}, 12}};
-  return all;
-}
+const Named kLayouts[] = {{"rows", kRowMajor, 12}, {"columns", kColumnMajor, 16}, {"columns of three", {4, 12}, 12}};
 
 /// Many transforms of one layout, at an odd stride: of any finite floats that keep a unit box within 2^110.
 struct Transforms {
@@ -59,14 +53,13 @@ Transform transformAt(const std::byte* bytes, const TransformLayout& layout) {
 
 TEST_CASE("a shader reads the same matrix as the CPU from a transform in any layout, at any offset") {
   const size_t which = GENERATE(range(size_t{0}, size_t{3}));
-  const Named& named = layouts()[which];
+  const Named& named = kLayouts[which];
   CAPTURE(named.name);
   const uint32_t count = 3000;
   const size_t first = which, stride = 4 * named.floats + which;
   const Transforms given(named, count, first, stride);
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const MeshId mesh = test::addBox(scene);
   std::vector<ObjectId> objects;
   for (uint32_t i = 0; i < count; ++i) {
     objects.push_back(scene.addObject({mesh, {}, i + 1}));

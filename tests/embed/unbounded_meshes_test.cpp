@@ -82,25 +82,28 @@ TEST_CASE("meshes that a recording no longer deforms, and their objects, are the
   CHECK(outcomes.areExact());
 }
 
-TEST_CASE("of a mesh without bounds only finite vertices are taken, and those of triangles decide how large it is") {
+TEST_CASE("of a mesh in a shared buffer the vertices of its triangles are read, and must be finite and within bounds") {
+  const bool isBounded = GENERATE(false, true);
   Scene scene;
   const float nan = NAN;
-  // Vertices 2, 4 and 7 of the host's buffer are a triangle.
-  const auto positions = [](float z, float other, float last) {
+  // Vertices of the host's buffer that are a triangle; bounds hold for those between them, too.
+  const std::array<uint16_t, 3> used = isBounded ? std::array<uint16_t, 3>{5, 6, 7} : std::array<uint16_t, 3>{2, 4, 7};
+  const auto positions = [&](float z, float other, float last) {
     std::vector<float> all(24, other);
     const float corners[] = {-1, -1, z, 1, -1, z, 0, 1, last};
-    for (size_t i = 0; i < 9; ++i) all[3 * std::array<size_t, 3>{2, 4, 7}[i / 3] + i % 3] = corners[i];
+    for (size_t i = 0; i < 9; ++i) all[3 * size_t{used[i / 3]} + i % 3] = corners[i];
     return all;
   };
   std::vector<std::byte> corners;
-  test::append<uint16_t>(corners, {4, 2, 7});
+  test::append<uint16_t>(corners, {used[1], used[0], used[2]});
   const test::OnDevice rest = test::bufferOf(positions(5, 1000, 5)), indices(corners);
-  const MeshId wall = addMesh(scene, test::device(),
-                              {.positions = {.buffer = rest.get()},
-                               .vertexCount = 8,
-                               .indices = indices.get(),
-                               .indexType = VK_INDEX_TYPE_UINT16,
-                               .indexCount = 3});
+  HostMesh shared{.positions = {.buffer = rest.get()},
+                  .vertexCount = 8,
+                  .indices = indices.get(),
+                  .indexType = VK_INDEX_TYPE_UINT16,
+                  .indexCount = 3};
+  if (isBounded) shared.bounds = Bounds{{-1, -1, 0}, {1, 1, 10}};
+  const MeshId wall = addMesh(scene, test::device(), shared);
   scene.addObject({.mesh = wall});
   // Of this one, vertex 3 belongs to no triangle.
   const float quad[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 7, 7, 7};
@@ -109,12 +112,12 @@ TEST_CASE("of a mesh without bounds only finite vertices are taken, and those of
   std::vector<Query> queries(2, {.mesh = test::addBox(scene), .direction = {0, 0.001, 1}, .distance = 20});
   queries[1].worldFromMesh = at(40, 0, 0);
   Recorder recorder(test::device(), scene, kRoom);
-  const auto check = [&](const std::vector<float>& shared, float z, float unused, const std::string& violation) {
+  const auto check = [&](const std::vector<float>& first, float z, float unused, const std::string& violation) {
     CAPTURE(violation);
     const std::vector<float> second{-1, -1, z, 1, -1, z, 0, 1, z, unused, unused, unused};
     test::HostFrame frame;
     const std::vector<Result> read =
-        test::execute(recorder, queries, frame.deform(wall, shared).deform(own, second).geometry());
+        test::execute(recorder, queries, frame.deform(wall, first).deform(own, second).geometry());
     CHECK(recorder.boundsViolation() == violation);
     if (violation.empty()) {
       CHECK(read[0].t == Approx(2.5));
@@ -123,13 +126,15 @@ TEST_CASE("of a mesh without bounds only finite vertices are taken, and those of
       for (const Result& result : read) CHECK(test::isRefused(result, Flag::bounds));
     }
   };
-  const std::string vertex7 = "mesh 0: vertex 7 is not finite, or exceeds 2^120";
+  const std::string vertex7 = isBounded ? "mesh 0: vertex 7 is outside its bounds or not finite"
+                                        : "mesh 0: vertex 7 is not finite, or exceeds 2^120";
   check(positions(3, 0, 3), 1, 0, "");
   check(positions(3, nan, 3), 1, 1e35f, "");
   check(positions(3, 0, nan), 1, 0, vertex7);
   check(positions(3, 0, 3), 1, nan, "mesh 1: vertex 3 is not finite, or exceeds 2^120");
   check(positions(3, 0, -3e38f), 1, 0, vertex7);
   check(positions(3, 0, 3), 1, 0, "");
+  if (isBounded) return check(positions(3, 0, 11), 1, 0, vertex7);
   // Too large to be placed: the object leaves what floats can hold.
   check(positions(1e30f, 0, 1e30f), 1, 0, "object 0: its transform is not finite, or floats cannot hold its box");
 }

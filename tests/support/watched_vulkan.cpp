@@ -31,6 +31,7 @@ struct Fault {
 };
 Fault fault;
 std::atomic<int64_t> live{0};
+std::atomic<uint64_t> allocatedBytes{0};
 std::atomic<bool> areHollow{false}, areInTurn{false};
 std::atomic<VkPipelineCache> pipelineCache{VK_NULL_HANDLE};
 std::mutex turns;
@@ -102,6 +103,7 @@ void created(VkDevice, VkPipelineCache cache, uint32_t, const Info*, const VkAll
 // Memory begins with garbage, so that what was never written is not taken for what it happened to be.
 void created(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks*, VkDeviceMemory* memory) {
   ++live;
+  allocatedBytes += info->allocationSize;
   void* bytes = nullptr;
   if (vkMapMemory(device, *memory, 0, VK_WHOLE_SIZE, 0, &bytes) != VK_SUCCESS) return;
   std::memset(bytes, 0xfe, info->allocationSize);
@@ -250,6 +252,10 @@ bool VulkanFault::happened() const {
 
 std::string VulkanFault::failed() const {
   return happened() ? fault.failed.load() : "";
+}
+
+uint64_t allocatedDeviceBytes() {
+  return allocatedBytes;
 }
 
 int64_t liveVulkanObjects() {

@@ -18,6 +18,8 @@ bool isLookedUp(const std::string& name);
 uint64_t callsOf(const std::string& name);
 /// Of the last compute pipeline created.
 VkPipelineCache lastPipelineCache();
+/// Bytes of device memory that engines have allocated since the program began.
+uint64_t allocatedDeviceBytes();
 /// Objects and allocations of a device that engines have created and not destroyed.
 int64_t liveVulkanObjects();
 

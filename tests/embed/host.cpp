@@ -1,6 +1,10 @@
 #include "embed/host.h"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -26,36 +30,23 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
   return VK_FALSE;
 }
 
-// Least number of bytes before a block. They hold its size, which reallocation needs, and its offset.
-constexpr size_t kHeader = 64;
-
 VKAPI_ATTR void* VKAPI_CALL allocate(void*, size_t size, size_t alignment, VkSystemAllocationScope) {
-  const size_t step = std::max(alignment, kHeader);
-  auto* block = static_cast<std::byte*>(std::aligned_alloc(step, (size + 2 * step - 1) / step * step + step));
-  if (block == nullptr) return nullptr;
-  std::memcpy(block + step - sizeof(size), &size, sizeof(size));
-  std::memcpy(block + step - 2 * sizeof(size), &step, sizeof(step));
-  ++allocated;
-  ++live;
-  return block + step;
+  const size_t step = std::max(alignment, alignof(std::max_align_t));
+  void* memory = std::aligned_alloc(step, (size + step - 1) / step * step);
+  allocated += memory == nullptr ? 0 : 1;
+  live += memory == nullptr ? 0 : 1;
+  return memory;
 }
 
 VKAPI_ATTR void VKAPI_CALL release(void*, void* memory) {
-  if (memory == nullptr) return;
-  size_t step;
-  std::memcpy(&step, static_cast<std::byte*>(memory) - 2 * sizeof(step), sizeof(step));
-  std::free(static_cast<std::byte*>(memory) - step);
-  --live;
+  live -= memory == nullptr ? 0 : 1;
+  std::free(memory);
 }
 
 VKAPI_ATTR void* VKAPI_CALL reallocate(void* user, void* memory, size_t size, size_t alignment,
                                        VkSystemAllocationScope scope) {
   void* moved = size == 0 ? nullptr : allocate(user, size, alignment, scope);
-  if (memory != nullptr && moved != nullptr) {
-    size_t old;
-    std::memcpy(&old, static_cast<std::byte*>(memory) - sizeof(old), sizeof(old));
-    std::memcpy(moved, memory, std::min(old, size));
-  }
+  if (memory != nullptr && moved != nullptr) std::memcpy(moved, memory, std::min(malloc_usable_size(memory), size));
   if (size == 0 || moved != nullptr) release(user, memory);
   return moved;
 }

@@ -1,8 +1,6 @@
 // One request after the other fails, of the device's functions or for host memory.
 #pragma once
 
-#include <new>
-
 #include "faults/host_memory.h"
 #include "radar/device.h"
 #include "support/catch.h"
@@ -17,40 +15,21 @@ inline VkResult shortage(int64_t n) {
   return n % 2 == 0 ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-struct Attempt {
-  bool failed = false;        ///< there were enough requests for one to fail
-  bool threw = false;         ///< because of it: std::bad_alloc, or an Error that names the function
-  std::string function = "";  ///< of the device, that failed
-};
-
-/// Makes request number `n` of a call fail.
+/// Makes request number `n` of a call fail; it may throw an Error then that names the function, or std::bad_alloc.
 template <class Call>
 Attempt attempt(Of of, int64_t n, const Call& call) {
+  if (of == Of::host) return attemptWithoutMemory(n, call);
   Attempt made;
-  if (of == Of::device) {
-    const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-    try {
-      call();
-    } catch (const Error& error) {
-      made.threw = true;
-      CHECK(error.vulkan == shortage(n));
-      CHECK_THAT(error.what(), Contains(fault.failed()));
-    }
-    made.failed = fault.happened();
-    made.function = fault.failed();
-    return made;
+  const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
+  try {
+    call();
+  } catch (const Error& error) {
+    made.threw = true;
+    CHECK(error.vulkan == shortage(n));
+    CHECK_THAT(error.what(), Contains(fault.failed()));
   }
-  {
-    const EngineWork counting;
-    host_memory::failAt(n);
-    try {
-      call();
-    } catch (const std::bad_alloc&) {
-      made.threw = true;
-    }
-  }
-  made.failed = host_memory::requests() > n;
-  host_memory::failAt(-1);
+  made.failed = fault.happened();
+  made.function = fault.failed();
   return made;
 }
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <new>
+#include <string>
 
 #include "support/engine_work.h"
 
@@ -20,5 +22,32 @@ int64_t requests();
 int64_t live();
 
 }  // namespace host_memory
+
+/// What became of a call of which one request was to fail.
+struct Attempt {
+  bool failed = false;        ///< there were enough requests for one to fail
+  bool threw = false;         ///< because of it
+  std::string function = "";  ///< of the device, that failed
+};
+
+/// Makes request number `n` of a call for host memory fail; it may throw std::bad_alloc then.
+template <class Call>
+Attempt attemptWithoutMemory(int64_t n, const Call& call) {
+  struct Failing {
+    explicit Failing(int64_t number) { host_memory::failAt(number); }
+    ~Failing() { host_memory::failAt(-1); }
+  };
+  const EngineWork counting;
+  const Failing failing(n);
+  Attempt made;
+  try {
+    call();
+  } catch (const std::bad_alloc&) {
+    if (host_memory::requests() <= n) throw;
+    made.threw = true;
+  }
+  made.failed = host_memory::requests() > n;
+  return made;
+}
 
 }  // namespace radar::test

@@ -10,6 +10,7 @@
 #include "faults/scenario.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
+#include "support/small_scenes.h"
 #include "sweep/sweeper.h"
 
 namespace {
@@ -57,36 +58,20 @@ struct Changing {
 
 TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and the edit can be made again") {
   using Edit = std::function<void(Scene&)>;
-  const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0.5f};
-  const uint32_t corners[] = {0, 1, 2};
+  const tools::MeshData triangle = test::triangle();
   std::vector<float> positions;
+  const auto add = [](Scene& scene, MeshId mesh) { scene.addObject({.mesh = mesh}); };
+  const std::array<double, 3> motion{1, 2, 3};
+  const Bounds bounds{{-9, -9, -9}, {9, 9, 9}};
   const std::vector<std::pair<const char*, Edit>> edits{
-      {"addMesh", [&](Scene& scene) { scene.addMesh(triangle, corners); }},
-      {"addMesh again",
-       [&](Scene& scene) {
-         scene.addMesh(triangle, corners, Bounds{{-1, -1, -1}, {2, 2, 2}});
-       }},
-      {"addObject",
-       [](Scene& scene) {
-         scene.addObject({scene.meshLimit() - 1, {}});
-       }},
-      {"addObject again",
-       [](Scene& scene) {
-         scene.addObject({0, {}});
-       }},
+      {"addMesh", [&](Scene& scene) { test::addMesh(scene, triangle); }},
+      {"addMesh again", [&](Scene& scene) { test::addMesh(scene, triangle, bounds); }},
+      {"addObject", [&](Scene& scene) { add(scene, scene.meshLimit() - 1); }},
+      {"addObject again", [&](Scene& scene) { add(scene, 0); }},
       {"setPositions", [&](Scene& scene) { scene.setPositions(1, positions); }},
-      {"setTransform",
-       [](Scene& scene) {
-         scene.setTransform(0, {{1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0}});
-       }},
-      {"setMotion",
-       [](Scene& scene) {
-         scene.setMotion(1, {1, 2, 3});
-       }},
-      {"setBounds",
-       [](Scene& scene) {
-         scene.setBounds(1, {{-9, -9, -9}, {9, 9, 9}});
-       }},
+      {"setTransform", [](Scene& scene) { scene.setTransform(0, test::at(1, 0, 0)); }},
+      {"setMotion", [&](Scene& scene) { scene.setMotion(1, motion); }},
+      {"setBounds", [&](Scene& scene) { scene.setBounds(1, bounds); }},
       {"removeObject", [](Scene& scene) { scene.removeObject(scene.objectLimit() - 2); }},
       {"removeObject again", [](Scene& scene) { scene.removeObject(2); }},
       {"removeMesh", [](Scene& scene) { scene.removeMesh(scene.meshLimit() - 1); }}};
@@ -123,19 +108,32 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
   CHECK(failed > 30);
 }
 
-TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper then answers it with the same bits") {
+TEST_CASE("whichever allocation of a batch fails, the same sweeper then answers it with the same bits") {
   Changing changing;
-  CpuSweeper sweeper(changing.scene, 2);
-  const std::vector<Query> queries = test::contactQueries();
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    const Attempt made = attempt(Of::host, n, [&] { found = sweeper.run(queries); });
-    if (made.threw) found = sweeper.run(queries);
-    CHECK(sameBits(found, answersOf(changing.scene)));
-    return made;
-  });
-  CHECK(failed > 20);
+  CpuSweeper onCpu(changing.scene, 2);
+  Sweeper onDevice(test::watchedDevice(), changing.scene, {.cpuBatch = 0});
+  const test::BothModes queries;
+  const auto failuresOf = [&](const auto& ask, const auto& askAnew) {
+    std::array<Answers, 2> expected;  // by what the scene is then
+    for (int i = 0; i < 2; ++i) {
+      changing.change();
+      expected.at(changing.isChanged) = askAnew();
+    }
+    return failEach([&](int64_t n) {
+      changing.change();
+      Answers found;
+      const Attempt made = attempt(Of::host, n, [&] { found = ask(); });
+      if (made.threw) found = ask();
+      CHECK(sameBits(found, expected.at(changing.isChanged)));
+      return made;
+    });
+  };
+  const auto onDeviceAnew = [&] {
+    Sweeper fresh(test::watchedDevice(), changing.scene, {.cpuBatch = 0});
+    return queries.answersBy(fresh);
+  };
+  CHECK(failuresOf([&] { return onCpu.run(queries.contact); }, [&] { return answersOf(changing.scene); }) > 20);
+  CHECK(failuresOf([&] { return queries.answersBy(onDevice); }, onDeviceAnew) > 100);
 }
 
 TEST_CASE("if threads cannot be started, a parallel loop does its work on those that run") {
@@ -147,29 +145,6 @@ TEST_CASE("if threads cannot be started, a parallel loop does its work on those 
     CAPTURE(n);
     if (!made.threw) CHECK(done == 1000);
   }
-}
-
-TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper then answers it with the same bits") {
-  Changing changing;
-  const Device& device = test::watchedDevice();
-  Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
-  const test::BothModes queries;
-  std::array<Answers, 2> expected;
-  for (int i = 0; i < 2; ++i) {
-    changing.change();
-    Sweeper fresh(device, changing.scene, {.cpuBatch = 0});
-    expected.at(changing.isChanged) = queries.answersBy(fresh);
-  }
-  queries.answersBy(sweeper);
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    const Attempt made = attempt(Of::host, n, [&] { found = queries.answersBy(sweeper); });
-    if (made.threw) found = queries.answersBy(sweeper);
-    CHECK(sameBits(found, expected.at(changing.isChanged)));
-    return made;
-  });
-  CHECK(failed > 100);
 }
 
 TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter batch lists its own contacts only") {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz/target.h"
+#include "workloads/shapes.h"
 
 namespace radar::fuzz {
 
@@ -49,11 +50,6 @@ uint32_t leastFree(const auto& items) {
   return id;
 }
 
-constexpr std::array<float, 24> kBox{-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
-                                     -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
-constexpr std::array<uint32_t, 36> kBoxFaces{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-
 }  // namespace
 
 bool SceneCalls::call(const char* name, bool valid, const std::function<void()>& edit) const {
@@ -79,9 +75,8 @@ uint32_t SceneCalls::idOf(const Items& items) {
 test::SceneModel::Mesh SceneCalls::mesh() {
   Mesh mesh;
   if (choices_.oneIn(3)) {
-    mesh.positions.assign(kBox.begin(), kBox.end());
-    mesh.indices.assign(kBoxFaces.begin(), kBoxFaces.end());
-    return mesh;
+    const tools::MeshData box = tools::makeBox({2, 2, 2});
+    return {box.positions, box.indices};
   }
   const uint32_t vertices = 1 + choices_.below(9), triangles = choices_.oneIn(32) ? 0 : 1 + choices_.below(6);
   for (uint32_t i = 0; i < 3 * vertices; ++i) mesh.positions.push_back(choices_.number<float>(wild_));

@@ -41,7 +41,5 @@ radar_fuzz(query_arrays "any arrays are read or refused as queries, and what is 
 radar_fuzz(part_file "any bytes are merged, resumed or refused as a shard's answers" MUTATIONS 5000
   SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)
-radar_fuzz(sweeper_calls "any calls of the interface get the CPU's answers from the device" MUTATIONS 30
-  SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})
-radar_fuzz(recorder_calls "a recording of any capacity has the CPU's answers or says which limit was too small" MUTATIONS 30
+radar_fuzz(device_calls "any calls get the CPU's answers from a sweeper, and from a recorder of any capacity, or say which limit was too small" MUTATIONS 120
   SOURCES ${fuzzed_scene} fuzz/check_recorded.cpp support/test_device.cpp ${on_device})

@@ -96,9 +96,9 @@ template <class Remake>
 void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
   const FaultPlan plan = chooseFault(*random_, true);
   Answers found;
-  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
-  if (!outcome.threw) checkBatch(batch, found, outcome.happened ? outcome.reason : "", who, *tally_);
-  if (!outcome.happened) return;
+  const test::Attempt outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
+  if (!outcome.threw) checkBatch(batch, found, outcome.failed ? plan.reason() : "", who, *tally_);
+  if (!outcome.failed) return;
   if (*plan.fault == Fault::lost) remake();
   checkBatch(batch, sweeper->run(batch.queries, batch.mode), "", who, *tally_);
 }
@@ -145,9 +145,9 @@ void Answerers::askPool(const Batch& batch) {
   PoolAnswers answers;
   const auto ask = [&] { answers = pool_->submit(batch.queries, batch.mode).get(); };
   const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
-  const FaultOutcome outcome = under(plan, *tally_, ask, random_->oneIn(2) ? &device : nullptr);
-  if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
-  if (!outcome.happened) return;
+  const test::Attempt outcome = under(plan, *tally_, ask, random_->oneIn(2) ? &device : nullptr);
+  if (!outcome.threw) check(outcome.failed ? plan.reason() : "");
+  if (!outcome.failed) return;
   const std::vector<PoolDevice> devices = pool_->devices();
   const auto isRetired = [](const PoolDevice& one) { return !one.retired.empty(); };
   if (std::ranges::any_of(devices, isRetired)) {

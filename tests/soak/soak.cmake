@@ -8,5 +8,5 @@ target_include_directories(radar_soak PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJ
 target_link_libraries(radar_soak PRIVATE CyberRadar::radar radar_oracle radar_sweep radar_gpu radar_shaders
   radar_workloads radar_commit CLI11::CLI11 Vulkan::Vulkan ${CMAKE_DL_LIBS} radar_warnings)
 set(sentence "soak: random edits, batches, recordings and faults leave every answer right and nothing behind")
-add_test(NAME "${sentence}" COMMAND radar_soak --rounds 16 --scene-rounds 2 --epoch-rounds 16)
+add_test(NAME "${sentence}" COMMAND radar_soak --rounds 40 --scene-rounds 2 --epoch-rounds 40)
 set_tests_properties("${sentence}" PROPERTIES ENVIRONMENT "${validation};${two_devices}")

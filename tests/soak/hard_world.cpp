@@ -234,9 +234,10 @@ class HardWorld : public World {
     const MeshId gone = anyMesh();
     if (gone < ownMeshes_) return;
     std::vector<ObjectId> all = allObjects();
-    const auto others = std::ranges::partition(all, [&](ObjectId id) { return scene_.object(id).mesh == gone; });
-    if (others.empty()) return;
-    for (auto id = all.begin(); id != others.begin(); ++id) scene_.removeObject(*id);
+    const size_t before = all.size();
+    std::erase_if(all, [&](ObjectId id) { return scene_.object(id).mesh != gone; });
+    if (all.size() == before) return;
+    for (const ObjectId id : all) scene_.removeObject(id);
     scene_.removeMesh(gone);
   }
 

@@ -6,8 +6,9 @@
 #include <vulkan/vulkan.h>
 #include "embed/host.h"
 #include "support/catch.h"
+#include "support/small_scenes.h"
 #include "support/test_device.h"
-#include "workloads/shapes.h"
+#include "support/watched_vulkan.h"
 
 namespace {
 
@@ -19,16 +20,12 @@ constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 
 // A box in front of another.
 struct Boxes {
-  Boxes() {
-    const tools::MeshData box = tools::makeBox({1, 1, 1});
-    query.mesh = scene.addMesh(box.positions, box.indices);
-    scene.addObject({query.mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
-  }
   Result sweep(const Device& device, Mode mode) const {
     return Sweeper(device, scene, kOnDevice).run({&query, 1}, mode).results[0];
   }
   Scene scene;
-  Query query{.direction = {0, 0, 1}, .distance = 10};
+  Query query{.mesh = test::addBox(scene), .direction = {0, 0, 1}, .distance = 10};
+  ObjectId object = scene.addObject({.mesh = query.mesh, .worldFromMesh = test::at(0.1, 0.2, 4)});
 };
 
 }  // namespace
@@ -52,22 +49,21 @@ TEST_CASE("the engine uses only the host's function loader, allocator and pipeli
   VkPipelineCache cache;
   const VkPipelineCacheCreateInfo cacheInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
   REQUIRE(vkCreatePipelineCache(host.handles.device, &cacheInfo, nullptr, &cache) == VK_SUCCESS);
-  host.handles.getInstanceProcAddr = test::countingLoader();
   host.handles.allocator = test::countingAllocator();
   host.handles.pipelineCache = cache;
-  test::resetCounts();
+  const uint64_t before = test::callsOf("vkQueueSubmit2");
+  const int64_t allocated = test::allocations().all;
   {
     const Device device = Device::adopt(host.handles);
     for (const Mode mode : kModes) CHECK(boxes.sweep(device, mode).status == Status::hit);
   }
-  const test::Counts& counts = test::counts();
-  CHECK(counts.submissions >= std::size(kModes));
-  CHECK(counts.cache == cache);
-  CHECK(counts.allocations > 0);
-  CHECK(counts.live == 0);
-  CHECK(counts.lookedUp.contains("vkQueueSubmit2"));
+  CHECK(test::callsOf("vkQueueSubmit2") >= before + std::size(kModes));
+  CHECK(test::lastPipelineCache() == cache);
+  CHECK(test::allocations().all > allocated);
+  CHECK(test::allocations().live == 0);
+  CHECK(test::isLookedUp("vkQueueSubmit2"));
   // The engine does not even look up functions that wait for the host's own work.
-  for (const char* never : {"vkDeviceWaitIdle", "vkQueueWaitIdle"}) CHECK_FALSE(counts.lookedUp.contains(never));
+  for (const char* never : {"vkDeviceWaitIdle", "vkQueueWaitIdle"}) CHECK_FALSE(test::isLookedUp(never));
   vkDestroyPipelineCache(host.handles.device, cache, nullptr);
 }
 
@@ -88,8 +84,8 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
     ++locked;
   };
   host.handles.unlockQueue = [&] { mutex.unlock(); };
-  host.handles.getInstanceProcAddr = test::countingLoader();
-  test::resetCounts();
+  const test::CallsInTurn inTurn;
+  const uint64_t before = test::callsOf("vkQueueSubmit2");
   std::vector<std::jthread> threads;
   std::array<double, 2> t{};
   threads.reserve(t.size());
@@ -104,23 +100,19 @@ TEST_CASE("two engines on two threads share a host's queue under the host's lock
   threads.clear();
   CHECK(t == std::array<double, 2>{3, 3});
   CHECK(locked >= 2 * 20);
-  CHECK(locked == test::counts().submissions);
+  CHECK(locked == test::callsOf("vkQueueSubmit2") - before);
 }
 
 TEST_CASE("two sweepers on one device follow the same scene") {
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  Scene scene;
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  const ObjectId object = scene.addObject({mesh, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}}, ~0u});
-  Sweeper first(test::device(), scene, kOnDevice), second(test::device(), scene, kOnDevice);
+  Boxes boxes;
+  Sweeper first(test::device(), boxes.scene, kOnDevice), second(test::device(), boxes.scene, kOnDevice);
   for (const Mode mode : kModes) {
-    const Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
-    scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 4}});
-    CHECK(first.run({&query, 1}, mode).results[0].t == Approx(3));
-    CHECK(second.run({&query, 1}, mode).results[0].t == Approx(3));
-    scene.setTransform(object, {{1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 6}});
-    CHECK(second.run({&query, 1}, mode).results[0].t == Approx(5));
-    CHECK(first.run({&query, 1}, mode).results[0].t == Approx(5));
+    for (const double z : {4, 6}) {
+      boxes.scene.setTransform(boxes.object, test::at(0.1, 0.2, z));
+      for (Sweeper* sweeper : {&first, &second}) {
+        CHECK(sweeper->run({&boxes.query, 1}, mode).results[0].t == Approx(z - 1));
+      }
+    }
   }
 }
 

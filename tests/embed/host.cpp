@@ -1,26 +1,24 @@
 #include "embed/host.h"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <vector>
 
 #include <vulkan/vulkan.h>
 
 #include "support/test_device.h"
+#include "support/watched_vulkan.h"
 
 namespace radar::test {
 
 namespace {
 
-Counts counted;
-std::mutex mutex;
-std::atomic<int64_t> allocations, live;
-PFN_vkGetDeviceProcAddr getDeviceProcAddr;
-PFN_vkQueueSubmit2 queueSubmit2;
-PFN_vkWaitForFences waitForFences;
-PFN_vkCreateComputePipelines createComputePipelines;
+std::atomic<int64_t> allocated, live;
 
 void require(VkResult result, const char* call) {
   if (result != VK_SUCCESS) throw Error(std::string("the host's ") + call + " failed", result);
@@ -32,89 +30,23 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
   return VK_FALSE;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
-  const std::lock_guard lock(mutex);
-  ++counted.submissions;
-  return queueSubmit2(queue, count, infos, fence);
-}
-
-// Takes the lock of submit(): if one thread submits while another waits, synchronization validation sometimes misses
-// the wait and reports false hazards.
-VKAPI_ATTR VkResult VKAPI_CALL waitFor(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
-                                       uint64_t timeout) {
-  const std::lock_guard lock(mutex);
-  ++counted.waits;
-  return waitForFences(device, count, fences, all, timeout);
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL makePipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
-                                             const VkComputePipelineCreateInfo* infos,
-                                             const VkAllocationCallbacks* allocator, VkPipeline* pipelines) {
-  {
-    const std::lock_guard lock(mutex);
-    counted.cache = cache;
-  }
-  return createComputePipelines(device, cache, count, infos, allocator, pipelines);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) {
-  const std::lock_guard lock(mutex);
-  counted.lookedUp.insert(name);
-  const PFN_vkVoidFunction found = getDeviceProcAddr(device, name);
-  if (std::strcmp(name, "vkQueueSubmit2") == 0) {
-    queueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(submit);
-  }
-  if (std::strcmp(name, "vkWaitForFences") == 0) {
-    waitForFences = reinterpret_cast<PFN_vkWaitForFences>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(waitFor);
-  }
-  if (std::strcmp(name, "vkCreateComputePipelines") == 0) {
-    createComputePipelines = reinterpret_cast<PFN_vkCreateComputePipelines>(found);
-    return reinterpret_cast<PFN_vkVoidFunction>(makePipelines);
-  }
-  return found;
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
-  const std::lock_guard lock(mutex);
-  counted.lookedUp.insert(name);
-  const PFN_vkVoidFunction found = vkGetInstanceProcAddr(instance, name);
-  if (std::strcmp(name, "vkGetDeviceProcAddr") != 0) return found;
-  getDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(found);
-  return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
-}
-
-// Least number of bytes before a block. They hold its size, which reallocation needs, and its offset.
-constexpr size_t kHeader = 64;
-
 VKAPI_ATTR void* VKAPI_CALL allocate(void*, size_t size, size_t alignment, VkSystemAllocationScope) {
-  const size_t step = std::max(alignment, kHeader);
-  auto* block = static_cast<std::byte*>(std::aligned_alloc(step, (size + 2 * step - 1) / step * step + step));
-  if (block == nullptr) return nullptr;
-  std::memcpy(block + step - sizeof(size), &size, sizeof(size));
-  std::memcpy(block + step - 2 * sizeof(size), &step, sizeof(step));
-  ++allocations;
-  ++live;
-  return block + step;
+  const size_t step = std::max(alignment, alignof(std::max_align_t));
+  void* memory = std::aligned_alloc(step, (size + step - 1) / step * step);
+  allocated += memory == nullptr ? 0 : 1;
+  live += memory == nullptr ? 0 : 1;
+  return memory;
 }
 
 VKAPI_ATTR void VKAPI_CALL release(void*, void* memory) {
-  if (memory == nullptr) return;
-  size_t step;
-  std::memcpy(&step, static_cast<std::byte*>(memory) - 2 * sizeof(step), sizeof(step));
-  std::free(static_cast<std::byte*>(memory) - step);
-  --live;
+  live -= memory == nullptr ? 0 : 1;
+  std::free(memory);
 }
 
 VKAPI_ATTR void* VKAPI_CALL reallocate(void* user, void* memory, size_t size, size_t alignment,
                                        VkSystemAllocationScope scope) {
   void* moved = size == 0 ? nullptr : allocate(user, size, alignment, scope);
-  if (memory != nullptr && moved != nullptr) {
-    size_t old;
-    std::memcpy(&old, static_cast<std::byte*>(memory) - sizeof(old), sizeof(old));
-    std::memcpy(moved, memory, std::min(old, size));
-  }
+  if (memory != nullptr && moved != nullptr) std::memcpy(moved, memory, std::min(malloc_usable_size(memory), size));
   if (size == 0 || moved != nullptr) release(user, memory);
   return moved;
 }
@@ -153,6 +85,8 @@ Host::Host(Mode mode, uint32_t index) {
   vkGetPhysicalDeviceFeatures(handles.physicalDevice, &features);
   handles.doubles = features.shaderFloat64 == VK_TRUE && wantsDoubles();
   handles.sampled = mode == Mode::sampled;
+  handles.debugNames = true;
+  handles.getInstanceProcAddr = watchedLoader();
   Requirements needed = requirements(mode, handles.doubles);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
@@ -170,19 +104,22 @@ Host::~Host() {
   vkDestroyInstance(handles.instance, nullptr);
 }
 
-Counts counts() {
-  counted.allocations = allocations;
-  counted.live = live;
-  return counted;
+Device Host::own() const {
+  HostDevice unwatched = handles;
+  unwatched.getInstanceProcAddr = vkGetInstanceProcAddr;
+  return Device::adopt(unwatched);
 }
 
-void resetCounts() {
-  counted = {};
-  allocations = 0;
+const Device& watchedDevice() {
+  struct Watched {
+    Host host;
+    Device device = Device::adopt(host.handles);
+  };
+  return onceInRun([] { return Watched(); }).device;
 }
 
-PFN_vkGetInstanceProcAddr countingLoader() {
-  return instanceFunction;
+Allocations allocations() {
+  return {allocated, live};
 }
 
 const VkAllocationCallbacks* countingAllocator() {

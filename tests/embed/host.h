@@ -1,8 +1,5 @@
-// A miniature host: it owns instance, device and queue, and its loader counts the calls that the engine makes.
+// A miniature host: it owns instance, device and queue, and its loader watches the calls that the engine makes.
 #pragma once
-
-#include <set>
-#include <string>
 
 #include "radar/radar.h"
 
@@ -15,6 +12,8 @@ class Host {
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
+  /// Its own use of the device, which does not pass the loader that watches.
+  Device own() const;
 
   HostDevice handles;
 
@@ -22,16 +21,15 @@ class Host {
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
-/// What engines have done through countingLoader() and countingAllocator() since resetCounts().
-struct Counts {
-  std::set<std::string> lookedUp;          ///< names of functions
-  int64_t allocations = 0, live = 0;       ///< of host memory through the callbacks
-  uint64_t submissions = 0, waits = 0;     ///< vkQueueSubmit2, vkWaitForFences
-  VkPipelineCache cache = VK_NULL_HANDLE;  ///< of the last compute pipeline created
-};
-Counts counts();
-void resetCounts();
-PFN_vkGetInstanceProcAddr countingLoader();
+/// A host's device that the engine uses, for tests that need no host of their own.
+const Device& watchedDevice();
+
+/// Counts what engines allocate through it.
 const VkAllocationCallbacks* countingAllocator();
+/// So far, and not yet freed.
+struct Allocations {
+  int64_t all = 0, live = 0;
+};
+Allocations allocations();
 
 }  // namespace radar::test

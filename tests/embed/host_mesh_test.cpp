@@ -48,7 +48,6 @@ TEST_CASE("interleaved float vertices and 16-bit or 32-bit indices are read at t
   mesh.indices = VK_NULL_HANDLE;
   mesh.vertexCount = 3;
   CHECK(indicesOf(scene, addMesh(scene, test::device(), mesh)) == std::vector<uint32_t>{0, 1, 2});
-  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("meshes that share a host's buffer keep only the vertices that their triangles use") {

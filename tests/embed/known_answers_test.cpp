@@ -24,15 +24,11 @@ VKAPI_ATTR VkResult VKAPI_CALL neverEnds(VkDevice, uint32_t, const VkFence*, VkB
 }
 PFN_vkWaitForFences waitForFences;
 /// What is lost works no more; lavapipe, which plays it, would.
-VKAPI_ATTR VkResult VKAPI_CALL isLost(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
-                                      uint64_t patience) {
+template <VkResult kResult>
+VKAPI_ATTR VkResult VKAPI_CALL waitsAndSays(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
+                                            uint64_t patience) {
   waitForFences(device, count, fences, all, patience);
-  return VK_ERROR_DEVICE_LOST;
-}
-VKAPI_ATTR VkResult VKAPI_CALL isUnknown(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
-                                         uint64_t patience) {
-  waitForFences(device, count, fences, all, patience);
-  return VK_ERROR_UNKNOWN;
+  return kResult;
 }
 VKAPI_ATTR void VKAPI_CALL doesNothing(VkCommandBuffer, uint32_t, uint32_t, uint32_t) {}
 
@@ -113,7 +109,7 @@ TEST_CASE("a device that is lost while it proves itself is refused") {
   const Scene scene;
   const Device device = ownDevice();
   waitForFences = device.impl().vk.WaitForFences;
-  device.impl().vk.WaitForFences = isLost;
+  device.impl().vk.WaitForFences = waitsAndSays<VK_ERROR_DEVICE_LOST>;
   const Error error = errorOf([&] { const Recorder recorder(device, scene); });
   CHECK(error.vulkan == VK_ERROR_DEVICE_LOST);
 }
@@ -122,7 +118,7 @@ TEST_CASE("a device whose answers lead to an error is refused with it") {
   const Scene scene;
   const Device device = ownDevice();
   waitForFences = device.impl().vk.WaitForFences;
-  device.impl().vk.WaitForFences = isUnknown;
+  device.impl().vk.WaitForFences = waitsAndSays<VK_ERROR_UNKNOWN>;
   const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
   CHECK_THAT(error.what(), test::Contains("wrong answers to known queries"));
   REQUIRE_FALSE(error.reasons.empty());

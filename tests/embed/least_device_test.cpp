@@ -1,26 +1,25 @@
 // A device that has what mode contact needs and otherwise only the least that Vulkan 1.3 allows.
-#include <cmath>
 #include <cstring>
 
 #include <vulkan/vulkan.h>
 #include "embed/execute.h"
 #include "embed/host.h"
-#include "embed/moved_world.h"
-#include "embed/written_queries.h"
-#include "fuzz/check_recorded.h"
+#include "embed/host_world.h"
+#include "fuzz/check_answers.h"
 #include "gpu/buffer.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "radar/recorder.h"
 #include "support/catch.h"
+#include "support/small_scenes.h"
 #include "support/test_device.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
-#include "workloads/shapes.h"
 
 namespace {
 
 using namespace radar;
+using test::at;
 
 VKAPI_ATTR void VKAPI_CALL leastProperties(VkPhysicalDevice device, VkPhysicalDeviceProperties* properties) {
   vkGetPhysicalDeviceProperties(device, properties);
@@ -69,18 +68,11 @@ struct LeastDevice {
   test::Host host{Mode::contact};
 };
 
-void checkSame(const std::vector<Result>& found, const std::vector<Result>& exact) {
-  const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
-  for (size_t i = 0; i < exact.size(); ++i) {
-    CAPTURE(i);
-    CHECK(found[i].status == exact[i].status);
-    CHECK(same(found[i].t, exact[i].t));
-    CHECK(same(found[i].lo, exact[i].lo));
-    CHECK(same(found[i].hi, exact[i].hi));
-    CHECK(found[i].object == exact[i].object);
-    CHECK(found[i].triB == exact[i].triB);
-    CHECK(found[i].triA == exact[i].triA);
-  }
+/// Answers have the CPU's bits, but for the tier.
+Answers checkCpus(Sweeper& sweeper, const Scene& scene, const std::vector<Query>& queries) {
+  const Answers found = sweeper.run(queries);
+  fuzz::requireSame(found, CpuSweeper(scene).run(queries));
+  return found;
 }
 
 }  // namespace
@@ -101,9 +93,7 @@ TEST_CASE("a device with the least limits, no doubles and no graphics gives the 
     tools::replaceBy(workload, 0, scene);
     const std::vector<Query> queries = tools::queriesOf(workload.queries);
     Sweeper sweeper(device, scene, {.cpuBatch = 0});
-    const Answers found = sweeper.run(queries);
-    checkSame(found.results, CpuSweeper(scene).run(queries).results);
-    onDevice += found.stats.submissions > 0;
+    onDevice += checkCpus(sweeper, scene, queries).stats.submissions > 0;
   }
   CHECK(onDevice >= 20);
 }
@@ -113,38 +103,19 @@ TEST_CASE(
     "CPU's answers") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
-  const auto isMoved = [](ObjectId id) { return id % 4 != 0; };
-  const auto isBounded = [](ObjectId id) { return id % 8 == 1; };
-  test::MovedWorld world(40, 27, {1, 10, 50}, isMoved, isBounded, device);
-  constexpr Capacity kRoom{
-      .queries = 48, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 14, .searches = 2000};
-  Recorder recorder(device, world.scene, kRoom);
+  test::MovedWorld world(
+      40, 27, {1, 10, 50}, [](ObjectId id) { return id % 4 != 0; }, [](ObjectId id) { return id % 8 == 1; }, device);
+  Recorder recorder(
+      device, world.scene,
+      {.queries = 48, .candidates = 1u << 16, .rounds = 64, .unresolvedPairs = 1u << 14, .searches = 2000});
   Sweeper sweeper(device, world.scene, {.cpuBatch = 0});
-  size_t answered = 0, hits = 0;
-  const auto compare = [&](const std::vector<Query>& queries, const Answers& found) {
-    CpuSweeper cpu(world.truth);
-    const Answers exact = cpu.run(queries);
-    fuzz::checkRecorded(queries, found, exact);
-    for (size_t i = 0; i < queries.size(); ++i) {
-      answered += found.results[i].flags == 0;
-      hits += exact.results[i].status == Status::hit;
-    }
+  fuzz::Outcomes outcomes;
+  const auto check = [&](const std::vector<Query>& queries, const Answers& found) {
+    fuzz::checkRecorded(queries, found, CpuSweeper(world.truth).run(queries), outcomes);
   };
-  size_t asked = 0;
   for (int frame = 0; frame < 4; ++frame) {
-    std::vector<Query> queries = world.queries(kRoom.queries);
-    for (Query& query : queries) {
-      if (query.exclude.size() > 1) query.exclude.erase(query.exclude.begin() + 1, query.exclude.end());
-    }
-    std::vector<HostQuery> written;
-    std::vector<Query> same;
-    for (const Query& query : queries) {
-      written.push_back(test::hostQueryOf(query));
-      same.push_back(test::queryOf(written.back()));
-    }
-    const test::OnDevice buffer(test::bytesOf(written), device);
-    const HostQueries there{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())};
-    compare(same, test::execute(device, recorder, there, world.geometry()));
+    std::vector<Query> queries = world.queries(48);
+    ask(recorder, test::Written(queries, device), world, outcomes);
     for (size_t i = 0; i < queries.size(); ++i) {
       if (queries[i].anyHit) continue;
       if (i % 4 == 0) queries[i].hits = i % 8 == 0 ? 3 : kAllHits;
@@ -152,15 +123,14 @@ TEST_CASE(
       if (i % 4 == 2) queries[i].ignoreLeaving = true;
       if (i % 4 == 3 && queries[i].distance < 1e20) tools::takeStep(queries[i]);
     }
-    compare(queries, test::execute(device, recorder, queries, world.geometry()));
+    ask(recorder, queries, world, outcomes);
     world.tell();
-    compare(queries, sweeper.run(queries));
-    compare(queries, test::execute(device, recorder, queries));
-    asked += 4 * queries.size();
+    checkCpus(sweeper, world.truth, queries);
+    check(queries, test::execute(device, recorder, queries));
     world.moveAgain();
   }
-  CHECK(answered > asked * 9 / 10);
-  CHECK(hits > asked / 8);
+  CHECK(outcomes.lacking() + outcomes.outOfRange < outcomes.answered / 9);
+  CHECK(outcomes.hits > outcomes.answered / 8);
   // Objects move during the step, too.
   for (ObjectId id = 0; id < 40; id += 3) {
     for (Scene* scene : {&world.scene, &world.truth}) scene->setMotion(id, {0.5, -1, 0.25});
@@ -170,64 +140,45 @@ TEST_CASE(
   for (Query& query : steps) {
     if (query.distance < 1e20) tools::takeStep(query);
   }
-  compare(steps, sweeper.run(steps));
+  checkCpus(sweeper, world.truth, steps);
   std::erase_if(steps, [&](const Query& query) { return !test::isRecordable(query, world.scene); });
-  compare(steps, test::execute(device, recorder, steps));
-  CHECK(test::takeValidationMessages().empty());
+  check(steps, test::execute(device, recorder, steps));
 }
 
 TEST_CASE("too many sensors for one submission are split, and a scene beyond the device's limits is left to the CPU") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const MeshId mesh = test::addBox(scene);
   const auto addRow = [&](int count, double y) {
-    for (int i = 0; i < count; ++i) scene.addObject({mesh, {{1, 0, 0, 3.0 * i, 0, 1, 0, y, 0, 0, 1, 4}}, ~0u});
+    for (int i = 0; i < count; ++i) scene.addObject({.mesh = mesh, .worldFromMesh = at(3 * i, y, 4)});
   };
   addRow(100, 0);
   // More sensors than a texel buffer of 65,536 elements holds.
-  std::vector<Query> queries;
-  queries.reserve(5000);
-  for (int i = 0; i < 5000; ++i) {
-    queries.push_back({.mesh = mesh,
-                       .worldFromMesh = {{1, 0, 0, 0.06 * i, 0, 1, 0, 0.3, 0, 0, 1, 0}},
-                       .direction = {0, 0, 1},
-                       .distance = 10});
-  }
-  CpuSweeper cpu(scene);
+  std::vector<Query> queries(5000, {.mesh = mesh, .direction = {0, 0, 1}, .distance = 10});
+  for (int i = 0; i < 5000; ++i) queries[i].worldFromMesh = at(0.06 * i, 0.3, 0);
   Sweeper sweeper(device, scene, {.cpuBatch = 0});
-  const Answers split = sweeper.run(queries);
-  checkSame(split.results, cpu.run(queries).results);
+  const Answers split = checkCpus(sweeper, scene, queries);
   CHECK(split.stats.submissions == 2);
   CHECK(split.stats.cpuQueries < queries.size());
   // More placements than such a texel buffer holds.
   addRow(6000, 40);
   sweeper.sync();
-  const Answers left = sweeper.run(queries);
-  checkSame(left.results, cpu.run(queries).results);
-  CHECK(left.stats.cpuQueries == queries.size());
+  CHECK(checkCpus(sweeper, scene, queries).stats.cpuQueries == queries.size());
   // Nor are lists of such a scene taken for empty, though their searches share submissions with others.
   queries.resize(40);
   for (size_t i = 0; i < queries.size(); i += 3) queries[i].hits = kAllHits;
-  const Answers found = sweeper.run(queries), expected = cpu.run(queries);
-  checkSame(found.results, expected.results);
   size_t listed = 0;
-  for (size_t i = 0; i < queries.size(); ++i) {
-    REQUIRE(found.lists[i].hits.size() == expected.lists[i].hits.size());
-    listed += found.lists[i].hits.size();
-  }
+  for (const Listed& list : checkCpus(sweeper, scene, queries).lists) listed += list.hits.size();
   CHECK(listed > 5);
 }
 
 TEST_CASE("a list of excluded objects that exceeds the device's largest storage buffer excludes all of them") {
   LeastDevice least;
   const Device device = Device::adopt(least.host.handles);
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
   Scene scene;
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  scene.addObject({mesh, {{1, 0, 0, 50, 0, 1, 0, 0, 0, 0, 1, 4}}, ~0u});
-  scene.addObject({mesh, {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4}}, ~0u});
+  const MeshId mesh = test::addBox(scene);
+  for (const double x : {50, 0}) scene.addObject({.mesh = mesh, .worldFromMesh = at(x, 0, 4)});
   // 2^27 bytes hold 2^25 ids, and object 1 comes behind them.
   Query query{.mesh = mesh, .direction = {0, 0, 1}, .distance = 10};
   query.exclude.assign(1u << 25, 0);
@@ -250,8 +201,7 @@ TEST_CASE("record refuses deformed meshes if the scene's vertices exceed the dev
   constexpr uint32_t kVertices = (1u << 23) + 1;
   Scene scene;
   const std::vector<float> positions(size_t{3} * kVertices);
-  const uint32_t triangle[] = {0, 1, 2};
-  const MeshId mesh = scene.addMesh(positions, triangle, Bounds{{-1, -1, -1}, {1, 1, 1}});
+  const MeshId mesh = scene.addMesh(positions, test::triangle().indices, Bounds{{-1, -1, -1}, {1, 1, 1}});
   scene.addObject({.mesh = mesh});
   Recorder recorder(device, scene);
   gpu::Buffer host(device.impl(), "host's", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
@@ -270,8 +220,7 @@ TEST_CASE("a Sweeper refuses mode sampled and lists everything that the device l
   REQUIRE(reasons.size() == 4);
   const Device device = Device::adopt(least.host.handles);
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const Query query{.mesh = scene.addMesh(box.positions, box.indices), .direction = {0, 0, 1}, .distance = 1};
+  const Query query{.mesh = test::addBox(scene), .direction = {0, 0, 1}, .distance = 1};
   Sweeper sweeper(device, scene);
   try {
     sweeper.run({&query, 1}, Mode::sampled);

@@ -1,17 +1,14 @@
 // Lists of hits, and steps in which objects move, recorded into command buffers.
-#include <cmath>
-
-#include "embed/on_device.h"
+#include "embed/host_world.h"
 #include "embed/renderer.h"
+#include "fuzz/check_recorded.h"
 #include "gpu/barrier.h"
-#include "radar/cpu_sweeper.h"
 #include "support/catch.h"
 #include "workloads/random.h"
 
 namespace {
 
 using namespace radar;
-using test::OnDevice;
 using test::queriesOf;
 using test::sameBits;
 
@@ -40,12 +37,6 @@ Recorded execute(Recorder& recorder, const std::vector<Query>& queries, const Ho
   return recorded;
 }
 
-/// The same, but for the order of contacts that are less than a rounding apart.
-bool agree(const Result& found, const Result& expected) {
-  if (found.object == expected.object) return sameBits(found, expected);
-  return found.status == expected.status && found.lo <= expected.hi && expected.lo <= found.hi;
-}
-
 /// Whether `onDevice` has the bits of what was read, but for an overlap's point, which only reading finds.
 bool isAsRead(const Result& onDevice, Result read) {
   if (read.status == Status::overlap) read.point = Result().point;
@@ -72,15 +63,27 @@ void checkOnDevice(const Recorder& recorder, const Recorded& recorded, uint32_t 
   }
 }
 
+Recorded check(Recorder& recorder, const std::vector<Query>& queries, const Answers& expected, fuzz::Outcomes& outcomes,
+               const HostGeometry& geometry = {}) {
+  const Recorded recorded = execute(recorder, queries, geometry);
+  fuzz::checkRecorded(queries, recorded, expected, outcomes);
+  for (uint32_t i = 0; i < queries.size(); ++i) {
+    CAPTURE(i);
+    checkOnDevice(recorder, recorded, i);
+  }
+  return recorded;
+}
+
 }  // namespace
 
 TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back", "[subgroups]") {
   Scene scene;
   Recorder recorder(test::device(), scene, kRoom);
-  CpuSweeper sweeper(scene);
   tools::Random random(1);
-  size_t listed = 0, steps = 0, number = 0;
+  fuzz::Outcomes ways, steps;
+  size_t number = 0;
   for (const tools::HardFamily& family : test::recordableFamilies()) {
+    CAPTURE(family.name);
     const tools::Workload workload = tools::hardScene(family, 9, 0, kRoom.queries, tools::Company::mixed);
     tools::replaceBy(workload, 0, scene);
     std::vector<Query> queries = queriesOf(workload);
@@ -91,119 +94,34 @@ TEST_CASE("recorded lists and steps are a sweeper's, on the device and read back
       queries[i].anyHit = i % 6 == 2;
       if (moves || i % 2 == 0) tools::takeStep(queries[i]);
     }
-    const Recorded recorded = execute(recorder, queries);
-    Answers expected = sweeper.run(queries);
-    for (uint32_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(family.name, i, moves, queries[i].hits);
-      expected.results[i].tier = Tier::contact;
-      CHECK(agree(recorded.results[i], expected.results[i]));
-      const std::vector<Result>&found = recorded.lists[i].hits, &wanted = expected.lists[i].hits;
-      REQUIRE(found.size() == wanted.size());
-      for (size_t k = 0; k < found.size(); ++k) {
-        Result hit = wanted[k];
-        hit.tier = Tier::contact;
-        CHECK(agree(found[k], hit));
-      }
-      checkOnDevice(recorder, recorded, i);
-      listed += found.size();
-      steps += moves && (recorded.results[i].status == Status::hit);
-    }
+    check(recorder, queries, CpuSweeper(scene).run(queries), moves ? steps : ways);
   }
-  CHECK(listed > 900);
-  CHECK(steps > 100);
-  CHECK(test::takeValidationMessages().empty());
+  CHECK(ways.lacking() + steps.lacking() + ways.outOfRange + steps.outOfRange == 0);
+  CHECK(ways.listed + steps.listed > 900);
+  CHECK(steps.hits > 100);
 }
 
 TEST_CASE("objects that a host's buffers move during a step are met where they are then", "[subgroups]") {
   tools::Random random(2);
-  size_t hits = 0;
-  for (int round = 0; round < 8; ++round) {
-    const tools::Workload workload = tools::hardScene(tools::hardFamily("convex"), 11, uint64_t(round) * kRoom.queries,
-                                                      kRoom.queries, tools::Company::mixed);
-    Scene scene;
-    tools::replaceBy(workload, 0, scene);
+  fuzz::Outcomes outcomes;
+  for (uint64_t round = 0; round < 8; ++round) {
+    const tools::Workload workload =
+        tools::hardScene(tools::hardFamily("convex"), 11, round * kRoom.queries, kRoom.queries, tools::Company::mixed);
+    test::HostWorld world;
+    tools::replaceBy(workload, 0, world.truth);
     std::vector<Query> queries = queriesOf(workload);
-    tools::setMotions(workload, random, scene);
-    std::vector<std::byte> bytes;
-    std::vector<ObjectId> objects;
-    for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
-      if (!scene.hasObject(id)) continue;
-      Transform pose = scene.object(id).worldFromMesh;
-      for (double& entry : pose.m) {
-        entry = static_cast<float>(entry);
-        test::append(bytes, {static_cast<float>(entry)});
-      }
-      scene.setTransform(id, pose);
-      objects.push_back(id);
-    }
+    tools::setMotions(workload, random, world.truth);
     for (size_t i = 0; i < queries.size(); ++i) {
       tools::takeStep(queries[i]);
       queries[i].hits = i % 2 == 0 ? kAllHits : 1;
     }
-    CpuSweeper sweeper(scene);
-    const Answers expected = sweeper.run(queries);
-    // The scene's own poses are others; that the host's are within these bounds is all that it knows.
-    for (const ObjectId id : objects) {
-      Transform pose = scene.object(id).worldFromMesh;
-      const std::array<double, 3> at{pose.m[3], pose.m[7], pose.m[11]};
-      pose.m[3] += 2;
-      scene.setTransform(id, pose);
-      scene.setBounds(id, {{at[0] - 50, at[1] - 50, at[2] - 50}, {at[0] + 50, at[1] + 50, at[2] + 50}});
-    }
-    const OnDevice transforms(bytes);
-    const MovedObjects moved{.transforms = transforms.get(), .objects = objects};
-    Recorder recorder(test::device(), scene, kRoom);
-    const Recorded recorded = execute(recorder, queries, {.objects = {&moved, 1}});
+    test::hide(world, static_cast<uint32_t>(round), true);
+    Recorder recorder(test::device(), world.scene, kRoom);
+    check(recorder, queries, CpuSweeper(world.truth).run(queries), outcomes, world.geometry());
     REQUIRE(recorder.boundsViolation().empty());
-    for (uint32_t i = 0; i < queries.size(); ++i) {
-      CAPTURE(round, i);
-      Result answer = expected.results[i];
-      answer.tier = Tier::contact;
-      CHECK(agree(recorded.results[i], answer));
-      CHECK(recorded.lists[i].hits.size() == expected.lists[i].hits.size());
-      checkOnDevice(recorder, recorded, i);
-      hits += answer.status == Status::hit;
-    }
   }
-  CHECK(hits > 50);
-  CHECK(test::takeValidationMessages().empty());
-}
-
-TEST_CASE("what only the CPU combines is refused and named, and nothing is recorded") {
-  test::Row row(2);
-  Recorder recorder(test::device(), row.scene, kRoom);
-  gpu::Submission submission(test::device().impl(), false);
-  const gpu::Commands commands = submission.begin();
-  const auto refused = [&](const Query& query, const char* what) {
-    CHECK_FALSE(test::isRecordable(query, row.scene));
-    const std::vector<Query> queries{row.queries[0], query};
-    CHECK_THROWS_WITH(
-        recorder.record(commands, queries),
-        test::Contains(std::string("record: query 1: only the CPU combines ") + what + ": ask a Sweeper"));
-  };
-  const Query plain = row.queries[1];
-  Query query = plain;
-  query.skipOverlapping = true;
-  refused(query, "skipOverlapping");
-  query = plain;
-  query.clearance = 0.5;
-  CHECK(test::isRecordable(query, row.scene));
-  query.hits = 2;
-  refused(query, "a clearance with ignoreLeaving, hits or a step");
-  query.hits = 1;
-  query.ignoreLeaving = true;
-  refused(query, "a clearance with ignoreLeaving, hits or a step");
-  query.ignoreLeaving = false;
-  tools::takeStep(query);
-  refused(query, "a clearance with ignoreLeaving, hits or a step");
-  recorder.record(commands, row.queries);
-  submission.submitAndWait();
-  CHECK(recorder.read().results.size() == row.queries.size());
-  row.scene.setMotion(0, {0, 0, 1});
-  CHECK_THROWS_WITH(recorder.record(submission.begin(), {&plain, 1}),
-                    test::Contains("record: query 0: only the CPU combines a direction while objects move: ask a "
-                                   "Sweeper"));
-  CHECK_FALSE(test::isRecordable(plain, row.scene));
+  CHECK(outcomes.lacking() + outcomes.outOfRange == 0);
+  CHECK(outcomes.hits > 50);
 }
 
 TEST_CASE("a list whose searches lack room is invalid and says why, and its neighbours are answered") {
@@ -216,11 +134,8 @@ TEST_CASE("a list whose searches lack room is invalid and says why, and its neig
   Capacity small = kRoom;
   small.candidates = 4;
   Recorder recorder(test::device(), scene, small);
-  const Recorded recorded = execute(recorder, queries);
-  CHECK(recorded.results[0].status == Status::invalid);
+  fuzz::Outcomes outcomes;
+  const Recorded recorded = check(recorder, queries, CpuSweeper(scene).run(queries), outcomes);
   CHECK(recorded.results[0].flags == Flag::candidates);
-  CHECK(sameBits(recorded.onDevice[0], recorded.results[0]));
-  const bool answersOthers = std::any_of(recorded.results.begin(), recorded.results.end(),
-                                         [](const Result& result) { return result.status != Status::invalid; });
-  CHECK(answersOthers);
+  CHECK(outcomes.answered > 0);
 }

@@ -1,69 +1,46 @@
 // Objects that a host moves without bounds: the device fits the tree over objects to them, and answers equal those of
 // a scene in which they are there.
-#include "embed/moved_world.h"
-
 #include <cmath>
 
+#include "embed/host_world.h"
 #include "embed/on_device_scene.h"
-#include "embed/written_queries.h"
-#include "radar/cpu_sweeper.h"
 #include "support/buffer_words.h"
 #include "support/catch.h"
 
 namespace {
 
 using namespace radar;
-using test::execute;
+using test::always;
 using test::kRoom;
 using test::MovedWorld;
-using test::sameBits;
+using test::never;
 using test::Scales;
 
-const auto always = [](ObjectId) { return true; };
-const auto never = [](ObjectId) { return false; };
-
-/// What comparisons have found.
-struct Found {
-  size_t answers = 0, hits = 0, outOfRange = 0;
-};
-
-/// Answers that the device found have the bits of the CPU's; out of range are at most some.
-void compare(std::span<const Result> got, const Scene& truth, const std::vector<Query>& queries, Found& found) {
-  const std::vector<Result> expected = CpuSweeper(truth).run(queries).results;
-  REQUIRE(got.size() == expected.size());
-  for (size_t i = 0; i < got.size(); ++i) {
-    Result wanted = expected[i];
-    wanted.tier = got[i].tier;
-    CAPTURE(i, got[i].flags, int(got[i].status), int(wanted.status), got[i].t, wanted.t, got[i].object, wanted.object);
-    ++found.answers;
-    found.hits += wanted.status == Status::hit;
-    if (got[i].status == Status::invalid) {
-      CHECK(got[i].flags == Flag::range);
-      ++found.outOfRange;
-    } else if (queries[i].anyHit) {
-      CHECK(got[i].status == wanted.status);
-      CHECK_FALSE(wanted.lo > got[i].hi);
-    } else {
-      CHECK(sameBits(got[i], wanted));
-    }
-  }
+/// Every answer is given, and not less than one in so many is a hit.
+void checkAllAnswered(const fuzz::Outcomes& outcomes, size_t oneIn) {
+  CHECK(outcomes.areExact());
+  CHECK(outcomes.hits > outcomes.answered / oneIn);
 }
 
-/// Compares answers to queries of both kinds over the world's geometry.
-void compareBoth(Recorder& recorder, MovedWorld& world, Found& found) {
-  std::vector<Query> queries = world.queries(kRoom.queries);
-  for (Query& query : queries) query.exclude.resize(std::min<size_t>(query.exclude.size(), 1));
-  compare(execute(recorder, queries, world.geometry()), world.truth, queries, found);
-  std::vector<HostQuery> written;
-  for (Query& query : queries) {
-    written.push_back(test::hostQueryOf(query));
-    query = test::queryOf(written.back());
+/// Asks queries of both kinds in each frame, between which `change` and all moved objects change the world.
+template <class Change>
+fuzz::Outcomes outcomesOf(MovedWorld& world, int frames, const Change& change) {
+  Recorder recorder(test::device(), world.scene, kRoom);
+  fuzz::Outcomes outcomes;
+  for (int frame = 0; frame < frames; ++frame) {
+    CAPTURE(frame);
+    const test::Written written(world.queries(kRoom.queries));
+    ask(recorder, written.same, world, outcomes);
+    ask(recorder, written, world, outcomes);
+    change(frame);
+    world.moveAgain();
   }
-  compare(execute(recorder, written, world.geometry()), world.truth, queries, found);
+  return outcomes;
 }
+const auto nothing = [](int) {};
 
 /// The nodes of the tree over objects on the device, after the host's movement.
-std::vector<gpu::ObjectNode> nodesOf(const MovedWorld& world) {
+std::vector<gpu::ObjectNode> nodesOf(MovedWorld& world) {
   const test::OnDeviceScene there(world.scene, world.geometry());
   return test::elementsOf(there.copy.buffers().objectNodes, 0, world.scene.impl().objectTree().nodes().size());
 }
@@ -91,41 +68,21 @@ TEST_CASE(
                                                  {1, 0x1p14, 0x1p18}}));
   const uint32_t objects = GENERATE(1u, 2u, 3u, 60u);
   CAPTURE(scales.size, scales.spread, scales.away, objects);
-  MovedWorld world(objects, 11 + objects, scales, always, never);
-  Recorder recorder(test::device(), world.scene, kRoom);
-  Found found;
-  for (int frame = 0; frame < 2; ++frame) {
-    compareBoth(recorder, world, found);
-    world.moveAgain();
-  }
-  CHECK(found.outOfRange == 0);
-  CHECK(found.hits > found.answers / 20);
-  CHECK(test::takeValidationMessages().empty());
+  MovedWorld world(objects, 11 + objects, scales);
+  checkAllAnswered(outcomesOf(world, 2, nothing), 20);
 }
 
 TEST_CASE(
     "among thousands of objects, those that a host moves, with bounds and without, and those that stand are found") {
-  const Scales scales{1, 40, 100};
   MovedWorld world(
-      4000, 5, scales, [](ObjectId id) { return id % 3 != 0; }, [](ObjectId id) { return id % 50 == 1; });
-  Recorder recorder(test::device(), world.scene, kRoom);
-  Found found;
-  for (int frame = 0; frame < 3; ++frame) {
-    compareBoth(recorder, world, found);
-    world.moveAgain();
-  }
-  CHECK(found.outOfRange == 0);
-  CHECK(found.hits > found.answers / 3);
-  CHECK(test::takeValidationMessages().empty());
+      4000, 5, {1, 40, 100}, [](ObjectId id) { return id % 3 != 0; }, [](ObjectId id) { return id % 50 == 1; });
+  checkAllAnswered(outcomesOf(world, 3, nothing), 3);
 }
 
 TEST_CASE("an object that takes another's number between two recordings is moved with its own mesh and mask") {
-  MovedWorld world(24, 31, {1, 8, 0}, always, never);
-  Recorder recorder(test::device(), world.scene, kRoom);
-  Found found;
-  for (int frame = 0; frame < 6; ++frame) {
-    CAPTURE(frame);
-    for (const ObjectId id : {ObjectId{3}, ObjectId{17}, ObjectId{23}}) {
+  MovedWorld world(24, 31, {1, 8, 0});
+  const auto exchange = [&](int) {
+    for (const ObjectId id : {3, 17, 23}) {
       Object other = world.scene.object(id);
       other.mesh = world.meshes[(other.mesh + 4) % 9];
       other.mask ^= 1;
@@ -134,12 +91,8 @@ TEST_CASE("an object that takes another's number between two recordings is moved
         REQUIRE(scene->addObject(other) == id);
       }
     }
-    world.moveAgain();
-    compareBoth(recorder, world, found);
-  }
-  CHECK(found.outOfRange == 0);
-  CHECK(found.hits > found.answers / 10);
-  CHECK(test::takeValidationMessages().empty());
+  };
+  checkAllAnswered(outcomesOf(world, 7, exchange), 10);
 }
 
 TEST_CASE("the device's tree over objects contains every object where the host puts it, at any scale and place") {
@@ -179,81 +132,56 @@ TEST_CASE("the device's tree over objects contains every object where the host p
   }
   CHECK(outside == 0);
   if (test::device().doubles()) CHECK(tightest >= 0);
-  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("an object that a recording no longer moves is where the scene has it, whichever moved before") {
-  const Scales scales{1, 12, 200};
-  MovedWorld world(130, 8, scales, always, never);
-  std::vector<ObjectId> all = world.moved, odd, few{5, 77};
-  for (ObjectId id = 1; id < 130; id += 2) odd.push_back(id);
+  MovedWorld world(130, 8, {1, 12, 200});
+  const std::vector<ObjectId> all = world.moved, few{5, 77};
+  std::vector<ObjectId> odd = all;
+  std::erase_if(odd, [](ObjectId id) { return id % 2 == 0; });
+  std::vector<Transform> there;
+  for (const ObjectId id : all) there.push_back(world.truth.object(id).worldFromMesh);
   SceneCopy copy(test::device(), world.scene);
   Recorder first(copy, kRoom), second(copy, kRoom);
-  Scene mixed;
-  const std::vector<MeshId> meshes = test::addSmallMeshes(mixed, 8);
-  for (const ObjectId id : all) mixed.addObject(world.scene.object(id));
-  Found found;
-  const std::vector<Query> near = world.queries(24);
+  std::vector<Query> queries = world.queries(48);
+  // Half of them among the objects as the scene has them.
+  for (size_t i = 24; i < 48; ++i) {
+    for (size_t k = 0; k < 3; ++k) queries[i].worldFromMesh.m[4 * k + 3] = 3.0 * static_cast<double>(i % 5) - 6;
+  }
+  fuzz::Outcomes outcomes;
   int frame = 0;
   for (const std::vector<ObjectId>& moved : {all, {}, odd, few, {}, odd, few, all, few, {}}) {
     CAPTURE(frame);
-    for (const ObjectId id : all) mixed.setTransform(id, world.scene.object(id).worldFromMesh);
-    for (const ObjectId id : moved) mixed.setTransform(id, world.truth.object(id).worldFromMesh);
+    for (const ObjectId id : all) world.truth.setTransform(id, world.scene.object(id).worldFromMesh);
+    for (const ObjectId id : moved) world.truth.setTransform(id, there[id]);
     world.moved = moved;
-    if (!moved.empty()) world.show();
-    const HostGeometry geometry = moved.empty() ? HostGeometry{} : world.geometry();
-    std::vector<Query> queries = near;
-    for (size_t i = 0; i < 24; ++i) {
-      // Half of them among the objects as the scene has them.
-      Query query = near[i];
-      for (size_t k = 0; k < 3; ++k) query.worldFromMesh.m[4 * k + 3] = 3.0 * static_cast<double>(i % 5) - 6;
-      queries.push_back(query);
-    }
     Recorder& recorder = frame % 3 == 1 ? second : first;
-    compare(execute(recorder, queries, geometry), mixed, queries, found);
-    if (frame == 4) {
-      // Neither of these is executed. `first` moves the same next time.
-      world.moved = odd;
-      world.show();
-      gpu::Submission submission(test::device().impl(), false);
-      first.record(submission.begin(), queries, world.geometry());
-      first.reset();
-      second.record(submission.begin(), queries);
-      second.reset();
-    }
-    ++frame;
+    ask(recorder, queries, world, outcomes);
+    if (frame++ != 4) continue;
+    // Neither of these is executed. `first` moves the same next time.
+    world.moved = odd;
+    gpu::Submission submission(test::device().impl(), false);
+    first.record(submission.begin(), queries, world.geometry());
+    first.reset();
+    second.record(submission.begin(), queries);
+    second.reset();
   }
-  CHECK(found.outOfRange == 0);
-  CHECK(found.hits > found.answers / 5);
-  CHECK(test::takeValidationMessages().empty());
+  checkAllAnswered(outcomes, 5);
 }
 
 TEST_CASE(
     "objects that are added, removed or given bounds between recordings are found, beside those that a host moves") {
-  MovedWorld world(40, 21, {1, 10, 90}, always, never);
-  Recorder recorder(test::device(), world.scene, kRoom);
-  Found found;
-  for (int frame = 0; frame < 8; ++frame) {
-    CAPTURE(frame);
-    if (frame % 4 == 1) {
-      const ObjectId gone = world.moved[3];
-      world.scene.removeObject(gone);
-      world.truth.removeObject(gone);
-      std::erase(world.moved, gone);
+  MovedWorld world(40, 21, {1, 10, 90});
+  const auto change = [&](int frame) {
+    if (frame % 4 == 0) {
       // Another takes its number, and stands.
-      const Object object{world.meshes[0], test::floatPose(world.random, 1, {5, 5, 5}), 3};
-      CHECK(world.scene.addObject(object) == world.truth.addObject(object));
-    } else if (frame % 4 == 2) {
+      world.remove(world.moved[3]);
+      world.add({world.meshes[0], test::floatPose(world.random, 1, {5, 5, 5}), 3});
+    } else if (frame % 4 == 1) {
       world.scene.setBounds(world.moved[7], {{-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}});
-    } else if (frame % 4 == 3) {
-      const Object object{world.meshes[4], test::floatPose(world.random, 1, {-3, 2, 5}), 3};
-      world.moved.push_back(world.scene.addObject(object));
-      CHECK(world.truth.addObject(object) == world.moved.back());
+    } else if (frame % 4 == 2) {
+      world.moved.push_back(world.add({world.meshes[4], test::floatPose(world.random, 1, {-3, 2, 5}), 3}));
     }
-    world.moveAgain();
-    compareBoth(recorder, world, found);
-  }
-  CHECK(found.outOfRange == 0);
-  CHECK(found.hits > found.answers / 10);
-  CHECK(test::takeValidationMessages().empty());
+  };
+  checkAllAnswered(outcomesOf(world, 8, change), 10);
 }

@@ -58,5 +58,8 @@ inline std::vector<Result> execute(Recorder& recorder, std::span<const Query> qu
                                    const HostGeometry& geometry = {}) {
   return execute(test::device(), recorder, queries, geometry).results;
 }
+inline std::vector<Result> execute(Recorder& recorder, const HostQueries& queries, const HostGeometry& geometry = {}) {
+  return execute(test::device(), recorder, queries, geometry).results;
+}
 
 }  // namespace radar::test

@@ -10,8 +10,7 @@
 #include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/exact_placement.h"
-#include "workloads/random.h"
-#include "workloads/shapes.h"
+#include "support/small_scenes.h"
 
 namespace {
 
@@ -128,23 +127,6 @@ void checkSweep(const gpu::Sensor& sensor, const gpu::Sweep& sweep, const Query&
   CHECK(sensor.endExcluded == number + query.exclude.size());
 }
 
-/// Meshes near and far from their origins, flat ones, too.
-std::vector<MeshId> addMeshes(Scene& scene, tools::Random& random) {
-  std::vector<MeshId> meshes;
-  for (int i = 0; i < 24; ++i) {
-    const double size = std::exp2(random.uniform(-20, 20)),
-                 baked = i % 2 == 0 ? 0 : size * std::exp2(random.uniform(-4, 12));
-    const std::array<double, 3> middle = random.inCube(baked);
-    std::vector<float> positions;
-    for (size_t v = 0; v < 18; ++v) {
-      positions.push_back(i % 5 == 3 && v % 3 == 2 ? 0
-                                                   : static_cast<float>(middle[v % 3] + random.uniform(-size, size)));
-    }
-    meshes.push_back(scene.addMesh(positions, std::vector<uint32_t>{0, 1, 2, 3, 4, 5}));
-  }
-  return meshes;
-}
-
 HostQuery randomQuery(const Scene& scene, MeshId mesh, double scale, const std::array<double, 3>& centre,
                       tools::Random& random) {
   Query query;
@@ -192,7 +174,10 @@ TEST_CASE(
   const double scale = std::exp2(size);
   const std::array<double, 3> centre = random.inCube(scale * std::exp2(away));
   Scene scene;
-  const std::vector<MeshId> meshes = addMeshes(scene, random);
+  std::vector<MeshId> meshes;
+  for (uint32_t i = 0; i < 24; ++i) {
+    meshes.push_back(test::addMesh(scene, test::oddMesh(random, i % 19, random.uniform(-17, 17))));  // but for points
+  }
   for (ObjectId id = 0; id < 9; ++id) {
     const MeshId mesh = meshes[random.below(24)];
     Transform pose = random.affine(centre);
@@ -248,13 +233,11 @@ TEST_CASE(
     CHECK(task.gap == 0);
   }
   CHECK(planned.counts.queries == written.size());
-  CHECK(test::takeValidationMessages().empty());
 }
 
 TEST_CASE("a small sensor in the middle of a scene far from the origin has a box that contains it") {
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const MeshId mesh = test::addBox(scene);
   const auto at = [&](double scale) {
     return Transform{{scale, 0, 0, 0x1p40, 0, scale, 0, 0x1p40, 0, 0, scale, 0x1p40}};
   };

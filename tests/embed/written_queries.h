@@ -36,6 +36,12 @@ inline Query queryOf(const HostQuery& query) {
   return out;
 }
 
+inline std::vector<HostQuery> hostQueriesOf(std::span<const Query> queries) {
+  std::vector<HostQuery> out;
+  for (const Query& query : queries) out.push_back(hostQueryOf(query));
+  return out;
+}
+
 /// Their bytes, from `first` on, `stride` bytes apart.
 inline std::vector<std::byte> bytesOf(std::span<const HostQuery> queries, size_t first = 0,
                                       size_t stride = sizeof(HostQuery)) {
@@ -46,19 +52,19 @@ inline std::vector<std::byte> bytesOf(std::span<const HostQuery> queries, size_t
   return bytes;
 }
 
-inline std::vector<Result> execute(Recorder& recorder, const HostQueries& queries, const HostGeometry& geometry = {}) {
-  gpu::Submission submission(test::device().impl(), false);
-  recorder.record(submission.begin(), queries, geometry);
-  submission.submitAndWait();
-  return recorder.read().results;
-}
+/// Queries as shaders write them into a buffer of the host, and the same questions for the CPU.
+struct Written {
+  explicit Written(std::vector<HostQuery> given, const Device& on = test::device())
+      : queries(std::move(given)), buffer(bytesOf(queries), on) {
+    for (const HostQuery& query : queries) same.push_back(queryOf(query));
+  }
+  explicit Written(std::span<const Query> given, const Device& on = test::device())
+      : Written(hostQueriesOf(given), on) {}
+  operator HostQueries() const { return {.buffer = buffer.get(), .count = static_cast<uint32_t>(queries.size())}; }
 
-/// From a buffer of their own.
-inline std::vector<Result> execute(Recorder& recorder, std::span<const HostQuery> queries,
-                                   const HostGeometry& geometry = {}) {
-  const OnDevice buffer(bytesOf(queries));
-  return execute(recorder, HostQueries{.buffer = buffer.get(), .count = static_cast<uint32_t>(queries.size())},
-                 geometry);
-}
+  std::vector<HostQuery> queries;
+  std::vector<Query> same;
+  OnDevice buffer;
+};
 
 }  // namespace radar::test

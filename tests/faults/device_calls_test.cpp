@@ -1,40 +1,30 @@
-// Every call of the device that may fail does so in turn, for lack of memory, and every submission because the device
-// is lost. Answers are right, or invalid with the reason; afterwards the same objects answer with the same bits.
-#include "embed/moved_world.h"
-#include "faults/adopted.h"
+// Every call of the device that may fail does so in turn, for lack of memory, in recordings and while setting up every
+// allocation, too, and every submission because the device is lost. Answers are right, or invalid with the reason;
+// afterwards the same objects answer with the same bits.
+#include "embed/host.h"
+#include "embed/host_world.h"
+#include "faults/attempt.h"
 #include "faults/scenario.h"
 #include "fuzz/check_recorded.h"
 #include "gpu/check.h"
 #include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
-#include "support/catch.h"
 #include "support/same_bits.h"
+#include "support/small_scenes.h"
 #include "support/test_device.h"
 #include "sweep/sweeper.h"
-#include "workloads/shapes.h"
 
 namespace {
 
 using namespace radar;
+using test::Attempt;
+using test::attempt;
 using test::Contains;
+using test::failEach;
+using test::Of;
 using test::sameBits;
 using test::sameContacts;
 using test::VulkanFault;
-
-VkResult shortage(int64_t n) {
-  return n % 2 == 0 ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_ERROR_OUT_OF_HOST_MEMORY;
-}
-
-// Calls tryAt(0), tryAt(1), ..., which returns whether a call has failed, until none has; returns how many have.
-template <class TryAt>
-int64_t failEach(const TryAt& tryAt) {
-  int64_t n = 0;
-  for (bool failed = true; failed; ++n) {
-    CAPTURE(n);
-    failed = tryAt(n);
-  }
-  return n - 1;
-}
 
 // Each answer is the expected one, or invalid with a reason that names the result; returns how many are.
 size_t checkAnswers(const Answers& found, const Answers& expected, VkResult result) {
@@ -76,9 +66,10 @@ class Growing {
 
 TEST_CASE(
     "whichever call of the device fails while a scene grows, answers are right or invalid, and later ones right") {
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   const test::BothModes queries;
   for (const bool hasNewMesh : {false, true}) {
+    CAPTURE(hasNewMesh);
     Growing grown;
     grown.grow(hasNewMesh);
     Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
@@ -88,30 +79,27 @@ TEST_CASE(
       Sweeper other(device, growing.scene, {.timestamps = true, .cpuBatch = 0});
       queries.answersBy(other);
       growing.grow(hasNewMesh);
-      bool happened = false;
-      {
-        const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-        const Answers found = queries.answersBy(other);
-        happened = fault.happened();
-        CAPTURE(hasNewMesh, fault.failed());
-        checkAnswers(found, expected, shortage(n));
-      }
+      Answers found;
+      const Attempt made = attempt(Of::device, n, [&] { found = queries.answersBy(other); });
+      CAPTURE(made.function);
+      CHECK_FALSE(made.threw);
+      checkAnswers(found, expected, test::shortage(n));
       CHECK(sameBits(queries.answersBy(other), expected));
-      return happened;
+      return made;
     });
     CHECK(failed > 30);
   }
 }
 
 TEST_CASE(
-    "whichever call of the device fails while a recorder records, it is named, and the same recorder then records "
-    "right answers") {
-  const Device& device = test::adopted().device;
+    "whichever call of the device, or allocation, fails in a recording, the same recorder then records and reads right "
+    "answers") {
+  const Of of = GENERATE(Of::device, Of::host);
+  const Device& device = test::watchedDevice();
   const std::vector<Query> queries = test::recordableQueries();
   Growing grown;
   grown.grow(false);
-  Sweeper sweeper(device, grown.scene, {.cpuBatch = 0});
-  const Answers expected = sweeper.run(queries);
+  const Answers expected = CpuSweeper(grown.scene, 1).run(queries);
   gpu::Submission submission(device.impl(), false);
   const int64_t failed = failEach([&](int64_t n) {
     Growing growing;
@@ -120,139 +108,95 @@ TEST_CASE(
     submission.submitAndWait();
     growing.grow(false);
     const gpu::Commands commands = submission.begin();
-    bool happened = false;
-    {
-      const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-      try {
-        recorder.record(commands, queries);
-      } catch (const Error& error) {
-        CHECK(error.vulkan == shortage(n));
-        CHECK_THAT(error.what(), Contains(fault.failed()));
-        happened = true;
-      }
-      CHECK(fault.happened() == happened);
-    }
-    if (happened) {
+    const Attempt recorded = attempt(of, n, [&] { recorder.record(commands, queries); });
+    CHECK((of == Of::host || recorded.threw == recorded.failed));
+    if (recorded.threw) {
+      CHECK(recorder.read().results.empty());
       recorder.reset();
       recorder.record(submission.begin(), queries);
     }
     submission.submitAndWait();
-    const Answers found = recorder.read();
+    Answers found;
+    const Attempt read = attempt(of, n, [&] { found = recorder.read(); });
+    if (read.threw) found = recorder.read();
     CHECK(sameContacts(found, expected));
-    return happened;
+    return Attempt{recorded.failed || read.failed, recorded.threw || read.threw};
   });
-  CHECK(failed > 10);
+  CHECK(failed > (of == Of::device ? 10 : 30));
 }
 
 TEST_CASE(
     "whichever call of the device, or allocation, fails while a recorder lists what a host moves and deforms, the same "
     "recorder then records right answers") {
   const bool isBounded = GENERATE(true, false);
-  const Device& device = test::adopted().device;
-  const auto always = [](ObjectId) { return true; };
-  const auto never = [](ObjectId) { return false; };
-  constexpr Capacity kRoom{.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10};
+  const Of of = GENERATE(Of::device, Of::host);
+  const Device& device = test::watchedDevice();
   gpu::Submission submission(device.impl(), false);
-  tools::MeshData box = tools::makeBox({1, 1, 1}), deformed = box;
-  std::vector<std::byte> bytes;
-  for (float& x : deformed.positions) test::append<float>(bytes, {x *= 4});
-  const test::OnDevice positions(bytes, device);
-  const auto failing = [&](int64_t n, const auto& failAt) {
-    test::MovedWorld world(3, 5, {1, 4, 0}, always, never, device);
-    Recorder recorder(device, world.scene, kRoom);
+  const int64_t failed = failEach([&](int64_t n) {
+    test::MovedWorld world(3, 5, {1, 4, 0}, test::always, test::never, device);
+    Recorder recorder(device, world.scene,
+                      {.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10});
     recorder.record(submission.begin(), world.queries(16), world.geometry());
     submission.submitAndWait();
     recorder.read();
     // Others are moved, and more than there was room for, and a mesh is deformed.
     std::optional<Bounds> bounds;
     if (isBounded) bounds = Bounds{{-4, -4, -4}, {4, 4, 4}};
-    const MeshId mesh = world.scene.addMesh(box.positions, box.indices, bounds);
-    REQUIRE(world.truth.addMesh(deformed.positions, deformed.indices) == mesh);
-    for (uint32_t i = 0; i < 300; ++i) {
-      const Object object{mesh, {}, 3};
-      world.moved.push_back(world.scene.addObject(object));
-      world.truth.addObject(object);
-    }
+    const MeshId mesh = test::addMesh(world.scene, tools::makeBox({1, 1, 1}), bounds);
+    REQUIRE(test::addBox(world.truth, 4) == mesh);
+    world.deformed = {mesh};
+    for (uint32_t i = 0; i < 300; ++i) world.moved.push_back(world.add({mesh, {}, 3}));
     world.moveAgain();
-    const DeformedMesh deforming{mesh, {.buffer = positions.get()}};
-    HostGeometry geometry = world.geometry();
-    geometry.meshes = {&deforming, 1};
-    std::vector<Query> queries = world.queries(16);
+    const HostGeometry geometry = world.geometry();
+    const std::vector<Query> queries = world.queries(16);
     const gpu::Commands commands = submission.begin();
-    const bool failed = failAt(n, [&] { recorder.record(commands, queries, geometry); });
-    if (failed) {
+    const Attempt made = attempt(of, n, [&] { recorder.record(commands, queries, geometry); });
+    if (made.failed) {
       recorder.reset();
       recorder.record(submission.begin(), queries, geometry);
     }
     submission.submitAndWait();
     const Answers found = recorder.read();
     CHECK(recorder.boundsViolation().empty());
-    CpuSweeper cpu(world.truth, 1);
-    fuzz::checkRecorded(queries, found, cpu.run(queries));
-    return failed;
-  };
-  CHECK(failEach([&](int64_t n) {
-          return failing(n, [](int64_t number, const auto& call) {
-            const VulkanFault fault(number, shortage(number), VulkanFault::When::once);
-            try {
-              call();
-            } catch (const Error& error) {
-              CHECK(error.vulkan == shortage(number));
-            }
-            return fault.happened();
-          });
-        }) > 10);
-  CHECK(failEach([&](int64_t n) {
-          return failing(n, [](int64_t number, const auto& call) {
-            const test::EngineWork counting;
-            test::host_memory::failAt(number);
-            try {
-              call();
-            } catch (const std::bad_alloc&) {
-              CHECK(test::host_memory::requests() > number);
-            }
-            const bool failed = test::host_memory::requests() > number;
-            test::host_memory::failAt(-1);
-            return failed;
-          });
-        }) > 10);
+    fuzz::checkRecorded(queries, found, CpuSweeper(world.truth, 1).run(queries));
+    return made;
+  });
+  CHECK(failed > 10);
 }
 
-TEST_CASE("whichever call of the device fails while setting up, it is named, and nothing is left") {
-  test::FaultyHost host;
+TEST_CASE("whichever call of the device, or allocation, fails while setting up, it is named, and nothing is left") {
+  test::Host host;
   const VkQueue queue = host.handles.queue;
   Scene scene;
   test::SceneEdits().make(scene);
-  const auto failures = [&](const auto& setUp) {
+  const auto failures = [&](Of of, const auto& setUp) {
     setUp();
-    const int64_t objects = test::liveVulkanObjects();
+    const int64_t objects = test::liveVulkanObjects(), blocks = test::host_memory::live();
     return failEach([&](int64_t n) {
-      const VulkanFault fault(n, shortage(n), VulkanFault::When::once);
-      try {
-        setUp();
-        if (fault.happened()) CHECK(fault.failed() == "vkWaitForFences");  // it waits again
-      } catch (const Error& error) {
-        CHECK(error.vulkan == shortage(n));
-        CHECK_THAT(error.what(), Contains(fault.failed()));
-      }
+      const Attempt made = attempt(of, n, setUp);
+      const bool waitsAgain = made.function == "vkWaitForFences";
+      if (of == Of::device && made.failed) CHECK((made.threw || waitsAgain));
       CHECK(test::liveVulkanObjects() == objects);
-      return fault.happened();
+      CHECK(test::host_memory::live() == blocks);
+      return made;
     });
   };
-  CHECK(failures([&] { Device::adopt(host.handles); }) > 30);
+  CHECK(failures(Of::device, [&] { Device::adopt(host.handles); }) > 30);
   const test::HollowPipelines hollow;
   host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines
-  CHECK(failures([&] {
-          const Device device = Device::adopt(host.handles);
-          const Recorder recorder(device, scene, test::kScenarioRoom);
-          device.impl().host.queue = queue;
-          Sweeper::Impl sweeper(device.impl(), scene, {.timestamps = true}, std::make_shared<GpuScene>(device.impl()));
-          sweeper.sampled();
-        }) > 300);
+  const auto everything = [&] {
+    const Device device = Device::adopt(host.handles);
+    const Recorder recorder(device, scene, test::kScenarioRoom);
+    device.impl().host.queue = queue;
+    Sweeper::Impl sweeper(device.impl(), scene, {.timestamps = true}, std::make_shared<GpuScene>(device.impl()));
+    sweeper.sampled();
+  };
+  CHECK(failures(Of::device, everything) > 300);
+  CHECK(failures(Of::host, everything) > 400);
 }
 
 TEST_CASE("if the device is lost at any submission, each answer is right or says so, and a new sweeper answers") {
-  const Device& device = test::adopted().device;
+  const Device& device = test::watchedDevice();
   Scene scene;
   test::SceneEdits().make(scene);
   for (const bool drawn : {false, true}) {
@@ -275,7 +219,7 @@ TEST_CASE("if the device is lost at any submission, each answer is right or says
       }
       Sweeper later(device, scene, {.cpuBatch = 0});
       CHECK(sameBits(later.run(queries, mode), expected));
-      return happened;
+      return Attempt{.failed = happened};
     });
     CHECK(failed > 2);
     CHECK(invalid > 0);

@@ -54,43 +54,31 @@ std::string described() {
   return text;
 }
 
-/// Runs functions of the engine in an environment, and everything else in the default one.
+/// Runs functions of the engine in an environment, which they must keep, and everything else in the default one.
 class InEnvironment {
  public:
   explicit InEnvironment(const Environment& environment) : environment_(environment) {}
   template <class Work>
   auto operator()(const Work& work) const {
-    std::fenv_t before;
-    std::fegetenv(&before);
-    environment_.set();
-    struct Restore {
-      const std::fenv_t& before;
-      ~Restore() { std::fesetenv(&before); }
-    };
-    if constexpr (std::is_void_v<decltype(work())>) {
-      std::string set, left;
-      {
-        const Restore restore{before};
-        set = described();
-        work();
-        left = described();
-      }
-      CHECK(set == left);
-    } else {
-      std::string set, left;
-      auto result = [&] {
-        const Restore restore{before};
-        set = described();
-        auto done = work();
-        left = described();
-        return done;
-      }();
-      CHECK(set == left);
-      return result;
-    }
+    const Entered entered(environment_);
+    return work();
   }
 
  private:
+  struct Entered {
+    explicit Entered(const Environment& environment) {
+      std::fegetenv(&before);
+      environment.set();
+      set = described();
+    }
+    ~Entered() {
+      const std::string left = described();
+      std::fesetenv(&before);
+      CHECK(set == left);
+    }
+    std::fenv_t before;
+    std::string set;
+  };
   const Environment& environment_;
 };
 

@@ -15,10 +15,10 @@ namespace {
 constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
 std::atomic<int64_t> requested{0}, failing{kNever}, liveBlocks{0};
 std::atomic<bool> allLater{false};
-thread_local bool counts = false;
+using radar::test::countsRequests;
 
 bool fails() {
-  if (!counts) return false;
+  if (!countsRequests) return false;
   const int64_t number = requested++;
   return number == failing || (allLater && number > failing);
 }
@@ -32,8 +32,8 @@ void* allocate(std::size_t bytes) {
   if (fails()) return nullptr;
   auto* header = static_cast<Header*>(std::malloc(sizeof(Header) + bytes));
   if (header == nullptr) return nullptr;
-  header->counted = counts;
-  liveBlocks += counts ? 1 : 0;
+  header->counted = countsRequests;
+  liveBlocks += countsRequests ? 1 : 0;
   return header + 1;
 }
 
@@ -53,7 +53,7 @@ struct Start {
 void* begin(void* given) {
   const Start start = *static_cast<Start*>(given);
   std::free(given);
-  counts = start.counts;
+  countsRequests = start.counts;
   return start.function(start.argument);
 }
 
@@ -95,27 +95,13 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
   static const auto kCreate = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
   if (fails()) return EAGAIN;
   auto* start = static_cast<Start*>(std::malloc(sizeof(Start)));
-  *start = {function, argument, counts};
+  *start = {function, argument, countsRequests};
   const int error = kCreate(thread, attributes, begin, start);
   if (error != 0) std::free(start);
   return error;
 }
 
 namespace radar::test {
-
-EngineWork::EngineWork() : before_(counts) {
-  counts = true;
-}
-EngineWork::~EngineWork() {
-  counts = before_;
-}
-
-OthersWork::OthersWork() : before_(counts) {
-  counts = false;
-}
-OthersWork::~OthersWork() {
-  counts = before_;
-}
 
 void host_memory::failAt(int64_t n, bool andAllLater) {
   failing = kNever;

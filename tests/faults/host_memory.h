@@ -4,32 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <new>
+#include <string>
+
+#include "support/engine_work.h"
 
 namespace radar::test {
-
-/// Lets the requests of this thread count.
-class EngineWork {
- public:
-  EngineWork();
-  ~EngineWork();
-  EngineWork(const EngineWork&) = delete;
-  EngineWork& operator=(const EngineWork&) = delete;
-
- private:
-  bool before_;
-};
-
-/// Lets the requests of this thread not count.
-class OthersWork {
- public:
-  OthersWork();
-  ~OthersWork();
-  OthersWork(const OthersWork&) = delete;
-  OthersWork& operator=(const OthersWork&) = delete;
-
- private:
-  bool before_;
-};
 
 namespace host_memory {
 
@@ -42,5 +22,32 @@ int64_t requests();
 int64_t live();
 
 }  // namespace host_memory
+
+/// What became of a call of which one request was to fail.
+struct Attempt {
+  bool failed = false;        ///< there were enough requests for one to fail
+  bool threw = false;         ///< because of it
+  std::string function = "";  ///< of the device, that failed
+};
+
+/// Makes request number `n` of a call for host memory fail; it may throw std::bad_alloc then.
+template <class Call>
+Attempt attemptWithoutMemory(int64_t n, const Call& call) {
+  struct Failing {
+    explicit Failing(int64_t number) { host_memory::failAt(number); }
+    ~Failing() { host_memory::failAt(-1); }
+  };
+  const EngineWork counting;
+  const Failing failing(n);
+  Attempt made;
+  try {
+    call();
+  } catch (const std::bad_alloc&) {
+    if (host_memory::requests() <= n) throw;
+    made.threw = true;
+  }
+  made.failed = host_memory::requests() > n;
+  return made;
+}
 
 }  // namespace radar::test

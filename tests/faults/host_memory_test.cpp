@@ -1,58 +1,27 @@
-// Every allocation of host memory, and every start of a thread, fails in turn. The call that made it throws
-// std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing has leaked.
+// Every allocation of host memory for edits and batches, and every start of a thread, fails in turn. The call that made
+// it throws std::bad_alloc, or works all the same. Afterwards the same objects answer with the same bits, and nothing
+// has leaked.
 #include <array>
 #include <atomic>
 #include <functional>
-#include <new>
 
-#include "faults/adopted.h"
+#include "embed/host.h"
+#include "faults/attempt.h"
 #include "faults/scenario.h"
-#include "gpu/submission.h"
 #include "radar/cpu_sweeper.h"
 #include "scene/parallel.h"
-#include "support/catch.h"
+#include "support/small_scenes.h"
 #include "sweep/sweeper.h"
 
 namespace {
 
 using namespace radar;
+using test::Attempt;
+using test::attempt;
+using test::failEach;
+using test::Of;
 using test::sameBits;
 using test::sameContacts;
-
-// One request fails.
-struct Attempt {
-  bool threw = false;   // std::bad_alloc, and nothing else
-  bool failed = false;  // there were enough requests for one to fail
-};
-template <class Part>
-Attempt attempt(int64_t n, const Part& part) {
-  Attempt made;
-  {
-    const test::EngineWork counting;
-    test::host_memory::failAt(n);
-    try {
-      part();
-    } catch (const std::bad_alloc&) {
-      made.threw = true;
-    }
-  }
-  made.failed = test::host_memory::requests() > n;
-  test::host_memory::failAt(-1);
-  return made;
-}
-
-// Calls attemptAt(0), attemptAt(step), ... until no request was left to fail; returns how many failed.
-template <class AttemptAt>
-int64_t failEach(const AttemptAt& attemptAt, int64_t step = 1) {
-  for (int64_t n = 0, failed = 0;; n += step, ++failed) {
-    CAPTURE(n);
-    const Attempt made = attemptAt(n);
-    if (!made.failed) {
-      CHECK_FALSE(made.threw);
-      return failed;
-    }
-  }
-}
 
 // What a scene holds, for comparison.
 Answers answersOf(const Scene& scene) {
@@ -89,36 +58,20 @@ struct Changing {
 
 TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and the edit can be made again") {
   using Edit = std::function<void(Scene&)>;
-  const float triangle[] = {0, 0, 0, 1, 0, 0, 0, 1, 0.5f};
-  const uint32_t corners[] = {0, 1, 2};
+  const tools::MeshData triangle = test::triangle();
   std::vector<float> positions;
+  const auto add = [](Scene& scene, MeshId mesh) { scene.addObject({.mesh = mesh}); };
+  const std::array<double, 3> motion{1, 2, 3};
+  const Bounds bounds{{-9, -9, -9}, {9, 9, 9}};
   const std::vector<std::pair<const char*, Edit>> edits{
-      {"addMesh", [&](Scene& scene) { scene.addMesh(triangle, corners); }},
-      {"addMesh again",
-       [&](Scene& scene) {
-         scene.addMesh(triangle, corners, Bounds{{-1, -1, -1}, {2, 2, 2}});
-       }},
-      {"addObject",
-       [](Scene& scene) {
-         scene.addObject({scene.meshLimit() - 1, {}});
-       }},
-      {"addObject again",
-       [](Scene& scene) {
-         scene.addObject({0, {}});
-       }},
+      {"addMesh", [&](Scene& scene) { test::addMesh(scene, triangle); }},
+      {"addMesh again", [&](Scene& scene) { test::addMesh(scene, triangle, bounds); }},
+      {"addObject", [&](Scene& scene) { add(scene, scene.meshLimit() - 1); }},
+      {"addObject again", [&](Scene& scene) { add(scene, 0); }},
       {"setPositions", [&](Scene& scene) { scene.setPositions(1, positions); }},
-      {"setTransform",
-       [](Scene& scene) {
-         scene.setTransform(0, {{1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0}});
-       }},
-      {"setMotion",
-       [](Scene& scene) {
-         scene.setMotion(1, {1, 2, 3});
-       }},
-      {"setBounds",
-       [](Scene& scene) {
-         scene.setBounds(1, {{-9, -9, -9}, {9, 9, 9}});
-       }},
+      {"setTransform", [](Scene& scene) { scene.setTransform(0, test::at(1, 0, 0)); }},
+      {"setMotion", [&](Scene& scene) { scene.setMotion(1, motion); }},
+      {"setBounds", [&](Scene& scene) { scene.setBounds(1, bounds); }},
       {"removeObject", [](Scene& scene) { scene.removeObject(scene.objectLimit() - 2); }},
       {"removeObject again", [](Scene& scene) { scene.removeObject(2); }},
       {"removeMesh", [](Scene& scene) { scene.removeMesh(scene.meshLimit() - 1); }}};
@@ -127,7 +80,7 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
   positions.assign(scene.mesh(1).positions.begin(), scene.mesh(1).positions.end());
   for (size_t i = 0; i < positions.size(); i += 2) positions[i] *= 3;
   CpuSweeper following(scene, 1);
-  Sweeper onDevice(test::adopted().device, scene, {.cpuBatch = 0});
+  Sweeper onDevice(test::watchedDevice(), scene, {.cpuBatch = 0});
   int64_t failed = 0;
   for (const auto& edit : edits) {
     CAPTURE(edit.first);
@@ -139,7 +92,7 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
       CHECK(sameContacts(onDevice.run(queries), expected));
     };
     failed += failEach([&](int64_t n) {
-      const Attempt made = attempt(n, [&] { change(scene); });
+      const Attempt made = attempt(Of::host, n, [&] { change(scene); });
       if (made.threw) {
         CHECK(scene.meshLimit() <= reference.meshLimit() + 1);
         checkSame();
@@ -155,52 +108,43 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
   CHECK(failed > 30);
 }
 
-TEST_CASE("whichever allocation of a batch on the CPU fails, the same sweeper then answers it with the same bits") {
+TEST_CASE("whichever allocation of a batch fails, the same sweeper then answers it with the same bits") {
   Changing changing;
-  CpuSweeper sweeper(changing.scene, 2);
-  const std::vector<Query> queries = test::contactQueries();
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    const Attempt made = attempt(n, [&] { found = sweeper.run(queries); });
-    if (made.threw) found = sweeper.run(queries);
-    CHECK(sameBits(found, answersOf(changing.scene)));
-    return made;
-  });
-  CHECK(failed > 20);
+  CpuSweeper onCpu(changing.scene, 2);
+  Sweeper onDevice(test::watchedDevice(), changing.scene, {.cpuBatch = 0});
+  const test::BothModes queries;
+  const auto failuresOf = [&](const auto& ask, const auto& askAnew) {
+    std::array<Answers, 2> expected;  // by what the scene is then
+    for (int i = 0; i < 2; ++i) {
+      changing.change();
+      expected.at(changing.isChanged) = askAnew();
+    }
+    return failEach([&](int64_t n) {
+      changing.change();
+      Answers found;
+      const Attempt made = attempt(Of::host, n, [&] { found = ask(); });
+      if (made.threw) found = ask();
+      CHECK(sameBits(found, expected.at(changing.isChanged)));
+      return made;
+    });
+  };
+  const auto onDeviceAnew = [&] {
+    Sweeper fresh(test::watchedDevice(), changing.scene, {.cpuBatch = 0});
+    return queries.answersBy(fresh);
+  };
+  CHECK(failuresOf([&] { return onCpu.run(queries.contact); }, [&] { return answersOf(changing.scene); }) > 20);
+  CHECK(failuresOf([&] { return queries.answersBy(onDevice); }, onDeviceAnew) > 100);
 }
 
 TEST_CASE("if threads cannot be started, a parallel loop does its work on those that run") {
   for (int64_t n = 0; n < 12; ++n) {
     std::atomic<size_t> done = 0;
-    const Attempt made = attempt(
-        n, [&] { parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; }); });
+    const Attempt made = attempt(Of::host, n, [&] {
+      parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; });
+    });
     CAPTURE(n);
     if (!made.threw) CHECK(done == 1000);
   }
-}
-
-TEST_CASE("whichever allocation of a batch on the device fails, the same sweeper then answers it with the same bits") {
-  Changing changing;
-  const Device& device = test::adopted().device;
-  Sweeper sweeper(device, changing.scene, {.cpuBatch = 0});
-  const test::BothModes queries;
-  std::array<Answers, 2> expected;
-  for (int i = 0; i < 2; ++i) {
-    changing.change();
-    Sweeper fresh(device, changing.scene, {.cpuBatch = 0});
-    expected.at(changing.isChanged) = queries.answersBy(fresh);
-  }
-  queries.answersBy(sweeper);
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    const Attempt made = attempt(n, [&] { found = queries.answersBy(sweeper); });
-    if (made.threw) found = queries.answersBy(sweeper);
-    CHECK(sameBits(found, expected.at(changing.isChanged)));
-    return made;
-  });
-  CHECK(failed > 100);
 }
 
 TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter batch lists its own contacts only") {
@@ -214,63 +158,12 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
     queries[i].hits = kAllHits;
   }
   const std::vector<Query> later(queries.rbegin(), queries.rbegin() + 5);
-  Sweeper sweeper(test::adopted().device, scene, {.cpuBatch = 0});
+  Sweeper sweeper(test::watchedDevice(), scene, {.cpuBatch = 0});
   const Answers expected = sweeper.run(later);
   const int64_t failed = failEach([&](int64_t n) {
-    const Attempt made = attempt(n, [&] { sweeper.run(queries); });
+    const Attempt made = attempt(Of::host, n, [&] { sweeper.run(queries); });
     CHECK(sameBits(sweeper.run(later), expected));
     return made;
   });
   CHECK(failed > 30);
-}
-
-TEST_CASE("whichever allocation of a recording fails, the same recorder then records and reads the same answers") {
-  Changing changing;
-  const Device& device = test::adopted().device;
-  Recorder recorder(device, changing.scene, test::kScenarioRoom);
-  gpu::Submission submission(device.impl(), false);
-  const std::vector<Query> queries = test::recordableQueries();
-  const int64_t failed = failEach([&](int64_t n) {
-    changing.change();
-    Answers found;
-    gpu::Commands commands = submission.begin();
-    const Attempt recorded = attempt(n, [&] { recorder.record(commands, queries); });
-    if (recorded.threw) {
-      CHECK(recorder.read().results.empty());
-      recorder.reset();
-      commands = submission.begin();
-      recorder.record(commands, queries);
-    }
-    submission.submitAndWait();
-    const Attempt read = attempt(n, [&] { found = recorder.read(); });
-    if (read.threw) found = recorder.read();
-    CHECK(sameContacts(found, CpuSweeper(changing.scene, 1).run(queries)));
-    return Attempt{recorded.threw || read.threw, recorded.failed || read.failed};
-  });
-  CHECK(failed > 30);
-}
-
-TEST_CASE("whichever allocation of setting up fails, what was made before is given back") {
-  test::FaultyHost host;
-  Changing changing;
-  const VkQueue queue = host.handles.queue;
-  host.handles.queue = VK_NULL_HANDLE;  // no checks of arithmetic: they would run the pipelines
-  const test::HollowPipelines hollow;
-  const auto setUp = [&] {
-    const Device device = Device::adopt(host.handles);
-    const Recorder recorder(device, changing.scene, test::kScenarioRoom);
-    device.impl().host.queue = queue;
-    Sweeper::Impl sweeper(device.impl(), changing.scene, {.timestamps = true},
-                          std::make_shared<GpuScene>(device.impl()));
-    sweeper.sampled();
-  };
-  setUp();
-  const int64_t live = test::host_memory::live(), objects = test::liveVulkanObjects();
-  const int64_t failed = failEach([&](int64_t n) {
-    const Attempt made = attempt(n, setUp);
-    CHECK(test::host_memory::live() == live);
-    CHECK(test::liveVulkanObjects() == objects);
-    return made;
-  });
-  CHECK(failed > 400);
 }

@@ -6,6 +6,7 @@
 #include "embed/execute.h"
 #include "support/same_bits.h"
 #include "workloads/generate.h"
+#include "workloads/hard_cases.h"
 
 namespace radar::test {
 
@@ -30,21 +31,12 @@ Query aimed(const tools::Workload& workload, size_t i) {
   return query;
 }
 
-bool sameAll(std::span<const Result> p, std::span<const Result> q, bool areOfOneTier) {
-  return std::ranges::equal(p, q, [&](Result a, const Result& b) {
-    if (!areOfOneTier) {
-      a.tier = b.tier;
-      a.detected = b.detected;
-    }
-    return sameBits(a, b);
-  });
-}
-
-bool same(const Answers& p, const Answers& q, bool areOfOneTier) {
+template <class Same>
+bool same(const Answers& p, const Answers& q, const Same& isSame) {
   const auto sameLists = [&](const Listed& a, const Listed& b) {
-    return sameAll(a.hits, b.hits, areOfOneTier) && a.overlapping == b.overlapping;
+    return std::ranges::equal(a.hits, b.hits, isSame) && a.overlapping == b.overlapping;
   };
-  return sameAll(p.results, q.results, areOfOneTier) && std::ranges::equal(p.lists, q.lists, sameLists);
+  return std::ranges::equal(p.results, q.results, isSame) && std::ranges::equal(p.lists, q.lists, sameLists);
 }
 
 }  // namespace
@@ -74,44 +66,17 @@ void SceneEdits::make(Scene& scene) const {
 std::vector<Query> contactQueries(uint32_t count) {
   const tools::Workload workload = soups(count);
   std::vector<Query> queries;
-  for (size_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     Query query = aimed(workload, i);
-    switch (queries.size() % 12) {
-      case 1:
-        query.anyHit = true;
-        break;
-      case 2:
-        query.hits = 3;
-        break;
-      case 3:
-        query.hits = kAllHits;
-        query.skipOverlapping = true;
-        break;
-      case 4:
-        query.ignoreLeaving = true;
-        break;
-      case 5:
-        query.clearance = 0.05;
-        break;
-      case 6:
-        query.motion = query.direction;
-        query.direction = {};
-        query.distance = 0;
-        break;
-      case 7:
-        query.mask = 1;
-        query.exclude = {0, 5};
-        break;
-      case 8:
-        query.skipOverlapping = true;
-        break;
-      case 9:
-        query.clearance = 0.05;
-        query.hits = 2;
-        break;
-      default:
-        break;
-    }
+    const uint32_t kind = i % 12;  // of some, nothing is asked but where they meet something first
+    query.anyHit = kind == 1;
+    query.hits = kind == 2 ? 3 : kind == 3 ? kAllHits : kind == 9 ? 2 : 1;
+    query.skipOverlapping = kind == 3 || kind == 8;
+    query.ignoreLeaving = kind == 4;
+    query.clearance = kind == 5 || kind == 9 ? 0.05 : 0;
+    if (kind == 6) tools::takeStep(query);
+    if (kind == 7) query.mask = 1;
+    if (kind == 7) query.exclude = {0, 5};
     queries.push_back(query);
   }
   return queries;
@@ -131,11 +96,11 @@ std::vector<Query> sampledQueries(uint32_t count) {
 }
 
 bool sameBits(const Answers& p, const Answers& q) {
-  return same(p, q, true);
+  return same(p, q, [](const Result& a, const Result& b) { return sameBits(a, b); });
 }
 
 bool sameContacts(const Answers& p, const Answers& q) {
-  return same(p, q, false);
+  return same(p, q, sameAnswer);
 }
 
 }  // namespace radar::test

@@ -49,7 +49,7 @@ struct BothModes {
 
 /// Whether all bits are equal.
 bool sameBits(const Answers& p, const Answers& q);
-/// Whether all bits but the tier, and whether something was detected, are equal: what the CPU alone does not tell.
+/// Whether all bits but the tier are equal, which the CPU alone does not tell.
 bool sameContacts(const Answers& p, const Answers& q);
 
 /// Room for recordableQueries().

@@ -14,24 +14,34 @@ namespace {
 constexpr uint32_t kTooSmall = Flag::candidates | Flag::rounds | Flag::unresolved;
 
 /// But for the tier, and the order of contacts that are less than a rounding apart.
-void requireAgreement(const Query& query, Result found, const Result& expected) {
-  found.tier = expected.tier;
+void requireAgreement(const Query& query, const Result& found, const Result& expected, Outcomes& outcomes) {
   if (found.object == expected.object || std::isnan(expected.t)) {
-    return require(test::sameBits(found, expected),
+    return require(test::sameAnswer(found, expected),
                    "another answer:" + inWords(query, found) + "; expected" + inWords(query, expected));
   }
+  ++outcomes.reordered;
   require(found.status == expected.status && found.lo <= expected.hi && expected.lo <= found.hi,
           "another contact:" + inWords(query, found) + "; expected" + inWords(query, expected));
 }
 
-void checkAnswer(const Query& query, const Result& found, const Result& exact) {
-  if (found.flags == 0 && query.clearance > 0 && exact.status == Status::overlap) {
-    return require(found.status == Status::overlap && found.t == 0, "no overlap");
+void checkAnswer(const Query& query, const Result& found, const Result& exact, Outcomes& outcomes) {
+  if (found.flags == 0) {
+    ++outcomes.answered;
+    outcomes.hits += exact.status == Status::hit;
+    if (query.clearance == 0 || exact.status != Status::overlap) return requireAgreement(query, found, exact, outcomes);
+    return require(
+        found.status == Status::overlap && found.object == kNone && found.t == 0 && found.lo == 0 && found.hi == 0,
+        "no overlap:" + inWords(query, found));
   }
-  if (found.flags == 0) return requireAgreement(query, found, exact);
+  outcomes.outOfRange += found.flags == Flag::range;
+  outcomes.unresolved += found.flags == Flag::unresolved;
+  outcomes.candidates += (found.flags & Flag::candidates) != 0;
+  outcomes.rounds += (found.flags & Flag::rounds) != 0;
   require((found.flags & ~(kTooSmall | Flag::range)) == 0, "another flag: " + inWords(query, found));
   require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
-  if (found.flags != Flag::unresolved) return require(found.status == Status::invalid, "a flag, but not invalid");
+  if (found.flags != Flag::unresolved) {
+    return require(found.status == Status::invalid && std::isnan(found.lo), "a flag, but not invalid");
+  }
   const double end = query.motion ? 1 : query.distance;
   require(found.status == Status::undecided, "open, but not undecided");
   require(found.lo <= (exact.status == Status::clear || query.anyHit ? end : exact.hi), "contact before lo");
@@ -39,17 +49,19 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact) {
 
 }  // namespace
 
-void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected) {
+void checkRecorded(std::span<const Query> queries, const Answers& recorded, const Answers& expected,
+                   Outcomes& outcomes) {
   require(recorded.results.size() == queries.size(), "another number of answers");
   for (size_t i = 0; i < queries.size(); ++i) {
-    checkAnswer(queries[i], recorded.results[i], expected.results[i]);
+    checkAnswer(queries[i], recorded.results[i], expected.results[i], outcomes);
     const std::vector<Result>&found = test::listedBy(recorded, i).hits, &listed = test::listedBy(expected, i).hits;
     const auto isOpen = [](const Result& result) { return result.flags != 0; };
     if (isOpen(recorded.results[i]) || std::ranges::any_of(found, isOpen)) continue;
     require(found.size() == listed.size(), "a list of another length");
     for (size_t k = 0; k < found.size() && queries[i].clearance == 0; ++k) {
-      requireAgreement(queries[i], found[k], listed[k]);
+      requireAgreement(queries[i], found[k], listed[k], outcomes);
     }
+    outcomes.listed += found.size();
     require(test::listedBy(recorded, i).overlapping == test::listedBy(expected, i).overlapping, "another overlap");
   }
 }

@@ -91,53 +91,17 @@ std::vector<std::string> seeds() {
   return seeds;
 }
 
+constexpr const char* kWords =
+    "v ~f ~l ~p ~o ~g ~usemtl ~surf ~\\\n~solid ~facet normal ~outer loop~vertex ~endloop~endfacet~endsolid~"
+    "ply\n~format ascii 1.0\n~format binary_little_endian 1.0\n~format binary_big_endian 1.0\n~"
+    "element vertex ~element face ~property list uchar int vertex_indices\n~property float x\n~"
+    "property double y\n~end_header\n~tristrips~4OFF\n~STOFF\n~#~-1~4294967295~4294967296~"
+    "18446744073709551615~1e999~1e-999~nan~inf~0x1p3~\n~\xef\xbb\xbf~\xff\xff\xff\xff";
+
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run,
-                              seeds,
-                              {"v ",
-                               "f ",
-                               "l ",
-                               "p ",
-                               "o ",
-                               "g ",
-                               "usemtl ",
-                               "surf ",
-                               "\\\n",
-                               "solid ",
-                               "facet normal ",
-                               "outer loop",
-                               "vertex ",
-                               "endloop",
-                               "endfacet",
-                               "endsolid",
-                               "ply\n",
-                               "format ascii 1.0\n",
-                               "format binary_little_endian 1.0\n",
-                               "format binary_big_endian 1.0\n",
-                               "element vertex ",
-                               "element face ",
-                               "property list uchar int vertex_indices\n",
-                               "property float x\n",
-                               "property double y\n",
-                               "end_header\n",
-                               "tristrips",
-                               "4OFF\n",
-                               "STOFF\n",
-                               "#",
-                               "-1",
-                               "4294967295",
-                               "4294967296",
-                               "18446744073709551615",
-                               "1e999",
-                               "1e-999",
-                               "nan",
-                               "inf",
-                               "0x1p3",
-                               "\n",
-                               "\xef\xbb\xbf",
-                               "\xff\xff\xff\xff"}};
+  static const Target kTarget{run, seeds, separated(kWords)};
   return kTarget;
 }
 

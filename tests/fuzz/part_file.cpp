@@ -85,14 +85,15 @@ std::vector<std::string> seeds() {
   return seeds;
 }
 
+constexpr const char* kWords =
+    R"("format"~"answers"~"lines"~"records"~"queries"~"shard"~[0, 2]~[0, 1]~[4294967295, 4294967295]~)"
+    R"("fingerprint"~"mode"~"program"~{"id": "a", ~18446744073709551615~-1~null)"
+    "~\n";
+
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run,
-                              seeds,
-                              {"\"format\"", "\"answers\"", "\"lines\"", "\"records\"", "\"queries\"", "\"shard\"",
-                               "[0, 2]", "[0, 1]", "[4294967295, 4294967295]", "\"fingerprint\"", "\"mode\"",
-                               "\"program\"", "{\"id\": \"a\", ", "\n", "18446744073709551615", "-1", "null"}};
+  static const Target kTarget{run, seeds, separated(kWords)};
   return kTarget;
 }
 

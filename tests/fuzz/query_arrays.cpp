@@ -78,20 +78,14 @@ std::vector<std::string> seeds() {
              Doubles{2, NAN}, Doubles{0.5, NAN}, std::array{true, false})};
 }
 
+constexpr const char* kWords =
+    "'descr': ~'fortran_order': ~True~False~'shape': ~(2,)~(0,)~(2, 3)~(2, 3, 4)~(18446744073709551615,)~"
+    "'<f4'~'<f8'~'<f2'~'>f8'~'|b1'~'<u3'~'<u0'~'<i1'~'<u8'~'|O8'~\x93NUMPY\x01";
+
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run, seeds, {"'descr': ",    "'fortran_order': ",
-                                           "True",         "False",
-                                           "'shape': ",    "(2,)",
-                                           "(0,)",         "(2, 3)",
-                                           "(2, 3, 4)",    "(18446744073709551615,)",
-                                           "'<f4'",        "'<f8'",
-                                           "'<f2'",        "'>f8'",
-                                           "'|b1'",        "'<u3'",
-                                           "'<u0'",        "'<i1'",
-                                           "'<u8'",        "'|O8'",
-                                           "\x93NUMPY\x01"}};
+  static const Target kTarget{run, seeds, separated(kWords)};
   return kTarget;
 }
 

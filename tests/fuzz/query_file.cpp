@@ -111,79 +111,20 @@ std::vector<std::string> seeds() {
  {"id": "r", "scene": 1, "sensor": [0], "dir": [1, 0, 0], "D": 1e308}]})"};
 }
 
+constexpr const char* kWords =
+    R"("format"~"meshes"~"scenes"~"queries"~"id"~"base"~"instances"~"instances_file"~"assembly"~"masks"~)"
+    R"("motions"~"deforms"~"scene"~"batch"~"sensor"~"exclude"~"dir"~"D"~"motion"~"mask"~"decide"~"mode"~"speed"~)"
+    R"("tolerance"~"ignore_leaving"~"slack"~"skip_overlapping"~"hits"~"clearance"~"rotation"~"all"~"sampled"~)"
+    R"("contact"~"reference"~"a.obj"~"b.off"~"parts.obj"~"parts.obj#0"~"parts.obj#x"~"instances.stl"~)"
+    R"("broken.stl"~"positions.ply"~null~true~false~[~]~{~}~, ~: ~0~-1~1~2~0.5~1e999~1e308~-1e-320~4294967295~)"
+    R"(4294967296~18446744073709551615~18446744073709551616~\u0000~\ud800~[0], ~)"
+    R"([0, 1,0,0,0, 0,1,0,0, 0,0,1,0], )"
+    "~\xff";
+
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run,
-                              seeds,
-                              {"\"format\"",
-                               "\"meshes\"",
-                               "\"scenes\"",
-                               "\"queries\"",
-                               "\"id\"",
-                               "\"base\"",
-                               "\"instances\"",
-                               "\"instances_file\"",
-                               "\"assembly\"",
-                               "\"masks\"",
-                               "\"motions\"",
-                               "\"deforms\"",
-                               "\"scene\"",
-                               "\"batch\"",
-                               "\"sensor\"",
-                               "\"exclude\"",
-                               "\"dir\"",
-                               "\"D\"",
-                               "\"motion\"",
-                               "\"mask\"",
-                               "\"decide\"",
-                               "\"mode\"",
-                               "\"speed\"",
-                               "\"tolerance\"",
-                               "\"ignore_leaving\"",
-                               "\"slack\"",
-                               "\"skip_overlapping\"",
-                               "\"hits\"",
-                               "\"clearance\"",
-                               "\"rotation\"",
-                               "\"all\"",
-                               "\"sampled\"",
-                               "\"contact\"",
-                               "\"reference\"",
-                               "\"a.obj\"",
-                               "\"b.off\"",
-                               "\"parts.obj\"",
-                               "\"parts.obj#0\"",
-                               "\"parts.obj#x\"",
-                               "\"instances.stl\"",
-                               "\"broken.stl\"",
-                               "\"positions.ply\"",
-                               "null",
-                               "true",
-                               "false",
-                               "[",
-                               "]",
-                               "{",
-                               "}",
-                               ", ",
-                               ": ",
-                               "0",
-                               "-1",
-                               "1",
-                               "2",
-                               "0.5",
-                               "1e999",
-                               "1e308",
-                               "-1e-320",
-                               "4294967295",
-                               "4294967296",
-                               "18446744073709551615",
-                               "18446744073709551616",
-                               "\\u0000",
-                               "\\ud800",
-                               "\xff",
-                               "[0], ",
-                               "[0, 1,0,0,0, 0,1,0,0, 0,0,1,0], "}};
+  static const Target kTarget{run, seeds, separated(kWords)};
   return kTarget;
 }
 

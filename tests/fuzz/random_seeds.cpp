@@ -13,4 +13,16 @@ std::vector<std::string> randomSeeds(size_t count, size_t bytes) {
   return seeds;
 }
 
+std::vector<std::string> separated(std::string_view words) {
+  std::vector<std::string> all(1);
+  for (const char c : words) {
+    if (c == '~') {
+      all.emplace_back();
+    } else {
+      all.back() += c;
+    }
+  }
+  return all;
+}
+
 }  // namespace radar::fuzz

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz/target.h"
+#include "workloads/shapes.h"
 
 namespace radar::fuzz {
 
@@ -49,11 +50,6 @@ uint32_t leastFree(const auto& items) {
   return id;
 }
 
-constexpr std::array<float, 24> kBox{-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1,
-                                     -1, -1, 1,  1, -1, 1,  -1, 1, 1,  1, 1, 1};
-constexpr std::array<uint32_t, 36> kBoxFaces{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-
 }  // namespace
 
 bool SceneCalls::call(const char* name, bool valid, const std::function<void()>& edit) const {
@@ -76,12 +72,11 @@ uint32_t SceneCalls::idOf(const Items& items) {
   return std::next(items.begin(), choices_.below(static_cast<uint32_t>(items.size())))->first;
 }
 
-SceneCalls::Mesh SceneCalls::mesh() {
+test::SceneModel::Mesh SceneCalls::mesh() {
   Mesh mesh;
   if (choices_.oneIn(3)) {
-    mesh.positions.assign(kBox.begin(), kBox.end());
-    mesh.indices.assign(kBoxFaces.begin(), kBoxFaces.end());
-    return mesh;
+    const tools::MeshData box = tools::makeBox({2, 2, 2});
+    return {box.positions, box.indices};
   }
   const uint32_t vertices = 1 + choices_.below(9), triangles = choices_.oneIn(32) ? 0 : 1 + choices_.below(6);
   for (uint32_t i = 0; i < 3 * vertices; ++i) mesh.positions.push_back(choices_.number<float>(wild_));
@@ -130,48 +125,49 @@ void SceneCalls::addMesh() {
                      areFinite(mesh.positions) &&
                      std::ranges::all_of(mesh.indices, [&](uint32_t i) { return i < vertices; }) &&
                      (!declared || (isValid(*declared) && areAtMost(mesh.positions, kMostBound)));
-  const MeshId expected = leastFree(meshes_);
+  const MeshId expected = leastFree(model_.meshes);
   MeshId id = kNone;
   if (!call("addMesh", valid, [&] { id = scene_.addMesh(mesh.positions, mesh.indices, declared); })) return;
   require(id == expected, "not the least free number of a mesh");
-  if (declared) mesh.within = around(*declared, mesh.positions, mesh.indices);
-  meshes_[id] = std::move(mesh);
+  if (declared) mesh.bounds = around(*declared, mesh.positions, mesh.indices);
+  model_.meshes[id] = std::move(mesh);
 }
 
 void SceneCalls::setPositions() {
-  const MeshId id = idOf(meshes_);
-  const auto found = meshes_.find(id);
-  std::vector<float> positions(found == meshes_.end() ? 9 : found->second.positions.size() + 3 * choices_.oneIn(16));
+  const MeshId id = idOf(model_.meshes);
+  const auto found = model_.meshes.find(id);
+  std::vector<float> positions(found == model_.meshes.end() ? 9
+                                                            : found->second.positions.size() + 3 * choices_.oneIn(16));
   for (float& x : positions) x = choices_.number<float>(wild_);
-  const bool valid = found != meshes_.end() && areFinite(positions) &&
+  const bool valid = found != model_.meshes.end() && areFinite(positions) &&
                      positions.size() == found->second.positions.size() &&
-                     (!found->second.within || areInside(*found->second.within, positions, found->second.indices));
+                     (!found->second.bounds || areInside(*found->second.bounds, positions, found->second.indices));
   if (call("setPositions", valid, [&] { scene_.setPositions(id, positions); })) found->second.positions = positions;
 }
 
 void SceneCalls::removeMesh() {
-  const MeshId id = idOf(meshes_);
-  const bool valid =
-      meshes_.contains(id) && std::ranges::none_of(objects_, [&](const auto& item) { return item.second.mesh == id; });
-  if (call("removeMesh", valid, [&] { scene_.removeMesh(id); })) meshes_.erase(id);
+  const MeshId id = idOf(model_.meshes);
+  const bool valid = model_.meshes.contains(id) &&
+                     std::ranges::none_of(model_.objects, [&](const auto& item) { return item.second.mesh == id; });
+  if (call("removeMesh", valid, [&] { scene_.removeMesh(id); })) model_.meshes.erase(id);
 }
 
 void SceneCalls::addObject() {
-  const Object object{idOf(meshes_), pose(), choices_.oneIn(4) ? choices_.below(4) : ~0u, motion()};
-  const bool valid =
-      meshes_.contains(object.mesh) && validate(object.worldFromMesh).empty() && areAtMost(object.motion, kMostMotion);
+  const Object object{idOf(model_.meshes), pose(), choices_.oneIn(4) ? choices_.below(4) : ~0u, motion()};
+  const bool valid = model_.meshes.contains(object.mesh) && validate(object.worldFromMesh).empty() &&
+                     areAtMost(object.motion, kMostMotion);
   require(areFinite(object.worldFromMesh.m) || !validate(object.worldFromMesh).empty(), "a pose that is not finite");
-  const ObjectId expected = leastFree(objects_);
+  const ObjectId expected = leastFree(model_.objects);
   ObjectId id = kNone;
   if (!call("addObject", valid, [&] { id = scene_.addObject(object); })) return;
   require(id == expected, "not the least free number of an object");
-  objects_[id] = object;
+  model_.objects[id] = object;
 }
 
 void SceneCalls::editObject() {
-  const ObjectId id = idOf(objects_);
-  const auto found = objects_.find(id);
-  const bool exists = found != objects_.end();
+  const ObjectId id = idOf(model_.objects);
+  const auto found = model_.objects.find(id);
+  const bool exists = found != model_.objects.end();
   switch (choices_.below(4)) {
     case 0: {
       const Transform moved = pose();
@@ -191,12 +187,12 @@ void SceneCalls::editObject() {
       break;
     }
     default:
-      if (call("removeObject", exists, [&] { scene_.removeObject(id); })) objects_.erase(id);
+      if (call("removeObject", exists, [&] { scene_.removeObject(id); })) model_.objects.erase(id);
   }
 }
 
 void SceneCalls::edit() {
-  const uint32_t kind = meshes_.empty() ? 0 : choices_.below(8);
+  const uint32_t kind = model_.meshes.empty() ? 0 : choices_.below(8);
   if (kind == 0) {
     addMesh();
   } else if (kind == 1) {
@@ -212,33 +208,17 @@ void SceneCalls::edit() {
 }
 
 void SceneCalls::checkModel() const {
-  require(meshes_.empty() || scene_.meshLimit() > meshes_.rbegin()->first, "a mesh beyond the limit");
-  require(objects_.empty() || scene_.objectLimit() > objects_.rbegin()->first, "an object beyond the limit");
-  for (MeshId id = 0; id <= scene_.meshLimit(); ++id) {
-    const auto expected = meshes_.find(id);
-    require(scene_.hasMesh(id) == (expected != meshes_.end()), "hasMesh");
-    if (expected == meshes_.end()) continue;
-    const MeshView mesh = scene_.mesh(id);
-    require(std::ranges::equal(mesh.positions, expected->second.positions), "other positions");
-    require(std::ranges::equal(mesh.indices, expected->second.indices), "other indices");
-  }
-  for (ObjectId id = 0; id <= scene_.objectLimit(); ++id) {
-    const auto expected = objects_.find(id);
-    require(scene_.hasObject(id) == (expected != objects_.end()), "hasObject");
-    if (expected == objects_.end()) continue;
-    const Object& object = scene_.object(id);
-    require(object.mesh == expected->second.mesh && object.worldFromMesh == expected->second.worldFromMesh &&
-                object.mask == expected->second.mask && object.motion == expected->second.motion,
-            "another object");
-  }
+  require(test::SceneModel::of(scene_) == model_, "not the scene that the edits make");
+  require(!scene_.hasMesh(scene_.meshLimit()) && !scene_.hasObject(scene_.objectLimit()),
+          "something beyond the limits");
 }
 
 /// At the origin of an object, or beside it.
 void SceneCalls::aim(Query& query, ObjectId object) {
-  if (!objects_.contains(object)) return;
+  if (!model_.objects.contains(object)) return;
   const std::array<double, 3> beside = query.direction;
   for (size_t k = 0; k < 3; ++k) {
-    query.direction[k] = objects_.at(object).worldFromMesh.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
+    query.direction[k] = model_.objects.at(object).worldFromMesh.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
     if (choices_.oneIn(4)) query.direction[k] += beside[k];
   }
   query.distance =
@@ -246,10 +226,10 @@ void SceneCalls::aim(Query& query, ObjectId object) {
 }
 
 Query SceneCalls::query() {
-  Query query{.mesh = idOf(meshes_), .worldFromMesh = pose()};
+  Query query{.mesh = idOf(model_.meshes), .worldFromMesh = pose()};
   query.direction = vector();
   query.distance = std::abs(number());
-  if (!objects_.empty() && !choices_.oneIn(4)) aim(query, idOf(objects_));
+  if (!model_.objects.empty() && !choices_.oneIn(4)) aim(query, idOf(model_.objects));
   if (moving_ && choices_.oneIn(2)) {
     query.motion = query.direction;
     query.direction = {};
@@ -257,7 +237,7 @@ Query SceneCalls::query() {
   }
   if (choices_.oneIn(8)) query.mask = choices_.below(4);
   for (uint32_t count = choices_.oneIn(8) ? choices_.below(200) : 0; count > 0; --count) {
-    query.exclude.push_back(idOf(objects_));
+    query.exclude.push_back(idOf(model_.objects));
   }
   switch (choices_.below(8)) {
     case 7:
@@ -276,7 +256,8 @@ Query SceneCalls::query() {
   query.ignoreLeaving = choices_.oneIn(4);
   query.skipOverlapping = choices_.oneIn(6);
   // Brute force does not know the bounds of meshes, on which the default depends.
-  const bool hasBounds = std::ranges::any_of(meshes_, [](const auto& mesh) { return mesh.second.within.has_value(); });
+  const bool hasBounds =
+      std::ranges::any_of(model_.meshes, [](const auto& mesh) { return mesh.second.bounds.has_value(); });
   if (query.ignoreLeaving || query.skipOverlapping) {
     if (hasBounds) query.slack = 0;
     if (choices_.oneIn(2)) query.slack = number();

@@ -1,13 +1,34 @@
 // Random calls of the public interface: edits of a scene, each compared with a model of it, and queries.
 #pragma once
 
+#include <algorithm>
 #include <functional>
-#include <map>
+#include <stdexcept>
 
 #include "fuzz/choices.h"
 #include "radar/query.h"
+#include "support/scene_model.h"
 
 namespace radar::fuzz {
+
+/// Throws std::logic_error unless the call throws an Error.
+template <class Call>
+void requireRefused(const Call& call) {
+  try {
+    call();
+  } catch (const Error&) {
+    return;
+  }
+  throw std::logic_error("what is invalid is accepted");
+}
+
+/// Leaves the valid ones of some queries. `ask` takes all of them, and must refuse them if one is invalid.
+template <class IsInvalid, class Ask>
+void leaveValid(std::vector<Query>& queries, const IsInvalid& isInvalid, const Ask& ask) {
+  if (std::ranges::none_of(queries, isInvalid)) return;
+  requireRefused([&] { ask(queries); });
+  std::erase_if(queries, isInvalid);
+}
 
 class SceneCalls {
  public:
@@ -21,11 +42,7 @@ class SceneCalls {
   const Scene& scene() const { return scene_; }
 
  private:
-  struct Mesh {
-    std::vector<float> positions;
-    std::vector<uint32_t> indices;
-    std::optional<Bounds> within{};  ///< what was declared, and the first positions
-  };
+  using Mesh = test::SceneModel::Mesh;
 
   void addMesh();
   void setPositions();
@@ -51,8 +68,7 @@ class SceneCalls {
   Choices& choices_;
   bool wild_, moving_;
   Scene scene_;
-  std::map<MeshId, Mesh> meshes_;
-  std::map<ObjectId, Object> objects_;
+  test::SceneModel model_;
 };
 
 }  // namespace radar::fuzz

@@ -28,4 +28,7 @@ inline void require(bool holds, const std::string& what) {
 /// So many seeds of random bytes, for targets that take every byte for a choice.
 std::vector<std::string> randomSeeds(size_t count, size_t bytes);
 
+/// Words with '~' between them.
+std::vector<std::string> separated(std::string_view words);
+
 }  // namespace radar::fuzz

@@ -12,7 +12,7 @@ function(radar_fuzz name sentence)
   cmake_parse_arguments(arg "" "MUTATIONS" "SOURCES;LINK" ${ARGN})
   set(program fuzz_${name})
   add_executable(${program} fuzz/${name}.cpp fuzz/random_seeds.cpp ${arg_SOURCES})
-  target_include_directories(${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
+  target_include_directories(${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
   target_link_libraries(${program} PRIVATE CyberRadar::radar radar_workloads radar_warnings ${arg_LINK})
   target_compile_definitions(${program} PRIVATE RADAR_ASSIMP_MODELS="${assimp_models}")
   add_dependencies(fuzz_targets ${program})
@@ -30,7 +30,7 @@ function(radar_fuzz name sentence)
   set_tests_properties("fuzz: ${sentence}" PROPERTIES ENVIRONMENT "${validation}")
 endfunction()
 
-set(fuzzed_scene fuzz/check_answers.cpp fuzz/scene_calls.cpp)
+set(fuzzed_scene fuzz/check_answers.cpp fuzz/scene_calls.cpp support/scene_model.cpp)
 radar_fuzz(mesh_file "any bytes are read or refused as OBJ, STL, PLY and OFF files" MUTATIONS 5000 LINK radar_import)
 radar_fuzz(cpu_calls "any calls of the interface keep its contracts, and the CPU's answers are exact" MUTATIONS 3000
   SOURCES ${fuzzed_scene} LINK radar_oracle)
@@ -41,7 +41,5 @@ radar_fuzz(query_arrays "any arrays are read or refused as queries, and what is 
 radar_fuzz(part_file "any bytes are merged, resumed or refused as a shard's answers" MUTATIONS 5000
   SOURCES ${fuzzed_scene} fuzz/check_batch.cpp LINK radar_batch radar_oracle)
 set(on_device LINK radar_oracle radar_sweep radar_gpu radar_shaders)
-radar_fuzz(sweeper_calls "any calls of the interface get the CPU's answers from the device" MUTATIONS 30
-  SOURCES ${fuzzed_scene} support/test_device.cpp ${on_device})
-radar_fuzz(recorder_calls "a recording of any capacity has the CPU's answers or says which limit was too small" MUTATIONS 30
-  SOURCES ${fuzzed_scene} fuzz/check_recorded.cpp soak/model.cpp support/test_device.cpp ${on_device})
+radar_fuzz(device_calls "any calls get the CPU's answers from a sweeper, and from a recorder of any capacity, or say which limit was too small" MUTATIONS 120
+  SOURCES ${fuzzed_scene} fuzz/check_recorded.cpp support/test_device.cpp ${on_device})

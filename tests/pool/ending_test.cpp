@@ -13,18 +13,9 @@
 using namespace radar;
 using test::Boxes;
 using test::differences;
-using test::faults;
 using test::twoDevices;
 
 namespace {
-
-void hold() {
-  for (size_t i : {0, 1}) faults(i).hold();
-}
-
-void release() {
-  for (size_t i : {0, 1}) faults(i).release();
-}
 
 bool isReady(const std::future<PoolAnswers>& future) {
   return future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -63,15 +54,15 @@ TEST_CASE("cancelling a batch invalidates the queries that no device has taken a
   const std::vector<Result> expected = boxes.answers();
   Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
   std::stop_source stopBegun, stopQueued;
-  hold();
+  test::HeldWaits held;
   std::future<PoolAnswers> begun = pool.submit(boxes.queries, Mode::contact, stopBegun.get_token());
   std::future<PoolAnswers> queued = pool.submit(boxes.queries, Mode::contact, stopQueued.get_token());
   std::future<PoolAnswers> other = pool.submit(boxes.queries);
-  for (size_t i : {0, 1}) faults(i).awaitHeld();
+  held.await(2);
   CHECK_FALSE(isReady(begun));
   stopBegun.request_stop();
   stopQueued.request_stop();
-  release();
+  held.release();
   const size_t left = countInvalid(begun.get(), expected, "cancelled");
   CHECK(left > 0);
   CHECK(left < 300);
@@ -93,15 +84,15 @@ TEST_CASE("a pool that is destroyed with work queued fulfils every future, with 
   const Boxes boxes(300);
   const std::vector<Result> expected = boxes.answers();
   std::vector<std::future<PoolAnswers>> futures;
+  test::HeldWaits held;
   std::jthread releasing;  // declared before the pool, whose destructor waits for release()
   {
     Pool pool(twoDevices(), boxes.player.scene(), test::kOnDevice);
-    hold();
     for (int i = 0; i < 4; ++i) futures.push_back(pool.submit(boxes.queries));
-    for (size_t i : {0, 1}) faults(i).awaitHeld();
+    held.await(2);
     releasing = std::jthread([&] {
       futures.back().wait();  // the destructor has closed the queue
-      release();
+      held.release();
     });
   }
   const size_t first = countInvalid(futures[0].get(), expected, "the pool was closed");

@@ -6,6 +6,7 @@
 #include "fuzz/check_answers.h"
 #include "fuzz/check_recorded.h"
 #include "fuzz/target.h"
+#include "support/scene_model.h"
 
 namespace radar::soak {
 
@@ -81,7 +82,7 @@ void Answerers::checkExact(const Batch& batch) {
   });
   if (!random_->oneIn(4)) return;
   measured(Who::cpu, *tally_, [&] {
-    const Scene anew = world_->anew();
+    const Scene anew = test::SceneModel::of(world_->scene()).build();
     CpuSweeper fresh(anew, 1);
     std::vector<Query> exact, close;
     for (const Query& query : batch.queries) (query.clearance > 0 ? close : exact).push_back(query);
@@ -95,29 +96,11 @@ template <class Remake>
 void Answerers::askSweeper(Who who, std::optional<Sweeper>& sweeper, const Batch& batch, const Remake& remake) {
   const FaultPlan plan = chooseFault(*random_, true);
   Answers found;
-  const FaultOutcome outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
-  if (!outcome.threw) checkBatch(batch, found, outcome.happened ? outcome.reason : "", who, *tally_);
-  if (!outcome.happened) return;
+  const test::Attempt outcome = under(plan, *tally_, [&] { found = sweeper->run(batch.queries, batch.mode); });
+  if (!outcome.threw) checkBatch(batch, found, outcome.failed ? plan.reason() : "", who, *tally_);
+  if (!outcome.failed) return;
   if (*plan.fault == Fault::lost) remake();
   checkBatch(batch, sweeper->run(batch.queries, batch.mode), "", who, *tally_);
-}
-
-/// The fault is in the engine's calls; the submission is the host's.
-Answers Answerers::record(Recorder& recorder, std::span<const Query> queries) {
-  const FaultPlan plan = chooseFault(*random_, false);
-  gpu::Submission submission(device_->impl(), false);
-  gpu::Commands commands = submission.begin();
-  const Recording recording = recordUnder(plan, *tally_, [&] { recorder.record(commands, queries); });
-  require(recording.isRefused <= recording.outcome.happened, "a failure that was not made");
-  const bool isLeft = !recording.outcome.happened && random_->oneIn(12);
-  if (isLeft) tally_->add(Fault::notSubmitted);
-  if (recording.mustRepeat() || isLeft) {
-    recorder.reset();
-    commands = submission.begin();
-    recorder.record(commands, queries);
-  }
-  submission.submitAndWait();
-  return recorder.read();
 }
 
 template <class Make>
@@ -129,7 +112,7 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
   const Batch batch = batchOf(std::move(queries));
   for (int i = 0; i < 40; ++i) {
     try {
-      const Answers found = record(*recorder, batch.queries);
+      const Answers found = record(*recorder, *device_, batch.queries, {}, *random_, *tally_);
       fuzz::checkRecorded(batch.queries, found, batch.exact);
       tally_->add(who, batch.queries.size());
       if (!fuzz::isTooSmall(found)) return;
@@ -157,14 +140,14 @@ void Answerers::askRecorder(Who who, std::optional<Recorder>& recorder, Capacity
 void Answerers::askPool(const Batch& batch) {
   const FaultPlan plan = chooseFault(*random_, true);
   const Device& failing = pooled_[random_->below(static_cast<uint32_t>(pooled_.size()))];
-  const HostDevice device = random_->oneIn(2) ? failing.handles() : HostDevice{};
+  const HostDevice& device = failing.handles();
   if (random_->oneIn(8)) cancel(batch);
   PoolAnswers answers;
   const auto ask = [&] { answers = pool_->submit(batch.queries, batch.mode).get(); };
   const auto check = [&](const std::string& allowed) { checkBatch(batch, answers, allowed, Who::pool, *tally_); };
-  const FaultOutcome outcome = under(plan, *tally_, ask, device);
-  if (!outcome.threw) check(outcome.happened ? outcome.reason : "");
-  if (!outcome.happened) return;
+  const test::Attempt outcome = under(plan, *tally_, ask, random_->oneIn(2) ? &device : nullptr);
+  if (!outcome.threw) check(outcome.failed ? plan.reason() : "");
+  if (!outcome.failed) return;
   const std::vector<PoolDevice> devices = pool_->devices();
   const auto isRetired = [](const PoolDevice& one) { return !one.retired.empty(); };
   if (std::ranges::any_of(devices, isRetired)) {

@@ -30,7 +30,6 @@ class Answerers {
   template <class Make>
   void askRecorder(Who who, std::optional<Recorder>& recorder, Capacity& capacity, const Batch& batch,
                    const Make& make);
-  Answers record(Recorder& recorder, std::span<const Query> queries);
   void askPool(const Batch& batch);
   void cancel(const Batch& batch);
   void share();

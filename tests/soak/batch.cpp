@@ -14,12 +14,6 @@ namespace {
 
 using fuzz::require;
 
-/// But for the tier.
-bool isSame(Result a, const Result& b) {
-  a.tier = b.tier;
-  return test::sameBits(a, b);
-}
-
 std::string inWords(std::span<const Result> list) {
   std::string words = " (";
   for (const Result& entry : list) {
@@ -64,9 +58,9 @@ void checkBatch(const Batch& batch, const Answers& found, const std::string& all
       ++tally.invalid;
       continue;
     }
-    if (!isSame(result, exact)) fail("another answer");
+    if (!test::sameAnswer(result, exact)) fail("another answer");
     const Listed &ours = test::listedBy(found, i), &theirs = test::listedBy(batch.exact, i);
-    if (!std::ranges::equal(ours.hits, theirs.hits, isSame)) {
+    if (!std::ranges::equal(ours.hits, theirs.hits, test::sameAnswer)) {
       fail("another list of hits" + inWords(ours.hits) + " instead of" + inWords(theirs.hits));
     }
     if (ours.overlapping != theirs.overlapping) fail("another overlap");

@@ -1,14 +1,16 @@
 // A fault in something that answers.
 #pragma once
 
-#include <new>
 #include <optional>
 #include <string>
 
 #include "faults/host_memory.h"
-#include "faults/vulkan_calls.h"
+#include "fuzz/target.h"
 #include "gpu/check.h"
+#include "gpu/submission.h"
+#include "radar/recorder.h"
 #include "soak/tally.h"
+#include "support/watched_vulkan.h"
 #include "workloads/random.h"
 
 namespace radar::soak {
@@ -18,6 +20,8 @@ struct FaultPlan {
   std::optional<Fault> fault{};  ///< none: nothing
   int64_t number = 0;
   VkResult result = VK_SUCCESS;
+  /// What an answer that is invalid must name.
+  std::string reason() const { return fault == Fault::memory ? "" : gpu::resultName(result); }
 };
 
 /// Mostly none. `mayLose`: the device may be lost.
@@ -35,60 +39,49 @@ inline FaultPlan chooseFault(tools::Random& random, bool mayLose) {
   }
 }
 
-struct FaultOutcome {
-  bool happened = false;
-  bool threw = false;    ///< std::bad_alloc, because of the fault
-  std::string reason{};  ///< what an answer that is invalid must name
-};
-
-/// Makes a call under a fault. `device`: only its Vulkan calls fail.
+/// Makes a call under a fault. `device`: if given, only its Vulkan calls fail.
 template <class Call>
-FaultOutcome under(const FaultPlan& plan, Tally& tally, const Call& call, const HostDevice& device = {}) {
-  FaultOutcome outcome;
+test::Attempt under(const FaultPlan& plan, Tally& tally, const Call& call, const HostDevice* device = nullptr) {
+  test::Attempt outcome;
   if (!plan.fault) {
     call();
   } else if (*plan.fault == Fault::memory) {
-    struct Failing {
-      explicit Failing(int64_t n) { test::host_memory::failAt(n); }
-      ~Failing() { test::host_memory::failAt(-1); }
-    };
-    const Failing failing(plan.number);
-    try {
-      call();
-    } catch (const std::bad_alloc&) {
-      if (test::host_memory::requests() <= plan.number) throw;
-      outcome.threw = true;
-    }
-    outcome.happened = test::host_memory::requests() > plan.number;
+    outcome = test::attemptWithoutMemory(plan.number, call);
   } else {
     const auto when = *plan.fault == Fault::lost ? test::VulkanFault::When::lost : test::VulkanFault::When::once;
-    const test::VulkanFault fault(plan.number, plan.result, when, device.device, device.queue);
+    const test::VulkanFault fault(plan.number, plan.result, when, {.device = device});
     call();
-    outcome.happened = fault.happened();
-    outcome.reason = gpu::resultName(plan.result);
+    outcome.failed = fault.happened();
   }
-  if (outcome.happened) tally.add(*plan.fault);
+  if (outcome.failed) tally.add(*plan.fault);
   return outcome;
 }
 
-/// The same for a call of a Recorder, which throws an Error if a Vulkan call fails.
-struct Recording {
-  FaultOutcome outcome;
-  bool isRefused = false;  ///< with that Error
-  bool mustRepeat() const { return isRefused || outcome.threw; }
-};
-template <class Record>
-Recording recordUnder(const FaultPlan& plan, Tally& tally, const Record& record) {
-  Recording recording;
-  recording.outcome = under(plan, tally, [&] {
+/// Records under a fault in the engine's calls, or without a submission, and after these again; submits, and reads.
+template <class Queries>
+Answers record(Recorder& recorder, const Device& device, const Queries& queries, const HostGeometry& geometry,
+               tools::Random& random, Tally& tally) {
+  const FaultPlan plan = chooseFault(random, false);
+  gpu::Submission submission(device.impl(), false);
+  bool isRefused = false;
+  const gpu::Commands commands = submission.begin();
+  const test::Attempt outcome = under(plan, tally, [&] {
     try {
-      record();
+      recorder.record(commands, queries, geometry);
     } catch (const Error& error) {
       if (!plan.fault || error.vulkan != plan.result || plan.result == VK_SUCCESS) throw;
-      recording.isRefused = true;
+      isRefused = true;
     }
   });
-  return recording;
+  fuzz::require(isRefused <= outcome.failed, "a failure that was not made");
+  const bool isLeft = !outcome.failed && random.oneIn(12);
+  if (isLeft) tally.add(Fault::notSubmitted);
+  if (isRefused || outcome.threw || isLeft) {
+    recorder.reset();
+    recorder.record(submission.begin(), queries, geometry);
+  }
+  submission.submitAndWait();
+  return recorder.read();
 }
 
 }  // namespace radar::soak

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fuzz/target.h"
-#include "soak/model.h"
-#include "soak/vary.h"
+#include "fuzz/scene_calls.h"
 #include "soak/world.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
@@ -56,6 +54,62 @@ Source source(Random& random) {
   }
 }
 
+void aimAt(Query& query, const Transform& target) {
+  double squares = 0;
+  for (size_t k = 0; k < 3; ++k) {
+    query.direction[k] = target.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3];
+    squares += query.direction[k] * query.direction[k];
+  }
+  query.distance = std::sqrt(squares);
+}
+
+/// What is asked about the contact.
+void setQuestion(Query& query, double size, bool isLarge, Random& random) {
+  switch (random.below(8)) {
+    case 0:
+      query.anyHit = true;
+      break;
+    case 1:
+      query.hits = 2 + random.below(3);
+      break;
+    case 2:
+      query.hits = kAllHits;
+      break;
+    case 3:
+      // Of large meshes a wide one would concern millions of pairs.
+      query.clearance = random.magnitude(-8, isLarge ? -3 : 1) * size;
+      if (random.oneIn(3)) query.tolerance = random.magnitude(-12, 0) * query.clearance;
+      break;
+    default:
+      break;
+  }
+}
+
+/// Moves a pose by a millionth of `size` up to all of it, or by whole steps.
+Transform moved(Transform pose, double size, Random& random) {
+  const tools::Vec3 step = random.oneIn(2) ? random.axis() : random.magnitude(-6, 0) * random.direction();
+  for (size_t k = 0; k < 3; ++k) pose.m[4 * k + 3] += size * step[k];
+  return pose;
+}
+
+/// A query with some of what mode contact offers; not always a valid one.
+Query varied(Query query, const Scene& scene, Random& random) {
+  const double size = tools::sensorSize(scene, query);
+  const ObjectId any = random.below(std::max(1u, scene.objectLimit()));
+  if (random.oneIn(3)) query.worldFromMesh = moved(query.worldFromMesh, size, random);
+  if (random.oneIn(4) && scene.hasObject(any)) aimAt(query, scene.object(any).worldFromMesh);
+  if (random.oneIn(8)) query.distance *= random.oneIn(2) ? 0 : random.magnitude(-3, 3);
+  if (random.oneIn(6) && query.distance > 0) tools::takeStep(query);
+  setQuestion(query, size, scene.mesh(query.mesh).triangleCount() > 200, random);
+  if (random.oneIn(5)) query.ignoreLeaving = !query.ignoreLeaving;
+  if (random.oneIn(6)) query.skipOverlapping = !query.skipOverlapping;
+  if ((query.ignoreLeaving || query.skipOverlapping) && random.oneIn(4)) query.slack = random.magnitude(-14, -3) * size;
+  if (random.oneIn(6)) query.mask = random.oneIn(2) ? ~0u : 1u << random.below(32);
+  if (random.oneIn(6)) query.exclude.push_back(any);
+  std::erase_if(query.exclude, [&](ObjectId id) { return !scene.hasObject(id); });
+  return query;
+}
+
 class HardWorld : public World {
  public:
   explicit HardWorld(Random& random) : random_(random), source_(source(random)) {
@@ -63,7 +117,6 @@ class HardWorld : public World {
     tools::replaceBy(workload, 0, scene_);
     isMoving_ = random_.oneIn(3);
     if (isMoving_) tools::setMotions(workload, random_, scene_);
-    model_ = Model::of(scene_);
     ownMeshes_ = static_cast<uint32_t>(workload.meshes.size());
     asked_ = tools::queriesOf(workload.queries);
     for (const Query& query : asked_) sizes_.push_back(tools::sensorSize(scene_, query));
@@ -85,15 +138,26 @@ class HardWorld : public World {
     }
     return all;
   }
-  Scene anew() const override { return model_.build(); }
   std::string name() const override { return source_.name; }
 
  private:
-  template <class Items>
-  auto any(Items& items) {
-    return std::next(items.begin(), random_.below(static_cast<uint32_t>(items.size())));
+  double size() { return sizes_[random_.below(static_cast<uint32_t>(sizes_.size()))]; }
+  /// There is always one.
+  ObjectId anyObject() {
+    for (;;) {
+      const ObjectId id = random_.below(scene_.objectLimit());
+      if (scene_.hasObject(id)) return id;
+    }
   }
-  double size() { return *any(sizes_); }
+  MeshId anyMesh() { return scene_.object(anyObject()).mesh; }
+  std::vector<ObjectId> allObjects() const {
+    std::vector<ObjectId> all;
+    for (ObjectId id = 0; id < scene_.objectLimit(); ++id) {
+      if (scene_.hasObject(id)) all.push_back(id);
+    }
+    return all;
+  }
+  Transform movedPose(ObjectId id) { return moved(scene_.object(id).worldFromMesh, size(), random_); }
 
   void editOnce() {
     switch (random_.below(9)) {
@@ -112,103 +176,81 @@ class HardWorld : public World {
       case 6:
         return setMotion();
       case 7:
-        return refuse();
+        return fuzz::requireRefused([&] { scene_.setTransform(scene_.objectLimit(), {}); });
       default:
         return moveOne();
     }
   }
 
   void moveOne() {
-    auto& [id, object] = *any(model_.objects);
-    object.worldFromMesh = random_.oneIn(3) ? any(model_.objects)->second.worldFromMesh  // copies lie on each other
-                                            : moved(object.worldFromMesh, size(), random_);
-    scene_.setTransform(id, object.worldFromMesh);
+    const ObjectId id = anyObject();
+    const bool copies = random_.oneIn(3);  // copies lie on each other
+    scene_.setTransform(id, copies ? scene_.object(anyObject()).worldFromMesh : movedPose(id));
   }
 
   void moveMany() {
-    std::vector<ObjectId> ids;
+    std::vector<ObjectId> ids = allObjects();
+    std::erase_if(ids, [&](ObjectId) { return random_.oneIn(3); });
     std::vector<Transform> poses;
-    for (auto& [id, object] : model_.objects) {
-      if (random_.oneIn(3)) continue;
-      object.worldFromMesh = moved(object.worldFromMesh, size(), random_);
-      ids.push_back(id);
-      poses.push_back(object.worldFromMesh);
-    }
+    for (const ObjectId id : ids) poses.push_back(movedPose(id));
     scene_.setTransforms(ids, poses);
   }
 
   void deform() {
-    auto& [id, mesh] = *any(model_.meshes);
+    const MeshId id = anyMesh();
+    std::vector<float> positions(scene_.mesh(id).positions.begin(), scene_.mesh(id).positions.end());
     const auto factor = static_cast<float>(random_.oneIn(2) ? random_.uniform(0.7, 1.4) : 1);
-    for (float& x : mesh.positions) {
+    for (float& x : positions) {
       const float to = random_.oneIn(8) ? x * static_cast<float>(random_.uniform(0.9, 1.1)) : x * factor;
       if (std::abs(to) < 1e30f) x = to;
     }
-    scene_.setPositions(id, mesh.positions);
+    scene_.setPositions(id, positions);
   }
 
   void addObject() {
-    if (model_.objects.size() > 200) return;
-    Object object = any(model_.objects)->second;
+    if (scene_.objectLimit() > 200) return;
+    Object object = scene_.object(anyObject());
     object.worldFromMesh = moved(object.worldFromMesh, size(), random_);
-    if (random_.oneIn(4)) object.mesh = any(model_.meshes)->first;
+    if (random_.oneIn(4)) object.mesh = anyMesh();
     if (random_.oneIn(4)) object.mask = 1u << random_.below(32);
-    if (validate(object.worldFromMesh).empty()) model_.objects[scene_.addObject(object)] = object;
+    if (validate(object.worldFromMesh).empty()) scene_.addObject(object);
   }
 
   void removeObject() {
-    if (model_.objects.size() < 2) return;
-    const auto gone = any(model_.objects);
-    scene_.removeObject(gone->first);
-    model_.objects.erase(gone);
+    const ObjectId gone = anyObject();
+    if (allObjects().size() > 1) scene_.removeObject(gone);
   }
 
   void addMesh() {
-    if (model_.meshes.size() > ownMeshes_ + 20) return;
+    if (scene_.meshLimit() > ownMeshes_ + 20) return;
     const tools::MeshData mesh = random_.oneIn(2) ? tools::anyShape(random_) : tools::latticeShape(random_);
-    Object object = any(model_.objects)->second;
+    Object object = scene_.object(anyObject());
     object.mesh = scene_.addMesh(mesh.positions, mesh.indices);
-    model_.meshes[object.mesh] = {mesh.positions, mesh.indices};
-    model_.objects[scene_.addObject(object)] = object;
+    scene_.addObject(object);
   }
 
   /// One that was added, with its objects.
   void removeMesh() {
-    const auto gone = any(model_.meshes);
-    if (gone->first < ownMeshes_) return;
-    const auto uses = [&](const auto& item) { return item.second.mesh == gone->first; };
-    if (std::ranges::all_of(model_.objects, uses)) return;
-    for (const auto& item : model_.objects) {
-      if (uses(item)) scene_.removeObject(item.first);
-    }
-    std::erase_if(model_.objects, uses);
-    scene_.removeMesh(gone->first);
-    model_.meshes.erase(gone);
+    const MeshId gone = anyMesh();
+    if (gone < ownMeshes_) return;
+    std::vector<ObjectId> all = allObjects();
+    const size_t before = all.size();
+    std::erase_if(all, [&](ObjectId id) { return scene_.object(id).mesh != gone; });
+    if (all.size() == before) return;
+    for (const ObjectId id : all) scene_.removeObject(id);
+    scene_.removeMesh(gone);
   }
 
   void setMotion() {
     if (!isMoving_) return;
-    auto& [id, object] = *any(model_.objects);
-    object.motion = random_.oneIn(3) ? tools::Vec3{} : random_.magnitude(-6, 1) * size() * random_.direction();
-    scene_.setMotion(id, object.motion);
+    const ObjectId id = anyObject();
+    scene_.setMotion(id, random_.oneIn(3) ? tools::Vec3{} : random_.magnitude(-6, 1) * size() * random_.direction());
     scene_.setBounds(id, {{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}});  // concern only hosts that move it
-  }
-
-  void refuse() {
-    const uint64_t version = scene_.version();
-    bool refused = false;
-    try {
-      scene_.setTransform(scene_.objectLimit(), {});
-    } catch (const Error&) {
-      refused = true;
-    }
-    fuzz::require(refused && scene_.version() == version, "setTransform of no object");
   }
 
   Random& random_;
   Source source_;
   Scene scene_;
-  Model model_;
   bool isMoving_ = false;
   uint32_t ownMeshes_ = 0;
   std::vector<Query> asked_;

@@ -5,7 +5,8 @@
 #include <cstdio>
 
 #include "commit/commit.h"
-#include "faults/adopted.h"
+#include "embed/host.h"
+#include "faults/host_memory.h"
 #include "soak/answerers.h"
 #include "soak/memory.h"
 #include "soak/moved_answerers.h"
@@ -27,13 +28,13 @@ struct Hosts {
       if (!reports[i].usable()) continue;
       const Mode mode = reports[i].sampledReasons.empty() ? Mode::sampled : Mode::contact;
       std::printf("device %s, driver %s\n", reports[i].name.c_str(), reports[i].driver.c_str());
-      single.push_back(std::make_unique<test::FaultyHost>(i, mode));
-      pooled.push_back(std::make_unique<test::FaultyHost>(i, mode));
+      single.push_back(std::make_unique<test::Host>(mode, i));
+      pooled.push_back(std::make_unique<test::Host>(mode, i));
     }
     if (single.empty()) throw Error("no device is usable");
-    if (pooled.size() == 1) pooled.push_back(std::make_unique<test::FaultyHost>(0, Mode::sampled));
+    if (pooled.size() == 1) pooled.push_back(std::make_unique<test::Host>());
   }
-  std::vector<std::unique_ptr<test::FaultyHost>> single, pooled;
+  std::vector<std::unique_ptr<test::Host>> single, pooled;
 };
 
 /// Devices made from the hosts': for one thread, and for a pool.
@@ -42,7 +43,7 @@ struct Devices {
       : doubles(!random.oneIn(4)), single(adopt(*hosts.single[epoch % hosts.single.size()])) {
     for (const auto& host : hosts.pooled) pooled.push_back(adopt(*host));
   }
-  Device adopt(const test::FaultyHost& host) const {
+  Device adopt(const test::Host& host) const {
     HostDevice handles = host.handles;
     handles.doubles = handles.doubles && doubles;
     return Device::adopt(handles);

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "faults/host_memory.h"
-#include "faults/vulkan_calls.h"
 #include "support/resident.h"
+#include "support/watched_vulkan.h"
 
 namespace radar::soak {
 

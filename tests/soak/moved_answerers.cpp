@@ -53,7 +53,6 @@ std::vector<Query> MovedAnswerers::choose() {
   std::vector<Query> queries = world_.queries(kQueries);
   std::erase_if(queries, [&](const Query& query) { return !validate(query, world_.truth).empty(); });
   for (Query& query : queries) {
-    if (query.exclude.size() > 1) query.exclude.erase(query.exclude.begin() + 1, query.exclude.end());
     if (query.anyHit) continue;
     query.ignoreLeaving = random_->oneIn(6);
     if (random_->oneIn(6)) query.hits = 2 + random_->below(4);
@@ -67,14 +66,10 @@ std::vector<Query> MovedAnswerers::choose() {
 void MovedAnswerers::change() {
   if (world_.moved.size() > 40 || (world_.moved.size() > 1 && random_->oneIn(2))) {
     const ObjectId gone = world_.moved[random_->below(static_cast<uint32_t>(world_.moved.size()))];
-    world_.scene.removeObject(gone);
-    world_.truth.removeObject(gone);
-    std::erase(world_.moved, gone);
+    world_.remove(gone);
   }
   Object object{world_.meshes[random_->below(9)], test::floatPose(*random_, world_.scales.size, {}), 3};
-  const ObjectId added = world_.scene.addObject(object);
-  fuzz::require(world_.truth.addObject(object) == added, "another number of an object");
-  world_.moved.push_back(added);
+  world_.moved.push_back(world_.add(object));
 }
 
 template <class Queries>
@@ -82,18 +77,7 @@ void MovedAnswerers::ask(Who who, const Queries& recorded, std::span<const Query
   CpuSweeper cpu(world_.truth, 1);
   const Answers exact = cpu.run(queries);
   for (Recorder* recorder : {&recorder_, &sharing_}) {
-    const FaultPlan plan = chooseFault(*random_, false);
-    gpu::Submission submission(device_->impl(), false);
-    gpu::Commands commands = submission.begin();
-    const Recording recording =
-        recordUnder(plan, *tally_, [&] { recorder->record(commands, recorded, world_.geometry()); });
-    if (recording.mustRepeat()) {
-      recorder->reset();
-      commands = submission.begin();
-      recorder->record(commands, recorded, world_.geometry());
-    }
-    submission.submitAndWait();
-    const Answers found = recorder->read();
+    const Answers found = record(*recorder, *device_, recorded, world_.geometry(), *random_, *tally_);
     fuzz::require(recorder->boundsViolation().empty(), recorder->boundsViolation());
     fuzz::checkRecorded(queries, found, exact);
     tally_->limited += fuzz::isTooSmall(found);
@@ -113,15 +97,8 @@ void MovedAnswerers::round() {
   world_.moveAgain();
   const std::vector<Query> queries = choose();
   measured(Who::moved, *tally_, [&] { ask(Who::moved, queries, queries); });
-  std::vector<HostQuery> written;
-  std::vector<Query> same;
-  for (const Query& query : queries) {
-    written.push_back(test::hostQueryOf(query));
-    same.push_back(test::queryOf(written.back()));
-  }
-  const test::OnDevice buffer(test::bytesOf(written), *device_);
-  const HostQueries there{.buffer = buffer.get(), .count = static_cast<uint32_t>(written.size())};
-  measured(Who::written, *tally_, [&] { ask(Who::written, there, same); });
+  const test::Written written(queries, *device_);
+  measured(Who::written, *tally_, [&] { ask(Who::written, HostQueries(written), written.same); });
   if (random_->oneIn(8)) measured(Who::sweeper, *tally_, [&] { tellAndAsk(queries); });
 }
 

@@ -1,7 +1,7 @@
 // Recordings over objects that a host moves on its device, and over queries that its shaders write.
 #pragma once
 
-#include "embed/moved_world.h"
+#include "embed/host_world.h"
 #include "soak/batch.h"
 #include "soak/fault_plan.h"
 

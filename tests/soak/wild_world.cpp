@@ -1,5 +1,4 @@
 #include "fuzz/scene_calls.h"
-#include "soak/model.h"
 #include "soak/world.h"
 
 namespace radar::soak {
@@ -26,7 +25,6 @@ class WildWorld : public World {
     }
     return all;
   }
-  Scene anew() const override { return Model::of(scene()).build(); }
   std::string name() const override { return "wild"; }
 
  private:

@@ -17,8 +17,6 @@ class World {
   virtual void edit() = 0;
   /// At most so many valid queries of mode contact.
   virtual std::vector<Query> queries(uint32_t most) = 0;
-  /// The scene as it must be now, made anew.
-  virtual Scene anew() const = 0;
   virtual std::string name() const = 0;
 };
 

@@ -81,6 +81,18 @@ void checkInverse(const Mesh& mesh, const Transform& pose, const gpu::Placement&
 
 }  // namespace
 
+tools::MeshData oddMesh(tools::Random& random, uint32_t number, double size) {
+  const double extent = std::exp2(size + random.uniform(-3, 3)),
+               baked = number % 2 == 0 ? 0 : extent * std::exp2(random.uniform(-4, 12));
+  const std::array<double, 3> middle = random.inCube(baked);
+  tools::MeshData mesh{.positions = {}, .indices = {0, 1, 2, 3, 4, 5}};
+  for (size_t v = 0; v < 18; ++v) {
+    const bool isFlat = (number % 5 == 3 && v % 3 == 2) || (number % 15 == 8 && v % 3 != 0) || number % 30 == 19;
+    mesh.positions.push_back(static_cast<float>(middle[v % 3] + (isFlat ? 0 : random.uniform(-extent, extent))));
+  }
+  return mesh;
+}
+
 void checkPlacement(const Mesh& mesh, const Transform& pose, const gpu::Placement& placement, BoundsUsed& used) {
   CHECK(placement.perUnit * mesh.unit == 1);
   for (int k = 0; k < 3; ++k) CHECK(double{placement.origin[k]} == mesh.origin[k]);

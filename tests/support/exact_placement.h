@@ -2,6 +2,8 @@
 #pragma once
 
 #include "scene/placement.h"
+#include "workloads/random.h"
+#include "workloads/workload.h"
 
 namespace radar::test {
 
@@ -9,6 +11,9 @@ namespace radar::test {
 struct BoundsUsed {
   double error = 0, inverse = 0;
 };
+
+/// Six vertices near the mesh's origin or far from it; flat, a line or a point, too. `size`: an exponent.
+tools::MeshData oddMesh(tools::Random& random, uint32_t number, double size);
 
 /// Checks that the placement puts every vertex of the mesh where the pose puts it, within Placement::error; that no
 /// vertex exceeds Placement::size or Placement::reach; and that the inverse recovers every point within the reach,

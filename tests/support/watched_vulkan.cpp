@@ -1,15 +1,19 @@
-#include "faults/vulkan_calls.h"
+#include "support/watched_vulkan.h"
 
+#include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <string_view>
+#include <map>
+#include <mutex>
+#include <set>
 #include <type_traits>
 
 #include <vulkan/vulkan.h>
 
-#include "faults/host_memory.h"
 #include "gpu/api.h"
+#include "support/engine_work.h"
 
 namespace radar::test {
 
@@ -22,22 +26,34 @@ struct Fault {
   VkResult result = VK_SUCCESS;
   VulkanFault::When when = VulkanFault::When::once;
   const void *device = nullptr, *queue = nullptr;
+  std::string_view name;
   std::atomic<const char*> failed{nullptr};
 };
 Fault fault;
 std::atomic<int64_t> live{0};
-std::atomic<bool> areHollow{false};
+std::atomic<uint64_t> allocatedBytes{0};
+std::atomic<bool> areHollow{false}, areInTurn{false};
+std::atomic<VkPipelineCache> pipelineCache{VK_NULL_HANDLE};
+std::mutex turns;
+
+std::mutex mutex;  // of what follows
+std::set<std::string> lookedUp;
+std::map<std::string, const std::atomic<uint64_t>*> calls;
+bool areHeld = false;
+int held = 0;
+std::condition_variable changed;
 
 bool reportsLoss(std::string_view name) {
   return name == "vkQueueSubmit2" || name == "vkWaitForFences" || name == "vkGetQueryPoolResults";
 }
 
-bool concerns(const void* handle) {
-  return fault.device == nullptr || handle == fault.device || handle == fault.queue;
+bool concerns(std::string_view name, const void* handle) {
+  return (fault.device == nullptr || handle == fault.device || handle == fault.queue) &&
+         (fault.name.empty() || name == fault.name);
 }
 
 bool fails(const char* name, const void* handle) {
-  if (fault.left == kNever || !concerns(handle)) return false;
+  if (fault.left == kNever || !concerns(name, handle)) return false;
   if (fault.when == VulkanFault::When::lost && !reportsLoss(name)) return false;
   const int64_t left = fault.left--;
   if (left > 0 || (left < 0 && fault.when == VulkanFault::When::once)) return false;
@@ -79,17 +95,26 @@ void created(VkDevice, const Info*, const VkAllocationCallbacks*, Handle* handle
   live += *handle == VK_NULL_HANDLE ? 0 : 1;
 }
 template <class Info>
-void created(VkDevice, VkPipelineCache, uint32_t, const Info*, const VkAllocationCallbacks*, VkPipeline*) {
+void created(VkDevice, VkPipelineCache cache, uint32_t, const Info*, const VkAllocationCallbacks*, VkPipeline*) {
   ++live;
+  pipelineCache = cache;
 }
 
 // Memory begins with garbage, so that what was never written is not taken for what it happened to be.
 void created(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks*, VkDeviceMemory* memory) {
   ++live;
+  allocatedBytes += info->allocationSize;
   void* bytes = nullptr;
   if (vkMapMemory(device, *memory, 0, VK_WHOLE_SIZE, 0, &bytes) != VK_SUCCESS) return;
   std::memset(bytes, 0xfe, info->allocationSize);
   vkUnmapMemory(device, *memory);
+}
+
+void hold() {
+  std::unique_lock lock(mutex);
+  held += areHeld ? 1 : 0;
+  changed.notify_all();
+  changed.wait(lock, [] { return !areHeld; });
 }
 
 template <class First, class... Rest>
@@ -108,16 +133,20 @@ template <class R, class... Args, R (VKAPI_PTR* gpu::Api::*Member)(Args...)>
 struct Wrapped<Member> {
   static inline const char* name = "";
   static inline R(VKAPI_PTR* driver)(Args...) = nullptr;
+  static inline std::atomic<uint64_t> count{0};
 
   static VKAPI_ATTR R VKAPI_CALL call(Args... args) {
     const OthersWork others;
+    ++count;
+    const bool isWait = std::string_view(name) == "vkWaitForFences";
+    std::unique_lock turn(turns, std::defer_lock);
+    if (areInTurn && (isWait || std::string_view(name) == "vkQueueSubmit2")) turn.lock();
     if constexpr (requires { destroyed(args...); }) {
       if (!destroyed(args...)) return;
     }
     if constexpr (std::is_same_v<R, VkResult>) {
       if (fails(name, firstOf(args...))) {
-        const bool waits = std::string_view(name) == "vkWaitForFences" && fault.when == VulkanFault::When::lost;
-        if (waits) driver(args...);
+        if (isWait && fault.when == VulkanFault::When::lost) driver(args...);
         return fault.result;
       }
       VkResult result;
@@ -126,6 +155,7 @@ struct Wrapped<Member> {
       } else {
         result = driver(args...);
       }
+      if (isWait) hold();
       if constexpr (requires { created(args...); }) {
         if (result == VK_SUCCESS) created(args...);
       }
@@ -151,6 +181,7 @@ PFN_vkVoidFunction wrap(VkInstance instance, const char* name) {
   Wrapped<Member>::name = name;
   Wrapped<Member>::driver = reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
   if (Wrapped<Member>::driver == nullptr) return nullptr;
+  calls[name] = &Wrapped<Member>::count;
   return reinterpret_cast<PFN_vkVoidFunction>(&Wrapped<Member>::call);
 }
 
@@ -165,7 +196,9 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice, const char* na
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* wanted) {
   const OthersWork others;
+  const std::lock_guard lock(mutex);
   const std::string_view name = wanted;
+  lookedUp.emplace(name);
   lastInstance = instance;
   if (name == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
 #define RADAR_WRAP(function) \
@@ -180,15 +213,31 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, c
 
 }  // namespace
 
-PFN_vkGetInstanceProcAddr faultyLoader() {
+PFN_vkGetInstanceProcAddr watchedLoader() {
   return instanceFunction;
 }
 
-VulkanFault::VulkanFault(int64_t n, VkResult result, When when, VkDevice device, VkQueue queue) {
+bool isLookedUp(const std::string& name) {
+  const std::lock_guard lock(mutex);
+  return lookedUp.contains(name);
+}
+
+uint64_t callsOf(const std::string& name) {
+  const std::lock_guard lock(mutex);
+  const auto found = calls.find(name);
+  return found == calls.end() ? 0 : found->second->load();
+}
+
+VkPipelineCache lastPipelineCache() {
+  return pipelineCache;
+}
+
+VulkanFault::VulkanFault(int64_t n, VkResult result, When when, const FailingCalls& which) {
   fault.result = result;
   fault.when = when;
-  fault.device = device;
-  fault.queue = queue;
+  fault.device = which.device == nullptr ? nullptr : which.device->device;
+  fault.queue = which.device == nullptr ? nullptr : which.device->queue;
+  fault.name = which.name;
   fault.failed = nullptr;
   fault.left = n;
 }
@@ -205,8 +254,37 @@ std::string VulkanFault::failed() const {
   return happened() ? fault.failed.load() : "";
 }
 
+uint64_t allocatedDeviceBytes() {
+  return allocatedBytes;
+}
+
 int64_t liveVulkanObjects() {
   return live;
+}
+
+HeldWaits::HeldWaits() {
+  const std::lock_guard lock(mutex);
+  areHeld = true;
+  held = 0;
+}
+
+void HeldWaits::await(int count) {
+  std::unique_lock lock(mutex);
+  changed.wait(lock, [&] { return held >= count; });
+}
+
+void HeldWaits::release() {
+  const std::lock_guard lock(mutex);
+  areHeld = false;
+  changed.notify_all();
+}
+
+CallsInTurn::CallsInTurn() {
+  areInTurn = true;
+}
+
+CallsInTurn::~CallsInTurn() {
+  areInTurn = false;
 }
 
 HollowPipelines::HollowPipelines() {

@@ -1,4 +1,4 @@
-// What a scene must hold.
+// What a scene holds.
 #pragma once
 
 #include <map>
@@ -6,9 +6,9 @@
 
 #include "radar/scene.h"
 
-namespace radar::soak {
+namespace radar::test {
 
-struct Model {
+struct SceneModel {
   struct Mesh {
     std::vector<float> positions;
     std::vector<uint32_t> indices;
@@ -17,9 +17,11 @@ struct Model {
   std::map<MeshId, Mesh> meshes;
   std::map<ObjectId, Object> objects;
 
+  /// But for the bounds.
+  bool operator==(const SceneModel& other) const;
   /// A scene with the same numbers of meshes and objects.
   Scene build() const;
-  static Model of(const Scene& scene);
+  static SceneModel of(const Scene& scene);
 };
 
-}  // namespace radar::soak
+}  // namespace radar::test

@@ -1,8 +1,10 @@
-#include "soak/model.h"
+#include "support/scene_model.h"
+
+#include <algorithm>
 
 #include "scene/scene.h"
 
-namespace radar::soak {
+namespace radar::test {
 
 namespace {
 
@@ -32,7 +34,18 @@ Bounds boundsOf(const radar::Mesh& mesh) {
 
 }  // namespace
 
-Scene Model::build() const {
+bool SceneModel::operator==(const SceneModel& other) const {
+  const auto sameMesh = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.positions == b.second.positions && a.second.indices == b.second.indices;
+  };
+  const auto sameObject = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second.mesh == b.second.mesh && a.second.worldFromMesh == b.second.worldFromMesh &&
+           a.second.mask == b.second.mask && a.second.motion == b.second.motion;
+  };
+  return std::ranges::equal(meshes, other.meshes, sameMesh) && std::ranges::equal(objects, other.objects, sameObject);
+}
+
+Scene SceneModel::build() const {
   Scene scene;
   const float point[] = {0, 0, 0};
   const uint32_t corners[] = {0, 0, 0};
@@ -45,12 +58,12 @@ Scene Model::build() const {
   return scene;
 }
 
-Model Model::of(const Scene& scene) {
-  Model model;
+SceneModel SceneModel::of(const Scene& scene) {
+  SceneModel model;
   for (MeshId id = 0; id < scene.meshLimit(); ++id) {
     if (!scene.hasMesh(id)) continue;
     const MeshView mesh = scene.mesh(id);
-    Model::Mesh& copy = model.meshes[id];
+    Mesh& copy = model.meshes[id];
     copy.positions.assign(mesh.positions.begin(), mesh.positions.end());
     copy.indices.assign(mesh.indices.begin(), mesh.indices.end());
     if (const radar::Mesh& derived = scene.impl().meshes[id]; derived.deforms) copy.bounds = boundsOf(derived);
@@ -61,4 +74,4 @@ Model Model::of(const Scene& scene) {
   return model;
 }
 
-}  // namespace radar::soak
+}  // namespace radar::test

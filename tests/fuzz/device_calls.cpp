@@ -1,16 +1,17 @@
-// Fuzzes a Recorder: an input is a capacity and a sequence of edits of a scene and of recordings, in some of which a
-// host deforms meshes. Each answer is the CPU's, or its flag says which limit was too small; with the capacity that
-// needed() gives, all are answered.
+// Fuzzes a Sweeper and a Recorder that share a scene's copy: an input is a capacity and a sequence of edits of a scene,
+// of batches and of recordings, in some of which a host deforms meshes. Each answer is the CPU's, or its flag says
+// which limit was too small; with the capacity that needed() gives, all are answered.
 #include <cmath>
-#include <deque>
 
-#include "embed/on_device.h"
+#include "embed/host_frame.h"
+#include "fuzz/check_answers.h"
 #include "fuzz/check_recorded.h"
 #include "fuzz/scene_calls.h"
 #include "fuzz/target.h"
 #include "radar/cpu_sweeper.h"
+#include "radar/radar.h"
 #include "scene/scene.h"
-#include "soak/model.h"
+#include "support/scene_model.h"
 #include "support/test_device.h"
 
 namespace radar::fuzz {
@@ -44,33 +45,28 @@ std::vector<Query> recordable(SceneCalls& calls, Recorder& recorder, const Capac
   const auto isInvalid = [&](const Query& query) {
     return !validate(query, calls.scene()).empty() || !test::isRecordable(query, calls.scene());
   };
-  if (queries.size() > capacity.queries || std::ranges::any_of(queries, isInvalid)) {
-    try {
-      test::execute(test::device(), recorder, queries);
-      require(false, "an invalid recording is accepted");
-    } catch (const Error&) {
-      std::erase_if(queries, isInvalid);
-      queries.resize(std::min<size_t>(queries.size(), capacity.queries));
-    }
+  const auto record = [&](const auto& all) { test::execute(test::device(), recorder, all); };
+  leaveValid(queries, isInvalid, record);
+  if (queries.size() > capacity.queries) {
+    requireRefused([&] { record(queries); });
+    queries.resize(capacity.queries);
   }
   return queries;
 }
 
 /// Vertices that a host deforms, and the scene as it then is.
 struct Deformation {
-  Deformation(Choices& choices, const Scene& scene) : truth(soak::Model::of(scene).build()) {
+  Deformation(Choices& choices, const Scene& scene) : truth(test::SceneModel::of(scene).build()) {
     for (MeshId id = 0; id < scene.meshLimit(); ++id) {
       if (!scene.hasMesh(id) || scene.impl().meshes[id].deforms || !choices.oneIn(2)) continue;
-      const std::span<const float> rest = scene.mesh(id).positions;
-      std::vector<float> positions(rest.begin(), rest.end());
+      std::vector<float> positions(scene.mesh(id).positions.begin(), scene.mesh(id).positions.end());
       const bool isWild = choices.oneIn(4);
       for (float& x : positions) {
         if (choices.oneIn(2)) x = choices.number<float>(isWild);
         if (!(std::abs(x) < 0x1p120f)) isFinite = false;
       }
       if (isFinite) truth.setPositions(id, positions);
-      buffers.push_back(test::bufferOf(positions));
-      meshes.push_back({id, {.buffer = buffers.back().get()}});
+      frame.deform(id, positions);
     }
   }
   /// Whether nothing has bounds that it may leave, and floats hold all numbers with room to spare.
@@ -87,8 +83,7 @@ struct Deformation {
   }
   Scene truth;
   bool isFinite = true;
-  std::deque<test::OnDevice> buffers;
-  std::vector<DeformedMesh> meshes;
+  test::HostFrame frame;
 };
 
 /// Compares a recording with the CPU's answers; if capacities were too small, records again with larger ones.
@@ -102,56 +97,71 @@ void compare(const SceneCalls& calls, Recorder& recorder, const std::vector<Quer
     recorded = test::execute(test::device(), larger, queries, geometry);
     checkRecorded(queries, recorded, expected);
     enough = enoughFor(larger);
+    require(enough.rounds % 2 == 0, "an odd number of rounds");
   }
   require(!isTooSmall(recorded), "what needed() gives is not enough");
 }
 
 void ask(SceneCalls& calls, Recorder& recorder, const Capacity& capacity) {
   const std::vector<Query> queries = recordable(calls, recorder, capacity);
-  try {
-    compare(calls, recorder, queries, CpuSweeper(calls.scene(), 1).run(queries));
-  } catch (const Error& error) {
-    require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
-  }
+  compare(calls, recorder, queries, CpuSweeper(calls.scene(), 1).run(queries));
 }
 
 void deform(Choices& choices, SceneCalls& calls, Recorder& recorder, const Capacity& capacity) {
   const std::vector<Query> queries = recordable(calls, recorder, capacity);
-  const Deformation deformed(choices, calls.scene());
-  const HostGeometry geometry{.meshes = deformed.meshes};
-  try {
-    const Answers recorded = test::execute(test::device(), recorder, queries, geometry);
-    const auto isRefused = [](const Result& result) { return (result.flags & Flag::bounds) != 0; };
-    if (std::ranges::any_of(recorded.results, isRefused)) {
-      require(std::ranges::all_of(recorded.results, isRefused), "some answers are refused and others not");
-      require(!recorder.boundsViolation().empty(), "nobody says what left its bounds");
-      return require(!deformed.isOrdinary(calls.scene()), "refused: " + recorder.boundsViolation());
-    }
-    require(deformed.isFinite || queries.empty(), "vertices that are not finite are searched");
-    if (deformed.isFinite) compare(calls, recorder, queries, CpuSweeper(deformed.truth, 1).run(queries), geometry);
-  } catch (const Error& error) {
-    require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
+  Deformation deformed(choices, calls.scene());
+  const HostGeometry geometry = deformed.frame.geometry();
+  const Answers recorded = test::execute(test::device(), recorder, queries, geometry);
+  const auto isRefused = [](const Result& result) { return (result.flags & Flag::bounds) != 0; };
+  if (std::ranges::any_of(recorded.results, isRefused)) {
+    require(std::ranges::all_of(recorded.results, isRefused), "some answers are refused and others not");
+    require(!recorder.boundsViolation().empty(), "nobody says what left its bounds");
+    return require(!deformed.isOrdinary(calls.scene()), "refused: " + recorder.boundsViolation());
   }
+  require(deformed.isFinite || queries.empty(), "vertices that are not finite are searched");
+  if (deformed.isFinite) compare(calls, recorder, queries, CpuSweeper(deformed.truth, 1).run(queries), geometry);
+}
+
+void sweep(Choices& choices, SceneCalls& calls, Sweeper& sweeper) {
+  const Mode mode = choices.oneIn(3) ? Mode::sampled : Mode::contact;
+  std::vector<Query> queries = calls.queries(4);
+  const auto isInvalid = [&](const Query& query) { return !validate(query, calls.scene(), mode).empty(); };
+  leaveValid(queries, isInvalid, [&](const auto& all) { sweeper.run(all, mode); });
+  const Answers found = sweeper.run(queries, mode);
+  Answers expected = CpuSweeper(calls.scene(), 1).run(queries);
+  for (size_t i = 0; mode == Mode::sampled && i < queries.size(); ++i) {
+    checkSampled(found.results[i], expected.results[i], test::reasonFor(found, i));
+    expected.results[i] = found.results[i];
+  }
+  requireSame(found, expected);
 }
 
 void run(std::string_view input) {
   Choices choices(input);
   const Capacity capacity = capacityFrom(choices);
   SceneCalls calls(choices);
-  try {
-    Recorder recorder(test::device(), calls.scene(), capacity);
-    require(isValid(capacity), "an invalid capacity is accepted");
-    for (int i = 0; i < 40 && !choices.areOver(); ++i) {
+  SceneCopy copy(test::device(), calls.scene());
+  Sweeper sweeper(copy, {.cpuBatch = choices.below(3)});
+  std::optional<Recorder> recorder;
+  const auto make = [&] { recorder.emplace(copy, capacity); };
+  if (!isValid(capacity)) return requireRefused(make);
+  make();
+  const bool isChosen = capacity.candidates == 0;
+  require(isChosen || recorder->needed().candidates == capacity.candidates, "nothing recorded, but more needed");
+  for (int i = 0; i < 60 && !choices.areOver(); ++i) {
+    try {
       if (choices.oneIn(4)) {
-        ask(calls, recorder, capacity);
+        ask(calls, *recorder, capacity);
+      } else if (choices.oneIn(4)) {
+        sweep(choices, calls, sweeper);
       } else if (choices.oneIn(8)) {
-        deform(choices, calls, recorder, capacity);
+        deform(choices, calls, *recorder, capacity);
       } else {
         calls.edit();
       }
+    } catch (const Error& error) {
+      require(std::string_view(error.what()).find("Capacity::searches") != std::string_view::npos, error.what());
     }
-  } catch (const Error& error) {
-    require(!isValid(capacity) && std::string_view(error.what()).starts_with("Capacity::"), error.what());
   }
   for (const std::string& message : test::takeValidationMessages()) require(false, "validation: " + message);
 }
@@ -159,7 +169,7 @@ void run(std::string_view input) {
 }  // namespace
 
 const Target& target() {
-  static const Target kTarget{run, [] { return randomSeeds(32, 400); }, {}};
+  static const Target kTarget{run, [] { return randomSeeds(64, 500); }, {}};
   return kTarget;
 }
 

@@ -1,9 +1,12 @@
 // Cases whose answers are known.
-#include "soups.h"
+#include "support/answer.h"
+#include "support/catch.h"
+#include "support/world.h"
+#include "workloads/shapes.h"
 
 using namespace radar;
-using soups::add;
-using soups::at;
+using test::add;
+using test::at;
 
 namespace {
 
@@ -20,7 +23,7 @@ Query sweep(MeshId mesh, const Transform& pose, std::array<double, 3> direction,
 
 TEST_CASE("a box that falls on another hits it after the gap between them") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   const ObjectId lower = scene.addObject({box, at(0.25, 0.5, 0)});
   CpuSweeper sweeper(scene);
   const Result result = test::answer(sweeper, sweep(box, at(0, 0, 5), {0, 0, -2}, 10));
@@ -37,7 +40,7 @@ TEST_CASE("a box that falls on another hits it after the gap between them") {
 
 TEST_CASE("contact at exactly D counts, and contact beyond D does not") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   scene.addObject({box, at(0, 0, 0)});
   CpuSweeper sweeper(scene);
   const Result touch = test::answer(sweeper, sweep(box, at(0, 0, 5), {0, 0, -1}, 3));
@@ -52,7 +55,7 @@ TEST_CASE("contact at exactly D counts, and contact beyond D does not") {
 
 TEST_CASE("touching at the start is an overlap at zero") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   scene.addObject({box, at(0, 0, 0)});
   CpuSweeper sweeper(scene);
   for (double distance : {0.0, 5.0}) {
@@ -69,8 +72,8 @@ TEST_CASE("touching at the start is an overlap at zero") {
 
 TEST_CASE("an edge-on plate is hit on its rim") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
-  const MeshId plate = add(scene, {{0, 0, -3, 0, 0, 3, 0, 8, -3, 0, 8, 3}, {0, 1, 2, 2, 1, 3}});
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
+  const MeshId plate = add(scene, {"", {0, 0, -3, 0, 0, 3, 0, 8, -3, 0, 8, 3}, {0, 1, 2, 2, 1, 3}});
   scene.addObject({plate, at(0.25, 2, 0)});
   CpuSweeper sweeper(scene);
   const Result result = test::answer(sweeper, sweep(box, at(0, 0, 0), {0, 1, 0}, 10));
@@ -82,7 +85,7 @@ TEST_CASE("an edge-on plate is hit on its rim") {
 
 TEST_CASE("two plates in one plane meet at their rims") {
   Scene scene;
-  const MeshId plate = add(scene, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1, 2}});
+  const MeshId plate = add(scene, {"", {0, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1, 2}});
   scene.addObject({plate, at(0, 4, 0)});
   CpuSweeper sweeper(scene);
   REQUIRE(test::answer(sweeper, sweep(plate, at(0, 0, 0), {0, 1, 0}, 10)).t == 3);
@@ -91,8 +94,8 @@ TEST_CASE("two plates in one plane meet at their rims") {
 
 TEST_CASE("a mesh that moves inside another without reaching its surface is clear") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
-  const MeshId hall = add(scene, soups::box(10, 10, 10));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
+  const MeshId hall = add(scene, tools::makeBox({20, 20, 20}));
   scene.addObject({hall, Transform{}});
   CpuSweeper sweeper(scene);
   REQUIRE(test::answer(sweeper, sweep(box, Transform{}, {1, 0, 0}, 8)).status == Status::clear);
@@ -101,7 +104,7 @@ TEST_CASE("a mesh that moves inside another without reaching its surface is clea
 
 TEST_CASE("the object behind is found when the one in front is excluded or masked") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   const ObjectId front = scene.addObject({box, at(0, 0, 5), 1});
   const ObjectId back = scene.addObject({box, at(0, 0, 9), 2});
   CpuSweeper sweeper(scene);
@@ -118,8 +121,8 @@ TEST_CASE("the object behind is found when the one in front is excluded or maske
 
 TEST_CASE("of many objects hit at the same time the one with the lowest id is reported") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
-  const MeshId plank = add(scene, soups::box(40, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
+  const MeshId plank = add(scene, tools::makeBox({80, 2, 2}));
   for (int i = 0; i < 20; ++i) scene.addObject({box, at(3.0 * ((7 * i) % 20) - 30, 0, 5)});
   CpuSweeper sweeper(scene);
   const Result result = test::answer(sweeper, sweep(plank, Transform{}, {0, 0, 1}, 20));
@@ -130,7 +133,7 @@ TEST_CASE("of many objects hit at the same time the one with the lowest id is re
 
 TEST_CASE("the CPU follows edits of the scene") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   CpuSweeper sweeper(scene);
   const Query query = sweep(box, Transform{}, {0, 0, 1}, 20);
   REQUIRE(test::answer(sweeper, query).status == Status::clear);
@@ -146,7 +149,7 @@ TEST_CASE("the CPU follows edits of the scene") {
   REQUIRE(test::answer(sweeper, query).status == Status::clear);
   // The id of a removed mesh now names another mesh.
   scene.removeMesh(box);
-  const MeshId tall = add(scene, soups::box(1, 1, 3));
+  const MeshId tall = add(scene, tools::makeBox({2, 2, 6}));
   REQUIRE(tall == box);
   scene.addObject({tall, at(0, 0, 10)});
   REQUIRE(test::answer(sweeper, query).t == 4);
@@ -154,7 +157,7 @@ TEST_CASE("the CPU follows edits of the scene") {
 
 TEST_CASE("the CPU refuses a query that breaks its contract") {
   Scene scene;
-  const MeshId box = add(scene, soups::box(1, 1, 1));
+  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
   scene.addObject({box, Transform{}});
   CpuSweeper sweeper(scene);
   REQUIRE_THROWS_AS(test::answer(sweeper, sweep(box, Transform{}, {0, 0, 0}, 1)), Error);

@@ -1,4 +1,5 @@
 // Points of contact: a corner that touches is given exactly, at every scale and with a clearance, too.
+#include "distances.h"
 #include "normal_scenes.h"
 
 using namespace radar;
@@ -70,24 +71,6 @@ void place(Case& one, double scale, double far) {
   }
 }
 
-/// How far the point is from the farther of the two triangles when they touch, in units of `scale`, in which doubles
-/// hold squares.
-double offFromBoth(const Scene& scene, const Query& query, const Result& result, double scale) {
-  const Object& object = scene.object(result.object);
-  oracle::Corners b = oracle::corners(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
-  oracle::Corners a = oracle::corners(scene.mesh(query.mesh), query.worldFromMesh, result.triA);
-  const double length = std::hypot(query.direction[0], query.direction[1], query.direction[2]);
-  Vector point;
-  for (size_t k = 0; k < 3; ++k) {
-    point[k] = result.point[k] / scale;
-    for (size_t i = 0; i < 3; ++i) {
-      a[i][k] = a[i][k] / scale + (result.t / scale) * (query.direction[k] / length);
-      b[i][k] /= scale;
-    }
-  }
-  return std::max(soups::distance(point, a), soups::distance(point, b));
-}
-
 }  // namespace
 
 TEST_CASE("a corner that touches is the point of contact, at every scale and far from the origin") {
@@ -128,7 +111,7 @@ TEST_CASE("edges cross at a point on both, also where products of their coordina
         if (result.featureA != Feature::edge || result.featureB != Feature::edge) continue;
         ++crossings;
         CAPTURE(scale, seed, q);
-        CHECK(offFromBoth(one.scene, one.queries[q], result, scale) <= 1e-14);
+        CHECK(distances::offFromBoth(one.scene, one.queries[q], result) <= 1e-14);
       }
     }
     CHECK(crossings > 5);

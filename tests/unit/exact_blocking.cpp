@@ -6,6 +6,7 @@
 
 using radar::Vector;
 using radar::exact::Triangle;
+using soups::latticeTriangle;
 using soups::Random;
 
 namespace {
@@ -30,22 +31,6 @@ void check(const Triangle& a, const Triangle& b, const Vector& direction, double
   counts.crossing += truth;
 }
 
-Triangle latticeTriangle(Random& random, int side) {
-  Triangle t;
-  for (Vector& c : t) {
-    for (double& v : c) v = random.integer(0, side);
-  }
-  return t;
-}
-
-Vector latticeDirection(Random& random) {
-  Vector d{};
-  while (d == Vector{}) {
-    for (double& c : d) c = random.integer(-2, 2);
-  }
-  return d;
-}
-
 void jitter(Random& random, Triangle& t, double by) {
   for (Vector& c : t) {
     for (double& v : c) v += random.uniform(-by, by);
@@ -60,7 +45,7 @@ TEST_CASE("blocking and crossing of lattice triangles follow the definition") {
   for (int i = 0; i < 2500; ++i) {
     INFO("case " << i);
     const int side = random.integer(1, 3);
-    check(latticeTriangle(random, side), latticeTriangle(random, side), latticeDirection(random), 0, counts);
+    check(latticeTriangle(random, side), latticeTriangle(random, side), random.latticeVector(2), 0, counts);
   }
   REQUIRE(counts.blocking > 100);
   REQUIRE(counts.passing > 1000);
@@ -76,7 +61,7 @@ TEST_CASE("triangles in one plane that face each other block by the direction al
     for (Triangle* t : {&a, &b}) {
       for (Vector& c : *t) c[2] = 1;
     }
-    check(a, b, latticeDirection(random), 0, counts);
+    check(a, b, random.latticeVector(2), 0, counts);
   }
   REQUIRE(counts.flush > 100);
 }
@@ -92,7 +77,7 @@ TEST_CASE("blocking and crossing with slack follow the definition") {
       jitter(random, a, 0.2);
       jitter(random, b, 0.2);
     }
-    check(a, b, random.chance(0.5) ? latticeDirection(random) : random.inBall(), slack, counts);
+    check(a, b, random.chance(0.5) ? random.latticeVector(2) : random.inBall(), slack, counts);
   }
   REQUIRE(counts.blocking > 100);
   REQUIRE(counts.passing > 1000);
@@ -115,7 +100,7 @@ TEST_CASE("blocking and crossing follow the definition where triangles almost to
       }
     }
     const double slack = random.chance(0.3) ? 0 : scale * radar::exact::defaultSlack(random.uniform(0.1, 3));
-    check(a, b, latticeDirection(random), slack, counts);
+    check(a, b, random.latticeVector(2), slack, counts);
   }
   REQUIRE(counts.blocking > 100);
   REQUIRE(counts.passing > 1000);

@@ -128,27 +128,3 @@ TEST_CASE("mode contact handles a mesh of 160,000 triangles as an object and as 
                      .distance = 0.2};
   CHECK(sweeper.run({&within, 1}).results[0].status == Status::clear);
 }
-
-TEST_CASE("of many objects touched at exactly the same time the one with the lowest id is reported") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({1, 1, 1})), plate = add(scene, tools::makePlate(128, 128, 1));
-  // Ids decrease along x and y.
-  for (int y = 31; y >= 0; --y) {
-    for (int x = 31; x >= 0; --x) scene.addObject({box, at(2 * x, 2 * y, 0), ~0u});
-  }
-  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kOnCpu)});
-  Query query{.mesh = plate, .worldFromMesh = at(32, 32, -6), .direction = {0, 0, 0.5}, .distance = 10};
-  for (uint32_t least = 0; least < 4; ++least) {
-    CAPTURE(least);
-    const Result result = sweeper.run({&query, 1}).results[0];
-    CHECK(result.status == Status::hit);
-    CHECK(result.t == 5);
-    CHECK(result.object == least);
-    query.exclude.push_back(least);
-  }
-  query.exclude.clear();
-  query.distance = 5;
-  CHECK(sweeper.run({&query, 1}).results[0].object == 0);
-  query.distance = std::nextafter(5, 0);
-  CHECK(sweeper.run({&query, 1}).results[0].status == Status::clear);
-}

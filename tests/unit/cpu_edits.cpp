@@ -126,18 +126,16 @@ TEST_CASE("the CPU finds contact of meshes so small that the inverse of their si
 
 TEST_CASE("the CPU answers no query of a batch in which one breaks its contract, and names that one") {
   Scene scene;
-  const MeshId box = add(scene, tools::makeBox({2, 2, 2}));
-  std::vector<Query> queries(3);
-  for (Query& query : queries) {
-    query.mesh = box;
-    query.direction = {1, 0, 0};
-  }
-  queries[1].distance = -1;
+  const Query good{.mesh = add(scene, tools::makeBox({2, 2, 2})), .direction = {1, 0, 0}, .distance = 1};
   CpuSweeper sweeper(scene);
-  REQUIRE_THROWS_WITH(sweeper.run(queries), test::Contains("query 1: distance"));
-  queries[1].distance = 1;
-  REQUIRE(sweeper.run(queries).results.size() == 3);
-  REQUIRE(sweeper.run({}).results.empty());
+  for (const auto& [bad, words] :
+       {std::pair{Query{.mesh = good.mesh, .direction = {1, 0, 0}, .distance = -1}, "query 1: distance"},
+        {Query{.mesh = good.mesh, .distance = 1}, "query 1: direction"},
+        {Query{.mesh = good.mesh + 1, .direction = {1, 0, 0}}, "query 1: sensor: mesh 1 does not exist"}}) {
+    CHECK_THROWS_WITH(sweeper.run(std::vector{good, bad, good}), test::Contains(words));
+  }
+  CHECK(sweeper.run(std::vector{good, good, good}).results.size() == 3);
+  CHECK(sweeper.run({}).results.empty());
 }
 
 TEST_CASE("a scene whose meshes are deformed answers as one that is built anew") {

@@ -24,4 +24,12 @@ struct Case {
   std::vector<Query> queries;
 };
 
+/// A workload's first scene, and its queries, to be drawn with that resolution.
+inline Case caseOf(const tools::Workload& workload, uint32_t resolution = 0) {
+  Case out;
+  replaceBy(workload, 0, out.scene);
+  out.queries = tools::queriesOf(workload.queries, resolution);
+  return out;
+}
+
 }  // namespace radar::test

@@ -212,6 +212,37 @@ void stepsAnywhere(Random& random, Case& out) {
   makeStep(random, scale, random.chance(0.2) ? 1e4 * scale : 0, out);
 }
 
+/// The scene scaled, then moved along x and y, or at another scale where products of coordinates overflow or underflow.
+void place(Random& random, Case& out) {
+  constexpr std::array<std::array<double, 2>, 6> kScaleAndFar{
+      {{1.1, 4000}, {1e-100, 0}, {1e-151, 0}, {1e151, 0}, {1e-200, 0}, {1e200, 0}}};
+  const auto [scale, far] = kScaleAndFar[random.below(6)];
+  const auto placed = [&, scale = scale, far = far](Transform pose) {
+    for (double& c : pose.m) c *= scale;
+    tools::moveBy(pose, {far, -far / 3, 0});
+    return pose;
+  };
+  for (ObjectId id = 0; id < out.scene.objectLimit(); ++id) {
+    out.scene.setTransform(id, placed(out.scene.object(id).worldFromMesh));
+  }
+  const double clearance = random.chance(0.3) ? scale * random.uniform(0.01, 0.5) : 0;
+  for (Query& query : out.queries) {
+    query.worldFromMesh = placed(query.worldFromMesh);
+    query.distance *= 10 * scale;
+    query.clearance = clearance;
+  }
+}
+
+void tiesAnywhere(Random& random, Case& out) {
+  normals::lattices(random, random.chance(0.5), out);
+  place(random, out);
+}
+
+void floatsAnywhere(Random& random, Case& out) {
+  normals::floats(random, 1, out);
+  place(random, out);
+}
+
 constexpr uint64_t kMostPairs = 1000;
 
 /// A case of a family, unless it has too many triangles for brute force.
@@ -251,6 +282,8 @@ constexpr Kind kKinds[]{
     {"boxes on a lattice", [](Random& random, Case& out) { normals::boxes(random, false, out); }, 400, 20, 300},
     {"boxes on one floor", [](Random& random, Case& out) { normals::boxes(random, true, out); }, 300, 20, 300},
     {"ties of lattices", [](Random& random, Case& out) { normals::lattices(random, false, out); }, 1500, 20, 1000},
+    {"ties of lattices at extreme scales and far away", tiesAnywhere, 600, 0, 200},
+    {"soups at extreme scales and far away", floatsAnywhere, 200, 0, 50},
     {"triangles in one plane", [](Random& random, Case& out) { normals::lattices(random, true, out); }, 400, 20, 300},
     {"needles",
      [](Random& random, Case& out) { normals::floats(random, std::pow(10.0, 4 * random.integer(-1, 2)), out); }, 400,

@@ -45,31 +45,43 @@ std::string faultOfPoint(const Scene& scene, const Query& query, const Result& r
   return distances::offFromBoth(scene, query, result) <= most ? "" : "a point off its triangles";
 }
 
+/// Judges the answers about so many scenes of a kind, `varied` or as the kind asks.
+oracle::Judged judged(const kinds::Kind& kind, uint64_t scenes, bool varied) {
+  oracle::Judged all;
+  for (uint64_t seed = 0; seed < scenes; ++seed) {
+    kinds::Random random(seed + (varied ? 100'000 : 0));
+    test::Case one;
+    kind.make(random, one);
+    for (Query& query : one.queries) {
+      if (varied) kinds::vary(random, query);
+    }
+    const Answers answers = CpuSweeper(one.scene, 2).run(one.queries);
+    for (size_t i = 0; i < one.queries.size(); ++i) {
+      const size_t before = all.faults.size();
+      const Query& query = one.queries[i];
+      if (query.clearance == 0) all.add(one.scene, query, answers, i);
+      all.count(faultOfPoint(one.scene, query, answers.results[i], kind.off));
+      if (all.faults.size() != before) UNSCOPED_INFO("a fault in scene " << seed << ", query " << i);
+    }
+  }
+  UNSCOPED_INFO(kind.name << (varied ? ", varied: " : ": ") << all.words());
+  CHECK(all.faults.empty());
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("the CPU's answers, their lists, points and normals are those of brute force, about every kind of scene") {
-  const bool varied = GENERATE(false, true);
   for (const kinds::Kind& kind : kinds::all()) {
-    oracle::Judged judged;
-    for (uint64_t seed = 0; seed < (varied ? kind.judged / 2 : kind.judged); ++seed) {
-      kinds::Random random(seed + (varied ? 100'000 : 0));
-      test::Case one;
-      kind.make(random, one);
-      for (Query& query : one.queries) {
-        if (varied) kinds::vary(random, query);
-      }
-      const Answers answers = CpuSweeper(one.scene, 2).run(one.queries);
-      for (size_t i = 0; i < one.queries.size(); ++i) {
-        const size_t before = judged.faults.size();
-        const Query& query = one.queries[i];
-        if (query.clearance == 0) judged.add(one.scene, query, answers, i);
-        judged.count(faultOfPoint(one.scene, query, answers.results[i], kind.off));
-        if (judged.faults.size() != before) UNSCOPED_INFO("a fault in scene " << seed << ", query " << i);
-      }
-    }
-    CAPTURE(kind.name, varied);
-    INFO(judged.words());
-    CHECK(judged.faults.empty());
-    if (!varied) CHECK(judged.hits + judged.overlaps >= kind.contacts);
+    const oracle::Judged plain = judged(kind, kind.judged, false);
+    CAPTURE(kind.name, plain.words());
+    CHECK(plain.hits + plain.overlaps >= kind.contacts);
+    judged(kind, kind.judged / 2, true);
+  }
+}
+
+TEST_CASE("where everything moves, 100,000 answers are those of brute force", "[.long]") {
+  for (const kinds::Kind& kind : kinds::all()) {
+    if (std::string_view(kind.name).starts_with("steps")) judged(kind, 16'667, false);
   }
 }

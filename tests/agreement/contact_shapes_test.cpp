@@ -4,64 +4,25 @@
 #include "agreement/compare.h"
 #include "support/catch.h"
 #include "support/test_device.h"
+#include "unit/known_cases.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
+using test::add;
+using test::at;
 using test::compare;
 using tools::MeshData;
 using tools::Random;
 using tools::Vec3;
 
-constexpr std::array<double, 9> kUpright{1, 0, 0, 0, 1, 0, 0, 0, 1};
-constexpr Vec3 kFull{1, 1, 1};
-
-MeshId add(Scene& scene, const MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
-}
-
-Transform at(const Vec3& place, const Vec3& scale = kFull) {
-  return tools::makePose(kUpright, scale, place);
-}
-
 }  // namespace
 
-TEST_CASE("boxes in one line touch at the start, in flight and at exactly the distance") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
-  const ObjectId object = scene.addObject({box, at({0, 0, 4}), ~0u});
-  const auto ask = [&](const Vec3& start, double distance) {
-    return Query{.mesh = box, .worldFromMesh = at(start), .direction = {0, 0, 2}, .distance = distance};
-  };
-  std::vector<Query> queries{ask({0, 0, 0}, 3),
-                             ask({0, 0, 0}, std::nextafter(3, 0)),
-                             ask({0, 0, 0}, 10),
-                             ask({0, 0, 3}, 1),
-                             ask({0, 0, 3}, 0),
-                             ask({0, 0, std::nextafter(3, 0)}, 0),
-                             ask({0, 0, std::nextafter(3, 0)}, 1),
-                             ask({0, 0, 4.5}, 5),
-                             ask({0, 0, 5}, 5),
-                             ask({0, 0, std::nextafter(5, 6)}, 5),
-                             ask({1, 0, 0}, 9),
-                             ask({std::nextafter(1, 2), 0, 0}, 9),
-                             ask({1, 1, 0}, 9),
-                             ask({1, 1, 0}, 3),
-                             ask({1, 1, 3}, 0),
-                             ask({-1, 0.5, 0}, 9)};
-  compare(scene, queries);
-  Sweeper sweeper(test::device(), scene, {.cpuBatch = 0});
-  const std::vector<Result> results = sweeper.run(queries).results;
-  CHECK((results[0].status == Status::hit && results[0].t == 3 && results[0].hi == 3));
-  CHECK(results[0].object == object);
-  CHECK(results[1].status == Status::clear);
-  CHECK((results[2].status == Status::hit && results[2].t == 3));
-  CHECK((results[3].status == Status::overlap && results[4].status == Status::overlap));
-  CHECK(results[5].status == Status::clear);
-  CHECK(results[6].status == Status::hit);
-  CHECK((results[8].status == Status::overlap && results[9].status == Status::clear));
-  CHECK((results[10].status == Status::hit && results[11].status == Status::clear));
+TEST_CASE("the device gives the known answers about boxes among boxes") {
+  known::check([](const Scene& scene, const std::vector<Query>& queries) {
+    return Sweeper(test::device(), scene, {.cpuBatch = 0}).run(queries).results;
+  });
 }
 
 TEST_CASE("meshes in units so small or large that float cannot hold their poses meet as the CPU says") {
@@ -74,9 +35,7 @@ TEST_CASE("meshes in units so small or large that float cannot hold their poses 
   const MeshId mesh = add(scene, ball);
   const double scale = world / unit;
   const auto pose = [&, side = world] {
-    const Vec3 place = random.inBox({-4, -4, -4}, {4, 4, 4});
-    return tools::makePose(random.rotation(), {scale, scale, scale},
-                           {side * place[0], side * place[1], side * place[2]});
+    return tools::makePose(random.rotation(), {scale, scale, scale}, random.inCube(4 * side));
   };
   for (int i = 0; i < 8; ++i) scene.addObject({mesh, pose(), ~0u});
   std::vector<Query> queries;
@@ -97,8 +56,8 @@ TEST_CASE("two balls of many triangles meet as the CPU says, however often they 
   scene.addObject({ball, {}, ~0u});
   // A search of many rounds.
   std::vector<Query> queries(
-      4, {.mesh = ball, .worldFromMesh = at({-0.5, 0.25, -7}), .direction = {0, 0, 1}, .distance = 50});
-  queries.push_back({.mesh = ball, .worldFromMesh = at({-1.25, 0.5, -7}), .direction = {0, 0, 1}, .distance = 50});
+      4, {.mesh = ball, .worldFromMesh = at(-0.5, 0.25, -7), .direction = {0, 0, 1}, .distance = 50});
+  queries.push_back({.mesh = ball, .worldFromMesh = at(-1.25, 0.5, -7), .direction = {0, 0, 1}, .distance = 50});
   for (int repeat = 0; repeat < 3; ++repeat) CHECK(compare(scene, queries).tally.hits == queries.size());
 }
 
@@ -108,9 +67,9 @@ TEST_CASE("two poles of many triangles each meet in every pair at once, and the 
   scene.addObject({ball, {}, ~0u});
   scene.addObject({ball, {}, ~0u});
   const tools::Tally tally =
-      compare(scene, {{.mesh = ball, .worldFromMesh = at({0, 0, -7}), .direction = {0, 0, 2}, .distance = 50},
-                      {.mesh = ball, .worldFromMesh = at({0, 0, -7}), .direction = {0, 0, 2}, .distance = 5},
-                      {.mesh = ball, .worldFromMesh = at({0, 0, -2}), .direction = {0, 0, 2}, .distance = 5}})
+      compare(scene, {{.mesh = ball, .worldFromMesh = at(0, 0, -7), .direction = {0, 0, 2}, .distance = 50},
+                      {.mesh = ball, .worldFromMesh = at(0, 0, -7), .direction = {0, 0, 2}, .distance = 5},
+                      {.mesh = ball, .worldFromMesh = at(0, 0, -2), .direction = {0, 0, 2}, .distance = 5}})
           .tally;
   CHECK(tally.hits == 2);
   CHECK(tally.overlaps == 1);

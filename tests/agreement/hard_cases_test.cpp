@@ -31,18 +31,19 @@ std::vector<Query> withDistances(const Scene& scene, const tools::Workload& work
   return queries;
 }
 
-/// Checks the cases of every family, and adds them up.
-tools::Tally tallyOf(tools::CaseRange range) {
-  tools::CaseRun run(test::device());
+/// Checks the cases of every family, of which each must have as many hits, and adds them up.
+tools::Tally tallyOf(tools::CaseRange range, const tools::MeshFamilies& meshes = {}, uint64_t hits = 0) {
+  tools::CaseRun run(test::device(), meshes);
   tools::Tally all;
-  const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
-    UNSCOPED_INFO("case " << number << ": " << words);
-  };
-  for (const std::string& family : tools::runFamilies()) {
+  for (const std::string& family : tools::runFamilies(meshes)) {
     CAPTURE(family);
     range.family = family;
-    const tools::Tally tally = run.run(range, onWrong);
+    const tools::Tally tally = run.run(range, [](uint64_t number, const Approach&, const std::string& words) {
+      UNSCOPED_INFO("case " << number << ": " << words);
+    });
+    CHECK(tally.queries == range.cases);
     CHECK(tally.wrong == 0);
+    CHECK(tally.hits >= hits);
     all.add(tally);
   }
   return all;
@@ -51,20 +52,8 @@ tools::Tally tallyOf(tools::CaseRange range) {
 }  // namespace
 
 TEST_CASE("hard cases of every family in one scene, and real meshes, get the CPU's answer on the device") {
-  const tools::MeshFamilies meshes = test::realMeshes();
-  tools::CaseRun run(test::device(), meshes);
-  for (const std::string& family : tools::runFamilies(meshes)) {
-    CAPTURE(family);
-    const uint64_t cases = 130;  // three scenes
-    const auto onWrong = [](uint64_t number, const Approach&, const std::string& words) {
-      UNSCOPED_INFO("case " << number << ": " << words);
-    };
-    const tools::Tally tally = run.run({family, 1, 0, cases}, onWrong);
-    CHECK(tally.queries == cases);
-    CHECK(tally.wrong == 0);
-    CHECK(std::max(tally.late, tally.early) <= 1e-12);
-    CHECK(tally.hits >= 5);
-  }
+  const tools::Tally all = tallyOf({.seed = 1, .cases = 130}, test::realMeshes(), 5);  // three scenes each
+  CHECK(std::max(all.late, all.early) <= 1e-12);
 }
 
 TEST_CASE("with a clearance, hard cases of every family get the CPU's answer on the device, to the bit") {

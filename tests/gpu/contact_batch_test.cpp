@@ -1,98 +1,76 @@
-// In mode contact, batches do not change answers, and large meshes and many simultaneous contacts are handled.
+// Batches do not change answers, and large meshes are handled.
 #include <algorithm>
 #include <cmath>
 
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
-
-struct LoadedWorkload {
-  explicit LoadedWorkload(tools::Workload w) : workload(std::move(w)), player(workload) {
-    player.show(0);
-    queries = tools::queriesOf(workload.queries);
-  }
-  tools::Workload workload;
-  tools::ScenePlayer player;
-  std::vector<Query> queries;
-};
-
-void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
-  REQUIRE(a.size() == b.size());
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (test::sameBits(a[i], b[i])) continue;
-    CAPTURE(i, a[i].t, b[i].t, a[i].lo, b[i].lo, a[i].hi, b[i].hi, a[i].object, b[i].object, a[i].triB, b[i].triB,
-            a[i].triA, b[i].triA, uint32_t(a[i].tier), uint32_t(b[i].tier));
-    CHECK(test::sameBits(a[i], b[i]));
-  }
-}
+using test::add;
+using test::at;
+using test::differenceOf;
 
 // SweeperOptions::cpuBatch: all queries on the device, all on the CPU.
 constexpr uint32_t kOnDevice = 0, kOnCpu = kNone - 1;
 
-Transform at(double x, double y, double z) {
-  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
-}
-
-MeshId add(Scene& scene, const tools::MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
+std::vector<Result> oneByOne(Sweeper& sweeper, const std::vector<Query>& queries, Mode mode) {
+  std::vector<Result> results;
+  for (const Query& query : queries) results.push_back(sweeper.run({&query, 1}, mode).results[0]);
+  return results;
 }
 
 }  // namespace
 
-TEST_CASE(
-    "in mode contact a batch of any size gives the same bits as one query at a time, on the device and on the CPU") {
-  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}));
-  const uint32_t cpuBatch = GENERATE(kOnDevice, 500u, kNone);
-  CAPTURE(cpuBatch);
-  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = cpuBatch});
-  std::vector<Result> single;
-  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1}).results[0]);
-  CHECK(std::count_if(single.begin(), single.end(), [](const Result& r) { return r.status == Status::hit; }) > 100);
-  for (size_t size : {63, 64, 65, 1234}) {
+TEST_CASE("a batch of any size gives the same bits as one query at a time, in both modes and on the CPU") {
+  const auto [mode, cpuBatch] = GENERATE(table<Mode, uint32_t>(
+      {{Mode::sampled, kOnDevice}, {Mode::contact, kOnDevice}, {Mode::contact, 500}, {Mode::contact, kNone}}));
+  CAPTURE(static_cast<uint32_t>(mode), cpuBatch);
+  const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 1234}), 32);
+  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = cpuBatch});
+  const std::vector<Result> single = oneByOne(sweeper, asked.queries, mode);
+  CHECK(std::ranges::count(single, Status::hit, &Result::status) > 100);
+  for (size_t size : {1, 63, 64, 65, 1234}) {
     CAPTURE(size);
-    const Answers answers = sweeper.run(std::span(loaded.queries).first(size));
-    checkSame(answers.results, {single.begin(), single.begin() + size});
+    const Answers answers = sweeper.run(std::span(asked.queries).first(size), mode);
+    CHECK(differenceOf(answers.results, std::span(single).first(size)) == "");
     if (size < cpuBatch && cpuBatch != kNone) CHECK(answers.stats.cpuQueries == size);
     // Without doubles, the device may leave some queries unresolved.
     if (size >= cpuBatch && test::device().doubles()) CHECK(answers.stats.cpuQueries == 0);
   }
-  Sweeper processor(test::device(), loaded.player.scene(), {.cpuBatch = kOnCpu});
-  const Answers answers = processor.run(loaded.queries);
-  checkSame(answers.results, single);
-  CHECK(answers.stats.cpuQueries == loaded.queries.size());
-  CHECK(answers.stats.submissions == 0);
+  if (mode == Mode::sampled) return;
+  const Answers onCpu = Sweeper(test::device(), asked.scene, {.cpuBatch = kOnCpu}).run(asked.queries);
+  CHECK(differenceOf(onCpu.results, single) == "");
+  CHECK(onCpu.stats.cpuQueries == asked.queries.size());
+  CHECK(onCpu.stats.submissions == 0);
 }
 
 TEST_CASE("in mode contact queries over soups have the same bits alone, in a batch, in reverse order and on the CPU",
           "[subgroups]") {
-  LoadedWorkload loaded(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
-  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
-  std::vector<Result> single;
-  for (const Query& query : loaded.queries) single.push_back(sweeper.run({&query, 1}).results[0]);
-  checkSame(sweeper.run(loaded.queries).results, single);
-  Sweeper other(test::device(), loaded.player.scene(), {.cpuBatch = kOnCpu});
-  std::reverse(loaded.queries.begin(), loaded.queries.end());
-  std::vector<Result> backward = other.run(loaded.queries).results;
-  std::reverse(backward.begin(), backward.end());
-  checkSame(backward, single);
+  test::Case asked = test::caseOf(tools::makeWorkload(tools::Soups{.sensors = 130, .triangles = 100, .seed = 4}));
+  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = kOnDevice});
+  const std::vector<Result> single = oneByOne(sweeper, asked.queries, Mode::contact);
+  CHECK(differenceOf(sweeper.run(asked.queries).results, single) == "");
+  std::ranges::reverse(asked.queries);
+  std::vector<Result> backward = Sweeper(test::device(), asked.scene, {.cpuBatch = kOnCpu}).run(asked.queries).results;
+  std::ranges::reverse(backward);
+  CHECK(differenceOf(backward, single) == "");
 }
 
 TEST_CASE("batches of both modes by turns have the same bits as those of one mode") {
-  LoadedWorkload loaded(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}));
-  for (Query& query : loaded.queries) query.resolution = 32;
+  const test::Case asked = test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = 130}), 32);
   const auto fresh = [&](Mode mode) {
-    return Sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice}).run(loaded.queries, mode).results;
+    return Sweeper(test::device(), asked.scene, {.cpuBatch = kOnDevice}).run(asked.queries, mode).results;
   };
   const std::vector<Result> precise = fresh(Mode::contact), coarse = fresh(Mode::sampled);
-  Sweeper sweeper(test::device(), loaded.player.scene(), {.cpuBatch = kOnDevice});
+  Sweeper sweeper(test::device(), asked.scene, {.cpuBatch = kOnDevice});
   for (int round = 0; round < 2; ++round) {
-    checkSame(sweeper.run(loaded.queries, Mode::sampled).results, coarse);
-    checkSame(sweeper.run(loaded.queries).results, precise);
+    CHECK(differenceOf(sweeper.run(asked.queries, Mode::sampled).results, coarse) == "");
+    CHECK(differenceOf(sweeper.run(asked.queries).results, precise) == "");
   }
 }
 
@@ -127,28 +105,4 @@ TEST_CASE("mode contact handles a mesh of 160,000 triangles as an object and as 
                      .direction = {1, 0, 0},
                      .distance = 0.2};
   CHECK(sweeper.run({&within, 1}).results[0].status == Status::clear);
-}
-
-TEST_CASE("of many objects touched at exactly the same time the one with the lowest id is reported") {
-  Scene scene;
-  const MeshId box = add(scene, tools::makeBox({1, 1, 1})), plate = add(scene, tools::makePlate(128, 128, 1));
-  // Ids decrease along x and y.
-  for (int y = 31; y >= 0; --y) {
-    for (int x = 31; x >= 0; --x) scene.addObject({box, at(2 * x, 2 * y, 0), ~0u});
-  }
-  Sweeper sweeper(test::device(), scene, {.cpuBatch = GENERATE(kOnDevice, kOnCpu)});
-  Query query{.mesh = plate, .worldFromMesh = at(32, 32, -6), .direction = {0, 0, 0.5}, .distance = 10};
-  for (uint32_t least = 0; least < 4; ++least) {
-    CAPTURE(least);
-    const Result result = sweeper.run({&query, 1}).results[0];
-    CHECK(result.status == Status::hit);
-    CHECK(result.t == 5);
-    CHECK(result.object == least);
-    query.exclude.push_back(least);
-  }
-  query.exclude.clear();
-  query.distance = 5;
-  CHECK(sweeper.run({&query, 1}).results[0].object == 0);
-  query.distance = std::nextafter(5, 0);
-  CHECK(sweeper.run({&query, 1}).results[0].status == Status::clear);
 }

@@ -10,11 +10,13 @@
 #include "math/rounding.h"
 #include "scene/gpu_scene.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/shapes.h"
 
 namespace {
 
 using namespace radar;
+using test::add;
 using test::PairBounds;
 using test::Touch;
 
@@ -52,10 +54,6 @@ tools::MeshData turned(tools::MeshData mesh, tools::Random& random) {
 tools::MeshData flattened(tools::MeshData mesh, float by) {
   for (size_t k = 2; k < mesh.positions.size(); k += 3) mesh.positions[k] *= by;
   return mesh;
-}
-
-MeshId add(Scene& scene, const tools::MeshData& mesh) {
-  return scene.addMesh(mesh.positions, mesh.indices);
 }
 
 /// A pair of triangles that touch.

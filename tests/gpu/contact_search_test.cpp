@@ -6,6 +6,7 @@
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "sweep/sweeper.h"
 #include "workloads/hard_cases.h"
 #include "workloads/shapes.h"
@@ -23,6 +24,9 @@ std::ostream& operator<<(std::ostream& out, const SearchRoom& room) {
 namespace {
 
 using namespace radar;
+using test::add;
+using test::at;
+using test::differenceOf;
 
 /// Searches on the device, whatever the size of the batch.
 class DeviceSearch {
@@ -42,51 +46,29 @@ class DeviceSearch {
   Sweeper::Impl sweeper_;
 };
 
-void checkSame(const Result& a, const Result& b) {
-  CAPTURE(a.t, b.t, a.lo, b.lo, a.hi, b.hi, a.object, b.object, a.triB, b.triB, a.triA, b.triA);
-  CHECK(test::sameBits(a, b));
-}
-
-void checkSame(const std::vector<Result>& a, const std::vector<Result>& b) {
-  REQUIRE(a.size() == b.size());
-  for (size_t i = 0; i < a.size(); ++i) {
-    CAPTURE(i);
-    checkSame(a[i], b[i]);
-  }
-}
-
 /// A family's queries, every fourth of which has `anyHit` set.
-struct FamilyQueries {
-  FamilyQueries(const char* family, uint32_t count, uint64_t seed, tools::Company company)
-      : workload(tools::hardScene(tools::hardFamily(family), seed, 0, count, company)), player(workload) {
-    player.show(0);
-    queries = tools::queriesOf(workload.queries);
-    for (size_t i = 3; i < queries.size(); i += 4) queries[i].anyHit = true;
-  }
-  tools::Workload workload;
-  tools::ScenePlayer player;
-  std::vector<Query> queries;
-};
-
-Transform at(double x, double y, double z) {
-  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
+test::Case familyOf(const std::string& name) {
+  test::Case out =
+      test::caseOf(tools::hardScene(tools::hardFamily(name), 1, 0, tools::kIsolatedCases, tools::Company::isolated));
+  for (size_t i = 3; i < out.queries.size(); i += 4) out.queries[i].anyHit = true;
+  return out;
 }
 
 }  // namespace
 
 TEST_CASE("the answers have the same bits with the smallest lists and in the shortest rounds", "[subgroups]") {
   const std::string family = GENERATE("interlocking", "lattice", "soup");
-  const FamilyQueries batch(family.c_str(), tools::kIsolatedCases, 1, tools::Company::isolated);
-  const std::vector<Result> roomy = DeviceSearch(batch.player.scene()).run(batch.queries).results;
+  const test::Case batch = familyOf(family);
+  const std::vector<Result> roomy = DeviceSearch(batch.scene).run(batch.queries).results;
   SearchRoom room = GENERATE(SearchRoom{.tasks = 1}, SearchRoom{.candidates = 1}, SearchRoom{.unresolved = 1},
                              SearchRoom{.groups = 1}, SearchRoom{.budget = 1}, SearchRoom{.budget = 17},
                              SearchRoom{.groups = 3, .budget = 5, .width = 1'000'000},
                              SearchRoom{.tasks = 50, .candidates = 300, .unresolved = 9, .budget = 3});
   std::tie(room.queue, room.stack) = GENERATE(std::pair{0u, 0u}, std::pair{1u, 4u}, std::pair{0u, 7u});
   CAPTURE(family, room);
-  DeviceSearch narrow(batch.player.scene(), room);
+  DeviceSearch narrow(batch.scene, room);
   const Answers answers = narrow.run(batch.queries);
-  checkSame(answers.results, roomy);
+  CHECK(differenceOf(answers.results, roomy) == "");
   // Only queries that overflow a list go to the CPU, and in some families those with very many unresolved pairs. Rounds
   // that exceed their budget continue in further rounds.
   if (room.candidates == 1) CHECK(answers.stats.cpuQueries > 0);
@@ -103,9 +85,8 @@ constexpr uint32_t kTriangles = 70'000;
 // is the nearest.
 struct TrianglesOverhead {
   explicit TrianglesOverhead(bool level) {
-    const std::vector<float> small{0, 0, 0, 0.5f, 0, 0, 0, 0.5f, 0}, large{-1, -1, 0, 601, -1, 0, -1, 601, 0};
-    const std::vector<uint32_t> corners{0, 1, 2};
-    const MeshId triangle = scene.addMesh(small, corners), wing = scene.addMesh(large, corners);
+    const MeshId triangle = add(scene, {"", {0, 0, 0, 0.5f, 0, 0, 0, 0.5f, 0}, {0, 1, 2}}),
+                 wing = add(scene, {"", {-1, -1, 0, 601, -1, 0, -1, 601, 0}, {0, 1, 2}});
     constexpr uint32_t kSide = 265;
     tools::Random random(6);
     for (uint32_t i = 0; i < kTriangles; ++i) {
@@ -129,7 +110,7 @@ TEST_CASE("a batch with too many candidates for its lists is searched again, in 
   CHECK(first.stats.submissions > 1);
   const Answers second = search.run({&triangles.query, 1});
   CHECK(second.stats.submissions == 1);
-  checkSame(second.results, first.results);
+  CHECK(differenceOf(second.results, first.results) == "");
 }
 
 TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations, are all searched", "[subgroups]") {
@@ -137,17 +118,16 @@ TEST_CASE("70,000 candidate pairs, more than lavapipe's limit of loop iterations
   CAPTURE(level);
   const TrianglesOverhead triangles(level);
   DeviceSearch search(triangles.scene, {.candidates = 100'000});
-  const Result result = search.run({&triangles.query, 1}).results[0];
-  CHECK(result.status == Status::hit);
-  CHECK(result.t == (level ? 4 : 4.5));
-  CHECK(result.object == (level ? 0 : kTriangles - 1));
-  checkSame(DeviceSearch(triangles.scene).run({&triangles.query, 1}).results[0], result);
+  const std::vector<Result> results = search.run({&triangles.query, 1}).results;
+  CHECK(results[0].status == Status::hit);
+  CHECK(results[0].t == (level ? 4 : 4.5));
+  CHECK(results[0].object == (level ? 0 : kTriangles - 1));
+  CHECK(differenceOf(DeviceSearch(triangles.scene).run({&triangles.query, 1}).results, results) == "");
 }
 
 TEST_CASE("queries that floats cannot represent are answered on the CPU") {
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
+  const MeshId mesh = add(scene, tools::makeBox({1, 1, 1}));
   const double size = GENERATE(1e-40, 1.0, 1e30, 1e80);
   CAPTURE(size);
   const auto placed = [&](double x) { return Transform{{size, 0, 0, x * size, 0, size, 0, 0, 0, 0, size, 0}}; };

@@ -7,6 +7,7 @@
 #include "support/buffer_words.h"
 #include "support/catch.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "workloads/shapes.h"
 
 namespace {
@@ -87,8 +88,7 @@ Transform randomPose(tools::Random& random) {
 }
 
 MeshId addSoup(Scene& scene, tools::Random& random, uint32_t triangles) {
-  const tools::MeshData soup = tools::makeSoup(tools::kSoups[random.below(tools::kSoups.size())], triangles, random);
-  return scene.addMesh(soup.positions, soup.indices);
+  return test::add(scene, tools::makeSoup(tools::kSoups[random.below(tools::kSoups.size())], triangles, random));
 }
 
 // Bytes that are staged, but not uploaded.

@@ -81,22 +81,6 @@ TEST_CASE("an indirect dispatch runs as many workgroups as an earlier kernel wro
   CHECK(results.mapped()[most] == kUntouched);
 }
 
-TEST_CASE("an indirect dispatch without its barrier is reported as a hazard") {
-  Array<Groups> command(impl(), "command", BufferDomain::device, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  command.reserve(1);
-  Passes passes(impl());
-  const Array<uint32_t> values = numbers("values", 1), results = untouched(1);
-  {
-    gpu::Submission submission(impl(), false);  // recorded but never submitted
-    const Commands commands = submission.begin();
-    passes(commands, kCountGroups, 1, 1u, {{kSlotGroups, command}});
-    passes(commands, kScaleOf64, {command, 0}, ScalePush{1, 1}, {{kSlotValues, values}, {kSlotResults, results}});
-  }
-  const std::vector<std::string> messages = takeValidationMessages();
-  REQUIRE_FALSE(messages.empty());
-  CHECK_THAT(messages[0], test::Contains("SYNC-HAZARD-READ-AFTER-WRITE"));
-}
-
 TEST_CASE("dispatches of one program in one recording do not see each other's arguments") {
   const uint32_t count = 100;
   const Array<uint32_t> values = numbers("values", count);

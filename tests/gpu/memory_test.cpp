@@ -6,11 +6,13 @@
 #include "support/catch.h"
 #include "support/same_bits.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
+using test::differenceOf;
 
 /// Makes calls of the device fail for lack of memory.
 class ScarceMemory {
@@ -48,46 +50,33 @@ class ScarceMemory {
 
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
 
-// Teapots among boxes.
-struct Teapots {
+// Teapots among boxes, and their answers.
+struct Teapots : test::Case {
   Teapots(uint32_t sensors, Mode asked)
-      : mode(asked),
-        workload(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = sensors})),
-        player(workload) {
-    player.show(0);
-    queries = tools::queriesOf(workload.queries, 128);
-    answers = Sweeper(test::device(), player.scene(), kOnDevice).run(queries, mode).results;
+      : test::Case(test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = sensors}), 128)),
+        mode(asked) {
+    answers = Sweeper(test::device(), scene, kOnDevice).run(queries, mode).results;
   }
   Mode mode;
-  tools::Workload workload;
-  tools::ScenePlayer player;
-  std::vector<Query> queries;
   std::vector<Result> answers;
 };
-
-size_t differences(const std::vector<Result>& a, const std::vector<Result>& b) {
-  REQUIRE(a.size() == b.size());
-  size_t count = 0;
-  for (size_t i = 0; i < a.size(); ++i) count += test::sameBits(a[i], b[i]) ? 0 : 1;
-  return count;
-}
 
 }  // namespace
 
 TEST_CASE("queries of mode contact that do not fit the device's memory are answered on the CPU, later ones there") {
   const Teapots teapots(64, Mode::contact);
-  Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
   {
     const ScarceMemory scarce;
     ScarceMemory::most = 1u << 16;
     CHECK_NOTHROW(sweeper.sync());
     const Answers answers = sweeper.run(teapots.queries, teapots.mode);
-    CHECK(differences(answers.results, teapots.answers) == 0);
+    CHECK(differenceOf(answers.results, teapots.answers) == "");
     CHECK(answers.stats.cpuQueries == teapots.queries.size());
     CHECK(answers.reasons.empty());
   }
   const Answers answers = sweeper.run(teapots.queries, teapots.mode);
-  CHECK(differences(answers.results, teapots.answers) == 0);
+  CHECK(differenceOf(answers.results, teapots.answers) == "");
   CHECK(answers.stats.submissions > 0);
   CHECK(answers.stats.cpuQueries == 0);
 }
@@ -95,27 +84,23 @@ TEST_CASE("queries of mode contact that do not fit the device's memory are answe
 TEST_CASE("lists of hits do not change if the device runs out of memory") {
   Teapots teapots(64, Mode::contact);
   for (size_t i = 0; i < teapots.queries.size(); i += 3) teapots.queries[i].hits = 4;
-  Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
   const Answers expected = sweeper.run(teapots.queries, teapots.mode);
-  Sweeper poor(test::device(), teapots.player.scene(), kOnDevice);
+  Sweeper poor(test::device(), teapots.scene, kOnDevice);
   const ScarceMemory scarce;
   ScarceMemory::most = 1u << 16;
   const Answers found = poor.run(teapots.queries);
-  CHECK(differences(found.results, expected.results) == 0);
-  REQUIRE(found.lists.size() == expected.lists.size());
-  for (size_t i = 0; i < found.lists.size(); ++i) {
-    CHECK(differences(found.lists[i].hits, expected.lists[i].hits) == 0);
-  }
+  CHECK(differenceOf(found, expected) == "");
 }
 
 TEST_CASE("a batch of mode sampled whose pictures do not fit the device's memory is split") {
   const Teapots teapots(64, Mode::sampled);
-  Sweeper sweeper(test::device(), teapots.player.scene());
+  Sweeper sweeper(test::device(), teapots.scene);
   sweeper.run(std::span(teapots.queries).first(1), teapots.mode);  // uploads the scene
   const ScarceMemory scarce;
   ScarceMemory::most = 20 * 128 * 128 * sizeof(float);
   const Answers answers = sweeper.run(teapots.queries, teapots.mode);
-  CHECK(differences(answers.results, teapots.answers) == 0);
+  CHECK(differenceOf(answers.results, teapots.answers) == "");
   CHECK(answers.stats.submissions >= 4);
   CHECK(answers.reasons.empty());
 }
@@ -126,7 +111,7 @@ TEST_CASE("a query of mode sampled whose own picture does not fit the device's m
   REQUIRE(drawn != teapots.answers.end());
   const auto large = static_cast<size_t>(drawn - teapots.answers.begin());
   teapots.queries[large].resolution = 512;
-  Sweeper sweeper(test::device(), teapots.player.scene());
+  Sweeper sweeper(test::device(), teapots.scene);
   sweeper.run(std::span(teapots.queries).first(1), teapots.mode);
   const ScarceMemory scarce;
   ScarceMemory::most = 26 * 128 * 128 * sizeof(float) / 2;
@@ -149,14 +134,14 @@ TEST_CASE("whichever allocation or submission fails for lack of memory, every qu
   int failed = 0;
   for (int failing = 0;; ++failing) {
     CAPTURE(failing);
-    Sweeper sweeper(test::device(), teapots.player.scene(), kOnDevice);
+    Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
     sweeper.run(first, teapots.mode);  // makes the mode ready
     const ScarceMemory scarce;
     ScarceMemory::failing = failing;
     const Answers answers = sweeper.run(teapots.queries, teapots.mode);
-    CHECK(differences(answers.results, teapots.answers) == 0);
+    CHECK(differenceOf(answers.results, teapots.answers) == "");
     CHECK(answers.reasons.empty());
-    CHECK(differences(sweeper.run(teapots.queries, teapots.mode).results, teapots.answers) == 0);
+    CHECK(differenceOf(sweeper.run(teapots.queries, teapots.mode).results, teapots.answers) == "");
     if (ScarceMemory::calls <= failing) break;
     ++failed;
   }

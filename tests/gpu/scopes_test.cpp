@@ -4,11 +4,13 @@
 #include "gpu/device.h"
 #include "support/catch.h"
 #include "support/test_device.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 
 namespace {
 
 using namespace radar;
+using test::at;
 using Vector = std::array<double, 3>;
 
 double dot(const Vector& a, const Vector& b) {
@@ -198,10 +200,6 @@ MeshId addSquare(Scene& scene, float side) {
   const std::vector<float> positions{-h, -h, 0, h, -h, 0, h, h, 0, -h, h, 0};
   const std::vector<uint32_t> indices{0, 1, 2, 0, 2, 3};
   return scene.addMesh(positions, indices);
-}
-
-Transform at(double x, double y, double z) {
-  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
 }
 
 }  // namespace

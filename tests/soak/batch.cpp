@@ -58,9 +58,9 @@ void checkBatch(const Batch& batch, const Answers& found, const std::string& all
       ++tally.invalid;
       continue;
     }
-    if (!test::sameAnswer(result, exact)) fail("another answer");
+    if (!test::sameButTier(result, exact)) fail("another answer");
     const Listed &ours = test::listedBy(found, i), &theirs = test::listedBy(batch.exact, i);
-    if (!std::ranges::equal(ours.hits, theirs.hits, test::sameAnswer)) {
+    if (!std::ranges::equal(ours.hits, theirs.hits, test::sameButTier)) {
       fail("another list of hits" + inWords(ours.hits) + " instead of" + inWords(theirs.hits));
     }
     if (ours.overlapping != theirs.overlapping) fail("another overlap");

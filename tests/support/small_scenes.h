@@ -1,15 +1,10 @@
 // What small scenes are made of.
 #pragma once
 
-#include "radar/scene.h"
+#include "support/world.h"
 #include "workloads/shapes.h"
 
 namespace radar::test {
-
-/// Moves by a vector.
-inline Transform at(double x, double y, double z) {
-  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
-}
 
 inline MeshId addMesh(Scene& scene, const tools::MeshData& mesh, const std::optional<Bounds>& bounds = {}) {
   return scene.addMesh(mesh.positions, mesh.indices, bounds);

@@ -3,13 +3,10 @@
 #pragma once
 
 #include "radar/cpu_sweeper.h"
-#include "soups.h"
+#include "support/catch.h"
 #include "support/same_bits.h"
-#include "workloads/workload.h"
 
 namespace agreement {
-
-using radar::test::sameBits;
 
 /// Sweepers of 1, 2 and 5 threads that follow one scene.
 class ThreadedSweepers {
@@ -18,43 +15,33 @@ class ThreadedSweepers {
       : scene_(scene), one_(scene, 1), two_(scene, 2), five_(scene, 5) {}
 
   void check(std::vector<radar::Query> queries) {
-    const std::vector<radar::Result> exact = radar::CpuSweeper(scene_, 1).run(queries).results;
-    compare(queries, exact);
-    for (radar::Query& query : queries) query.anyHit = true;
-    const std::vector<radar::Result> decided = radar::CpuSweeper(scene_, 1).run(queries).results;
-    compare(queries, decided);
+    const std::vector<radar::Result> exact = compared(queries);
+    for (radar::Query& query : queries) {
+      query.anyHit = true;
+      query.hits = 1;
+    }
+    const std::vector<radar::Result> decided = compared(queries);
     for (size_t i = 0; i < queries.size(); ++i) {
       INFO("query " << i << " of " << queries.size() << ", anyHit");
       const bool meets = exact[i].status != radar::Status::clear;
       REQUIRE(decided[i].status == (meets ? radar::Status::hit : radar::Status::clear));
       if (!meets) continue;
       REQUIRE(decided[i].lo == 0);
-      REQUIRE(decided[i].hi == queries[i].distance);
+      REQUIRE(decided[i].hi == (queries[i].motion ? 1 : queries[i].distance));
     }
   }
 
  private:
-  void compare(const std::vector<radar::Query>& queries, const std::vector<radar::Result>& expected) {
+  std::vector<radar::Result> compared(const std::vector<radar::Query>& queries) {
+    const radar::Answers expected = radar::CpuSweeper(scene_, 1).run(queries);
     for (radar::CpuSweeper* sweeper : {&one_, &two_, &five_}) {
-      const std::vector<radar::Result> results = sweeper->run(queries).results;
-      REQUIRE(results.size() == queries.size());
-      for (size_t i = 0; i < queries.size(); ++i) {
-        INFO("query " << i << " of " << queries.size());
-        REQUIRE(sameBits(results[i], expected[i]));
-      }
+      REQUIRE(radar::test::differenceOf(sweeper->run(queries), expected) == "");
     }
+    return expected.results;
   }
 
   const radar::Scene& scene_;
   radar::CpuSweeper one_, two_, five_;
 };
-
-inline std::vector<radar::Query> queriesOf(const radar::tools::Workload& workload, uint32_t scene = 0) {
-  std::vector<radar::Query> queries;
-  for (const radar::tools::QuerySpec& spec : workload.queries) {
-    if (spec.scene == scene) queries.push_back(spec);
-  }
-  return queries;
-}
 
 }  // namespace agreement

@@ -4,6 +4,7 @@
 #include "cpu_wild_scenes.h"
 #include "exact/contact.h"
 #include "query/swept_box.h"
+#include "support/catch.h"
 
 using namespace radar;
 using namespace radar::cpu;

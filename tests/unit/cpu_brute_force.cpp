@@ -1,103 +1,87 @@
 // Compares the CPU's search with brute force over all pairs in exact arithmetic.
-#include "cpu_agreement.h"
+#include "distances.h"
+#include "judged.h"
+#include "scene_kinds.h"
+#include "support/catch.h"
 
 using namespace radar;
-using soups::Random;
+using tools::operator+;
+using tools::operator-;
+using tools::operator*;
 
 namespace {
 
-/// Checks queries through a scene of soups of about the size `scale`, up to `far` from the origin.
-void runSoup(uint64_t seed, double scale, double far) {
-  Random random(seed);
-  Scene scene;
-  const std::array<double, 3> centre{far * random.uniform(-1, 1), far * random.uniform(-1, 1), far};
-  const auto near = [&](double spread) {
-    auto p = random.inBall();
-    for (size_t k = 0; k < 3; ++k) p[k] = centre[k] + scale * spread * p[k];
-    return p;
-  };
-  std::vector<MeshId> meshes;
-  for (int m = 0; m < 3; ++m) {
-    meshes.push_back(add(scene, soups::soup(random, random.integer(1, 14), random.uniform(0.05, 0.7), 0.2)));
+/// What is wrong with the point of an answer that names a corner, which is given exactly; empty if nothing is.
+std::string faultOfCorner(const Scene& scene, const Query& query, const Result& result) {
+  const bool isSensors = query.clearance == 0 && result.featureA == Feature::vertex;
+  if (result.featureB != Feature::vertex && !isSensors) return "";
+  if (std::isnan(result.point[0])) return "no corner";
+  const Object& object = scene.object(result.object);
+  if (result.featureB == Feature::vertex && object.motion == tools::Vec3{}) {
+    const oracle::Corners b = oracle::corners(scene.mesh(object.mesh), object.worldFromMesh, result.triB);
+    return std::ranges::count(b, result.point) > 0 ? "" : "not the corner of the object";
   }
-  const auto anyMesh = [&] { return meshes[static_cast<size_t>(random.integer(0, 2))]; };
-  for (int i = random.integer(1, 5); i-- > 0;) {
-    scene.addObject({anyMesh(), random.pose(scale * random.uniform(0.3, 2), near(4)), random.chance(0.2) ? 1u : ~0u});
+  if (!isSensors || query.motion) return "";
+  double most = 0, size = 0, nearest = INFINITY;
+  for (const double c : query.direction) most = std::max(most, std::abs(c));
+  tools::Vec3 unit = query.direction;
+  for (double& c : unit) c /= most;
+  unit = 1 / tools::lengthOf(unit) * unit;
+  for (const tools::Vec3& corner : oracle::corners(scene.mesh(query.mesh), query.worldFromMesh, result.triA)) {
+    const tools::Vec3 off = corner + result.t * unit - result.point;
+    nearest = std::min(nearest, std::max({std::abs(off[0]), std::abs(off[1]), std::abs(off[2])}));
+    for (const double c : corner) size = std::max(size, std::abs(c));
   }
-  std::vector<Query> queries(4);
-  for (Query& query : queries) {
-    query.mesh = anyMesh();
-    query.worldFromMesh = random.pose(scale * random.uniform(0.3, 1), near(random.chance(0.3) ? 0.5 : 4));
-    query.direction = random.inBall();
-    if (random.chance(0.2)) query.direction = {0, 0, random.chance(0.5) ? 2.0 : -3.0};
-    query.distance = random.chance(0.1) ? 0 : random.chance(0.1) ? 1e12 : scale * random.uniform(0, 8);
-    if (random.chance(0.2)) query.exclude = {0};
-    if (random.chance(0.2)) query.mask = 2;
+  for (const double c : result.point) size = std::max(size, std::abs(c));
+  return nearest <= 4e-16 * (size + result.t) ? "" : "not the sensor's corner";
+}
+
+/// What is wrong with the point of an answer.
+std::string faultOfPoint(const Scene& scene, const Query& query, const Result& result, double mostOff) {
+  if (result.status != Status::hit && result.status != Status::overlap) return "";
+  if (std::string fault = faultOfCorner(scene, query, result); !fault.empty() || query.clearance > 0) return fault;
+  if (std::isnan(result.point[0])) return result.status == Status::hit ? "no point" : "";
+  const double most = result.status == Status::hit ? 1e-13 : mostOff;
+  return distances::offFromBoth(scene, query, result) <= most ? "" : "a point off its triangles";
+}
+
+/// Judges the answers about so many scenes of a kind, `varied` or as the kind asks.
+oracle::Judged judged(const kinds::Kind& kind, uint64_t scenes, bool varied) {
+  oracle::Judged all;
+  for (uint64_t seed = 0; seed < scenes; ++seed) {
+    kinds::Random random(seed + (varied ? 100'000 : 0));
+    test::Case one;
+    kind.make(random, one);
+    for (Query& query : one.queries) {
+      if (varied) kinds::vary(random, query);
+    }
+    const Answers answers = CpuSweeper(one.scene, 2).run(one.queries);
+    for (size_t i = 0; i < one.queries.size(); ++i) {
+      const size_t before = all.faults.size();
+      const Query& query = one.queries[i];
+      if (query.clearance == 0) all.add(one.scene, query, answers, i);
+      all.count(faultOfPoint(one.scene, query, answers.results[i], kind.off));
+      if (all.faults.size() != before) UNSCOPED_INFO("a fault in scene " << seed << ", query " << i);
+    }
   }
-  const std::vector<Result> results = CpuSweeper(scene, 2).run(queries).results;
-  for (size_t q = 0; q < queries.size(); ++q) {
-    INFO("seed " << seed << " scale " << scale << " far " << far << " query " << q);
-    soups::check(scene, queries[q], results[q]);
-  }
+  UNSCOPED_INFO(kind.name << (varied ? ", varied: " : ": ") << all.words());
+  CHECK(all.faults.empty());
+  return all;
 }
 
 }  // namespace
 
-TEST_CASE("the CPU's answers equal brute force on random soups") {
-  for (uint64_t seed = 0; seed < 150; ++seed) runSoup(seed, 1, 0);
-}
-
-TEST_CASE("the CPU's answers equal brute force at every scale and far from the origin") {
-  for (uint64_t seed = 0; seed < 40; ++seed) {
-    runSoup(1000 + seed, 1e-4, 1);
-    runSoup(2000 + seed, 1e4, 0);
-    runSoup(3000 + seed, 1, 1e7);
-    runSoup(4000 + seed, 1e-4, 1e5);
-    runSoup(5000 + seed, 1e-60, 0);
-    runSoup(6000 + seed, 1e60, 0);
+TEST_CASE("the CPU's answers, their lists, points and normals are those of brute force, about every kind of scene") {
+  for (const kinds::Kind& kind : kinds::all()) {
+    const oracle::Judged plain = judged(kind, kind.judged, false);
+    CAPTURE(kind.name, plain.words());
+    CHECK(plain.hits + plain.overlaps >= kind.contacts);
+    judged(kind, kind.judged / 2, true);
   }
 }
 
-TEST_CASE("the CPU's answers equal brute force for tiny sensors beside huge objects, and the other way round") {
-  for (uint64_t seed = 0; seed < 150; ++seed) {
-    Random random(7000 + seed);
-    INFO("seed " << seed);
-    Scene scene;
-    const MeshId a = add(scene, soups::soup(random, 10, 0.6, 0.1)), b = add(scene, soups::soup(random, 10, 1.5, 0.1));
-    const double sizeA = std::pow(10, random.uniform(-4, 4)), sizeB = std::pow(10, random.uniform(-4, 4));
-    scene.addObject({b, random.pose(sizeB, {0, 0, 0})});
-    scene.addObject({a, random.pose(sizeA, {0, 0, 5 * sizeA})});
-    Query query;
-    query.mesh = a;
-    const double size = std::max(sizeA, sizeB);
-    query.worldFromMesh =
-        random.pose(sizeA, {0.5 * sizeB * random.uniform(-1, 1), 0.5 * sizeB * random.uniform(-1, 1), -2 * size});
-    query.direction = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1};
-    query.distance = 20 * size;
-    soups::check(scene, query, CpuSweeper(scene, 1).run({&query, 1}).results[0]);
-  }
-}
-
-TEST_CASE("the CPU's answers equal brute force on integer lattices, where everything is degenerate") {
-  for (uint64_t seed = 0; seed < 400; ++seed) {
-    Random random(seed);
-    Scene scene;
-    const int side = random.integer(1, 5);
-    const MeshId sensor = add(scene, soups::lattice(random, random.integer(1, 12), side));
-    for (int i = random.integer(1, 3); i-- > 0;) {
-      const MeshId mesh = add(scene, soups::lattice(random, random.integer(1, 12), side));
-      scene.addObject({mesh, soups::at(random.integer(-2, 2), random.integer(-2, 2), random.integer(0, 8))});
-    }
-    CpuSweeper sweeper(scene, 1);
-    for (int q = 0; q < 3; ++q) {
-      Query query;
-      query.mesh = sensor;
-      while (query.direction == std::array<double, 3>{}) {
-        for (double& c : query.direction) c = random.chance(0.4) ? 0 : random.integer(-3, 3);
-      }
-      query.distance = random.integer(0, 12);
-      INFO("seed " << seed << " query " << q);
-      soups::check(scene, query, sweeper.run({&query, 1}).results[0]);
-    }
+TEST_CASE("where everything moves, 100,000 answers are those of brute force", "[.long]") {
+  for (const kinds::Kind& kind : kinds::all()) {
+    if (std::string_view(kind.name).starts_with("steps")) judged(kind, 16'667, false);
   }
 }

@@ -6,9 +6,18 @@
 #include "exact/motion.h"
 #include "radar/cpu_sweeper.h"
 #include "soups.h"
+#include "support/catch.h"
 
 using namespace radar;
 using soups::Random;
+using test::add;
+using test::at;
+using test::placeOf;
+using tools::operator+;
+using tools::operator-;
+using tools::operator*;
+using tools::turned;
+using tools::Vec3;
 
 namespace {
 
@@ -25,12 +34,10 @@ struct Pair {
 std::vector<Pair> pairsOf(const Scene& scene, const Query& query) {
   std::vector<Pair> pairs;
   const MeshView sensor = scene.mesh(query.mesh);
-  const oracle::Corners first = oracle::corners(sensor, query.worldFromMesh, 0);
+  const Point first = distances::pointOf<Real>(oracle::corners(sensor, query.worldFromMesh, 0)[0]);
   const auto relative = [&](const oracle::Corners& corners) {
-    Points out;
-    for (size_t i = 0; i < 3; ++i) {
-      for (size_t k = 0; k < 3; ++k) out[i][k] = Real{corners[i][k]} - Real{first[0][k]};
-    }
+    Points out = distances::pointsOf<Real>(corners);
+    for (Point& p : out) p -= first;
     return out;
   };
   for (ObjectId id = 0; id < scene.objectLimit(); ++id) {
@@ -58,9 +65,7 @@ struct Counts {
 };
 
 void check(const Scene& scene, const Query& query, const Result& result, double size, Counts& counts) {
-  const auto& d = query.direction;
-  const Real length = std::sqrt(Real{d[0]} * d[0] + Real{d[1]} * d[1] + Real{d[2]} * d[2]);
-  const Point unit{d[0] / length, d[1] / length, d[2] / length};
+  const Point unit = distances::pointOf<Real>(query.direction).normalized();
   const std::vector<Pair> pairs = pairsOf(scene, query);
   const Real room = 1e-12L * size;  // for the rounding of both sides
   const auto nothingBefore = [&](double end) {
@@ -98,29 +103,18 @@ void check(const Scene& scene, const Query& query, const Result& result, double 
 void runSoup(uint64_t seed, double scale, double far, Counts& counts) {
   Random random(seed);
   Scene scene;
-  const std::array<double, 3> centre{far * random.uniform(-1, 1), far * random.uniform(-1, 1), far};
-  const auto near = [&](double spread) {
-    auto p = random.inBall();
-    for (size_t k = 0; k < 3; ++k) p[k] = centre[k] + scale * spread * p[k];
-    return p;
-  };
-  std::vector<MeshId> meshes;
-  meshes.reserve(2);
+  const Vec3 centre{far * random.uniform(-1, 1), far * random.uniform(-1, 1), far};
+  const auto near = [&] { return centre + 4 * scale * random.inBall(); };
   for (int m = 0; m < 2; ++m) {
-    meshes.push_back(soups::add(scene, soups::soup(random, random.integer(1, 6), random.uniform(0.05, 0.7), 0.2)));
+    add(scene, soups::soup(random, random.integer(1, 6), random.uniform(0.05, 0.7), 0.2));
   }
   for (int i = random.integer(1, 3); i-- > 0;) {
-    scene.addObject({meshes[1], random.pose(scale * random.uniform(0.3, 2), near(4))});
+    scene.addObject({1, random.pose(scale * random.uniform(0.3, 2), near())});
   }
   std::vector<Query> queries(3);
   for (Query& query : queries) {
-    query.mesh = meshes[0];
-    query.worldFromMesh = random.pose(scale * random.uniform(0.3, 1), near(4));
-    const auto aim = random.inBall();
-    for (size_t k = 0; k < 3; ++k) {
-      query.direction[k] =
-          scene.object(0).worldFromMesh.m[4 * k + 3] - query.worldFromMesh.m[4 * k + 3] + scale * aim[k];
-    }
+    query = {.mesh = 0, .worldFromMesh = random.pose(scale * random.uniform(0.3, 1), near())};
+    query.direction = placeOf(scene.object(0).worldFromMesh) - placeOf(query.worldFromMesh) + scale * random.inBall();
     query.distance = scale * random.uniform(0, 12);
     query.clearance = scale * std::exp(random.uniform(-7, 1));
     if (random.chance(0.5)) query.tolerance = scale * std::exp(random.uniform(-20, -3));
@@ -149,8 +143,8 @@ TEST_CASE("contact with a clearance begins when the surfaces come that near") {
 
 TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
   Scene scene;
-  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
-  scene.addObject({box, soups::at(5, 0, 0)});
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  scene.addObject({box, at(5, 0, 0)});
   Query query{.mesh = box, .direction = {3, 0, 0}, .distance = 10};
   query.clearance = 0.25;
   const auto move = [&] { return CpuSweeper(scene, 1).run({&query, 1}).results[0]; };
@@ -160,22 +154,22 @@ TEST_CASE("a box stops at its clearance before a wall, an edge and a corner") {
   CHECK(move().t == Approx(3.75).epsilon(1e-12));
   CHECK(move().hi - move().lo <= 1e-12);
   // Past the edge at a height of 0.15: the distance is that of the edges, sqrt(0.15^2 + x^2).
-  query.worldFromMesh = soups::at(0, 1.15, 0);
+  query.worldFromMesh = at(0, 1.15, 0);
   CHECK(move().t == Approx(4 - 0.2).epsilon(1e-12));
   // Past the corner, 0.15 and 0.12 beside it.
-  query.worldFromMesh = soups::at(0, 1.15, 1.12);
+  query.worldFromMesh = at(0, 1.15, 1.12);
   CHECK(move().t == Approx(4 - std::sqrt(0.25 * 0.25 - 0.15 * 0.15 - 0.12 * 0.12)).epsilon(1e-12));
-  query.worldFromMesh = soups::at(0, 1.15, 1.24);
+  query.worldFromMesh = at(0, 1.15, 1.24);
   CHECK(move().status == Status::clear);
-  query.worldFromMesh = soups::at(3.9, 0, 0);
+  query.worldFromMesh = at(3.9, 0, 0);
   CHECK(move().status == Status::overlap);
 }
 
 TEST_CASE("with a clearance, contacts are listed for each object, and what does not block takes no part") {
   Scene scene;
-  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
-  for (double x : {7.0, 5.0, 3.0}) scene.addObject({box, soups::at(x, 0, 0)});
-  const ObjectId beside = scene.addObject({box, soups::at(0, 1, 0)});
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  for (double x : {7.0, 5.0, 3.0}) scene.addObject({box, at(x, 0, 0)});
+  const ObjectId beside = scene.addObject({box, at(0, 1, 0)});
   Query query{.mesh = box, .direction = {1, 0, 0}, .distance = 10};
   query.clearance = 0.5;
   query.hits = kAllHits;
@@ -239,10 +233,10 @@ TEST_CASE("a clearance works at every scale") {
 TEST_CASE("an object that passes at the clearance, to rounding, widens the bracket and is listed") {
   Scene scene;
   // The cube [0, 1]^3.
-  const MeshId box = soups::add(scene, soups::box(0.5, 0.5, 0.5));
-  scene.addObject({box, soups::at(5, 0, 0)});
-  scene.addObject({box, soups::at(6, 0.2, 0)});
-  const ObjectId beside = scene.addObject({box, soups::at(2.5, 1.25, 0)});
+  const MeshId box = add(scene, tools::makeBox({1, 1, 1}));
+  scene.addObject({box, at(5, 0, 0)});
+  scene.addObject({box, at(6, 0.2, 0)});
+  const ObjectId beside = scene.addObject({box, at(2.5, 1.25, 0)});
   Query query{.mesh = box, .direction = {1, 0, 0}, .distance = 10};
   query.clearance = 0.25;
   CpuSweeper sweeper(scene, 1);
@@ -270,26 +264,16 @@ using Quad = boost::multiprecision::cpp_bin_float_quad;
 
 /// A sliver, 1 to 4 from the origin, `stretch` times as long as wide.
 exact::Triangle sliver(Random& random, double stretch) {
-  const Transform turn = random.pose(1, {0, 0, 0});
-  const auto axis = static_cast<size_t>(random.integer(0, 2));
-  const auto at = random.inBall();
+  const tools::Rotation turn = random.rotation();
+  const size_t axis = random.below(3);
+  const Vec3 at = 3 * random.inBall();
   exact::Triangle triangle;
   for (Vector& corner : triangle) {
-    auto p = random.inBall();
+    Vec3 p = random.inBall();
     p[axis] *= stretch;
-    for (size_t k = 0; k < 3; ++k) {
-      corner[k] = turn.m[4 * k] * p[0] + turn.m[4 * k + 1] * p[1] + turn.m[4 * k + 2] * p[2] + 3 * at[k];
-    }
+    corner = turned(turn, p) + at;
   }
   return triangle;
-}
-
-distances::Points<Quad> quad(const exact::Triangle& triangle) {
-  distances::Points<Quad> out;
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t k = 0; k < 3; ++k) out[i][k] = triangle[i][k];
-  }
-  return out;
 }
 
 }  // namespace
@@ -304,9 +288,8 @@ TEST_CASE("slivers up to 1e13 times as long as wide are decided, though doubles 
       const Motion motion(query);
       const double clearance = std::exp(random.uniform(-7, 1)), tolerance = 1e-6;
       const auto found = cpu::approach(a, b, motion.direction, motion.unit, clearance, query.distance, tolerance);
-      distances::Point<Quad> unit{motion.direction[0], motion.direction[1], motion.direction[2]};
-      unit.normalize();
-      const auto placedA = quad(a), placedB = quad(b);
+      const distances::Point<Quad> unit = distances::pointOf<Quad>(motion.direction).normalized();
+      const auto placedA = distances::pointsOf<Quad>(a), placedB = distances::pointsOf<Quad>(b);
       const Quad room = 1e-24 * stretch;
       CAPTURE(stretch, seed, clearance);
       const double before = found ? found->lo : query.distance;

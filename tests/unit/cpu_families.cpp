@@ -1,5 +1,6 @@
-// The CPU's answers to the tools' workloads have the same bits on any number of threads.
+// The CPU's answers have the same bits on any number of threads.
 #include "cpu_agreement.h"
+#include "scene_kinds.h"
 #include "support/answer.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
@@ -13,7 +14,7 @@ namespace {
 void check(const Workload& workload) {
   Scene scene;
   replaceBy(workload, 0, scene);
-  agreement::ThreadedSweepers(scene).check(agreement::queriesOf(workload));
+  agreement::ThreadedSweepers(scene).check(queriesOf(workload.queries));
 }
 
 /// The same with D at the contact or one ulp shorter or longer, and with objects excluded or masked out.
@@ -21,7 +22,7 @@ void checkVariants(const Workload& workload, uint64_t seed) {
   Scene scene;
   replaceBy(workload, 0, scene);
   CpuSweeper sweeper(scene);
-  std::vector<Query> queries = agreement::queriesOf(workload);
+  std::vector<Query> queries = queriesOf(workload.queries);
   tools::Random random(seed);
   for (Query& query : queries) {
     const Result exact = test::answer(sweeper, query);
@@ -35,6 +36,18 @@ void checkVariants(const Workload& workload, uint64_t seed) {
 }
 
 }  // namespace
+
+TEST_CASE("the CPU's answers are the same on any number of threads, about every kind of scene") {
+  for (const kinds::Kind& kind : kinds::all()) {
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+      INFO(kind.name << ", seed " << seed);
+      kinds::Random random(seed);
+      test::Case one;
+      kind.make(random, one);
+      agreement::ThreadedSweepers(one.scene).check(one.queries);
+    }
+  }
+}
 
 TEST_CASE("the CPU's answers are the same on any number of threads, in all families") {
   for (const HardFamily& family : hardFamilies()) {

@@ -2,34 +2,30 @@
 #include <bit>
 
 #include "soups.h"
+#include "support/answer.h"
+#include "support/catch.h"
 
 using namespace radar;
-using soups::add;
-using soups::at;
 using soups::Random;
+using test::add;
+using test::at;
+using tools::placedAt;
+using tools::operator+;
+using tools::operator-;
 
 namespace {
 
-using Vector = std::array<double, 3>;
+using Vector = tools::Vec3;
 
-Query sweep(MeshId mesh, const Transform& pose, const Vector& direction, double distance) {
-  Query query;
-  query.mesh = mesh;
-  query.worldFromMesh = pose;
-  query.direction = direction;
-  query.distance = distance;
-  return query;
-}
-
-Result sweepPair(const soups::Mesh& a, const Transform& poseA, const soups::Mesh& b, const Transform& poseB,
+Result sweepPair(const tools::MeshData& a, const Transform& poseA, const tools::MeshData& b, const Transform& poseB,
                  const Vector& direction, double distance) {
   Scene scene;
   const MeshId sensor = add(scene, a);
   scene.addObject({add(scene, b), poseB});
-  return test::answer(scene, sweep(sensor, poseA, direction, distance));
+  return test::answer(scene, {.mesh = sensor, .worldFromMesh = poseA, .direction = direction, .distance = distance});
 }
 
-void requireSameBits(const Result& p, const Result& q) {
+void requireSameTimes(const Result& p, const Result& q) {
   REQUIRE(p.status == q.status);
   for (const auto& [x, y] : {std::pair{p.t, q.t}, {p.lo, q.lo}, {p.hi, q.hi}, {p.fraction, q.fraction}}) {
     REQUIRE(std::bit_cast<uint64_t>(x) == std::bit_cast<uint64_t>(y));
@@ -53,19 +49,15 @@ Vector mapped(const Vector& v, const Vector& sign, const std::array<int, 3>& ord
   return out;
 }
 
-Transform at(const Vector& v) {
-  return soups::at(v[0], v[1], v[2]);
-}
-
 }  // namespace
 
 TEST_CASE("boxes that slide past each other touch at gap zero and do not touch one ulp apart") {
-  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
   forEachSymmetry([&](const Vector& sign, const std::array<int, 3>& order) {
     const Vector ahead = mapped({0, 0, 1}, sign, order);
     for (double side : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
       // The boxes are apart, by one ulp, exactly if `side` exceeds 1.
-      const Result result = sweepPair(box, Transform{}, box, at(mapped({side, 0.25, 4}, sign, order)), ahead, 10);
+      const Result result = sweepPair(box, Transform{}, box, placedAt(mapped({side, 0.25, 4}, sign, order)), ahead, 10);
       REQUIRE(result.status == (side > 1 ? Status::clear : Status::hit));
       if (side <= 1) REQUIRE(result.t == 3);
     }
@@ -73,7 +65,7 @@ TEST_CASE("boxes that slide past each other touch at gap zero and do not touch o
 }
 
 TEST_CASE("edges and vertices that graze touch at gap zero and do not touch one ulp apart") {
-  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
   const Vector direction{1, 2, 4};
   // Box b at w touches while w_k - 1 <= s d_k <= w_k + 1 for each k. At s = 3 contact begins in x and ends in y: edge
   // on edge. If it also begins (z = 13) or ends (z = 11) in z: vertex on vertex.
@@ -81,7 +73,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and do not touch one 
     const Vector graze{4, 5, z};
     forEachSymmetry([&](const Vector& sign, const std::array<int, 3>& order) {
       const Vector d = mapped(direction, sign, order);
-      const Result touch = sweepPair(box, Transform{}, box, at(mapped(graze, sign, order)), d, 100);
+      const Result touch = sweepPair(box, Transform{}, box, placedAt(mapped(graze, sign, order)), d, 100);
       REQUIRE(touch.status == Status::hit);
       REQUIRE(touch.lo <= 3 * std::sqrt(21.0));
       REQUIRE(touch.hi >= 3 * std::sqrt(21.0));
@@ -92,7 +84,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and do not touch one 
           // Apart if contact begins later in x (or z = 13), or ends earlier in y (or z = 11).
           const bool apart = (k == 0 && way > 0) || (k == 1 && way < 0) || (k == 2 && z == 13 && way > 0) ||
                              (k == 2 && z == 11 && way < 0);
-          const Result result = sweepPair(box, Transform{}, box, at(mapped(w, sign, order)), d, 100);
+          const Result result = sweepPair(box, Transform{}, box, placedAt(mapped(w, sign, order)), d, 100);
           REQUIRE(result.status == (apart ? Status::clear : Status::hit));
         }
       }
@@ -101,7 +93,7 @@ TEST_CASE("edges and vertices that graze touch at gap zero and do not touch one 
 }
 
 TEST_CASE("contact at exactly D counts, and one ulp before contact is clear, if |direction| is rational") {
-  const soups::Mesh box = soups::box(0.5, 0.5, 0.5);
+  const tools::MeshData box = tools::makeBox({1, 1, 1});
   for (const auto& [direction, length] :
        {std::pair{Vector{2, 3, 6}, 7.0}, {Vector{1, 4, 8}, 9.0}, {Vector{0, 3, -4}, 5.0}}) {
     // Contact begins at s = 3 in the largest component and earlier in the others.
@@ -110,97 +102,52 @@ TEST_CASE("contact at exactly D counts, and one ulp before contact is clear, if 
     const size_t largest = 2;
     w[largest] += direction[largest] > 0 ? 1 : -1;
     const double t = 3 * length;
-    const Result touch = sweepPair(box, Transform{}, box, at(w), direction, t);
+    const Result touch = sweepPair(box, Transform{}, box, placedAt(w), direction, t);
     REQUIRE(touch.status == Status::hit);
     REQUIRE(touch.t == t);
     REQUIRE(touch.hi == t);
-    REQUIRE(sweepPair(box, Transform{}, box, at(w), direction, std::nextafter(t, 0)).status == Status::clear);
+    REQUIRE(sweepPair(box, Transform{}, box, placedAt(w), direction, std::nextafter(t, 0)).status == Status::clear);
   }
 }
 
-TEST_CASE("the CPU's answers equal brute force on lattice soups moved by single ulps") {
-  for (uint64_t seed = 0; seed < 300; ++seed) {
-    Random random(seed);
-    Scene scene;
-    const MeshId sensor = add(scene, soups::lattice(random, random.integer(1, 8), 3));
-    for (int i = random.integer(1, 3); i-- > 0;) {
-      Transform pose = soups::at(random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 8));
-      double& c = pose.m[static_cast<size_t>(4 * random.integer(0, 2) + 3)];
-      if (random.chance(0.7)) c = std::nextafter(c, random.chance(0.5) ? 100 : -100);
-      scene.addObject({add(scene, soups::lattice(random, random.integer(1, 8), 3)), pose});
-    }
-    CpuSweeper sweeper(scene);
-    Query query = sweep(sensor, Transform{}, {}, random.integer(0, 12));
-    while (query.direction == Vector{}) {
-      for (double& c : query.direction) c = random.chance(0.4) ? 0 : random.integer(-3, 3);
-    }
-    INFO("seed " << seed);
-    soups::check(scene, query, test::answer(sweeper, query));
+namespace {
+
+/// Triangles in another order, and their vertices.
+tools::MeshData shuffled(Random& random, tools::MeshData mesh) {
+  for (uint32_t t = mesh.triangleCount(); t-- > 0;) {
+    const auto first = mesh.indices.begin() + 3 * t, other = mesh.indices.begin() + 3 * random.below(t + 1);
+    if (first != other) std::swap_ranges(first, first + 3, other);
+    std::rotate(first, first + random.integer(0, 2), first + 3);
+    if (random.chance(0.5)) std::swap(first[0], first[1]);
   }
+  return mesh;
 }
 
-TEST_CASE("swapping sensor and object and reversing the direction changes no bit of t") {
+}  // namespace
+
+TEST_CASE("neither swapping the two, nor another order of triangles, nor an exact shift changes a bit of t") {
   for (uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     INFO("seed " << seed);
     const bool grid = seed % 2 == 0;
     const auto mesh = [&] { return grid ? soups::lattice(random, 8, 3) : soups::soup(random, 8, 0.6, 0.3); };
     const auto pose = [&](double z) {
-      return grid ? soups::at(random.integer(-1, 1), random.integer(-1, 1), z) : random.pose(1, {0.1, 0.2, 0.6 * z});
+      return grid ? at(random.integer(-1, 1), random.integer(-1, 1), z) : random.pose(1, {0.1, 0.2, 0.6 * z});
     };
-    const soups::Mesh a = mesh(), b = mesh();
+    tools::MeshData a = mesh(), b = mesh();
     const Transform poseA = pose(0), poseB = pose(random.integer(0, 6));
-    const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, random.integer(-1, 1) + 0.0, 2}
-                          : Vector{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
-    requireSameBits(sweepPair(a, poseA, b, poseB, d, 20), sweepPair(b, poseB, a, poseA, {-d[0], -d[1], -d[2]}, 20));
-  }
-}
-
-TEST_CASE("the order of triangles and vertices changes no bit of t") {
-  for (uint64_t seed = 0; seed < 200; ++seed) {
-    Random random(seed);
-    INFO("seed " << seed);
-    const bool grid = seed % 2 == 0;
-    const auto mesh = [&] { return grid ? soups::lattice(random, 9, 3) : soups::soup(random, 9, 0.6, 0.3); };
-    const auto shuffled = [&](const soups::Mesh& in) {
-      soups::Mesh out = in;
-      const int triangles = static_cast<int>(in.indices.size() / 3);
-      for (int t = triangles; t-- > 1;) {
-        const int other = random.integer(0, t);
-        for (int k = 0; k < 3; ++k) {
-          std::swap(out.indices[static_cast<size_t>(3 * t + k)], out.indices[static_cast<size_t>(3 * other + k)]);
-        }
-      }
-      for (int t = 0; t < triangles; ++t) {
-        const auto first = out.indices.begin() + 3 * t;
-        std::rotate(first, first + random.integer(0, 2), first + 3);
-        if (random.chance(0.5)) std::swap(first[0], first[1]);
-      }
-      return out;
-    };
-    const soups::Mesh a = mesh(), b = mesh();
-    const Transform poseB = grid ? soups::at(1, -1, random.integer(0, 6)) : random.pose(1, {0.1, 0.2, 2});
-    const Vector d = grid ? Vector{random.integer(-1, 1) + 0.0, 0, 2} : Vector{random.uniform(-0.2, 0.2), 0.1, 1};
-    requireSameBits(sweepPair(a, Transform{}, b, poseB, d, 20),
-                    sweepPair(shuffled(a), Transform{}, shuffled(b), poseB, d, 20));
-  }
-}
-
-TEST_CASE("a shift that keeps every coordinate exact changes no bit of t") {
-  for (uint64_t seed = 0; seed < 200; ++seed) {
-    Random random(seed);
-    INFO("seed " << seed);
-    // Coordinates are multiples of 2^-10 below 8, so shifts up to 2^39 keep them.
-    const auto mesh = [&] {
-      soups::Mesh out = soups::soup(random, 8, 0.6, 0.2);
-      for (float& c : out.positions) c = std::round(c * 1024) / 1024;
-      return out;
-    };
-    const soups::Mesh a = mesh(), b = mesh();
     const Vector d{random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 1};
-    const double z = random.integer(0, 3), size = std::ldexp(1, random.integer(0, 39));
+    const Vector direction = grid ? Vector{std::round(5 * d[0]), std::round(5 * d[1]), 2} : d;
+    const Result result = sweepPair(a, poseA, b, poseB, direction, 20);
+    requireSameTimes(result, sweepPair(b, poseB, a, poseA, Vector{} - direction, 20));
+    requireSameTimes(result, sweepPair(shuffled(random, a), poseA, shuffled(random, b), poseB, direction, 20));
+    // Multiples of 2^-10 below 8, which shifts up to 2^39 keep.
+    for (tools::MeshData* rounded : {&a, &b}) {
+      for (float& c : rounded->positions) c = std::round(c * 1024) / 1024;
+    }
+    const double size = std::ldexp(1, random.integer(0, 39)), z = random.integer(0, 3);
     const Vector shift{size * random.integer(-1, 1), size * random.integer(-1, 1), size};
-    requireSameBits(sweepPair(a, Transform{}, b, soups::at(0, 0, z), d, 20),
-                    sweepPair(a, at(shift), b, soups::at(shift[0], shift[1], shift[2] + z), d, 20));
+    requireSameTimes(sweepPair(a, Transform{}, b, at(0, 0, z), direction, 20),
+                     sweepPair(a, placedAt(shift), b, placedAt(shift + Vector{0, 0, z}), direction, 20));
   }
 }

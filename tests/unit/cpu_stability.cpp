@@ -1,24 +1,12 @@
-// Compares the exact answers to hard cases with brute force in exact integers, which uses another method than the
-// engine.
-#include "soups.h"
+// Hard cases of bodies at rest are what they say.
+#include "radar/cpu_sweeper.h"
+#include "support/catch.h"
 #include "workloads/hard_cases.h"
 
 using namespace radar;
 using namespace radar::tools;
 
 namespace {
-
-constexpr uint64_t kMostPairs = 1000;  // brute force is slow
-
-Workload workloadOf(const HardCase& hard) {
-  return sceneOf({hard}, Company::isolated);
-}
-
-uint64_t pairsOf(const HardCase& hard) {
-  uint64_t pairs = 0;
-  for (const PlacedMesh& object : hard.objects) pairs += object.mesh.triangleCount();
-  return pairs * hard.sensor.mesh.triangleCount();
-}
 
 /// Positive if a closed mesh is wound outwards.
 double volumeOf(const MeshView& mesh) {
@@ -39,56 +27,6 @@ double volumeOf(const MeshView& mesh) {
 
 }  // namespace
 
-TEST_CASE("the CPU's answers equal brute force for hard cases") {
-  uint32_t families = 0;
-  for (const HardFamily& family : hardFamilies()) {
-    uint32_t checked = 0;
-    for (uint64_t number = 0; number < 96 && checked < 20; ++number) {
-      const HardCase hard = hardCase(family, 23, number);
-      if (pairsOf(hard) > kMostPairs) continue;
-      INFO(family.name << ", case " << number);
-      const Workload workload = workloadOf(hard);
-      Scene scene;
-      replaceBy(workload, 0, scene);
-      const Query query = workload.queries[0];
-      soups::check(scene, query, test::answer(scene, query));
-      ++checked;
-    }
-    families += checked >= 6;
-  }
-  // Rings, cups and the teapot have too many triangles.
-  CHECK(families >= 20);
-}
-
-TEST_CASE("all contacts and skipped objects among bodies at rest equal brute force") {
-  size_t cases = 0, contacts = 0, skipped = 0;
-  for (const HardFamily& family : hardFamilies()) {
-    if (!family.ignoresLeaving) continue;
-    for (uint64_t number = 0; number < 300; ++number) {
-      const HardCase hard = hardCase(family, 29, number);
-      if (pairsOf(hard) > kMostPairs) continue;
-      INFO(family.name << ", case " << number);
-      const Workload workload = workloadOf(hard);
-      Scene scene;
-      replaceBy(workload, 0, scene);
-      Query query = workload.queries[0];
-      query.hits = kAllHits;
-      const Answers answers = CpuSweeper(scene, 1).run({&query, 1});
-      ++cases;
-      const auto& [hits, overlapping] = answers.lists[0];
-      const oracle::Truth truth = oracle::truthOf(scene, query);
-      const std::string fault = oracle::faultOf(truth, query, answers.results[0], hits, overlapping);
-      INFO(fault);
-      REQUIRE(fault.empty());
-      contacts += truth.contacts.size();
-      skipped += truth.overlapping.size();
-    }
-  }
-  CHECK(cases > 700);
-  CHECK(contacts > 500);
-  CHECK(skipped > 20);
-}
-
 TEST_CASE("bodies at rest are wound outwards, and the one that moves later touches others without crossing them") {
   size_t touching = 0;
   for (const HardFamily& family : hardFamilies()) {
@@ -96,7 +34,7 @@ TEST_CASE("bodies at rest are wound outwards, and the one that moves later touch
     for (uint64_t number = 0; number < 200; ++number) {
       INFO(family.name << ", case " << number);
       const HardCase hard = hardCase(family, 31, number);
-      const Workload workload = workloadOf(hard);
+      const Workload workload = sceneOf({hard}, Company::isolated);
       Scene scene;
       replaceBy(workload, 0, scene);
       for (const MeshData& mesh : workload.meshes) CHECK(volumeOf({mesh.positions, mesh.indices}) > 0);

@@ -4,8 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <cmath>
+
+#include "exact_oracle.h"
 
 namespace distances {
 
@@ -14,11 +17,21 @@ using Point = Eigen::Matrix<Real, 3, 1>;
 template <class Real>
 using Points = std::array<Point<Real>, 3>;
 
+template <class Real>
+Point<Real> pointOf(const std::array<double, 3>& p) {
+  return {Real(p[0]), Real(p[1]), Real(p[2])};
+}
+template <class Real>
+Points<Real> pointsOf(const std::array<std::array<double, 3>, 3>& triangle) {
+  return {pointOf<Real>(triangle[0]), pointOf<Real>(triangle[1]), pointOf<Real>(triangle[2])};
+}
+
 /// Above every distance.
 template <class Real>
 const Real kFar = Real(1e300);
 
-/// Distance of a point and a segment; of two segments that are nearest at inner points; of a point and a face above it.
+/// Distance of a point and a segment; of two segments that are nearest at inner points; of a point and a face above it;
+/// of a point and a triangle, also a degenerate one.
 template <class Real>
 Real fromSegment(const Point<Real>& p, const Point<Real>& from, const Point<Real>& to) {
   using std::sqrt;
@@ -47,6 +60,11 @@ Real aboveFace(const Point<Real>& p, const Points<Real>& face) {
   if (nn == 0) return kFar<Real>;
   const Real v = r.cross(y).dot(n) / nn, w = x.cross(r).dot(n) / nn;
   return v >= 0 && w >= 0 && v + w <= 1 ? Real(abs(r.dot(n)) / sqrt(nn)) : kFar<Real>;
+}
+template <class Real>
+Real fromTriangle(const Point<Real>& p, const Points<Real>& t) {
+  return std::min(
+      {aboveFace(p, t), fromSegment(p, t[0], t[1]), fromSegment(p, t[1], t[2]), fromSegment(p, t[2], t[0])});
 }
 template <class Real>
 bool crosses(const Point<Real>& p, const Point<Real>& q, const Points<Real>& face) {
@@ -90,6 +108,27 @@ Real leastDistance(const Points<Real>& a, const Points<Real>& b, const Point<Rea
     }
   }
   return distanceAt(a, b, unit, Real(0.5 * (from + to)));
+}
+
+/// How far the point of an answer is from the farther of its two triangles at the moment of contact, as a share of the
+/// greatest coordinate or way.
+inline double offFromBoth(const radar::Scene& scene, const radar::Query& query, const radar::Result& result) {
+  using Real = boost::multiprecision::cpp_bin_float_quad;
+  const radar::Object& object = scene.object(result.object);
+  Points<Real> a = pointsOf<Real>(oracle::corners(scene.mesh(query.mesh), query.worldFromMesh, result.triA)),
+               b = pointsOf<Real>(oracle::corners(scene.mesh(object.mesh), object.worldFromMesh, result.triB));
+  const Point<Real> unit = pointOf<Real>(query.direction).normalized(),
+                    way = Real(result.t) * (query.motion ? pointOf<Real>(*query.motion) : unit),
+                    itsWay = Real(result.fraction) * pointOf<Real>(object.motion);
+  Real size = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    a[i] += way;
+    b[i] += itsWay;
+    for (const Point<Real>& p : {a[i], b[i], way}) size = std::max(size, p.cwiseAbs().maxCoeff());
+  }
+  for (Point<Real>* p : {&a[0], &a[1], &a[2], &b[0], &b[1], &b[2]}) *p /= size;
+  const Point<Real> point = pointOf<Real>(result.point) / size;
+  return static_cast<double>(std::max(fromTriangle(point, a), fromTriangle(point, b)));
 }
 
 }  // namespace distances

@@ -1,4 +1,5 @@
 // Compares the contact interval of two triangles with separating axes in exact rationals.
+#include "distances.h"
 #include "exact/common_point.h"
 #include "exact/contact.h"
 #include "exact/event.h"
@@ -10,6 +11,7 @@ using namespace radar::exact;
 using oracle::Fraction;
 using oracle::Rational;
 using radar::Vector;
+using soups::latticeTriangle;
 using soups::Random;
 
 namespace {
@@ -21,8 +23,7 @@ Rational rational(const Fraction& f) {
 /// Whether `rounded` is the double nearest to some number within 2^-60 of `exact`.
 bool isNearest(double rounded, const Rational& exact) {
   if (!std::isfinite(rounded)) return abs(exact) > Rational(std::numeric_limits<double>::max());
-  const Rational below = (Rational(std::nextafter(rounded, -INFINITY)) + Rational(rounded)) / 2;
-  const Rational above = (Rational(std::nextafter(rounded, INFINITY)) + Rational(rounded)) / 2;
+  const auto [below, above] = oracle::roundedTo(rounded);
   const Rational slack = abs(exact) * Rational(0x1p-60);
   return below - slack <= exact && exact <= above + slack;
 }
@@ -123,22 +124,6 @@ void check(const Triangle& a, const Triangle& b, const Vector& direction, bool f
   if (first < last) checkFeatures(ours->between.features(), a, b, direction, (first + 2 * last) / 3);
 }
 
-Triangle latticeTriangle(Random& random, int side) {
-  Triangle t;
-  for (Vector& c : t) {
-    for (double& v : c) v = random.integer(0, side);
-  }
-  return t;
-}
-
-Vector latticeDirection(Random& random, int side) {
-  Vector d{};
-  while (d == Vector{}) {
-    for (double& c : d) c = random.chance(0.3) ? 0 : random.integer(-side, side);
-  }
-  return d;
-}
-
 /// Moves one coordinate by one ulp.
 void nudge(Random& random, Triangle& t) {
   double& c = t[static_cast<size_t>(random.integer(0, 2))][static_cast<size_t>(random.integer(0, 2))];
@@ -158,7 +143,8 @@ TEST_CASE("the contact interval is exact on integer lattices") {
   for (int i = 0; i < 20000; ++i) {
     INFO("case " << i);
     const int side = random.integer(1, 4);
-    check(latticeTriangle(random, side), latticeTriangle(random, side), latticeDirection(random, 3), i % 8 == 0);
+    check(latticeTriangle(random, side), latticeTriangle(random, side), random.latticeVector(random.integer(1, 3)),
+          i % 8 == 0);
   }
 }
 
@@ -168,7 +154,7 @@ TEST_CASE("the contact interval is exact one ulp beside integer lattices") {
     INFO("case " << i);
     Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
     for (int n = random.integer(1, 3); n-- > 0;) nudge(random, random.chance(0.5) ? a : b);
-    Vector d = latticeDirection(random, 3);
+    Vector d = random.latticeVector(random.integer(1, 3));
     if (random.chance(0.3)) d[0] = std::nextafter(d[0], 9);
     check(a, b, d, i % 16 == 0);
   }
@@ -178,7 +164,7 @@ TEST_CASE("the contact interval is exact for triangles in general position, need
   Random random(3);
   for (int i = 0; i < 6000; ++i) {
     INFO("case " << i);
-    const soups::Mesh mesh = soups::soup(random, 2, random.uniform(0.3, 2), 0.4);
+    const radar::tools::MeshData mesh = soups::soup(random, 2, random.uniform(0.3, 2), 0.4);
     const radar::Transform pose = random.pose(1, {0, 0, 0});
     const radar::MeshView view{mesh.positions, mesh.indices};
     check(oracle::corners(view, radar::Transform{}, 0), oracle::corners(view, pose, 1), random.inBall(), i % 20 == 0);
@@ -196,7 +182,7 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
           if (random.chance(0.5)) nudge(random, *t);
           scale(*t, size);
         }
-        Vector d = latticeDirection(random, 3);
+        Vector d = random.latticeVector(random.integer(1, 3));
         for (double& c : d) c *= speed;
         check(a, b, d, false);
       }
@@ -208,7 +194,7 @@ TEST_CASE("the contact interval is exact for all finite doubles") {
     Triangle a = latticeTriangle(random, 3), b = latticeTriangle(random, 3);
     scale(a, std::ldexp(1, random.integer(-1000, 1000)));
     scale(b, std::ldexp(1, random.integer(-1000, 1000)));
-    check(a, b, latticeDirection(random, 3), false);
+    check(a, b, random.latticeVector(random.integer(1, 3)), false);
   }
 }
 
@@ -254,8 +240,7 @@ TEST_CASE("the length of a direction is rounded to the nearest double") {
     const double r = length(d);
     Rational square = 0;
     for (double c : d) square += Rational(c) * Rational(c);
-    const Rational below = (Rational(std::nextafter(r, 0)) + Rational(r)) / 2;
-    const Rational above = (Rational(std::nextafter(r, INFINITY)) + Rational(r)) / 2;
+    const auto [below, above] = oracle::roundedTo(r);
     REQUIRE(below * below <= square);
     REQUIRE(square <= above * above);
   };
@@ -294,45 +279,6 @@ TEST_CASE("contact point and normal are those of the touching features") {
   REQUIRE(std::isnan(normal(flat)[0]));
 }
 
-namespace {
-
-using Long = long double;
-using LongVector = std::array<Long, 3>;
-
-LongVector longOf(const Vector& v) {
-  return {v[0], v[1], v[2]};
-}
-Long dot(const LongVector& p, const LongVector& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-LongVector between(const LongVector& from, const LongVector& to) {
-  return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-}
-LongVector crossed(const LongVector& p, const LongVector& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// The distance of a point from a triangle that is not degenerate.
-Long distanceFrom(const Triangle& triangle, const Vector& point) {
-  const LongVector at = longOf(point);
-  const LongVector normal =
-      crossed(between(longOf(triangle[0]), longOf(triangle[1])), between(longOf(triangle[0]), longOf(triangle[2])));
-  Long nearest = INFINITY;
-  bool isOver = true;
-  for (size_t i = 0; i < 3; ++i) {
-    const LongVector from = longOf(triangle[i]), to = longOf(triangle[(i + 1) % 3]), edge = between(from, to);
-    isOver = isOver && dot(normal, crossed(edge, between(from, at))) >= 0;
-    const Long share = std::clamp(dot(edge, between(from, at)) / dot(edge, edge), Long{0}, Long{1});
-    const LongVector rest =
-        between({from[0] + share * edge[0], from[1] + share * edge[1], from[2] + share * edge[2]}, at);
-    nearest = std::min(nearest, std::sqrt(dot(rest, rest)));
-  }
-  if (!isOver) return nearest;
-  return std::abs(dot(normal, between(longOf(triangle[0]), at))) / std::sqrt(dot(normal, normal));
-}
-
-}  // namespace
-
 TEST_CASE("a common point is on both triangles, also where only their corners or borders cross, by rounding errors") {
   Random random(77);
   size_t crossing = 0;
@@ -351,10 +297,12 @@ TEST_CASE("a common point is on both triangles, also where only their corners or
     if (!interval || sign(interval->first) > 0 || sign(interval->last) < 0) continue;
     ++crossing;
     for (const Vector& point : {commonPoint(face, other), commonPoint(other, face)}) {
-      const auto ofFace = static_cast<double>(distanceFrom(face, point)),
-                 ofOther = static_cast<double>(distanceFrom(other, point));
-      CAPTURE(round, depth, 1e15 * ofFace, 1e15 * ofOther);
-      REQUIRE(std::max(ofFace, ofOther) < 1e-14);  // nor NaN
+      for (const Triangle& triangle : {face, other}) {
+        const long double off =
+            distances::fromTriangle(distances::pointOf<long double>(point), distances::pointsOf<long double>(triangle));
+        CAPTURE(round, depth);
+        REQUIRE(static_cast<double>(off) < 1e-14);  // nor NaN
+      }
     }
   }
   CHECK(crossing > 5'000);

@@ -78,8 +78,7 @@ TEST_CASE("a quotient is rounded to the nearest double, ties to even") {
     }
     REQUIRE((truth == 0 || ours == 0 || (truth > 0) == (ours > 0)));
     if (std::abs(ours) == std::numeric_limits<double>::max()) continue;
-    const Rational below = (Rational(std::nextafter(ours, -INFINITY)) + Rational(ours)) / 2;
-    const Rational above = (Rational(std::nextafter(ours, INFINITY)) + Rational(ours)) / 2;
+    const auto [below, above] = oracle::roundedTo(ours);
     REQUIRE(below <= truth);
     REQUIRE(truth <= above);
     if (truth == below || truth == above) REQUIRE((std::bit_cast<uint64_t>(ours) & 1) == 0);

@@ -19,6 +19,13 @@ namespace oracle {
 using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<768>>;
 using Rational =
     boost::multiprecision::number<boost::multiprecision::rational_adaptor<boost::multiprecision::cpp_int_backend<768>>>;
+
+/// The least and the greatest number to which `rounded` may be the nearest double.
+inline std::array<Rational, 2> roundedTo(double rounded) {
+  return {(Rational(std::nextafter(rounded, -INFINITY)) + Rational(rounded)) / 2,
+          (Rational(std::nextafter(rounded, INFINITY)) + Rational(rounded)) / 2};
+}
+
 using Corner = std::array<double, 3>;
 using Corners = std::array<Corner, 3>;
 

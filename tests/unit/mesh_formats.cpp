@@ -3,15 +3,12 @@
 #include <cmath>
 #include <fstream>
 
-#include "import/mesh_import.h"
 #include "import/readers.h"
 #include "import/regular_file.h"
-#include "support/catch.h"
-#include "support/scratch_folder.h"
+#include "mesh_texts.h"
 #include "workloads/random.h"
 
 using namespace radar::tools;
-using radar::test::Contains;
 using radar::test::ScratchFolder;
 
 namespace {
@@ -171,26 +168,8 @@ TEST_CASE("an OFF file may have comments anywhere and faces of any number of cor
     text += std::to_string(i) + " 0 1 # vertex\n# and\n\n";
     face += " " + std::to_string(i);
   }
-  std::vector<std::string> warnings;
-  const MeshData mesh = readMesh(folder.write("a.off", text + face + " 0.5 0.5 0.5\n"), warnings);
+  const MeshData mesh = radar::test::readWhole(folder.write("a.off", text + face + " 0.5 0.5 0.5\n"));
   CHECK(mesh.vertexCount() == 12);
   REQUIRE(mesh.triangleCount() == 10);
   CHECK(std::vector(mesh.indices.end() - 3, mesh.indices.end()) == std::vector<uint32_t>{0, 10, 11});
-}
-
-TEST_CASE("what a reader would have to leave out is refused") {
-  const ScratchFolder folder;
-  const std::string strips =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-  std::vector<std::string> warnings;
-  CHECK_THROWS_WITH(readMesh(folder.write("a.ply", strips), warnings), Contains("triangle strips"));
-  const std::string surface = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ncstype bezier\nsurf 0 1 0 1 1 2 3\nend\n";
-  CHECK_THROWS_WITH(readMesh(folder.write("a.obj", surface), warnings), Contains("line 6") && Contains("free-form"));
-  const std::string solid = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
-  CHECK_THROWS_WITH(readMesh(folder.write("a.stl", solid + "vertex 1 1 0\nendloop\nendfacet\nendsolid\n"), warnings),
-                    Contains("line 7: expected a facet of 3 vertices"));
-  CHECK_THROWS_WITH(readMesh(folder.write("b.stl", solid + "endloop\nendfacet\n"), warnings), Contains("endsolid"));
-  CHECK_THROWS_WITH(readMesh(folder.write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), warnings),
-                    Contains("line 6: expected face 0"));
 }

@@ -5,13 +5,14 @@
 #include <limits>
 #include <locale>
 
-#include "import/mesh_import.h"
 #include "import/number_text.h"
-#include "support/catch.h"
-#include "support/scratch_folder.h"
+#include "mesh_texts.h"
 #include "workloads/random.h"
 
 using namespace radar::tools;
+using radar::test::append;
+using radar::test::plyHeader;
+using radar::test::readWhole;
 using radar::test::ScratchFolder;
 
 namespace {
@@ -125,12 +126,6 @@ std::string stlOf(const Rows& rows) {
   return text + "endsolid a\n";
 }
 
-std::string plyHeader(size_t vertices, const char* format, const char* type) {
-  return std::string("ply\nformat ") + format + " 1.0\nelement vertex " + std::to_string(vertices) + "\nproperty " +
-         type + " x\nproperty " + type + " y\nproperty " + type + " z\nelement face " + std::to_string(vertices / 3) +
-         "\nproperty list uchar int vertex_indices\nend_header\n";
-}
-
 std::string linesOf(const Rows& rows) {
   std::string text;
   for (size_t i = 0; i < rows.size(); ++i) text += rows[i].text + (i % 3 == 2 ? "\n" : " ");
@@ -141,16 +136,11 @@ std::string linesOf(const Rows& rows) {
 }
 
 std::string plyOf(const Rows& rows, const char* type) {
-  return plyHeader(rows.size() / 3, "ascii", type) + linesOf(rows);
+  return plyHeader(rows.size() / 3, rows.size() / 9, "ascii", type) + linesOf(rows);
 }
 
 std::string offOf(const Rows& rows) {
   return "OFF\n" + std::to_string(rows.size() / 3) + " " + std::to_string(rows.size() / 9) + " 0\n" + linesOf(rows);
-}
-
-template <class Value>
-void append(std::string& bytes, const Value& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 std::string binaryStlOf(const Rows& rows) {
@@ -165,7 +155,8 @@ std::string binaryStlOf(const Rows& rows) {
 }
 
 std::string binaryPlyOf(const Rows& rows, bool bigEndian) {
-  std::string bytes = plyHeader(rows.size() / 3, bigEndian ? "binary_big_endian" : "binary_little_endian", "double");
+  std::string bytes =
+      plyHeader(rows.size() / 3, rows.size() / 9, bigEndian ? "binary_big_endian" : "binary_little_endian", "double");
   const auto add = [&](auto value) {
     std::string own;
     append(own, value);
@@ -178,13 +169,6 @@ std::string binaryPlyOf(const Rows& rows, bool bigEndian) {
     add(i);
   }
   return bytes;
-}
-
-MeshData read(const std::string& file) {
-  std::vector<std::string> warnings;
-  MeshData mesh = readMesh(file, warnings);
-  CHECK(warnings.empty());
-  return mesh;
 }
 
 class Commas : public std::numpunct<char> {
@@ -221,7 +205,7 @@ TEST_CASE("every coordinate of an OBJ, STL, PLY or OFF file of text is the neare
   const Rows rows = manyNumbers(random, 9 * 700);
   std::vector<float> expected;
   for (const Number& number : rows) expected.push_back(number.nearest);
-  const MeshData binary = read(folder.write("binary.stl", binaryStlOf(rows)));
+  const MeshData binary = readWhole(folder.write("binary.stl", binaryStlOf(rows)));
   CHECK(binary.positions == expected);
   // -0 is 0 here, which is the same place.
   for (const auto& [name, content] :
@@ -229,7 +213,7 @@ TEST_CASE("every coordinate of an OBJ, STL, PLY or OFF file of text is the neare
         std::pair{"double.ply", plyOf(rows, "double")}, std::pair{"a.off", offOf(rows)},
         std::pair{"little.ply", binaryPlyOf(rows, false)}, std::pair{"big.PLY", binaryPlyOf(rows, true)}}) {
     CAPTURE(name);
-    const MeshData mesh = read(folder.write(name, content));
+    const MeshData mesh = readWhole(folder.write(name, content));
     CHECK(mesh.positions == expected);
     CHECK(mesh.indices == binary.indices);
   }
@@ -241,11 +225,11 @@ TEST_CASE("a locale with decimal commas changes nothing that is read") {
   const Rows rows = manyNumbers(random, 9 * 1200);  // counts of more than 999
   std::vector<std::string> files{folder.write("a.obj", objOf(rows)), folder.write("a.stl", stlOf(rows)),
                                  folder.write("a.ply", plyOf(rows, "float")), folder.write("a.off", offOf(rows))};
-  const MeshData before = read(folder.write("binary.stl", binaryStlOf(rows)));
+  const MeshData before = readWhole(folder.write("binary.stl", binaryStlOf(rows)));
   const std::locale original = std::locale::global(std::locale(std::locale(), new Commas));
   std::vector<MeshData> meshes;
   meshes.reserve(files.size());
-  for (const std::string& file : files) meshes.push_back(read(file));
+  for (const std::string& file : files) meshes.push_back(readWhole(file));
   std::locale::global(original);
   for (const MeshData& mesh : meshes) {
     CHECK(mesh.positions == before.positions);
@@ -259,17 +243,7 @@ TEST_CASE("homogeneous coordinates are divided, and a last coordinate of 1 round
   const std::string odd = "1.00000005960464477539062500000001";
   const std::vector<float> expected{1.00000012f, 0.1f, 3, 0.5f, 2, -1, 0, 0, 0};
   const std::string first = odd + " 0.1 3 1\n", second = "1 4 -2 2\n", third = "0 0 0 1\n";
-  CHECK(read(folder.write("a.obj", "v " + first + "v " + second + "v " + third + "f 1 2 3\n")).positions == expected);
-  CHECK(read(folder.write("a.off", "4OFF\n3 1 0\n" + first + second + third + "3 0 1 2\n")).positions == expected);
-}
-
-TEST_CASE("what only begins with a number is refused, with its line") {
-  const ScratchFolder folder;
-  const std::string rest = "v 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  for (const char* vertex : {"v 0 0,5 0\n", "v 0 0 1.5f\n", "v 1 2\n", "v 1 2 3 4 5\n", "v 1 2 3 4 5 6 7\n", "v\n"}) {
-    CAPTURE(vertex);
-    std::vector<std::string> warnings;
-    CHECK_THROWS_WITH(readMesh(folder.write("a.obj", vertex + rest), warnings),
-                      radar::test::Contains("a.obj: line 1: expected"));
-  }
+  CHECK(readWhole(folder.write("a.obj", "v " + first + "v " + second + "v " + third + "f 1 2 3\n")).positions ==
+        expected);
+  CHECK(readWhole(folder.write("a.off", "4OFF\n3 1 0\n" + first + second + third + "3 0 1 2\n")).positions == expected);
 }

@@ -6,30 +6,19 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/query_file.h"
-#include "import/mesh_import.h"
 #include "import/regular_file.h"
-#include "support/catch.h"
-#include "support/scratch_folder.h"
+#include "mesh_texts.h"
 #include "workloads/random.h"
 
 using namespace radar::tools;
 using radar::test::Contains;
+using radar::test::cornerBytes;
+using radar::test::gltf;
+using radar::test::readWhole;
+using radar::test::refusalOf;
 using radar::test::ScratchFolder;
 
 namespace {
-
-std::string refusalOf(const std::string& file) {
-  std::vector<std::string> warnings;
-  std::string words;
-  try {
-    readMesh(file, warnings);
-  } catch (const InputError& error) {
-    words = error.what();
-  }
-  CAPTURE(file);
-  CHECK_FALSE(words.empty());
-  return words;
-}
 
 std::string refusalOfQueries(const std::string& file) {
   std::vector<std::string> warnings;
@@ -44,20 +33,6 @@ std::string refusalOfQueries(const std::string& file) {
 
 bool isPrintable(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= 32 && c < 127; });
-}
-
-/// A glTF file of 3 vertices and `nodes`, a list.
-std::string gltf(const std::string& nodes, const std::string& uri, const std::string& roots = "0") {
-  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [)" + roots + R"(]}], "nodes": [)" + nodes +
-         R"(], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
-    "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": ")" +
-         uri + R"(", "byteLength": 36}]})";
-}
-
-void writeTriangle(const ScratchFolder& folder) {
-  const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  folder.write("a.bin", std::string(reinterpret_cast<const char*>(positions), sizeof positions));
 }
 
 }  // namespace
@@ -83,8 +58,8 @@ TEST_CASE("pipes, devices and folders are refused, as mesh files, query files an
   CHECK_THAT(refusalOfQueries(folder.write("q.json", head + "a.off" + scene)),
              Contains("scenes[0].instances_file: ") && Contains("got a pipe"));
   // A buffer of a glTF file.
-  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "pipe.obj"))), Contains("a.gltf: expected"));
-  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "/dev/zero"))), Contains("a.gltf: expected"));
+  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "pipe.obj"))), Contains("a.gltf: expected"));
+  CHECK_THAT(refusalOf(folder.write("a.gltf", gltf(R"({"mesh": 0})", "0", "/dev/zero"))), Contains("a.gltf: expected"));
 }
 
 TEST_CASE("a query file may name meshes outside its folder") {
@@ -101,11 +76,11 @@ TEST_CASE("a query file may name meshes outside its folder") {
 
 TEST_CASE("a mesh file that crashes assimp costs an error message") {
   const ScratchFolder folder;
-  writeTriangle(folder);
+  folder.write("a.bin", cornerBytes());
   // Nodes nested so deeply that assimp's recursion overflows the stack.
   std::string nodes;
   for (int i = 0; i < 100'000; ++i) nodes += "{\"children\": [" + std::to_string(i + 1) + "]}, ";
-  const std::string deep = folder.write("deep.gltf", gltf(nodes + "{\"mesh\": 0}", "a.bin"));
+  const std::string deep = folder.write("deep.gltf", gltf(nodes + "{\"mesh\": 0}"));
   CHECK_THAT(refusalOf(deep), Contains("deep.gltf: expected a mesh file that assimp reads, but it "));
 }
 
@@ -159,13 +134,12 @@ TEST_CASE("damaged OBJ, STL, PLY and OFF files are read or refused, and name no 
 
 TEST_CASE("nodes may be nested a thousand deep") {
   const ScratchFolder folder;
-  writeTriangle(folder);
+  folder.write("a.bin", cornerBytes());
   std::string nodes;
   for (int i = 0; i < 1000; ++i) {
     nodes += "{\"translation\": [1, 0, 0], \"children\": [" + std::to_string(i + 1) + "]}, ";
   }
-  std::vector<std::string> warnings;
-  const MeshData mesh = readMesh(folder.write("a.gltf", gltf(nodes + "{\"mesh\": 0}", "a.bin")), warnings);
+  const MeshData mesh = readWhole(folder.write("a.gltf", gltf(nodes + "{\"mesh\": 0}")));
   CHECK(mesh.positions == std::vector<float>{1000, 0, 0, 1001, 0, 0, 1000, 1, 0});
 }
 

@@ -5,17 +5,15 @@
 #include "exact/dyadic.h"
 #include "scene/scene.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/shapes.h"
 
 namespace {
 
 using namespace radar;
 using exact::Dyadic;
+using test::at;
 using tools::Random;
-
-Transform at(double x, double y, double z) {
-  return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}};
-}
 
 // Whether the node contains p, in exact arithmetic.
 bool holds(const gpu::ObjectNode& node, const std::array<double, 3>& anchor, const std::array<double, 3>& p) {
@@ -92,18 +90,38 @@ double costOf(const ObjectTree& tree) {
   return sum;
 }
 
-struct Boxes {
-  explicit Boxes(uint64_t seed) : random(seed) {
-    const tools::MeshData box = tools::makeBox({1, 2, 3});
-    mesh = scene.addMesh(box.positions, box.indices);
-  }
+// Boxes of random poses, within `reach` of a place that is `away` from the origin.
+class Boxes {
+ public:
+  explicit Boxes(uint64_t seed) : random(seed), mesh(test::add(scene, tools::makeBox({1, 2, 3}))) {}
+
   Transform anywhere(double reach, double away = 0) {
-    const std::array<double, 3> lo{away - reach, away - reach, -reach}, hi{away + reach, away + reach, reach};
-    return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, random.inBox(lo, hi));
+    const tools::Vec3 place = random.inBox({away - reach, away - reach, -reach}, {away + reach, away + reach, reach});
+    return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, place);
   }
+  void add(size_t count, double reach, double away = 0) {
+    while (count-- > 0) objects.push_back(scene.addObject({mesh, anywhere(reach, away)}));
+  }
+  void moveAny(double reach, double away = 0) { scene.setTransform(objects[any()], anywhere(reach, away)); }
+  void removeAny() {
+    const size_t which = any();
+    scene.removeObject(objects[which]);
+    objects.erase(objects.begin() + static_cast<ptrdiff_t>(which));
+  }
+  void edit(uint32_t kind, double reach) {
+    if (kind == 0) add(1, reach);
+    if (kind == 1) moveAny(reach);
+    if (kind == 2) removeAny();
+  }
+  const ObjectTree& tree() const { return scene.impl().objectTree(); }
+
   Random random;
   Scene scene;
   MeshId mesh;
+  std::vector<ObjectId> objects;
+
+ private:
+  size_t any() { return random.below(static_cast<uint32_t>(objects.size())); }
 };
 
 }  // namespace
@@ -111,39 +129,28 @@ struct Boxes {
 TEST_CASE("the tree contains all objects while they are added, moved and removed") {
   Boxes boxes(3);
   const double away = GENERATE(0.0, 1e6, 1e12);
-  std::vector<ObjectId> objects;
-  CHECK(boxes.scene.impl().objectTree().nodes().empty());
+  CHECK(boxes.tree().nodes().empty());
   for (int round = 0; round < 40; ++round) {
-    for (int i = 0; i < (round % 4 == 0 ? 10 : 0); ++i) {
-      objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u}));
-    }
-    for (int i = 0; i < 5; ++i) {
-      boxes.scene.setTransform(objects[boxes.random.below(uint32_t(objects.size()))], boxes.anywhere(20, away));
-    }
-    if (round % 8 == 7) {
-      for (int i = 0; i < 4; ++i) {
-        const uint32_t which = boxes.random.below(uint32_t(objects.size()));
-        boxes.scene.removeObject(objects[which]);
-        objects.erase(objects.begin() + which);
-      }
-    }
+    if (round % 4 == 0) boxes.add(10, 20, away);
+    for (int i = 0; i < 5; ++i) boxes.moveAny(20, away);
+    for (int i = 0; i < 4 && round % 8 == 7; ++i) boxes.removeAny();
     checkTree(boxes.scene);
   }
-  for (const ObjectId id : objects) boxes.scene.removeObject(id);
+  while (!boxes.objects.empty()) boxes.removeAny();
   checkTree(boxes.scene);
-  CHECK(boxes.scene.impl().objectTree().nodes().empty());
-  boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u});
+  CHECK(boxes.tree().nodes().empty());
+  boxes.add(1, 20, away);
   checkTree(boxes.scene);
-  CHECK(boxes.scene.impl().objectTree().nodes().size() == 1);
+  CHECK(boxes.tree().nodes().size() == 1);
 }
 
 TEST_CASE("a small move changes the boxes and the version but not the structure of the tree") {
   Boxes boxes(4);
-  for (int i = 0; i < 100; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(50), ~0u});
-  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  boxes.add(100, 50);
+  const ObjectTree& tree = boxes.tree();
   const std::vector<gpu::ObjectNode> before = tree.nodes();
   uint64_t version = tree.version();
-  CHECK(boxes.scene.impl().objectTree().version() == version);
+  CHECK(boxes.tree().version() == version);
   Transform pose = boxes.scene.object(7).worldFromMesh;
   pose.m[3] += 0.25;
   boxes.scene.setTransform(7, pose);
@@ -155,11 +162,11 @@ TEST_CASE("a small move changes the boxes and the version but not the structure 
 
 TEST_CASE("the tree contains the bounds of objects that a host may move") {
   Boxes boxes(5);
-  for (int i = 0; i < 20; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
+  boxes.add(20, 20);
   const Bounds bounds{{-70, -3, -3}, {-60, 3, 90}};
   boxes.scene.setBounds(11, bounds);
   checkTree(boxes.scene);
-  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  const ObjectTree& tree = boxes.tree();
   for (int k = 0; k < 3; ++k) {
     CHECK(objectBox(boxes.scene.impl(), 11).lo[k] <= bounds.lo[k]);
     CHECK(objectBox(boxes.scene.impl(), 11).hi[k] >= bounds.hi[k]);
@@ -175,9 +182,9 @@ TEST_CASE("the tree contains the bounds of objects that a host may move") {
 TEST_CASE("far from the origin, boxes are hardly larger than their objects") {
   Boxes boxes(6);
   const double away = 1e12;
-  for (int i = 0; i < 50; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20, away), ~0u});
+  boxes.add(50, 20, away);
   const auto checkSizes = [&] {
-    const ObjectTree& tree = boxes.scene.impl().objectTree();
+    const ObjectTree& tree = boxes.tree();
     for (const gpu::ObjectNode& node : tree.nodes()) {
       if ((node.link & gpu::kLinkLeaf) == 0) continue;
       const Box box = objectBox(boxes.scene.impl(), node.link & gpu::kLinkItem);
@@ -200,21 +207,21 @@ TEST_CASE("a tree that moves have degraded is rebuilt") {
     boxes.scene.addObject({boxes.mesh, at(10 * i, 0, 0), ~0u});
     poses.push_back(at(10 * ((7 * i) % 300), 0, 0));
   }
-  const double before = costOf(boxes.scene.impl().objectTree());
+  const double before = costOf(boxes.tree());
   for (ObjectId id = 0; id < 300; ++id) {
     boxes.scene.setTransform(id, poses[id]);
     fresh.scene.addObject({fresh.mesh, poses[id], ~0u});
   }
   checkTree(boxes.scene);
-  CHECK(costOf(boxes.scene.impl().objectTree()) == Approx(costOf(fresh.scene.impl().objectTree())));
-  CHECK(costOf(boxes.scene.impl().objectTree()) < 1.5 * before);
+  CHECK(costOf(boxes.tree()) == Approx(costOf(fresh.tree())));
+  CHECK(costOf(boxes.tree()) < 1.5 * before);
 }
 
 TEST_CASE("the tree is out of range while floats cannot represent an object or its bounds") {
   Boxes boxes(9);
-  for (int i = 0; i < 5; ++i) boxes.scene.addObject({boxes.mesh, boxes.anywhere(20), ~0u});
-  const ObjectTree& tree = boxes.scene.impl().objectTree();
-  const auto inRange = [&] { return boxes.scene.impl().objectTree().inRange(); };
+  boxes.add(5, 20);
+  const ObjectTree& tree = boxes.tree();
+  const auto inRange = [&] { return boxes.tree().inRange(); };
   const auto scaled = [](double s) { return Transform{{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0}}; };
   CHECK(inRange());
   for (const Transform& pose : {at(0x1p81, 0, 0), at(0, 0, -0x1p81), scaled(0x1p81), at(1e240, 0, 0), scaled(1e240)}) {
@@ -239,55 +246,41 @@ TEST_CASE("the tree is out of range while floats cannot represent an object or i
   Boxes other(10);
   const ObjectId far = other.scene.addObject({other.mesh, at(1e200, 0, 0), ~0u});
   other.scene.addObject({other.mesh, at(1, 0, 0), ~0u});
-  CHECK_FALSE(other.scene.impl().objectTree().inRange());
+  CHECK_FALSE(other.tree().inRange());
   other.scene.setTransform(far, at(5, 0, 0));
   checkTree(other.scene);
 }
 
 TEST_CASE("single edits of a large scene keep its tree valid and no worse than twice a new one") {
   Boxes boxes(11);
-  std::vector<ObjectId> objects(600);
-  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(40)});
+  boxes.add(600, 40);
   for (int round = 0; round < 150; ++round) {
     CAPTURE(round);
     checkTree(boxes.scene);
     for (uint32_t edits = 1 + boxes.random.below(3); edits > 0; --edits) {
-      const uint32_t which = boxes.random.below(static_cast<uint32_t>(objects.size()));
-      const uint32_t kind = boxes.random.below(3);
-      if (kind == 0) {
-        objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(round % 10 == 0 ? 80 : 40)}));
-      } else if (kind == 1) {
-        boxes.scene.setTransform(objects[which], boxes.anywhere(40));
-      } else {
-        boxes.scene.removeObject(objects[which]);
-        objects.erase(objects.begin() + which);
-      }
+      boxes.edit(boxes.random.below(3), round % 10 == 0 ? 80 : 40);
     }
   }
-  Scene again;
-  const MeshView mesh = boxes.scene.mesh(boxes.mesh);
-  again.addMesh(mesh.positions, mesh.indices);
-  for (const ObjectId id : objects) again.addObject(boxes.scene.object(id));
-  CHECK(costOf(boxes.scene.impl().objectTree()) < 2 * costOf(again.impl().objectTree()));
+  Boxes again(11);
+  for (const ObjectId id : boxes.objects) again.scene.addObject(boxes.scene.object(id));
+  CHECK(costOf(boxes.tree()) < 2 * costOf(again.tree()));
   // Down to nothing, and from there.
-  while (!objects.empty()) {
-    boxes.scene.removeObject(objects.back());
-    objects.pop_back();
-    if (objects.size() % 50 < 3) checkTree(boxes.scene);
+  while (!boxes.objects.empty()) {
+    boxes.removeAny();
+    if (boxes.objects.size() % 50 < 3) checkTree(boxes.scene);
   }
-  CHECK(boxes.scene.impl().objectTree().nodes().empty());
-  boxes.scene.addObject({boxes.mesh, boxes.anywhere(1)});
+  CHECK(boxes.tree().nodes().empty());
+  boxes.add(1, 1);
   checkTree(boxes.scene);
 }
 
 TEST_CASE("numbers of objects that are free, however many in a row, do not widen the scene's box") {
   // A whole chunk of them made it endless: searches culled little, and devices found every sensor out of range.
   Boxes boxes(13);
-  std::vector<ObjectId> objects(20'000);
-  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)});
-  boxes.scene.impl().objectTree();
-  for (size_t i = 100; i < objects.size() - 1; ++i) boxes.scene.removeObject(objects[i]);
-  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  boxes.add(20'000, 100);
+  boxes.tree();
+  for (size_t i = 100; i < boxes.objects.size() - 1; ++i) boxes.scene.removeObject(boxes.objects[i]);
+  const ObjectTree& tree = boxes.tree();
   Box around;
   for (ObjectId id = 0; id < boxes.scene.objectLimit(); ++id) {
     if (boxes.scene.hasObject(id)) around.merge(objectBox(boxes.scene.impl(), id));
@@ -298,23 +291,15 @@ TEST_CASE("numbers of objects that are free, however many in a row, do not widen
 
 TEST_CASE("the pages of changed nodes have every node that an edit changes, and few others") {
   Boxes boxes(12);
-  std::vector<ObjectId> objects(10'000);
-  for (ObjectId& object : objects) object = boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)});
-  const ObjectTree& tree = boxes.scene.impl().objectTree();
+  boxes.add(10'000, 100);
+  const ObjectTree& tree = boxes.tree();
   std::vector<gpu::ObjectNode> before = tree.nodes();
-  size_t changed = 0, missed = 0, named = 0, edits = 0;
+  size_t changed = 0, missed = 0, named = 0;
+  uint32_t edits = 0;
   for (; edits < 1'500; ++edits) {
     const uint64_t seen = tree.version();
-    const uint32_t which = boxes.random.below(static_cast<uint32_t>(objects.size()));
-    if (edits % 3 == 0) {
-      objects.push_back(boxes.scene.addObject({boxes.mesh, boxes.anywhere(100)}));
-    } else if (edits % 3 == 1) {
-      boxes.scene.setTransform(objects[which], boxes.anywhere(100));
-    } else {
-      boxes.scene.removeObject(objects[which]);
-      objects.erase(objects.begin() + which);
-    }
-    const std::vector<gpu::ObjectNode>& nodes = boxes.scene.impl().objectTree().nodes();
+    boxes.edit(edits % 3, 100);
+    const std::vector<gpu::ObjectNode>& nodes = boxes.tree().nodes();
     std::vector<bool> isNamed(nodes.size());
     tree.changedNodes().forEachSince(seen, [&](size_t first, size_t last) {
       std::fill(isNamed.begin() + static_cast<ptrdiff_t>(first), isNamed.begin() + static_cast<ptrdiff_t>(last), true);

@@ -7,6 +7,7 @@
 #include "math/frame.h"
 #include "scene/scene.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -128,7 +129,7 @@ TEST_CASE("many transforms are set at once, or none") {
   constexpr size_t kCount = 20'000;
   std::vector<ObjectId> objects;
   std::vector<Transform> poses;
-  const auto at = [](double x) { return Transform{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
+  const auto at = [](double x) { return test::at(x, 0, 0); };
   for (size_t i = 0; i < kCount; ++i) {
     objects.push_back(scene.addObject({.mesh = mesh}));
     poses.push_back(at(double(i)));

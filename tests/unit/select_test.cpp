@@ -3,6 +3,7 @@
 
 #include "sampled/plan.h"
 #include "support/catch.h"
+#include "support/world.h"
 #include "workloads/generate.h"
 
 namespace {
@@ -40,10 +41,8 @@ TEST_CASE("every object with a vertex in the sensor's way is selected once, whil
   tools::Random random(11);
   const double away = GENERATE(0.0, 1e9);
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 2, 3});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  const tools::MeshData plate = tools::makeBox({4, 2, 1});
-  const MeshId sensor = scene.addMesh(plate.positions, plate.indices);
+  const MeshId mesh = test::add(scene, tools::makeBox({1, 2, 3}));
+  const MeshId sensor = test::add(scene, tools::makeBox({4, 2, 1}));
   std::vector<ObjectId> objects;
   const auto anywhere = [&] { return random.inBox({away - 20, away - 20, -20}, {away + 20, away + 20, 20}); };
   const auto randomPose = [&] { return tools::makePose(random.rotation(), {0.3, 0.5, 1.0}, anywhere()); };
@@ -78,9 +77,8 @@ TEST_CASE("every object with a vertex in the sensor's way is selected once, whil
 
 TEST_CASE("scopes are out of range while an object is too far away for the tree") {
   Scene scene;
-  const tools::MeshData box = tools::makeBox({1, 1, 1});
-  const MeshId mesh = scene.addMesh(box.positions, box.indices);
-  const auto at = [](double x) { return Transform{{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0}}; };
+  const MeshId mesh = test::add(scene, tools::makeBox({1, 1, 1}));
+  const auto at = [](double x) { return test::at(x, 0, 0); };
   const ObjectId near = scene.addObject({mesh, at(0), ~0u});
   scene.addObject({mesh, at(50), ~0u});
   const ObjectId remote = scene.addObject({mesh, at(1e30), ~0u});

@@ -10,7 +10,7 @@ namespace voxels {
 /// The least parameter s >= 0 at which the interior of `a`, moved by s * direction for integer components, begins to
 /// meet that of `b`; -1 if it never does.
 inline oracle::Rational begins(const radar::tools::Solid& a, const radar::tools::Solid& b,
-                               const std::array<int, 3>& direction) {
+                               const std::array<double, 3>& direction) {
   using oracle::Rational;
   Rational best = -1;
   for (const radar::tools::Voxel& p : a) {
@@ -18,7 +18,7 @@ inline oracle::Rational begins(const radar::tools::Solid& a, const radar::tools:
       Rational from = 0, to = 1'000'000;
       bool meets = true;
       for (int k = 0; k < 3; ++k) {
-        const int gap = q[k] - p[k], d = direction[k];
+        const int gap = q[k] - p[k], d = static_cast<int>(direction[k]);
         if (d == 0) {
           meets = meets && gap == 0;
           continue;

@@ -1,0 +1,202 @@
+// Sweeps of boxes among boxes whose answers are known, for the CPU and for devices.
+#pragma once
+
+#include <cmath>
+
+#include "support/catch.h"
+#include "support/world.h"
+#include "workloads/shapes.h"
+
+namespace known {
+
+using radar::Status;
+using radar::tools::Vec3;
+
+struct Box {
+  Vec3 from, to;
+};
+
+/// A sweep of the sensor, and its answer.
+struct Sweep {
+  Vec3 direction;
+  double distance;
+  Status status;
+  double t = 0;
+  radar::ObjectId object = 0;
+  Vec3 start{};  ///< by how much the sensor is moved first
+  std::vector<radar::ObjectId> exclude{};
+  uint32_t mask = ~0u;  ///< object i has bit i % 32
+};
+
+struct Case {
+  const char* name;
+  Box sensor;
+  std::vector<Box> objects;
+  std::vector<Sweep> sweeps;
+  bool ignoreLeaving = false;
+};
+
+inline std::vector<Case> cases() {
+  constexpr Status kClear = Status::clear, kHit = Status::hit, kOverlap = Status::overlap;
+  constexpr Vec3 kUp{0, 0, 1}, kDown{0, 0, -1}, kRight{1, 0, 0}, kLeft{-1, 0, 0}, kAhead{0, 1, 0}, kBack{0, -1, 0};
+  const auto before = [](double x) { return std::nextafter(x, 0); };
+  const auto beyond = [](double x) { return std::nextafter(x, 2 * x); };
+  constexpr Box kCube{{0, 0, 0}, {1, 1, 1}}, kAbove{{0, 0, 4}, {1, 1, 5}}, kFloor{{-9, -9, -1}, {9, 9, 0}};
+  std::vector<Box> row, field;
+  for (int i = 0; i < 20; ++i) {
+    const double x = 3.0 * ((7 * i) % 20);
+    row.push_back({{x, 0, 4}, {x + 1, 1, 5}});
+  }
+  for (int i = 1023; i >= 0; --i) {
+    const double x = 2 * (i % 32), y = 2.0 * (i / 32);
+    field.push_back({{x, y, 4}, {x + 1, y + 1, 5}});
+  }
+  return {
+      {"a box that falls on another hits it after the gap between them",
+       {{0, 0, 5}, {2, 2, 7}},
+       {{{0.25, 0.5, 0}, {2.25, 2.5, 2}}},
+       {{{0, 0, -2}, 10, kHit, 3}}},
+      {"contact at exactly D counts, and contact beyond D does not",
+       kCube,
+       {kAbove},
+       {{kUp, 3, kHit, 3}, {kUp, before(3), kClear}, {{0, 0, 2}, 3, kHit, 3}, {{0, 0, 2}, 10, kHit, 3}}},
+      {"touching at the start is an overlap, whatever D and the direction",
+       kCube,
+       {kAbove},
+       {{kUp, 0, kOverlap, 0, 0, {0, 0, 3}},
+        {kUp, 5, kOverlap, 0, 0, {0, 0, 3}},
+        {kDown, 0, kOverlap, 0, 0, {0, 0, 3}},
+        {kDown, 5, kOverlap, 0, 0, {0, 0, 3}},
+        {kUp, 5, kOverlap, 0, 0, {0, 0, 3.5}},
+        {kUp, 5, kOverlap, 0, 0, {0, 0, 5}},
+        {kUp, 5, kClear, 0, 0, {0, 0, beyond(5)}},
+        {kUp, 0, kClear, 0, 0, {0, 0, before(3)}},
+        {kUp, 1, kHit, 3 - before(3), 0, {0, 0, before(3)}},
+        {kUp, 0, kOverlap, 0, 0, {1, 1, 3}}}},
+      {"boxes that slide past each other meet along an edge or at a corner, and one ulp beside it do not",
+       kCube,
+       {kAbove},
+       {{kUp, 9, kHit, 3, 0, {1, 0, 0}},
+        {kUp, 9, kClear, 0, 0, {beyond(1), 0, 0}},
+        {kUp, 9, kHit, 3, 0, {1, 1, 0}},
+        {kUp, 3, kHit, 3, 0, {1, 1, 0}},
+        {kUp, 9, kHit, 3, 0, {-1, 0.5, 0}}}},
+      {"a box inside another that does not reach its surface is clear",
+       {{-1, -1, -1}, {1, 1, 1}},
+       {{{-10, -10, -10}, {10, 10, 10}}},
+       {{kRight, 8, kClear}, {kRight, 9, kHit, 9}}},
+      {"the object behind is found when the one in front is excluded or masked",
+       kCube,
+       {kAbove, {{0, 0, 8}, {1, 1, 9}}},
+       {{kUp, 20, kHit, 3, 0},
+        {kUp, 20, kHit, 7, 1, {}, {0}},
+        {kUp, 20, kHit, 7, 1, {}, {}, 2},
+        {kUp, 20, kClear, 0, 0, {}, {}, 4}}},
+      {"of objects in a row hit at the same time the one with the lowest id is reported",
+       {{0, 0, 0}, {60, 1, 1}},
+       row,
+       {{kUp, 20, kHit, 3, 0}, {kUp, 20, kHit, 3, 1, {}, {0}}}},
+      {"of a thousand objects hit at the same time the one with the lowest id is reported",
+       {{0, 0, 0}, {64, 64, 1}},
+       field,
+       {{{0, 0, 0.5}, 10, kHit, 3, 0},
+        {kUp, 10, kHit, 3, 1, {}, {0}},
+        {kUp, 10, kHit, 3, 3, {}, {0, 1, 2}},
+        {kUp, 3, kHit, 3, 0},
+        {kUp, before(3), kClear}}},
+      {"a box at rest may be lifted and pushed along the floor, but neither down nor through a wall",
+       kCube,
+       {kFloor, {{3, -9, 0}, {4, 9, 9}}},
+       {{kUp, 10, kClear},
+        {kLeft, 5, kClear},
+        {kDown, 10, kOverlap},
+        {{1, 0, -1e-9}, 10, kOverlap},
+        {kRight, 10, kHit, 2, 1},
+        {{2, 0, 0}, 10, kHit, 2, 1},
+        {{1, 0, 1}, 10, kHit, 2 * std::sqrt(2.0), 1}},
+       true},
+      {"an edge that is only grazed, and left along its face, does not hide the wall behind it",
+       kCube,
+       {{{1, 1, -9}, {2, 2, 9}}, {{5, -9, -9}, {6, 9, 9}}},
+       {{kRight, 10, kHit, 4, 1}},
+       true},
+      {"walls in one plane let a box slide along both",
+       kCube,
+       {{{-9, -1, -9}, {1, 0, 9}}, {{1, -1, -9}, {9, 0, 9}}},
+       {{kRight, 5, kClear}, {{1, -1e-3, 0}, 5, kOverlap}},
+       true},
+      {"a peg that fits a hole exactly moves along its axis only",
+       kCube,
+       {{{-9, -9, -9}, {0, 9, 9}}, {{1, -9, -9}, {9, 9, 9}}, {{0, -9, -9}, {1, 0, 9}}, {{0, 1, -9}, {1, 9, 9}}},
+       {{kUp, 10, kClear},
+        {kDown, 10, kClear},
+        {kRight, 10, kOverlap, 0, 1},
+        {kBack, 10, kOverlap, 0, 2},
+        {{1e-6, 0, 1}, 10, kOverlap, 0, 1}},
+       true},
+      {"a body inside a cavity meets the cavity's wall from inside",
+       kCube,
+       {{{-2, -2, -2}, {3, 3, 3}}},
+       {{kAhead, 10, kHit, 2}},
+       true},
+      {"equal boxes stacked exactly let each other go upwards only",
+       kCube,
+       {{{0, 0, -1}, {1, 1, 0}}},
+       {{kUp, 10, kClear},
+        {kRight, 10, kClear},
+        {{1, 1, 0}, 10, kClear},
+        {kDown, 10, kOverlap},
+        {{1, 0, -1}, 10, kOverlap}},
+       true},
+  };
+}
+
+/// Calls answersOf(scene, queries) for each case, and checks the answers.
+template <class AnswersOf>
+void check(const AnswersOf& answersOf) {
+  for (const Case& one : cases()) {
+    radar::Scene scene;
+    const radar::MeshId box = radar::test::add(scene, radar::tools::makeBox({1, 1, 1}));
+    const auto placed = [](const Box& b) {
+      using namespace radar::tools;
+      return makePose(kUpright, b.to - b.from, 0.5 * (b.from + b.to));
+    };
+    for (size_t i = 0; i < one.objects.size(); ++i) scene.addObject({box, placed(one.objects[i]), 1u << i % 32});
+    std::vector<radar::Query> queries;
+    for (const Sweep& sweep : one.sweeps) {
+      radar::Query query{.mesh = box,
+                         .worldFromMesh = placed(one.sensor),
+                         .direction = sweep.direction,
+                         .distance = sweep.distance,
+                         .exclude = sweep.exclude,
+                         .mask = sweep.mask,
+                         .ignoreLeaving = one.ignoreLeaving};
+      radar::tools::moveBy(query.worldFromMesh, sweep.start);
+      queries.push_back(query);
+    }
+    const std::vector<radar::Result> results = answersOf(scene, queries);
+    for (size_t i = 0; i < queries.size(); ++i) {
+      const Sweep& expected = one.sweeps[i];
+      const radar::Result& result = results.at(i);
+      CAPTURE(one.name, i);
+      REQUIRE(result.status == expected.status);
+      if (expected.status == Status::clear) {
+        CHECK((result.t == INFINITY && result.hi == INFINITY));
+        continue;
+      }
+      CHECK(result.detected == radar::Detected::yes);
+      CHECK(result.object == expected.object);
+      CHECK(result.t == expected.t);
+      CHECK((result.lo <= expected.t && expected.t <= result.hi && result.hi <= expected.distance));
+      CHECK(result.fraction == (expected.distance == 0 ? 0 : expected.t / expected.distance));
+      if (expected.status == Status::overlap) CHECK((result.lo == 0 && result.hi == 0));
+      for (size_t k = 0; k < 3 && expected.status == Status::hit; ++k) {
+        Vec3 along{};
+        along[k] = expected.direction[k];
+        if (along == expected.direction) CHECK(result.normal[k] == (along[k] > 0 ? -1 : 1));
+      }
+    }
+  }
+}
+
+}  // namespace known

@@ -63,6 +63,7 @@ bool EarliestContact::keep(const PairName& name, const PlacedPair& pair, const B
   if (order < 0) {
     touching_.clear();
   } else if (!overlap_) {
+    touching_.reserve(8);  // boxes touch in two pairs or more
     const bool isFirst = name < name_;
     touching_.push_back(isFirst ? TouchingPair{name_, pair_} : TouchingPair{name, pair});
     if (!isFirst) return false;

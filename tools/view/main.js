@@ -108,7 +108,7 @@ class Page {
       if (this.wasStale && passed > 0) {
         this.frames.push(passed);
         if (this.frames.length > 60) this.frames.shift();
-        this.budget = Math.min(Math.max(this.budget * (passed > 60 ? 0.8 : passed < 30 ? 1.1 : 1), 20000), 4e6);
+        this.budget = Math.min(Math.max(this.budget * (passed > 60 ? 0.8 : passed < 30 ? 1.1 : 1), 10000), 4e6);
       }
       this.draw(this.budget);
     } else if (this.stage.simplified && now - this.restless > 250) {

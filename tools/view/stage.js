@@ -95,9 +95,9 @@ class Stage {
       return bin;
     };
     const leastWhole = leastBin(whole, 0.7 * this.budget), leastBox = leastBin(boxes, 0.3 * this.budget);
-    const isSmall = (item) => item.pixels <= 1 || (item.pixels < 6 && item.bin < Math.min(leastWhole, leastBox));
+    const isSmall = (item) => item.pixels <= 1 || item.bin < Math.min(leastWhole, leastBox);
     const specks = this.items.reduce((count, item) => count + isSmall(item), 0);
-    const kept = Math.min(1, Math.max(10000, 0.2 * this.budget) / specks);
+    const kept = Math.min(1, Math.max(12000, 0.2 * this.budget) / specks);
     this.simplified = kept < 1;
     for (const item of this.items) {
       if (item.pixels > 1 && item.bin >= leastWhole) this.put(this.solids, item.mesh, item);
@@ -128,7 +128,7 @@ class Stage {
   speck({ placed, i, moved, colour, id, pixels }) {
     const { specks, eye } = this, word = specks.add(), { floats, whole } = specks;
     for (let k = 0; k < 3; ++k) floats[word + k] = placed.centre[3 * i + k] + moved[k] - eye[k];
-    floats[word + 3] = Math.max(2 * pixels, 1.5);
+    floats[word + 3] = Math.max(1.3 * pixels, 1.5);
     whole[word + 4] = packed(colour);
     whole[word + 5] = id;
     floats[word + 6] = SHAPES.square;

@@ -70,7 +70,7 @@ class Machine:
         casts = self.scene.cast(mesh, poses, way, mode=mode, resolution=resolution)
         seconds = time.perf_counter() - start
         if page is not None:
-            every = 1 + int(np.sqrt(casts.status.size / 2500))
+            every = 1 + max(casts.shape) // 7  # few, so that the part is seen between them
             casts[::every, ::every].show(page, title="A cutter falls onto a part")
         self.scene.remove_mesh(mesh)
         heights = np.where(casts.touches, self.raster.top - casts.distance, self.raster.floor)

@@ -1,5 +1,7 @@
 #include "query/swept.h"
 
+#include <algorithm>
+
 namespace radar {
 
 namespace detail {

@@ -1,4 +1,6 @@
 // A real assembly, whose parts touch and cross where they are joined: every part moved out along 26 directions.
+#include <algorithm>
+
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"

@@ -1,5 +1,6 @@
 // Meshes that a host deforms and objects that it moves on the device: answers equal those of a scene with the same
 // geometry.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,6 @@
 // Lists of hits, and steps in which objects move, recorded into command buffers.
+#include <algorithm>
+
 #include "embed/host_world.h"
 #include "embed/renderer.h"
 #include "fuzz/check_recorded.h"

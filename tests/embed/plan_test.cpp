@@ -1,4 +1,5 @@
 // The input of the search that a shader encodes from a host's queries, against exact arithmetic and the CPU's encoding.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 

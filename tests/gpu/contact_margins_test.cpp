@@ -1,5 +1,6 @@
 // The search's bounds admit pairs that touch by construction: a vertex of the sensor meets a vertex of an object.
 // Sizes, distances and positions vary widely.
+#include <algorithm>
 #include <cmath>
 
 #include "contact/sensors.h"

@@ -1,4 +1,5 @@
 // Compares the scopes with a raster on the CPU in double precision, pixel by pixel.
+#include <algorithm>
 #include <cmath>
 
 #include "gpu/device.h"

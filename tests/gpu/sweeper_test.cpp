@@ -1,4 +1,5 @@
 // Mode sampled: neither batches nor what is drawn change answers, and bad queries are refused.
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <thread>

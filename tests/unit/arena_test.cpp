@@ -1,6 +1,7 @@
 // Ranges of an arena never overlap, and what is freed can be allocated again.
 #include "scene/arena.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "scene/changed_pages.h"

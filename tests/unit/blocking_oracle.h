@@ -3,6 +3,8 @@
 // component is 1 or -1: on each face of the cube of such normals it clips the face by the conditions on the normal.
 #pragma once
 
+#include <algorithm>
+
 #include "exact_oracle.h"
 
 namespace oracle {

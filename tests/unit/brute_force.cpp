@@ -1,5 +1,7 @@
 #include "brute_force.h"
 
+#include <algorithm>
+
 #include "blocking_oracle.h"
 #include "exact/motion.h"
 

@@ -1,4 +1,5 @@
 // Queries that ignore what they leave: compares the CPU's answers with the truth about solids.
+#include <algorithm>
 #include <map>
 
 #include "soups.h"

@@ -1,5 +1,7 @@
 // The bounds of the CPU's search contain the exact time of contact, for every pair of nodes and of triangles, not only
 // for those that a search visits.
+#include <algorithm>
+
 #include "cpu/leaf_test.h"
 #include "cpu_wild_scenes.h"
 #include "exact/contact.h"

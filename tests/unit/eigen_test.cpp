@@ -1,6 +1,7 @@
 // radar/eigen.h: what goes in keeps its numbers or is refused, and what comes out is not copied.
 #include "radar/eigen.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

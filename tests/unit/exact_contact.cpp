@@ -1,4 +1,6 @@
 // Compares the contact interval of two triangles with separating axes in exact rationals.
+#include <algorithm>
+
 #include "distances.h"
 #include "exact/common_point.h"
 #include "exact/contact.h"

@@ -1,4 +1,5 @@
 // Numbers in mesh files of text become the nearest floats.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>

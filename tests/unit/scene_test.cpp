@@ -1,6 +1,7 @@
 // The scene: ids, contracts, boxes and frames.
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -1,5 +1,6 @@
 // Embree, in two ways: a ray per pixel from the sensor's front into the scene, like the paper's pictures; or a ray from
 // each vertex, of the sensor into the scene and of the scene back onto the sensor.
+#include <algorithm>
 #include <stdexcept>
 
 #include "baselines/rigid.h"

@@ -1,5 +1,7 @@
 #include "baselines/rigid.h"
 
+#include <algorithm>
+
 namespace radar::tools {
 
 namespace {

@@ -1,5 +1,7 @@
 #include "python/page.h"
 
+#include <algorithm>
+
 #include "view/page.h"
 
 namespace radar::python {

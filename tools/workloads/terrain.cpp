@@ -1,4 +1,6 @@
 // The workloads whose scene is a relief: heights over a square.
+#include <algorithm>
+
 #include "workloads/drop_cutter.h"
 #include "workloads/generate.h"
 

@@ -9,25 +9,27 @@ namespace radar {
 
 GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
     : upload_(device),
-      buffer_(device, "searches to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      gathered_(device, "queries to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      order_(device, "order of searches", gpu::BufferDomain::device),
       run_(device, {shaders::kGather}) {
-  buffer_.reserve(searches);
+  gathered_.reserve(searches);
+  order_.reserve(2 * searches);
   upload_.reserve(searches * sizeof(gpu::Gathered));
 }
 
 void GatherPass::stage(std::span<const gpu::Gathered> queries) {
-  searches_.clear();
-  for (const gpu::Gathered& query : queries) searches_.insert(searches_.end(), query.count, query);
+  queries_ = static_cast<uint32_t>(queries.size());
+  searches_ = 0;
+  for (const gpu::Gathered& query : queries) searches_ += query.count;
   run_.begin();
   upload_.begin();
-  upload_.add(searches_.data(), gpu::bytesOf(searches_), buffer_);
+  upload_.add(queries.data(), queries.size_bytes(), gathered_);
 }
 
 void GatherPass::record(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t first) {
   gpu::computeWriteToComputeReadWrite(commands);
-  const auto count = static_cast<uint32_t>(searches_.size());
-  run_(commands, shaders::kGather, gpu::groupsFor(count, gpu::kHostGroup), gpu::GatherPush{count, first},
-       {{gpu::kSlotResults, results}, {gpu::kSlotGathered, buffer_}});
+  run_(commands, shaders::kGather, queries_, gpu::GatherPush{queries_, searches_, first},
+       {{gpu::kSlotResults, results}, {gpu::kSlotGathered, gathered_}, {gpu::kSlotOrder, order_}});
 }
 
 }  // namespace radar

@@ -17,8 +17,8 @@ class GatherPass {
   /// Makes room for this many searches.
   GatherPass(const Device::Impl& device, uint32_t searches);
 
-  bool empty() const { return searches_.empty(); }
-  /// Stages the searches of these queries, in their order.
+  bool empty() const { return queries_ == 0; }
+  /// Stages these queries, whose searches follow one another.
   void stage(std::span<const gpu::Gathered> queries);
   /// The caller records the barrier behind it.
   void recordUpload(const gpu::Commands& commands) const { upload_.record(commands); }
@@ -27,9 +27,10 @@ class GatherPass {
   void record(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t first);
 
  private:
-  std::vector<gpu::Gathered> searches_;
+  uint32_t queries_ = 0, searches_ = 0;
   gpu::Upload upload_;
-  gpu::Array<gpu::Gathered> buffer_;
+  gpu::Array<gpu::Gathered> gathered_;
+  gpu::Array<uint32_t> order_;
   gpu::Passes run_;
 };
 

@@ -61,7 +61,7 @@ struct DeformedSensor {
   float perWay;     // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
 };
 
-// A search past one object, one of several that answer a query together.
+// A query that several searches answer together, each past one object.
 struct Gathered {
   uint query;   // index of the query's answer
   uint first;   // of the searches' answers, which ascend by object
@@ -123,8 +123,9 @@ struct InvalidatePush {
   uint count;  // results
 };
 struct GatherPush {
-  uint count;  // searches
-  uint first;  // index of the first one's answer
+  uint queries;
+  uint searches;  // of all of them
+  uint first;     // index of the first search's answer
 };
 // Members of a radar::HostQuery, bytes from its beginning.
 INTEROP_CONST kQueryDirection = 48;
@@ -136,6 +137,7 @@ INTEROP_CONST kQueryFlags = 76;
 INTEROP_CONST kQueryAnyHit = 1;
 // Invocations in a workgroup of the passes.
 INTEROP_CONST kHostGroup = 64;
+INTEROP_CONST kGatherGroup = 128;
 // Triangles that an invocation of bound.comp takes.
 INTEROP_CONST kBoundRun = 16;
 
@@ -144,6 +146,7 @@ INTEROP_SLOT(kSlotMoved, 24, Moved);
 INTEROP_SLOT(kSlotBoundsViolation, 25, BoundsViolation);
 INTEROP_SLOT(kSlotRefitNodes, 26, uint);  // nodes of deformed meshes, deepest first
 INTEROP_SLOT(kSlotGathered, 27, Gathered);
+INTEROP_SLOT(kSlotOrder, 29, uint);  // of searches
 INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects, parents first
 INTEROP_SLOT(kSlotVertexNumbers, 20, uint);  // of deformed meshes, in the host's buffers
 INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes

@@ -52,7 +52,21 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
   return {shaders::kSearch, {lanes, queue, stack, hasClearances ? 1u : 0u}, gpu::Subgroups::full};
 }
 
+// Those that need doubles.
+const std::initializer_list<gpu::Program> kPrecise = {shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
+
 }  // namespace
+
+std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
+  std::vector<gpu::Program> all{searchOf(device, {}, false),
+                                searchOf(device, {}, true),
+                                shaders::kCollect,
+                                shaders::kFilter,
+                                shaders::kLink,
+                                shaders::kResolve};
+  if (device.doubles) all.insert(all.end(), kPrecise);
+  return all;
+}
 
 ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room)
     : device_(&device),
@@ -81,7 +95,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
     room_.width =
         runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
   }
-  if (device.doubles) run_.reserve({shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock});
+  if (device.doubles) run_.reserve(kPrecise);
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {

@@ -48,6 +48,9 @@ class ContactPass {
   };
   Encoded encoded() const { return {sensors_, sweeps_, states_, tasks_, excluded_}; }
 
+  /// Every program that a pass may run on the device.
+  static std::vector<gpu::Program> programs(const Device::Impl& device);
+
   using OpenStage = std::function<void(const char*)>;
   /// Records the copies and the barrier after them.
   void recordUpload(const gpu::Commands& commands, const OpenStage& stage);

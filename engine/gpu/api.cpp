@@ -70,6 +70,9 @@ void Api::load(VkDevice device) {
   name = reinterpret_cast<PFN_vk##name>(required(GetDeviceProcAddr(device, "vk" #name), "vk" #name));
   RADAR_DEVICE_FUNCTIONS(RADAR_LOAD)
 #undef RADAR_LOAD
+#define RADAR_LOAD(name) name = reinterpret_cast<PFN_vk##name>(GetDeviceProcAddr(device, "vk" #name));
+  RADAR_STATISTICS_FUNCTIONS(RADAR_LOAD)
+#undef RADAR_LOAD
 }
 
 }  // namespace radar::gpu

@@ -33,6 +33,10 @@
 #define RADAR_DEBUG_FUNCTIONS(X) \
   X(CmdBeginDebugUtilsLabelEXT) X(CmdEndDebugUtilsLabelEXT) X(CreateDebugUtilsMessengerEXT) \
   X(DestroyDebugUtilsMessengerEXT) X(SetDebugUtilsObjectNameEXT)
+
+// Functions of VK_KHR_pipeline_executable_properties: null if the device lacks it.
+#define RADAR_STATISTICS_FUNCTIONS(X) \
+  X(GetPipelineExecutablePropertiesKHR) X(GetPipelineExecutableStatisticsKHR)
 // clang-format on
 
 namespace radar::gpu {
@@ -54,6 +58,7 @@ struct Api {
   RADAR_INSTANCE_FUNCTIONS(RADAR_DECLARE)
   RADAR_DEVICE_FUNCTIONS(RADAR_DECLARE)
   RADAR_DEBUG_FUNCTIONS(RADAR_DECLARE)
+  RADAR_STATISTICS_FUNCTIONS(RADAR_DECLARE)
 #undef RADAR_DECLARE
 };
 

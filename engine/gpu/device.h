@@ -46,6 +46,8 @@ struct Device::Impl {
   bool dividesRight =
       false;  ///< quotients of doubles have the CPU's bits; else shaders/shared/divide.glsl corrects them
 
+  bool capturesStatistics = false;  ///< VK_KHR_pipeline_executable_properties tells of pipelines
+
   VkDevice device() const { return host.device; }
   /// Throws with the reasons, naming `who`, if the device does not support mode sampled.
   void requireSampled(const std::string& who) const;
@@ -86,6 +88,9 @@ const T& Device::Impl::shared() const {
 }
 
 namespace gpu {
+
+/// A device that makes pipelines and tells of them, if its driver can. Its arithmetic is not checked.
+std::unique_ptr<Device::Impl> openForStatistics(uint32_t index);
 
 /// Name and version, as the driver gives them.
 std::string driverText(const Api& vk, VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties);

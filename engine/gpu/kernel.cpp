@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <map>
 #include <mutex>
 #include <string>
@@ -84,6 +85,10 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const Shade
           .pName = "main"};
 }
 
+VkPipelineCreateFlags flagsOf(const Device::Impl& device) {
+  return device.capturesStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
+}
+
 Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                        const char* name) {
   const RenderPass renderPass = depthRenderPass(device);  // any that is compatible
@@ -117,6 +122,7 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std:
   const VkPipelineDynamicStateCreateInfo dynamic{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 2, .pDynamicStates = states};
   const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .flags = flagsOf(device),
                                           .stageCount = 1,
                                           .pStages = &stage,
                                           .pVertexInputState = &vertexInput,
@@ -153,8 +159,10 @@ Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, st
       .requiredSubgroupSize = device.subgroupSize};
   if (subgroups == Subgroups::full) stage.flags |= VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
   if (subgroups == Subgroups::full && device.choosesSubgroupSize) stage.pNext = &size;
-  const VkComputePipelineCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = stage, .layout = layout};
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .flags = flagsOf(device),
+                                         .stage = stage,
+                                         .layout = layout};
   VkPipeline pipeline;
   check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
                                          &pipeline),
@@ -189,6 +197,19 @@ Kernel::Kernel(const Device::Impl& device, const Program& program)
 
 namespace {
 
+double valueOf(const VkPipelineExecutableStatisticKHR& statistic) {
+  switch (statistic.format) {
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
+      return statistic.value.b32;
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR:
+      return static_cast<double>(statistic.value.i64);
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_UINT64_KHR:
+      return static_cast<double>(statistic.value.u64);
+    default:
+      return statistic.value.f64;
+  }
+}
+
 // A device's.
 class Kernels {
  public:
@@ -213,6 +234,29 @@ class Kernels {
 }
 
 }  // namespace
+
+KernelReport reportOf(const Device::Impl& device, const Program& program) {
+  const auto start = std::chrono::steady_clock::now();
+  const Kernel kernel(device, program);
+  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+  KernelReport report{.name = program.shader->name, .milliseconds = time.count()};
+  if (!device.capturesStatistics) return report;
+  const VkPipelineExecutableInfoKHR executable{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR,
+                                               .pipeline = kernel.pipeline.get()};
+  uint32_t count = 0;
+  const auto get = [&](VkPipelineExecutableStatisticKHR* out) {
+    check(device.vk.GetPipelineExecutableStatisticsKHR(device.device(), &executable, &count, out),
+          "vkGetPipelineExecutableStatisticsKHR", program.shader->name);
+  };
+  get(nullptr);
+  std::vector<VkPipelineExecutableStatisticKHR> statistics(
+      count, {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+  get(statistics.data());
+  for (const VkPipelineExecutableStatisticKHR& statistic : statistics) {
+    report.statistics.push_back({statistic.name, statistic.description, valueOf(statistic)});
+  }
+  return report;
+}
 
 Passes::Passes(const Device::Impl& device, std::initializer_list<Program> programs) : device_(&device) {
   reserve(programs);

@@ -131,6 +131,9 @@ class Passes {
   uint64_t recording_ = 1;
 };
 
+/// Makes the program's pipeline anew.
+KernelReport reportOf(const Device::Impl& device, const Program& program);
+
 /// `constants`: values of specialization constants 0, 1, ..., if the shader has any.
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants = {},

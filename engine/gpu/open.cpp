@@ -204,8 +204,15 @@ std::vector<DeviceReport> listDevices() {
   return reports;
 }
 
-Device Device::open(const DeviceOptions& options) {
-  const FloatEnvironment floats;
+namespace {
+
+struct Opened {
+  std::unique_ptr<Device::Impl::Owned> owned;
+  HostDevice host;
+  bool capturesStatistics = false;
+};
+
+Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
   auto owned = openInstance(options.onValidation);
   HostDevice host{.instance = owned->instance, .debugNames = options.onValidation != nullptr};
   host.physicalDevice = choose(owned->vk, physicalDevices(owned->vk, owned->instance), options.index);
@@ -219,22 +226,48 @@ Device Device::open(const DeviceOptions& options) {
   host.doubles = options.doubles && facts.doubles;
   host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
   Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
+  const std::vector<VkExtensionProperties> available = extensionsOf(owned->vk, host.physicalDevice);
+  std::vector<const char*> extensions;
   // Such a driver wants to be told that the application knows.
-  const char* portable = "VK_KHR_portability_subset";
-  const VkDeviceCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-      .pNext = needed.chain(),
-      .queueCreateInfoCount = 1,
-      .pQueueCreateInfos = &queue,
-      .enabledExtensionCount = has(extensionsOf(owned->vk, host.physicalDevice), portable) ? 1u : 0u,
-      .ppEnabledExtensionNames = &portable};
+  if (has(available, "VK_KHR_portability_subset")) extensions.push_back("VK_KHR_portability_subset");
+  VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR};
+  const bool capturesStatistics =
+      wantsStatistics && has(available, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+  if (capturesStatistics) {
+    extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    statistics.pipelineExecutableInfo = VK_TRUE;
+  }
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = needed.chain(capturesStatistics ? &statistics : nullptr),
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),
+                                .ppEnabledExtensionNames = extensions.data()};
   check(owned->vk.CreateDevice(host.physicalDevice, &info, nullptr, &owned->device), "vkCreateDevice");
   owned->vk.load(owned->device);
   host.device = owned->device;
   owned->vk.GetDeviceQueue(host.device, host.queueFamily, 0, &host.queue);
-  Device device = adopt(host);
-  device.impl_->owned = std::move(owned);
+  return {std::move(owned), host, capturesStatistics};
+}
+
+}  // namespace
+
+Device Device::open(const DeviceOptions& options) {
+  const FloatEnvironment floats;
+  Opened opened = openHandles(options, false);
+  Device device = adopt(opened.host);
+  device.impl_->owned = std::move(opened.owned);
   return device;
+}
+
+std::unique_ptr<Device::Impl> gpu::openForStatistics(uint32_t index) {
+  Opened opened = openHandles({.index = index}, true);
+  auto impl = std::make_unique<Device::Impl>(opened.host);
+  impl->owned = std::move(opened.owned);
+  impl->doubles = opened.host.doubles;
+  impl->capturesStatistics = opened.capturesStatistics;
+  return impl;
 }
 
 }  // namespace radar

@@ -5,6 +5,7 @@
 
 #include "gpu/kernel.h"
 #include "shaders/contact/interop.h"
+#include "shaders/embed/interop.h"
 #include "shaders/sampled/interop.h"
 
 namespace radar::gpu {
@@ -73,7 +74,7 @@ SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device) {
 }
 
 std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const SubgroupFacts& subgroups) {
-  const uint32_t group = std::max(kContactGroup, subgroups.size);
+  const uint32_t group = std::max({kContactGroup, kGatherGroup, subgroups.size});
   const auto contact = [](const char* name, uint64_t needed, uint64_t has) {
     return DeviceLimit{name, needed, has, Mode::contact};
   };

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/page_data.h"
 #include "cli/program.h"
@@ -15,6 +16,19 @@ TEST_CASE("devices lists the devices with their numbers") {
   const Run run = runProgram(folder, "devices");
   CHECK(run.status == 0);
   CHECK_THAT(run.out, Contains("0  ") && Contains("usable"));
+}
+
+TEST_CASE("devices --kernels compiles every kernel") {
+  const ScratchFolder folder;
+  CHECK_THAT(runProgram(folder, "devices --kernels").out, Contains("contact/search") && Contains("sampled/depth"));
+  const auto devices = nlohmann::json::parse(runProgram(folder, "devices --kernels --json").out);
+  std::set<std::string> names;
+  for (const auto& kernel : devices[0]["kernels"]) {
+    CHECK(kernel["ms"].get<double>() > 0);
+    names.insert(kernel["kernel"].get<std::string>());
+  }
+  CHECK(names.size() == devices[0]["kernels"].size());
+  CHECK(names.size() > 20);
 }
 
 TEST_CASE("mode sampled reports the chosen resolution and writes statistics of its stages") {

@@ -184,6 +184,17 @@ bool measureArithmetic(std::span<const Device> devices, std::span<const uint32_t
   return true;
 }
 
+bool measureKernels(std::span<const Device>, std::span<const uint32_t> numbers, const Deadline&, Json& rows) {
+  for (const KernelReport& kernel : compileKernels(numbers[0])) {
+    std::string statistics;
+    for (const auto& [name, description, value] : kernel.statistics) {
+      statistics += (statistics.empty() ? "" : ", ") + name + " " + std::to_string(std::llround(value));
+    }
+    rows.push_back({{"kernel", kernel.name}, {"ms", kernel.milliseconds}, {"statistics", statistics}});
+  }
+  return true;
+}
+
 // Queries of every kind, also those that a renderer records, with its geometry, in scenes that other seeds decide than
 // those by which a device proves itself.
 bool measureAnswers(std::span<const Device> devices, std::span<const uint32_t>, const Deadline& deadline, Json& rows) {
@@ -299,6 +310,7 @@ bool measureTogether(std::span<const Device> devices, std::span<const uint32_t> 
 
 constexpr SelftestPart kParts[] = {
     {"arithmetic", "Arithmetic, on which the bounds rest", 0.01, measureArithmetic},
+    {"kernels", "Kernels, as the device's compiler makes them", 0.01, measureKernels},
     {"answers", "Known queries of every kind, those of a renderer's frames among them", 0.04, measureAnswers},
     {"throughput", "Throughput of the device, and of all cores of the CPU", 0.4, measureThroughput},
     {"stages", "Stages of mode contact, batches of 16,384", 0.07, measureStages},

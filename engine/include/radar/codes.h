@@ -39,32 +39,32 @@
 #include <cstdint>
 
 namespace radar {
-#define RADAR_CODE(name, value) name = value,
+#define RADAR_CODE(name, value) name = (value),
 enum class Status : uint32_t { RADAR_STATUSES(RADAR_CODE) };
 enum class Tier : uint32_t { RADAR_TIERS(RADAR_CODE) };
 enum class Detected : uint32_t { RADAR_DETECTIONS(RADAR_CODE) };
 enum class Feature : uint32_t { RADAR_FEATURES(RADAR_CODE) };
 #undef RADAR_CODE
 struct Flag {
-#define RADAR_CODE(name, value) static constexpr uint32_t name = value;
+#define RADAR_CODE(name, value) static constexpr uint32_t name = (value);
   RADAR_FLAGS(RADAR_CODE)
 #undef RADAR_CODE
 };
 }  // namespace radar
 #else
-#define RADAR_CODE(name, value) const uint RADAR_STATUS_##name = value;
+#define RADAR_CODE(name, value) const uint RADAR_STATUS_##name = (value);
 RADAR_STATUSES(RADAR_CODE)
 #undef RADAR_CODE
-#define RADAR_CODE(name, value) const uint RADAR_TIER_##name = value;
+#define RADAR_CODE(name, value) const uint RADAR_TIER_##name = (value);
 RADAR_TIERS(RADAR_CODE)
 #undef RADAR_CODE
-#define RADAR_CODE(name, value) const uint RADAR_DETECTED_##name = value;
+#define RADAR_CODE(name, value) const uint RADAR_DETECTED_##name = (value);
 RADAR_DETECTIONS(RADAR_CODE)
 #undef RADAR_CODE
-#define RADAR_CODE(name, value) const uint RADAR_FEATURE_##name = value;
+#define RADAR_CODE(name, value) const uint RADAR_FEATURE_##name = (value);
 RADAR_FEATURES(RADAR_CODE)
 #undef RADAR_CODE
-#define RADAR_CODE(name, value) const uint RADAR_FLAG_##name = value;
+#define RADAR_CODE(name, value) const uint RADAR_FLAG_##name = (value);
 RADAR_FLAGS(RADAR_CODE)
 #undef RADAR_CODE
 #endif

@@ -129,6 +129,21 @@ class RADAR_API Device {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A kernel as a device's compiler made it.
+struct KernelReport {
+  struct Statistic {
+    std::string name, description;  ///< in the driver's words
+    double value;
+  };
+  std::string name;                   ///< its shader, and what it is specialized for
+  double milliseconds = 0;            ///< that the driver took
+  std::vector<Statistic> statistics;  ///< empty without VK_KHR_pipeline_executable_properties
+};
+
+/// Compiles every kernel that the engine may run on a device, and runs none: the device may be one that only compiles.
+/// `index`: as in DeviceOptions. Throws Error as Device::open() does.
+RADAR_API std::vector<KernelReport> compileKernels(uint32_t index = kNone);
+
 /// The check of one operation on which the bounds of mode contact rest, on numbers whose results the CPU knows: Vulkan
 /// leaves drivers some freedom (its specification, "Precision and Operation of SPIR-V Instructions"). Device::open()
 /// and Device::adopt() run the same checks and act on the results.

@@ -25,7 +25,7 @@ std::vector<KernelReport> compileKernels(uint32_t index) {
   const std::unique_ptr<Device::Impl> device = gpu::openForStatistics(index);
   std::vector<gpu::Program> programs = ContactPass::programs(*device);
   // The others are never specialized.
-  const std::set<const gpu::Shader*> precise{&shaders::kRefine, &shaders::kBlock, &shaders::kDoubles};
+  const std::set<const gpu::Shader*> precise{&shaders::kCertify, &shaders::kRefine, &shaders::kBlock, &shaders::kDoubles};
   for (const gpu::Shader* shader : shaders::kAll) {
     const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
     const bool runs = device->doubles || !precise.contains(shader);

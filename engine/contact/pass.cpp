@@ -20,7 +20,7 @@ constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // Default maximum number of tasks, in addition to one per sensor: 20 bytes each, in two lists.
 constexpr uint32_t kMostTasks = 1u << 21;
-// Capacity for candidates, of 20 bytes and 56 as refined pairs: at first per sensor, at least in total, and the most
+// Capacity for candidates, of 24 bytes and 64 as refined pairs: at first per sensor, at least in total, and the most
 // that it grows to. Sensors have some 10 candidates among boxes, 30 among meshes, hundreds where shapes interlock.
 constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
 // Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
@@ -53,7 +53,7 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
 }
 
 // Those that need doubles.
-const std::initializer_list<gpu::Program> kPrecise = {shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
+const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
 
 }  // namespace
 
@@ -183,15 +183,15 @@ GpuScene::Staged ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& 
 // Uploads the counts of a search that begins with this many tasks.
 void ContactPass::addCounts(uint32_t tasks) {
   gpu::SearchCounts counts{};
-  counts.blockGroups[2] = 1;
+  counts.refineGroups[2] = counts.blockGroups[2] = 1;
   counts.rounds[0].tasks = tasks;
   upload_.add(&counts, sizeof(counts), counts_);
 }
 
 void ContactPass::stageMore(const gpu::SearchCounts& before) {
   gpu::SearchCounts counts = before;
-  counts.refinedPairs = counts.openPairs = counts.unresolved = 0;
-  counts.blockGroups[0] = counts.blockGroups[1] = 0;
+  counts.refinedPairs = counts.leftPairs = counts.openPairs = counts.unresolved = 0;
+  for (uint32_t* const groups : {counts.refineGroups, counts.blockGroups}) groups[0] = groups[1] = 0;
   const uint32_t tasks = tasksLeft(before);
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;
@@ -248,6 +248,15 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
         {kSlotRefinedPairs, refinedPairs_}});
   computeWriteToComputeReadWrite(commands);
   if (device_->doubles) {
+    run_(commands, shaders::kCertify, perCandidates,
+         {{kSlotStates, states_},
+          {kSlotCounts, counts_},
+          {kSlotRefinedPairs, refinedPairs_},
+          {kSlotVertices, scene.vertices},
+          {kSlotTriangles, scene.triangles},
+          {kSlotSweeps, sweeps_},
+          {kSlotObjects, scene.objects}});
+    computeWriteToIndirect(commands);
     const auto refine = [&](const Program& program, const Groups& groups) {
       run_(commands, program, groups,
            {{kSlotStates, states_},
@@ -259,7 +268,7 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
             {kSlotObjects, scene.objects},
             {kSlotMeshes, scene.meshes}});
     };
-    refine({shaders::kRefine, {ignoresLeaving_ ? 1u : 0u}}, perCandidates);
+    refine({shaders::kRefine, {ignoresLeaving_ ? 1u : 0u}}, {counts_, offsetof(SearchCounts, refineGroups)});
     if (ignoresLeaving_) {
       computeWriteToIndirect(commands);
       refine(shaders::kBlock, {counts_, offsetof(SearchCounts, blockGroups)});

@@ -22,5 +22,5 @@ void main() {
   const CandidatePair c = candidates[i];
   if (c.low > uintBitsToFloat(states[c.sensor].hi) || c.object > states[c.sensor].least) return;
   refinedPairs[atomicAdd(counts.refinedPairs, 1)] = RefinedPair(doubleBits(floatBitsToUint(c.low)), uvec2(0), uvec2(0), c.sensor,
-                                                          c.object, c.slotA, c.slotB, 0, kNobody, c.low, 0);
+                                                          c.object, c.slotA, c.slotB, 0, kNobody, c.low, 0, 0, c.feature);
 }

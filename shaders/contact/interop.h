@@ -78,6 +78,7 @@ struct CandidatePair {
   uint slotA;  // Triangle
   uint slotB;
   float low;   // no contact before this, scaled
+  uint feature;  // that certainly meets first of those that certainly meet, its corners not sorted; else not below kFeatures
 };
 
 // A pair that may still be first after the search; in double precision if the device has it.
@@ -93,6 +94,8 @@ struct RefinedPair {
   uint next;
   float first;   // `low`, scaled, rounded down
   uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block
+  uint left;     // likewise of one that certify.comp leaves
+  uint feature;  // of a CandidatePair
 };
 INTEROP_CONST kPairParted = 0x800;   // certainly does not meet at or after the start
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
@@ -123,9 +126,11 @@ INTEROP_CONST kMostRounds = 64;
 // Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
-  uint blockGroups[3];   // the same for the pairs that may not block
+  uint refineGroups[3];  // the same for the pairs that certify.comp leaves
+  uint blockGroups[3];   // and for those that may not block
   uint candidates;       // found; stored up to the capacity, and above it no exact count
   uint refinedPairs;
+  uint leftPairs;        // that certify.comp leaves
   uint openPairs;        // that may not block
   uint unresolved;       // found; stored up to the capacity
   uint broken;           // the device runs a workgroup as several subgroups

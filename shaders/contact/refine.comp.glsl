@@ -1,4 +1,4 @@
-// Solves the refined pairs in double precision, which may lower the upper bound of first contact.
+// Solves the refined pairs that certify.comp leaves in double precision, which may lower the upper bound of first contact.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -34,11 +34,11 @@ void leaveOpen(uint pair) {
 }
 
 void main() {
-  const uint i = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
-  if (i >= counts.refinedPairs) return;
+  const uint place = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
+  if (place >= counts.leftPairs) return;
+  const uint i = refinedPairs[place].left;
   const RefinedPair c = refinedPairs[i];
   const Sweep sweep = sweeps[c.sensor];
-  if (sweep.hasClearance != 0) return;
   dvec3 a[3], b[3];
   placedCorners(sweep.pose, c.slotA, a);
   placedCorners(objects[c.object].pose, c.slotB, b);

@@ -361,7 +361,7 @@ void tryLeaves(bool all) {
   }
 }
 
-void keepCandidate(bool keeps, uvec4 pair, float low) {
+void keepCandidate(bool keeps, uvec4 pair, float low, uint feature) {
   const uvec4 who = subgroupBallot(keeps);
   uint first = 0;
   if (subgroupElect()) first = atomicAdd(counts.candidates, subgroupBallotBitCount(who));
@@ -370,7 +370,7 @@ void keepCandidate(bool keeps, uvec4 pair, float low) {
   if (first > push.candidateCapacity && subgroupElect()) atomicMin(counts.candidates, push.candidateCapacity + 1);
   const uint at = first + rankOf(who);
   if (keeps && at < push.candidateCapacity) {
-    candidates[at] = CandidatePair(pair.w, pair.z, pair.x, pair.y, low);
+    candidates[at] = CandidatePair(pair.w, pair.z, pair.x, pair.y, low, feature);
   } else if (keeps) {
     atomicOr(states[pair.w].flags, kSearchLost);
   }
@@ -383,6 +383,7 @@ void solvePairs(bool all) {
     const uint at = pairHead + gl_SubgroupInvocationID;
     bool keeps = false;
     float low = 0.0;
+    uint feature = kNobody;
     uvec4 pair = uvec4(0);
     if (at < pairTail) {
       pair = pairQueue[at % kQueue];
@@ -390,6 +391,7 @@ void solvePairs(bool all) {
       const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
       const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
       low = max(min(m.earliest, m.unknown), 0.0);
+      feature = m.feature;
       float bound = limitOf(pair.w, pair.z);
       // A subnormal number might be flushed to 0 later.
       float by = m.ahead ? max(m.by, 1e-37) : kMiss;
@@ -409,7 +411,7 @@ void solvePairs(bool all) {
       bound = min(bound, by);
       keeps = !isOver && low <= bound;
     }
-    keepCandidate(keeps, pair, low);
+    keepCandidate(keeps, pair, low, feature);
     pairHead = min(pairHead + kLanes, pairTail);
   }
 }

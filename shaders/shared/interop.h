@@ -106,6 +106,7 @@ INTEROP_SLOT(kSlotMeshes, 17, MeshRecord);
 // Features: 0..2 vertex i of the sensor's triangle on the other's face; 3..5 vertex i-3 of the scene's triangle on the
 // sensor's face; 6 + 3*i + j: edge i of the sensor's triangle and edge j of the scene's, edges being (0,1), (1,2), (0,2).
 INTEROP_CONST kFeatureEdges = 6;
+INTEROP_CONST kFeatures = 15;
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

@@ -17,7 +17,9 @@ MOST_ID = 2**32 - 2
 
 def cast_option(value: Any, name: str) -> bool | float | str | None:
     """One value for all casts, whose range the compiled half checks."""
-    if value is None or isinstance(value, (bool, np.bool_, str)):
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if value is None or isinstance(value, (bool, str)):
         return value
     number = reals(value, name)
     if number.ndim:

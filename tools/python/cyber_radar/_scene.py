@@ -308,7 +308,7 @@ class Scene:
         after_chunk = None if progress is None else lambda done: progress(done, total)
         with self._exclusive() as engine:
             try:
-                hits, overlapping, reasons = engine.cast(
+                listed, overlapping, reasons = engine.cast(
                     shape, arguments, options, results, lambda count: _new_arrays((count,), False), after_chunk
                 )
             finally:
@@ -316,7 +316,7 @@ class Scene:
         casts = Casts(**results) if out is None else out
         if not sampled:
             casts.paper_min_l = casts.resolution = None
-        casts.hits = None if hits is None else Hits(**hits[0], offsets=hits[1], of_shape=shape)
+        casts.hits = None if listed is None else Hits(**listed[0], offsets=listed[1], of_shape=shape)
         casts.overlapping = None if overlapping is None else Overlapping(*overlapping, shape)
         casts.reasons = reasons
         casts._asked = Asked.of(self, arguments, shape)

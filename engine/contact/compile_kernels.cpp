@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 
 #include "contact/pass.h"
 #include "math/float_environment.h"
@@ -25,10 +24,9 @@ std::vector<KernelReport> compileKernels(uint32_t index) {
   const std::unique_ptr<Device::Impl> device = gpu::openForStatistics(index);
   std::vector<gpu::Program> programs = ContactPass::programs(*device);
   // The others are never specialized.
-  const std::set<const gpu::Shader*> precise{&shaders::kCertify, &shaders::kRefine, &shaders::kBlock, &shaders::kDoubles};
   for (const gpu::Shader* shader : shaders::kAll) {
     const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
-    const bool runs = device->doubles || !precise.contains(shader);
+    const bool runs = device->doubles || !shader->spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader->spirv);
     const bool isInMode = shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || device->reasonsAgainstSampled.empty();
     if (!isListed && runs && isInMode) programs.push_back(*shader);
   }

@@ -53,7 +53,8 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
 }
 
 // Those that need doubles.
-const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
+const std::initializer_list<gpu::Program> kPrecise = {
+    shaders::kCertify, shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
 
 }  // namespace
 

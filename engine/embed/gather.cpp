@@ -13,7 +13,7 @@ GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
       order_(device, "order of searches", gpu::BufferDomain::device),
       run_(device, {shaders::kGather}) {
   gathered_.reserve(searches);
-  order_.reserve(2 * searches);
+  order_.reserve(VkDeviceSize{2} * searches);
   upload_.reserve(searches * sizeof(gpu::Gathered));
 }
 

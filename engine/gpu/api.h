@@ -36,7 +36,7 @@
 
 // Functions of VK_KHR_pipeline_executable_properties: null if the device lacks it.
 #define RADAR_STATISTICS_FUNCTIONS(X) \
-  X(GetPipelineExecutablePropertiesKHR) X(GetPipelineExecutableStatisticsKHR)
+  X(GetPipelineExecutableStatisticsKHR)
 // clang-format on
 
 namespace radar::gpu {

@@ -45,7 +45,6 @@ struct Device::Impl {
   bool doubles = false;              ///< shaders may compute with them
   bool dividesRight =
       false;  ///< quotients of doubles have the CPU's bits; else shaders/shared/divide.glsl corrects them
-
   bool capturesStatistics = false;  ///< VK_KHR_pipeline_executable_properties tells of pipelines
 
   VkDevice device() const { return host.device; }

@@ -27,4 +27,13 @@ struct Shader {
   uint32_t pushBytes;                 ///< of push constants; 0: none
 };
 
+/// Whether a module computes with doubles: it declares the capability Float64.
+inline bool hasDoubles(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kHeader = 5, kCapability = 17, kFloat64 = 10;
+  for (size_t at = kHeader; at < spirv.size(); at += spirv[at] >> 16) {
+    if ((spirv[at] & 0xffff) == kCapability && spirv[at + 1] == kFloat64) return true;
+  }
+  return false;
+}
+
 }  // namespace radar::gpu

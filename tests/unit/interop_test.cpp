@@ -39,8 +39,8 @@ std::string textOf(std::span<const uint32_t> words) {
   return reinterpret_cast<const char*>(words.data());
 }
 
-constexpr uint32_t kOpName = 5, kOpMemberName = 6, kOpTypeFloat = 22, kOpTypeRuntimeArray = 29, kOpTypeStruct = 30,
-                   kOpTypePointer = 32, kOpVariable = 59, kOpDecorate = 71, kOpMemberDecorate = 72;
+constexpr uint32_t kOpName = 5, kOpMemberName = 6, kOpTypeRuntimeArray = 29, kOpTypeStruct = 30, kOpTypePointer = 32,
+                   kOpVariable = 59, kOpDecorate = 71, kOpMemberDecorate = 72;
 constexpr uint32_t kArrayStride = 6, kBinding = 33, kDescriptorSet = 34, kOffset = 35;  // decorations
 constexpr uint32_t kStorageBuffer = 12;
 
@@ -67,13 +67,6 @@ std::map<std::string, Layout> layoutsOf(std::span<const uint32_t> spirv) {
   for (const auto& [member, offset] : memberOffsets) layouts[names[member.first]].members[memberNames[member]] = offset;
   for (const auto& [array, element] : elementTypes) layouts[names[element]].stride = arrayStrides[array];
   return layouts;
-}
-
-bool hasDoubles(std::span<const uint32_t> spirv) {
-  bool has = false;
-  forEachInstruction(
-      spirv, [&](uint32_t op, std::span<const uint32_t> words) { has |= op == kOpTypeFloat && words[1] == 64; });
-  return has;
 }
 
 using RadarResult = radar::Result;
@@ -234,7 +227,7 @@ TEST_CASE("every shader that uses doubles has a variant without them or is used 
   for (const Shader* shader : kAll) {
     CAPTURE(shader->name);
     const bool hasVariant = !shader->spirvWithoutDoubles.empty();
-    CHECK(hasDoubles(shader->spirv) == (hasVariant || onlyWithDoubles.count(shader->name) == 1));
-    if (hasVariant) CHECK_FALSE(hasDoubles(shader->spirvWithoutDoubles));
+    CHECK(radar::gpu::hasDoubles(shader->spirv) == (hasVariant || onlyWithDoubles.count(shader->name) == 1));
+    if (hasVariant) CHECK_FALSE(radar::gpu::hasDoubles(shader->spirvWithoutDoubles));
   }
 }

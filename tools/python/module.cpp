@@ -318,7 +318,7 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
                       const std::string& title, uint64_t count, const std::vector<std::string>& names,
                       const py::dict& arrays, const std::map<uint32_t, std::string>& reasons) {
   const size_t shown = names.size();
-  ShownCasts casts{.count = count, .names = names, .reasons = reasons};
+  ShownCasts casts{.count = count, .names = names, .answers = outputFrom(arrays, shown), .reasons = reasons};
   casts.meshes = output<uint32_t>(arrays, "mesh", shown);
   casts.poses = output<double>(arrays, "poses", 16 * shown);
   casts.directions = output<double>(arrays, "displacements", 3 * shown);
@@ -326,15 +326,6 @@ std::string castsPage(const CastingScene& scene, const std::map<uint32_t, std::s
   const auto excluded = arrays["exclude_from_each"].cast<Array<int64_t>>();
   casts.excludedCount = static_cast<size_t>(excluded.shape(1));
   casts.excluded = excluded.data();
-  const BatchOutput answers = outputFrom(arrays, shown);
-  casts.status = answers.status;
-  casts.t = answers.distance;
-  casts.lo = answers.lo;
-  casts.hi = answers.hi;
-  casts.object = answers.object;
-  casts.triangles = answers.triangles;
-  casts.point = answers.point;
-  casts.normal = answers.normal;
   return pageOf(scene, objectNames, title, casts);
 }
 

@@ -46,6 +46,7 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
                    const std::string& title, const ShownCasts& casts) {
   Workload workload = workloadOf(scene.scene(), objectNames);
   std::vector<Result> results;
+  const BatchOutput& answers = casts.answers;
   for (size_t i = 0; i < casts.names.size(); ++i) {
     tools::QuerySpec& query = workload.queries.emplace_back();
     query.id = casts.names[i];
@@ -57,15 +58,15 @@ std::string pageOf(const CastingScene& scene, const std::map<uint32_t, std::stri
       const int64_t object = casts.excluded[casts.excludedCount * i + k];
       if (object >= 0) query.exclude.push_back(idFrom(object));
     }
-    Result& result = results.emplace_back(static_cast<Status>(casts.status[i]));
-    result.t = casts.t[i];
-    result.lo = casts.lo[i];
-    result.hi = casts.hi[i];
-    result.object = idFrom(casts.object[i]);
-    result.triA = idFrom(casts.triangles[2 * i]);
-    result.triB = idFrom(casts.triangles[2 * i + 1]);
-    std::copy_n(casts.point + 3 * i, 3, result.point.begin());
-    std::copy_n(casts.normal + 3 * i, 3, result.normal.begin());
+    Result& result = results.emplace_back(static_cast<Status>(answers.status[i]));
+    result.t = answers.distance[i];
+    result.lo = answers.lo[i];
+    result.hi = answers.hi[i];
+    result.object = idFrom(answers.object[i]);
+    result.triA = idFrom(answers.triangles[2 * i]);
+    result.triB = idFrom(answers.triangles[2 * i + 1]);
+    std::copy_n(answers.point + 3 * i, 3, result.point.begin());
+    std::copy_n(answers.normal + 3 * i, 3, result.normal.begin());
   }
   tools::PageContent content;
   content.title = title;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "python/batch.h"
 #include "python/casting_scene.h"
 
 namespace radar::python {
@@ -17,10 +18,8 @@ struct ShownCasts {
   const double *poses = nullptr, *directions = nullptr, *distances = nullptr;  ///< 16, 3, 1
   const int64_t* excluded = nullptr;                                           ///< `excludedCount` of them
   size_t excludedCount = 0;
-  const uint8_t* status = nullptr;
-  const double *t = nullptr, *lo = nullptr, *hi = nullptr, *point = nullptr, *normal = nullptr;  ///< 1, 1, 1, 3, 3
-  const int64_t *object = nullptr, *triangles = nullptr;                                         ///< 1, 2
-  std::map<uint32_t, std::string> reasons;                                                       ///< by cast
+  BatchOutput answers{};
+  std::map<uint32_t, std::string> reasons;  ///< by cast
 };
 
 /// The page, HTML, of a scene as it is now.

@@ -19,6 +19,7 @@ class Page {
     this.whole(false);
     this.tour = data.tour;
     this.follow(data.tour[0] ?? {});
+    if (data.queries.count === 1) this.choose(0);
     requestAnimationFrame(() => this.frame());
   }
 

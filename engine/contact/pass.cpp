@@ -39,22 +39,18 @@ void checkExcluded(const Device::Impl& device, uint64_t count) {
                         " bytes, the device allows " + std::to_string(limit));
 }
 
-// The lanes of a workgroup, which is one subgroup; the capacities of its queue and stacks; whether sensors have
+// The lanes of a workgroup, which is one subgroup; the capacities of its queues and stacks; whether sensors have
 // clearances.
 gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool hasClearances) {
   const uint32_t lanes = device.subgroupSize;
-  uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
-  while (queue > 6 * lanes &&
-         gpu::searchSharedBytes(lanes, queue) > device.properties.limits.maxComputeSharedMemorySize) {
-    queue -= lanes;
-  }
+  const uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
   const uint32_t stack = room.stack != 0 ? std::max(room.stack, 4u) : 40;
   return {shaders::kSearch, {lanes, queue, stack, hasClearances ? 1u : 0u}, gpu::Subgroups::full};
 }
 
 // Those that need doubles.
-const std::initializer_list<gpu::Program> kPrecise = {
-    shaders::kCertify, shaders::kRefine, {shaders::kRefine, {1}}, shaders::kBlock};
+const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kProve,
+                                                      shaders::kBlock};
 
 }  // namespace
 
@@ -86,6 +82,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
       excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
       tasks_(device, "search tasks", BufferDomain::device, kUploaded),
       spilled_(device, "spilled search tasks", BufferDomain::device),
+      queues_(device, "search queues", BufferDomain::device),
       candidates_(device, "candidate pairs", BufferDomain::device),
       refinedPairs_(device, "refined pairs", BufferDomain::device),
       counts_(device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
@@ -101,7 +98,7 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
   if (room_.groups != 0) return room_.groups;
-  return runsOnCpu(*device_) ? std::max(32u, sensors / 256) : 4096;
+  return runsOnCpu(*device_) ? std::max(32u, sensors / 256) : 2048;
 }
 
 void ContactPass::reserveLists(uint32_t sensors) {
@@ -118,6 +115,7 @@ void ContactPass::reserveLists(uint32_t sensors) {
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
   tasks_.reserve(taskRoom_);
   spilled_.reserve(taskRoom_);
+  queues_.reserve(groupsFor(sensors) * 2 * search_.constants[1]);
   candidates_.reserve(candidateRoom_);
   refinedPairs_.reserve(candidateRoom_);
   unresolved_.reserve(unresolvedRoom_);
@@ -224,6 +222,7 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
         {kSlotCounts, counts_},
         {kSlotTasks, from},
         {kSlotSpilled, to},
+        {kSlotQueuedPairs, queues_},
         {kSlotCandidatePairs, candidates_},
         {kSlotExcluded, excluded_}});
   computeWriteToComputeReadWrite(commands);
@@ -258,8 +257,18 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
           {kSlotSweeps, sweeps_},
           {kSlotObjects, scene.objects}});
     computeWriteToIndirect(commands);
-    const auto refine = [&](const Program& program, const Groups& groups) {
-      run_(commands, program, groups,
+    run_(commands, shaders::kRefine, {counts_, offsetof(SearchCounts, refineGroups)},
+         {{kSlotStates, states_},
+          {kSlotCounts, counts_},
+          {kSlotRefinedPairs, refinedPairs_},
+          {kSlotVertices, scene.vertices},
+          {kSlotTriangles, scene.triangles},
+          {kSlotSweeps, sweeps_},
+          {kSlotObjects, scene.objects}});
+    for (const Shader* shader : {&shaders::kProve, &shaders::kBlock}) {
+      if (!ignoresLeaving_) break;
+      computeWriteToIndirect(commands);
+      run_(commands, *shader, {counts_, offsetof(SearchCounts, blockGroups)},
            {{kSlotStates, states_},
             {kSlotCounts, counts_},
             {kSlotRefinedPairs, refinedPairs_},
@@ -268,11 +277,6 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
             {kSlotSweeps, sweeps_},
             {kSlotObjects, scene.objects},
             {kSlotMeshes, scene.meshes}});
-    };
-    refine({shaders::kRefine, {ignoresLeaving_ ? 1u : 0u}}, {counts_, offsetof(SearchCounts, refineGroups)});
-    if (ignoresLeaving_) {
-      computeWriteToIndirect(commands);
-      refine(shaders::kBlock, {counts_, offsetof(SearchCounts, blockGroups)});
     }
     computeWriteToComputeReadWrite(commands);
   }
@@ -280,18 +284,23 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
        {{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
   computeWriteToComputeReadWrite(commands);
   stage("resolve");
-  run_(commands, shaders::kResolve, gpu::groupsFor(sensorCount_, kContactGroup),
-       ResolvePush{sensorCount_, unresolvedRoom_},
-       {{kSlotStates, states_},
-        {kSlotHeads, heads_},
-        {kSlotCounts, counts_},
-        {kSlotRefinedPairs, refinedPairs_},
-        {kSlotVertices, scene.vertices},
-        {kSlotTriangles, scene.triangles},
-        {kSlotSweeps, sweeps_},
-        {kSlotObjects, scene.objects},
-        {kSlotResults, results_},
-        {kSlotUnresolved, unresolved_}});
+  for (const Shader* shader : {&shaders::kResolve, &shaders::kDescribe}) {
+    if (shader == &shaders::kDescribe) {
+      if (!device_->doubles) break;
+      computeWriteToComputeReadWrite(commands);
+    }
+    run_(commands, *shader, gpu::groupsFor(sensorCount_, kContactGroup), ResolvePush{sensorCount_, unresolvedRoom_},
+         {{kSlotStates, states_},
+          {kSlotHeads, heads_},
+          {kSlotCounts, counts_},
+          {kSlotRefinedPairs, refinedPairs_},
+          {kSlotVertices, scene.vertices},
+          {kSlotTriangles, scene.triangles},
+          {kSlotSweeps, sweeps_},
+          {kSlotObjects, scene.objects},
+          {kSlotResults, results_},
+          {kSlotUnresolved, unresolved_}});
+  }
 }
 
 std::span<const gpu::UnresolvedPair> ContactPass::unresolved(const gpu::SearchCounts& counts) const {

@@ -73,7 +73,7 @@ class ContactPass {
   /// Where the results begin in a readback of counts, then results.
   static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
   /// Few enough iterations that no device aborts the dispatch or reports a hang.
-  static constexpr uint32_t kMostBudget = 30'000;
+  static constexpr uint32_t kMostBudget = 40'000;
 
  private:
   void addCounts(uint32_t tasks);
@@ -92,6 +92,7 @@ class ContactPass {
   gpu::Array<gpu::SearchState> states_;
   gpu::Array<uint32_t> heads_, excluded_;
   gpu::Array<gpu::SearchTask> tasks_, spilled_;
+  gpu::Array<gpu::QueuedPair> queues_;
   gpu::Array<gpu::CandidatePair> candidates_;
   gpu::Array<gpu::RefinedPair> refinedPairs_;
   gpu::Array<gpu::SearchCounts> counts_;

@@ -64,7 +64,10 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
   }
   const gpu::SearchCounts& all = counts();
   if (all.broken != 0) {
-    throw Error("the device runs a workgroup of the contact search as several subgroups", VK_ERROR_UNKNOWN);
+    throw Error(all.broken == gpu::kBrokenLoops
+                    ? "the driver ends loops of the contact search early"
+                    : "the device runs a workgroup of the contact search as several subgroups",
+                VK_ERROR_UNKNOWN);
   }
   const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + ContactPass::kFirstResult);
   return {{results, pass_.sensorCount()},

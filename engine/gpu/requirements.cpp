@@ -85,7 +85,6 @@ std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const Su
           contact("maxComputeWorkGroupSize[0]", group, limits.maxComputeWorkGroupSize[0]),
           contact("maxComputeWorkGroupCount[0]", 65535, limits.maxComputeWorkGroupCount[0]),
           contact("maxComputeWorkGroupCount[1]", 65535, limits.maxComputeWorkGroupCount[1]),
-          contact("maxComputeSharedMemorySize", searchSharedBytes(subgroups.size), limits.maxComputeSharedMemorySize),
           contact("maxPushConstantsSize", kMostPushBytes, limits.maxPushConstantsSize),
           contact("maxPerStageDescriptorStorageBuffers", 8, limits.maxPerStageDescriptorStorageBuffers),
           contact("maxPerStageDescriptorSampledImages", 6, limits.maxPerStageDescriptorSampledImages),

@@ -39,12 +39,6 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device);
 /// Every limit that the shaders rely on.
 std::vector<DeviceLimit> limitsOf(const VkPhysicalDeviceLimits& limits, const SubgroupFacts& subgroups);
 
-/// Least shared memory for a workgroup of the search, bytes (shaders/contact/search.comp.glsl): per lane, 6 entries of
-/// both queues and a task.
-constexpr uint32_t searchSharedBytes(uint32_t lanes, uint32_t queue = 0) {
-  return (queue != 0 ? queue : 6 * lanes) * 36 + lanes * 20;
-}
-
 /// "1.3.224".
 std::string versionText(uint32_t version);
 

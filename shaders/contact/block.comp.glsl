@@ -1,7 +1,8 @@
-// Decides which refined pairs block, for the sensors that ignore all others (docs/exact.md, "Pairs that block"), and lowers
+// Decides which refined pairs block of which prove.comp does not know it, for the sensors that ignore all others (docs/exact.md, "Pairs that block"), and lowers
 // their upper bounds. The decisions are those of engine/exact/blocking.cpp, in doubles with error bounds; what they leave open
 // is left to the CPU.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -42,10 +43,6 @@ Bounded minus(Bounded p, Bounded q) {
   return Bounded(value, (p.error + q.error + kHalfUlp * abs(value)) * kMore);
 }
 Bounded negative(Bounded p) { return Bounded(-p.value, p.error); }
-// The greatest of three.
-Bounded most(Bounded p, Bounded q, Bounded r) {
-  return Bounded(max(p.value, max(q.value, r.value)), max(p.error, max(q.error, r.error)));
-}
 
 BoundedVector exactly(dvec3 v) { return BoundedVector(v, dvec3(0.0LF)); }
 // The difference of exact vectors.
@@ -54,22 +51,30 @@ BoundedVector difference(dvec3 p, dvec3 q) {
   return BoundedVector(value, kHalfUlp * kMore * abs(value));
 }
 
-// Bounds the error of products of components, added up to `sum`.
-dvec3 productError(dvec3 p, dvec3 errorP, dvec3 q, dvec3 errorQ) {
+// Bounds the error of a product of components, and of its addition to others.
+double productError(double p, double errorP, double q, double errorQ) {
   return abs(p) * errorQ + errorP * abs(q) + errorP * errorQ + 3.0LF * kHalfUlp * abs(p * q) + kTiny;
 }
 
 Bounded inner(BoundedVector p, BoundedVector q) {
-  const dvec3 error = productError(p.value, p.error, q.value, q.error);
+  const double error = (productError(p.value.x, p.error.x, q.value.x, q.error.x) +
+                        productError(p.value.y, p.error.y, q.value.y, q.error.y)) +
+                       productError(p.value.z, p.error.z, q.value.z, q.error.z);
   precise double sum = (p.value.x * q.value.x + p.value.y * q.value.y) + p.value.z * q.value.z;
-  return Bounded(sum, (error.x + error.y + error.z) * kMore);
+  return Bounded(sum, error * kMore);
+}
+
+Bounded crossComponent(double p0, double errorP0, double p1, double errorP1, double q0, double errorQ0, double q1, double errorQ1) {
+  const double error = productError(p0, errorP0, q1, errorQ1) + productError(p1, errorP1, q0, errorQ0);
+  precise double value = p0 * q1 - p1 * q0;
+  return Bounded(value, error * kMore);
 }
 
 BoundedVector crossProduct(BoundedVector p, BoundedVector q) {
-  const dvec3 error = productError(p.value.yzx, p.error.yzx, q.value.zxy, q.error.zxy) +
-                      productError(p.value.zxy, p.error.zxy, q.value.yzx, q.error.yzx);
-  precise dvec3 value = p.value.yzx * q.value.zxy - p.value.zxy * q.value.yzx;
-  return BoundedVector(value, error * kMore);
+  const Bounded x = crossComponent(p.value.y, p.error.y, p.value.z, p.error.z, q.value.y, q.error.y, q.value.z, q.error.z);
+  const Bounded y = crossComponent(p.value.z, p.error.z, p.value.x, p.error.x, q.value.z, q.error.z, q.value.x, q.error.x);
+  const Bounded z = crossComponent(p.value.x, p.error.x, p.value.y, p.error.y, q.value.x, q.error.x, q.value.y, q.error.y);
+  return BoundedVector(dvec3(x.value, y.value, z.value), dvec3(x.error, y.error, z.error));
 }
 
 // ---- answers -----------------------------------------------------------------------------------------------------------
@@ -83,9 +88,46 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 
 // ---- pairs -------------------------------------------------------------------------------------------------------------
 
-// The pair: corners about corner 0 of the sensor's triangle, edges, the direction, the slack.
-BoundedVector cornersA[3], cornersB[3], edgesA[3], edgesB[3], direction;
+// The pair: its corners, the direction, the slack. Loops turn corners in place, and compute all else anew where they need it: there
+// is no room in registers for more, nor for corners that an index selects.
+dvec3 a0, a1, a2, b0, b1, b2;
+BoundedVector direction;
 Bounded slack;
+
+// The next corner becomes the first.
+void cycleA() {
+  const dvec3 first = a0;
+  a0 = a1;
+  a1 = a2;
+  a2 = first;
+}
+void cycleB() {
+  const dvec3 first = b0;
+  b0 = b1;
+  b1 = b2;
+  b2 = first;
+}
+
+BoundedVector selected(bool first, BoundedVector p, BoundedVector q) {
+  return BoundedVector(first ? p.value : q.value, first ? p.error : q.error);
+}
+
+// The first edge, and the second.
+BoundedVector edgeOf(bool ofA) { return difference(ofA ? a1 : b1, ofA ? a0 : b0); }
+BoundedVector secondEdgeOf(bool ofA) { return difference(ofA ? a2 : b2, ofA ? a1 : b1); }
+BoundedVector normalOf(bool ofA) { return crossProduct(edgeOf(ofA), secondEdgeOf(ofA)); }
+
+// Of a triangle's corners along a normal.
+struct Span {
+  double least, most, error;
+};
+const Span kNoSpan = Span(1.0e300LF, -1.0e300LF, 0.0LF);
+
+void extend(inout Span span, Bounded height) {
+  span.least = min(span.least, height.value);
+  span.most = max(span.most, height.value);
+  span.error = max(span.error, height.error);
+}
 
 // How far the triangles reach past each other along n and against it, beyond the slack.
 struct Depths {
@@ -93,14 +135,20 @@ struct Depths {
 };
 
 Depths depthsAlong(BoundedVector n) {
-  const Bounded a0 = Bounded(0.0LF, 0.0LF), a1 = inner(n, cornersA[1]), a2 = inner(n, cornersA[2]);
-  const Bounded b0 = inner(n, cornersB[0]), b1 = inner(n, cornersB[1]), b2 = inner(n, cornersB[2]);
+  Span spanA = kNoSpan, spanB = kNoSpan;
+  const dvec3 origin = a0;
+  [[dont_unroll]] for (uint i = 0; i < 3; ++i) {
+    extend(spanA, inner(n, difference(a0, origin)));
+    extend(spanB, inner(n, difference(b0, origin)));
+    cycleA();
+    cycleB();
+  }
   const double largest = max(abs(n.value.x), max(abs(n.value.y), abs(n.value.z)));
   const double error = max(n.error.x, max(n.error.y, n.error.z));
   const Bounded allowed = Bounded(slack.value * largest, (slack.error * (largest + error) + slack.value * error +
                                                           kHalfUlp * slack.value * largest) * kMore + kTiny);
-  const Bounded forward = minus(most(b0, b1, b2), negative(most(negative(a0), negative(a1), negative(a2))));
-  const Bounded backward = minus(most(a0, a1, a2), negative(most(negative(b0), negative(b1), negative(b2))));
+  const Bounded forward = minus(Bounded(spanB.most, spanB.error), Bounded(spanA.least, spanA.error));
+  const Bounded backward = minus(Bounded(spanA.most, spanA.error), Bounded(spanB.least, spanB.error));
   return Depths(minus(forward, allowed), minus(backward, allowed));
 }
 
@@ -108,49 +156,52 @@ Depths depthsAlong(BoundedVector n) {
 // direction.
 int separates(BoundedVector n, bool isAcross) {
   const Depths depths = depthsAlong(n);
-  int forward = -isPositive(depths.forward), backward = -isPositive(depths.backward);
-  if (!isAcross) {
-    const Bounded along = inner(n, direction);
-    forward = min(forward, -isPositive(negative(along)));
-    backward = min(backward, -isPositive(along));
-  }
+  const Bounded along = inner(n, direction);
+  const int forward = min(-isPositive(depths.forward), isAcross ? kYes : -isPositive(negative(along)));
+  const int backward = min(-isPositive(depths.backward), isAcross ? kYes : -isPositive(along));
   return min(isNotZero(n), max(forward, backward));
 }
 
-// Whether no normal keeps the triangles apart.
-int areInseparable(BoundedVector normalA, BoundedVector normalB) {
-  int exists = max(isNotZero(normalA), isNotZero(normalB));
-  int apart = max(separates(normalA, false), separates(normalB, false));
-  for (int i = 0; i < 6 && apart != kYes; ++i) {
-    const BoundedVector n = crossProduct(direction, i < 3 ? edgesA[i] : edgesB[i - 3]);
+// Whether no normal keeps the triangles apart. Those that may are the two faces'; the direction's products with the six edges;
+// and the products of an edge of each.
+int areInseparable() {
+  int exists = kOpen, apart = kNo;
+  [[dont_unroll]] for (uint k = 0; k < 18 && apart != kYes; ++k) {
+    // Of an edge of a: its products with all edges of b, with the direction; then that of the direction with an edge of b.
+    const uint step = k % 6;
+    const bool isPair = step < 3, isAcross = step == 3 || step == 4, faceOfA = k == 5;
+    if (k == 17) break;
+    const BoundedVector edgeA = edgeOf(true), edgeB = edgeOf(false);
+    const BoundedVector x = selected(isAcross, direction, selected(isPair || faceOfA, edgeA, edgeB));
+    const BoundedVector y = selected(isPair || step == 4, edgeB, selected(step == 3, edgeA, secondEdgeOf(faceOfA)));
+    const BoundedVector n = crossProduct(x, y);
     exists = max(exists, isNotZero(n));
-    apart = max(apart, separates(n, true));
-  }
-  for (int i = 0; i < 9 && apart != kYes; ++i) {
-    const BoundedVector n = crossProduct(edgesA[i / 3], edgesB[i % 3]);
-    exists = max(exists, isNotZero(n));
-    apart = max(apart, separates(n, false));
+    apart = max(apart, separates(n, isAcross));
+    if (isPair || step == 4) cycleB();
+    if (step == 5) cycleA();
   }
   return min(exists, -apart);
 }
 
-int isThin(BoundedVector n) {
-  const Depths depths = depthsAlong(n);
-  return min(-isPositive(depths.forward), -isPositive(depths.backward));
-}
-
-int overlapAlong(BoundedVector n) {
-  const Depths depths = depthsAlong(n);
-  return min(isPositive(depths.forward), isPositive(depths.backward));
-}
-
 // Whether the triangles lie in one plane, face each other and overlap. `facing`: kYes if the product of their normals is
 // negative.
-int areFlush(int facing, BoundedVector normalA, BoundedVector normalB) {
-  int flush = facing;
-  if (flush != kNo) flush = min(flush, max(isThin(normalA), isThin(normalB)));
-  for (int i = 0; i < 3 && flush != kNo; ++i) {
-    flush = min(flush, min(overlapAlong(crossProduct(normalA, edgesA[i])), overlapAlong(crossProduct(normalB, edgesB[i]))));
+int areFlush(int facing) {
+  int flush = facing, thin = kNo;
+  // Along both normals, then along what is orthogonal to a normal and one of its edges.
+  [[dont_unroll]] for (uint k = 0; k < 8; ++k) {
+    if (flush != kNo) {
+      const bool ofA = k % 2 == 0, isNormal = k < 2;
+      const BoundedVector normal = normalOf(ofA);
+      const Depths depths = depthsAlong(selected(isNormal, normal, crossProduct(normal, edgeOf(ofA))));
+      const int forward = isPositive(depths.forward), backward = isPositive(depths.backward);
+      if (isNormal) thin = max(thin, min(-forward, -backward));
+      if (k == 1) flush = min(flush, thin);
+      if (!isNormal) flush = min(flush, min(forward, backward));
+    }
+    if (k % 2 == 1 && k > 1) {
+      cycleA();
+      cycleB();
+    }
   }
   return flush;
 }
@@ -170,23 +221,16 @@ int isMirroring(PreciseRows pose) {
 // A step without relative motion, in which only what crosses blocks.
 bool isAtRest(Sweep sweep) { return sweep.stepPerUnit < 0.0; }
 
-// `isLate`: the pair counts only if it is pressed together.
-int blocks(Sweep sweep, RefinedPair c, dvec3 a[3], dvec3 b[3], bool isLate, out bool mayBePressed) {
-  for (int i = 0; i < 3; ++i) {
-    cornersA[i] = difference(a[i], a[0]);
-    cornersB[i] = difference(b[i], a[0]);
-    edgesA[i] = difference(a[(i + 1) % 3], a[i]);
-    edgesB[i] = difference(b[(i + 1) % 3], b[i]);
-  }
-  const BoundedVector normalA = crossProduct(edgesA[0], edgesA[1]), normalB = crossProduct(edgesB[0], edgesB[1]);
-  const int mirroredA = sweep.isMirrored != 0 ? kYes : kNo, mirroredB = isMirroring(objects[c.object].pose);
+// `pose`: the object's. `isLate`: the pair counts only if it is pressed together.
+int blocks(Sweep sweep, PreciseRows pose, bool isLate, out bool mayBePressed) {
+  const int mirroredA = sweep.isMirrored != 0 ? kYes : kNo, mirroredB = isMirroring(pose);
   // Without mirroring, and with both mirrored, faces that face each other have normals of negative product.
-  const int facing = signed(isPositive(inner(normalA, normalB)), -signed(mirroredA, mirroredB));
-  const int flush = areFlush(facing, normalA, normalB);
+  const int facing = signed(isPositive(inner(normalOf(true), normalOf(false))), -signed(mirroredA, mirroredB));
+  const int flush = areFlush(facing);
   mayBePressed = flush != kNo;
   if (flush == kYes && isAtRest(sweep)) return kNo;
-  if (flush == kYes) return signed(isPositive(inner(direction, normalB)), mirroredB);
-  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable(normalA, normalB);
+  if (flush == kYes) return signed(isPositive(inner(direction, normalOf(false))), mirroredB);
+  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable();
 }
 
 void main() {
@@ -194,19 +238,25 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
-  const Sweep sweep = sweeps[c.sensor];
+  if ((c.flags & kPairBlocks) != 0) return;
   const float hi = uintBitsToFloat(states[c.sensor].hi);
   if (c.first > hi) return;
   dvec3 a[3], b[3];
-  cornersInOrder(sweep.pose, c.slotA, a);
+  cornersInOrder(sweeps[c.sensor].pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
-  const dvec3 way = dvec3(sweep.direction[0], sweep.direction[1], sweep.direction[2]);
-  direction = exactly(isAtRest(sweep) ? dvec3(0.0LF) : way);
-  slack = slackOf(sweep, c);
+  a0 = a[0];
+  a1 = a[1];
+  a2 = a[2];
+  b0 = b[0];
+  b1 = b[1];
+  b2 = b[2];
+  const double way[3] = sweeps[c.sensor].direction;
+  direction = exactly(dvec3(way[0], way[1], way[2]) * (isAtRest(sweeps[c.sensor]) ? 0.0LF : 1.0LF));
+  slack = slackOf(sweeps[c.sensor], c);
   // Too late, or never because it has parted.
-  const bool isLate = scaledDown(c.low, sweep) > hi;
+  const bool isLate = scaledDown(c.low, sweeps[c.sensor]) > hi;
   bool mayBePressed;
-  const int answer = blocks(sweep, c, a, b, isLate, mayBePressed);
+  const int answer = blocks(sweeps[c.sensor], objects[c.object].pose, isLate, mayBePressed);
   if (answer == kNo) {
     refinedPairs[i].low = 1.0e200LF;
     refinedPairs[i].first = 1e38;
@@ -222,5 +272,5 @@ void main() {
   } else if (mayBePressed) {
     refinedPairs[i].flags &= ~kPairSharp;
   }
-  if (meets || touches) lowerHi(c.sensor, sweep, touches ? 0.0LF : c.at + c.error);
+  if (meets || touches) lowerHi(c.sensor, sweeps[c.sensor], touches ? 0.0LF : c.at + c.error);
 }

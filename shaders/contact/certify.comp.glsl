@@ -1,6 +1,7 @@
 // Solves those refined pairs in double precision whose contact certainly begins at the feature that the search names, whatever
 // the time, as engine/cpu/certificate.cpp does: a fraction of the work. The others are left to refine.comp.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require

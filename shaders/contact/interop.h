@@ -71,6 +71,12 @@ struct SearchTask {
   float gap;    // no contact of this pair before this, scaled
 };
 
+// An entry of a workgroup's queues: a pair of leaves, whose links `a` and `b` are; or of triangles, whose slots they are.
+struct QueuedPair {
+  Quadruple pair;  // a, b, object, sensor
+  float gap;       // of leaves: no contact before this, scaled
+};
+
 // A pair of triangles that may be first, according to floats.
 struct CandidatePair {
   uint sensor;
@@ -94,9 +100,11 @@ struct RefinedPair {
   uint next;
   float first;   // `low`, scaled, rounded down
   uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block
-  uint left;     // likewise of one that certify.comp leaves
+  uint left;     // likewise of one that certify.comp leaves; at last, of a sensor's first pair: that which describe.comp
+                 // describes, or kNobody
   uint feature;  // of a CandidatePair
 };
+INTEROP_CONST kPairBlocks = 0x1000;  // certainly; set only where a query ignores what does not
 INTEROP_CONST kPairParted = 0x800;   // certainly does not meet at or after the start
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
 INTEROP_CONST kPairMeets = 0x200;    // certainly, no later than at + error
@@ -123,6 +131,10 @@ struct SearchRound {
 };
 INTEROP_CONST kMostRounds = 64;
 
+// What drivers do that the search cannot do with: run a workgroup as several subgroups, or end loops early.
+INTEROP_CONST kBrokenSubgroups = 1;
+INTEROP_CONST kBrokenLoops = 2;
+
 // Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
@@ -133,7 +145,7 @@ struct SearchCounts {
   uint leftPairs;        // that certify.comp leaves
   uint openPairs;        // that may not block
   uint unresolved;       // found; stored up to the capacity
-  uint broken;           // the device runs a workgroup as several subgroups
+  uint broken;           // kBroken*: no answer counts
   uint trianglePairs;    // tested; low word
   uint trianglePairsHigh;
   uint queries;          // written by a host's shader, as far as they count
@@ -175,6 +187,7 @@ INTEROP_SLOT(kSlotSweeps, 12, Sweep);
 INTEROP_SLOT(kSlotExcluded, 14, uint);
 INTEROP_SLOT(kSlotResults, 15, Result);
 INTEROP_SLOT(kSlotUnresolved, 16, UnresolvedPair);
+INTEROP_SLOT(kSlotQueuedPairs, 30, QueuedPair);
 INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first RefinedPair, linked by `next`, or kNobody
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
-// Writes the answers, one invocation per sensor. If the device is certain which features touch first, it computes the numbers
-// in the arithmetic of engine/exact, with the same bits; of an overlap, all but the point. Otherwise it lists the pairs that may
-// be first as unresolved, for the CPU to decide. A device without doubles lists all of them.
+// Decides the answers, one invocation per sensor. If the device is certain which features touch first, it leaves the numbers to
+// describe.comp; of an overlap, it gives all but the point. Otherwise it lists the pairs that may be first as unresolved, for the CPU
+// to decide. A device without doubles lists all of them.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -10,187 +11,34 @@
 #define RADAR_RESULT_BITS
 #include "radar/result.glsl"
 #include "shared/workgroup.glsl"
-
-layout(local_size_x = kContactGroup) in;
-
-layout(scalar, binding = kSlotStates) readonly restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotHeads) readonly restrict buffer Heads { uint heads[]; };
-layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotRefinedPairs) readonly restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
-layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
-layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-layout(scalar, binding = kSlotResults) writeonly restrict buffer Results { RadarResult results[]; };
-layout(scalar, binding = kSlotUnresolved) writeonly restrict buffer Unresolved { UnresolvedPair unresolved[]; };
-
-layout(push_constant) uniform PushConstants { ResolvePush push; };
-
-// Lavapipe ends loops silently after 65,535 iterations of a subgroup: longer lists are not compared but listed, and lists
-// longer than kMostListed are given up.
-const uint kMostCompared = 1024;
-const uint kMostListed = 16384;
-
-uint s;
-
-// Ties are broken by this.
-uvec3 nameOf(RefinedPair c) { return uvec3(c.object, triangleAt(c.slotB).w, triangleAt(c.slotA).w); }
-bool isLess(uvec3 p, uvec3 q) {
-  return p.x < q.x || (p.x == q.x && (p.y < q.y || (p.y == q.y && p.z < q.z)));
-}
-
-vec3[3] cornersAt(uint slot) {
-  const uvec4 corner = triangleAt(slot);
-  return vec3[3](vertexAt(corner.x), vertexAt(corner.y), vertexAt(corner.z));
-}
-
-// Reserves entries for unresolved pairs and returns the first. If they do not fit, marks the remaining entries unused and
-// returns kNobody.
-uint reserveUnresolved(uint pairs) {
-  // The sum cannot wrap: it is at most twice the number of refined pairs.
-  const uint at = atomicAdd(counts.unresolved, pairs), end = at + pairs;
-  if (end <= push.unresolvedCapacity) return at;
-  for (uint i = at; i < push.unresolvedCapacity; ++i) unresolved[i].sensor = kNobody;
-  return kNobody;
-}
-
-void writeUnresolved(uint at, RefinedPair c) {
-  const uvec3 name = nameOf(c);
-  unresolved[at] =
-      UnresolvedPair(s, name.x, name.y, name.z, objects[c.object].mesh, 0, cornersAt(c.slotA), cornersAt(c.slotB), objects[c.object].pose);
-}
-
-#include "shared/double_bits.glsl"
-// x / scale, a power of two, by the exponent.
-uvec2 unscaled(float x, float scale) {
-  const uvec2 bits = doubleBits(floatBitsToUint(x));
-  const int shift = int(floatBitsToUint(scale) >> 23) - 127;
-  return x == 0.0 ? uvec2(0) : uvec2(bits.x, uint(int(bits.y) - (shift << 20)));
-}
+#include "answers.glsl"
 
 #ifndef RADAR_NO_DOUBLES
-#include "shared/divide.glsl"
-// 0 is written without sign: Vulkan does not define the sign of 0.
-uvec2 bitsOf(double x) { return x == 0.0LF ? uvec2(0) : unpackDouble2x32(x); }
-uvec2[3] bitsOf(dvec3 v) { return uvec2[3](bitsOf(v.x), bitsOf(v.y), bitsOf(v.z)); }
-double hiOf(SearchState state) { return quotient(double(uintBitsToFloat(state.hi)), double(sweeps[s].scale)); }
-#else
-uvec2 bitsOf(uvec2 x) { return x; }
-#endif
+// 0: vertex on face, 1: face on vertex, 2: edge on edge.
+uint kindOf(uint feature) { return feature < 3 ? 0 : feature < kFeatureEdges ? 1 : 2; }
 
-// Compares the bits of non-negative doubles.
-bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
-
-const uvec2 kNoNumber = uvec2(0, 0x7ff80000u);
-
-// A result without a contact, with `distances` in place of all of them.
-RadarResult nothing(uint status, uvec2 distances) {
-  const uvec2 n = kNoNumber;
-  return RadarResult(status, RADAR_TIER_contact, RADAR_DETECTED_notLooked, 0, distances, distances, distances, distances,
-                     kNobody, kNobody, kNobody, 0, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
-}
-RadarResult free(uint status) { return nothing(status, uvec2(0, 0x7ff00000u)); }
-
-RadarResult invalid(uint flags) {
-  RadarResult r = nothing(RADAR_STATUS_invalid, kNoNumber);
-  r.flags = flags;
-  return r;
-}
-
-// No pair is left: the answer is clear, unless the search found a certain contact.
-RadarResult noContact(bool met) { return met ? invalid(0) : free(RADAR_STATUS_clear); }
-
-// The answer to an `anyHit` query: the same bits, whichever contact was found.
-RadarResult within() {
-  RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
-  r.detected = RADAR_DETECTED_yes;
-  r.lo = uvec2(0);
-  r.hi = bitsOf(sweeps[s].distance);
-  return r;
-}
-
-// Within the clearance at the start. Which pair of triangles is the least of those is not searched for.
-RadarResult withinAtStart() {
-  if (sweeps[s].anyHit != 0) return within();
-  RadarResult r = nothing(RADAR_STATUS_overlap, kNoNumber);
-  r.detected = RADAR_DETECTED_yes;
-  r.t = r.lo = r.hi = r.fraction = uvec2(0);
-  return r;
-}
-
-// `low`: world units. `lowOfStep`: the same, scaled.
-RadarResult undecided(bool met, uvec2 low, float lowOfStep) {
-  RadarResult r = free(RADAR_STATUS_undecided);
-  r.flags = RADAR_FLAG_unresolved;
-  if (met) r.detected = RADAR_DETECTED_yes;
-  const float perUnit = sweeps[s].stepPerUnit;
-  if (perUnit != 0.0) low = doubleBits(floatBitsToUint(max(lowOfStep * perUnit, 0.0)));
-  const uvec2 distance = bitsOf(sweeps[s].distance);
-  r.lo = isAbove(low, distance) ? distance : low;
-  return r;
-}
-
-// Lists all pairs as unresolved. The list has only pairs that begin no later than `hi` (link.comp).
-RadarResult leaveAll(bool met) {
-  if (heads[s] == kNobody) return noContact(met);
-  float low = 3.0e38;
-  uint count = 0;
-  for (uint i = heads[s]; i != kNobody && count < kMostListed; i = refinedPairs[i].next, ++count) {
-    low = min(low, refinedPairs[i].first);
+// Which corners of one of the triangles a feature joins, sorted; if fewer than three, the last repeated.
+uvec3 cornersIn(uint feature, bool ofA) {
+  if (feature >= kFeatureEdges) {
+    const uint edge = ofA ? (feature - kFeatureEdges) / 3 : (feature - kFeatureEdges) % 3, end = edge == 0 ? 1 : 2;
+    return uvec3(edge == 1 ? 1 : 0, end, end);
   }
-  if (count == kMostListed) return invalid(RADAR_FLAG_candidates);
-  uint at = reserveUnresolved(count);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) writeUnresolved(at++, refinedPairs[i]);
-  return undecided(met, unscaled(low, sweeps[s].scale), low);
+  return ofA == feature < 3 ? uvec3(feature % 3) : uvec3(0, 1, 2);
 }
 
-#ifndef RADAR_NO_DOUBLES
-#include "placed_corners.glsl"
-#include "double_double.glsl"
-const double kNever = 1.0e200LF;
-const double kRounded = 8.0LF * 1.1102230246251565e-16LF;
-
-// The corners of a refined pair's triangles: the sensor's, the scene's.
-struct Corners {
-  dvec3 a[3], b[3];
-};
-
-Corners cornersOf(RefinedPair c) {
-  Corners corners;
-  placedCorners(sweeps[s].pose, c.slotA, corners.a);
-  placedCorners(objects[c.object].pose, c.slotB, corners.b);
-  return corners;
-}
-
-bool sameParts(uint featureP, Corners cornersP, uint featureQ, Corners cornersQ) {
-  // 0: vertex on face, 1: face on vertex, 2: edge on edge.
-  const uint kindP = featureP < 3 ? 0 : featureP < kFeatureEdges ? 1 : 2;
-  const uint kindQ = featureQ < 3 ? 0 : featureQ < kFeatureEdges ? 1 : 2;
-  const Event p = eventOf(featureP, cornersP.a, cornersP.b), q = eventOf(featureQ, cornersQ.a, cornersQ.b);
-  return kindP == kindQ && p.from == q.from && p.to == q.to && p.x0 == q.x0 && p.x1 == q.x1 && p.y0 == q.y0 && p.y1 == q.y1;
-}
-
-// Sets the refined pair's first contact, at s > 0. Returns whether its numbers certainly have the CPU's bits.
-bool setHit(uint feature, Corners corners, inout RadarResult r) {
-  const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
-  const Event e = eventOf(feature, corners.a, corners.b);
-  const EventDetails details = describeEvent(feature, e, direction);
-  precise double t = details.s * sweeps[s].perParameter;
-  precise double slack = kRounded * t;
-  const double distance = sweeps[s].distance;
-  const double first = min(t, distance);
-  precise double below = t - slack, above = t + slack;
-  // The pair's only contact then is inside both features: others certainly begin later.
-  r.featureA = feature < 3 ? RADAR_FEATURE_vertex : feature < kFeatureEdges ? RADAR_FEATURE_face : RADAR_FEATURE_edge;
-  r.featureB = feature < 3 ? RADAR_FEATURE_face : feature < kFeatureEdges ? RADAR_FEATURE_vertex : RADAR_FEATURE_edge;
-  r.t = bitsOf(first);
-  r.lo = bitsOf(min(max(below, 0.0LF), first));
-  r.hi = bitsOf(min(above, distance));
-  r.fraction = bitsOf(soundQuotient(first, distance));
-  dvec3 normal;
-  const bool unit = normalOf(e, details.turn, normal);
-  precise dvec3 point = details.point + t * dvec3(sweeps[s].drift[0], sweeps[s].drift[1], sweeps[s].drift[2]);
-  r.point = bitsOf(point);
-  r.normal = bitsOf(normal);
-  return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
+// Whether the certain features of two pairs of triangles, of one kind, join the same points.
+bool joinSamePoints(RefinedPair one, RefinedPair other) {
+  bool same = true;
+  [[dont_unroll]] for (uint side = 0; side < 2; ++side) {
+    const bool ofA = side == 0;
+    const uvec3 which = cornersIn(one.flags & 0xffu, ofA), whichOther = cornersIn(other.flags & 0xffu, ofA);
+    dvec3 p[3], q[3];
+    cornersOf(one, ofA, p);
+    cornersOf(other, ofA, q);
+    same = same && picked(p, which.x) == picked(q, whichOther.x) && picked(p, which.y) == picked(q, whichOther.y) &&
+           picked(p, which.z) == picked(q, whichOther.z);
+  }
+  return same;
 }
 
 // Sets the refined pair's overlap, and lists the pair, for the CPU to find the point. Returns whether there was room.
@@ -204,53 +52,23 @@ bool setOverlap(RefinedPair c, inout RadarResult r) {
   return at != kNobody;
 }
 
-// A summary of a sensor's refined pairs.
-struct PairSummary {
-  uint count;            // number of refined pairs
-  double limit;          // a pair that begins beyond this is not first
-  double low;            // no contact before this
-  uint possible;         // number of pairs that may be first
-  uvec4 least, pierced;  // least name and its refined pair: of those that may be first; of those that also certainly meet at
-                         // the start
-};
-
-PairSummary summarise(uint first, double hi) {
-  const double length = sweeps[s].directionLength;
-  PairSummary pairs = PairSummary(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody));
-  for (uint i = first; i != kNobody && pairs.count < kMostListed; i = refinedPairs[i].next) {
-    const RefinedPair c = refinedPairs[i];
-    if ((c.flags & kPairMeets) != 0) pairs.limit = min(pairs.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
-    ++pairs.count;
-  }
-  for (uint i = first, k = 0; k < pairs.count; i = refinedPairs[i].next, ++k) {
-    const RefinedPair c = refinedPairs[i];
-    if (c.low > pairs.limit) continue;
-    pairs.low = min(pairs.low, c.low);
-    ++pairs.possible;
-    const uvec3 name = nameOf(c);
-    if (isLess(name, pairs.least.xyz)) pairs.least = uvec4(name, i);
-    if ((c.flags & kPairPierces) != 0 && isLess(name, pairs.pierced.xyz)) pairs.pierced = uvec4(name, i);
-  }
-  return pairs;
-}
-
-// Sets the answer if it is certain, else returns false. It is certain if all pairs that may be first certainly begin at the
-// same features; or if a pair certainly meets at the start, and every pair of a lesser name that may be first does, too.
-bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
+// Sets the answer if it is certain, else returns false; `describes` is the refined pair of which only the numbers are missing. It is
+// certain if all pairs that may be first certainly begin at the same features; or if a pair certainly meets at the start, and every
+// pair of a lesser name that may be first does, too.
+bool setCertainAnswer(PairSummary pairs, inout RadarResult r, inout uint describes) {
   if (pairs.count > kMostCompared || sweeps[s].anyHit != 0) return false;
   const bool pierces = pairs.pierced.w != kNobody;
   const uvec4 winner = pierces ? pairs.pierced : pairs.least;
   const RefinedPair one = refinedPairs[winner.w];
-  const Corners corners = cornersOf(one);
   bool certain = pierces || (one.flags & kPairSharp) != 0;
-  for (uint i = first; i != kNobody && certain; i = refinedPairs[i].next) {
+  for (uint i = heads[s]; i != kNobody && certain; i = refinedPairs[i].next) {
     const RefinedPair c = refinedPairs[i];
     if (c.low > pairs.limit) continue;
     if (pierces) {
       certain = (c.flags & kPairPierces) != 0 || !isLess(nameOf(c), winner.xyz);
     } else {
-      certain = (c.flags & kPairSharp) != 0 && c.at == one.at &&
-                sameParts(one.flags & 0xffu, corners, c.flags & 0xffu, cornersOf(c));
+      certain = (c.flags & kPairSharp) != 0 && c.at == one.at && kindOf(c.flags & 0xffu) == kindOf(one.flags & 0xffu) &&
+                (i == winner.w || joinSamePoints(one, c));
     }
   }
   if (!certain) return false;
@@ -258,38 +76,38 @@ bool setCertainAnswer(uint first, PairSummary pairs, inout RadarResult r) {
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
-  return pierces ? setOverlap(one, r) : setHit(one.flags & 0xffu, corners, r);
+  if (pierces) return setOverlap(one, r);
+  describes = winner.w;
+  return true;
 }
 
 RadarResult decide(SearchState state, bool met) {
   if (sweeps[s].hasClearance != 0) return leaveAll(met);
-  const PairSummary pairs = summarise(heads[s], hiOf(state));
+  const PairSummary pairs = summarise(hiOf(state));
   if (pairs.least.w == kNobody) return noContact(met);
   if (pairs.count == kMostListed) return invalid(RADAR_FLAG_candidates);
   RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
-  if (setCertainAnswer(heads[s], pairs, r)) return r;
-  uint at = reserveUnresolved(pairs.possible);
-  for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
-    if (refinedPairs[i].low <= pairs.limit) writeUnresolved(at++, refinedPairs[i]);
-  }
-  return undecided(met, bitsOf(pairs.low), float(min(pairs.low * double(sweeps[s].scale), 1e30LF)));
+  uint describes = kNobody;
+  if (!setCertainAnswer(pairs, r, describes)) r = leaveThese(pairs, met);
+  refinedPairs[heads[s]].left = describes;
+  return r;
 }
 #else
 RadarResult decide(SearchState state, bool met) { return leaveAll(met); }
 #endif
 
 RadarResult answer(SearchState state) {
-  const bool met = uintBitsToFloat(state.hi) < sweeps[s].start;
-  if (sweeps[s].anyHit != 0 && met) return within();
-  return decide(state, met);
+  if (sweeps[s].anyHit != 0 && hasMet(state)) return within();
+  return decide(state, hasMet(state));
 }
 
 void main() {
   s = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (s >= push.sensors) return;
   const SearchState state = states[s];
+  if (heads[s] != kNobody) refinedPairs[heads[s]].left = kNobody;
   const uint missing = ((state.flags & kSearchLost) != 0 ? RADAR_FLAG_candidates : 0) |
-                       ((state.flags & kSearchUnfinished) != 0 ? RADAR_FLAG_rounds : 0) |
+                       ((state.flags & kSearchUnfinished) != 0 || counts.broken != 0 ? RADAR_FLAG_rounds : 0) |
                        ((state.flags & kSearchOutOfRange) != 0 ? RADAR_FLAG_range : 0) |
                        ((state.flags & kSearchNoQuery) != 0 ? RADAR_FLAG_query : 0);
   RadarResult r;

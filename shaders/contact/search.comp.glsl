@@ -3,9 +3,10 @@
 // leaf pairs and a queue of triangle pairs that may meet, so that all lanes take part in the expensive tests. When the budget
 // ends or a stack is nearly full, pending nodes become tasks of the next round; none is dropped silently.
 //
-// All lanes leave a loop together, so that `work` counts as lavapipe does: it silently ends loops after 65,535 iterations of
-// a subgroup in total.
+// `work` counts as lavapipe does, which silently ends loops after 65,535 iterations of a subgroup in total: in each loop, also that in
+// which it finds that the loop has ended. If it is mistaken, no answer of the submission counts (`loopsEnd`).
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -30,6 +31,9 @@ layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts coun
 layout(scalar, binding = kSlotTasks) readonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSpilled) writeonly restrict buffer Spilled { SearchTask spilled[]; };
 layout(scalar, binding = kSlotCandidatePairs) writeonly restrict buffer Candidates { CandidatePair candidates[]; };
+// Of each workgroup: its queue of leaf pairs, then its queue of triangle pairs. In memory, since few workgroups would fit on a
+// GPU that held them in shared memory.
+layout(scalar, binding = kSlotQueuedPairs) coherent restrict buffer Queues { QueuedPair queued[]; };
 layout(scalar, binding = kSlotExcluded) readonly restrict buffer Excluded { uint excluded[]; };
 
 layout(push_constant) uniform PushConstants { SearchPush push; };
@@ -47,16 +51,17 @@ const uint kFew = (kLanes + 1) / 2;
 const uint kObjectSteps = 16, kNodeSteps = 24;
 // Number of leaf pairs from which on their triangles are tested.
 const uint kLeafBatch = kQueue / 4;
+// Iterations of the loops within a test of leaves, and of the solution of a pair.
+const uint kLeafIterations = 11, kSolveIterations = 27;
 // Budget while there are too few tasks for the device, so that they are soon split into more.
 const uint kSplitBudget = 48;
 
-shared uvec4 leafQueue[kQueue];      // link of a, link of b, object, sensor
-shared float leafGaps[kQueue];
-shared uvec4 pairQueue[kQueue];      // slot of a, slot of b, object, sensor
 shared SearchTask gifts[kLanes];     // from lanes with several entries to idle lanes
 
 // The same in all lanes.
-uint leafHead, leafTail, pairHead, pairTail, work;
+uint leaves, leafHead, leafTail;     // where the queue begins; numbers of entries taken and entered, since the start
+uint pairs, pairHead, pairTail;
+uint work;
 bool tasksLeft;
 
 // Of a lane.
@@ -67,40 +72,35 @@ uvec3 stack[kStack];                 // a, b, gap of a SearchTask; for the tree 
 uint depth, objectDepth;             // entries in use; those of the tree over objects come first
 uvec3 current;                       // the pair to test next; none if x is kNobody
 MeshPair meshes;
+const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
+                                    vec3(0.0), 0.0, 0.0, 0.0, false);
 uint trianglePairs;
-// Of its sensor.
-SensorBox box;
-float scale, unscale, stopBefore;
 
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
 uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
 
 // Contacts beyond this do not count. It is negative, which ends the search, if an `anyHit` query has a certain contact or the
 // search has failed.
-float limitOf(SearchState state, float enoughOfS) {
+float limitOf(uint s, SearchState state) {
   const float hi = uintBitsToFloat(state.hi);
-  return hi < enoughOfS || state.flags != 0 ? -1.0 : hi;
+  return hi < sensorTexel(s, kTexelHalfExtent).w || state.flags != 0 ? -1.0 : hi;
 }
 
 // The limit for an object. If a lesser object certainly meets at the start, this one cannot be the answer.
 float limitOf(uint s, uint objectB) {
   const SearchState state = states[s];
-  return objectB > state.least ? -1.0 : limitOf(state, sensorTexel(s, kTexelHalfExtent).w);
+  return objectB > state.least ? -1.0 : limitOf(s, state);
 }
 
-void pushLeaves(bool has, Node a, Node b, float gap) {
+void pushLeaves(bool has, uint linkA, uint linkB, float gap) {
   const uvec4 who = subgroupBallot(has);
-  const uint at = (leafTail + rankOf(who)) % kQueue;
-  if (has) {
-    leafQueue[at] = uvec4(a.link, b.link, object, sensor);
-    leafGaps[at] = gap;
-  }
+  if (has) queued[leaves + (leafTail + rankOf(who)) % kQueue] = QueuedPair(uvec4(linkA, linkB, object, sensor), gap);
   leafTail += subgroupBallotBitCount(who);
 }
 
 void pushPair(bool has, uint slotA, uint slotB, uint objectB, uint sensorA) {
   const uvec4 who = subgroupBallot(has);
-  if (has) pairQueue[(pairTail + rankOf(who)) % kQueue] = uvec4(slotA, slotB, objectB, sensorA);
+  if (has) queued[pairs + (pairTail + rankOf(who)) % kQueue].pair = uvec4(slotA, slotB, objectB, sensorA);
   pairTail += subgroupBallotBitCount(who);
 }
 
@@ -115,19 +115,11 @@ bool isIdle() { return current.x == kNobody && depth == 0; }
 
 // ---- tasks -------------------------------------------------------------------------------------------------------------
 
-void loadSensor() {
-  box = sensorBoxOf(sensor);
-  scale = sensorTexel(sensor, kTexelDirection).w;
-  unscale = sensorTexel(sensor, kTexelMask).w;
-  stopBefore = sensorTexel(sensor, kTexelHalfExtent).w;
-}
-
 // Begins a task; returns its object, or kNobody if it is a node of the tree over objects or no longer counts.
 uint begin(SearchTask task) {
   sensor = task.sensor;
-  loadSensor();
   const SearchState state = states[sensor];
-  if (task.gap > limitOf(state, stopBefore) || (task.object != kNobody && task.object > state.least)) return kNobody;
+  if (task.gap > limitOf(sensor, state) || (task.object != kNobody && task.object > state.least)) return kNobody;
   if (task.object == kNobody) {
     stack[0] = uvec3(kNobody, task.b, floatBitsToUint(task.gap));
     depth = objectDepth = 1;
@@ -210,6 +202,9 @@ void spill() {
 
 // Lanes without an object walk the tree over objects until they find one.
 uint findObjects(uint named) {
+  ++work;
+  const SensorBox box = sensorBoxOf(sensor);
+  const float scale = sensorTexel(sensor, kTexelDirection).w, most = limit * sensorTexel(sensor, kTexelMask).w;
   for (uint step = 0; step < kObjectSteps; ++step) {
     const bool searching =
         named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < kStack;
@@ -224,7 +219,6 @@ uint findObjects(uint named) {
       const uvec4 x0 = texelFetch(objectNodeTexels, t), x1 = texelFetch(objectNodeTexels, t + 2);
       const vec2 at0 = meetsBox(box, uintBitsToFloat(x0), uintBitsToFloat(texelFetch(objectNodeTexels, t + 1))),
                  at1 = meetsBox(box, uintBitsToFloat(x1), uintBitsToFloat(texelFetch(objectNodeTexels, t + 3)));
-      const float most = limit * unscale;
       const bool meets0 = near && !leaf && at0.x <= at0.y && at0.x <= most, meets1 = near && !leaf && at1.x <= at1.y && at1.x <= most;
       const bool swap = meets1 && (!meets0 || at1.x < at0.x);
       const uvec3 entry0 = uvec3(kNobody, x0.w, floatBitsToUint(at0.x * scale)),
@@ -239,6 +233,7 @@ uint findObjects(uint named) {
 
 // Whether the object shares a mask bit with the query and is not excluded.
 bool isEligible(uint named) {
+  ++work;
   const uvec4 asks = sensorBits(sensor, kTexelMask);
   // Excluded objects are in ascending order.
   uint first = asks.y, end = asks.z;
@@ -257,33 +252,27 @@ bool isEligible(uint named) {
   return !isExcluded && (objectBits(named, kTexelError).z & asks.x) != 0;
 }
 
-// Lanes with a new object begin at its root, or at the nodes of their task (`current`).
-void enterObjects(uint named) {
-  bool leaves = false;
-  Node a, b;
-  Approach approach;
+// Lanes with a new object begin at its root, or at the nodes of their task (`current`). `resumes`: lanes have forgotten what
+// they know of the object that they are in.
+void enterObjects(uint named, bool resumes) {
   ++work;
   // All lanes run the loop over excluded objects.
   const bool enters = isEligible(named == kNobody ? 0 : named) && named != kNobody;
-  if (enters) {
-    object = named;
+  if (enters) object = named;
+  if (enters || (resumes && (current.x != kNobody || depth > objectDepth))) {
     meshes = meshPairOf(sensor, object);
-    if (!meshes.inRange) atomicOr(states[sensor].flags, kSearchOutOfRange);
-    if (current.x == kNobody && meshes.inRange) {
-      const uint rootA = sensorBits(sensor, kTexelReach).w, rootB = objectBits(object, kTexelReach).w;
-      a = nodeAt(rootA);
-      b = nodeAt(rootB);
-      approach = approachOf(meshes, a, b, limit);
-      const bool meets = approach.gap < kMiss;
-      leaves = meets && isLeaf(a.link & b.link);
-      if (meets && !leaves) current = entryOf(rootA, a, rootB, b, approach);
+    if (!meshes.inRange) {
+      atomicOr(states[sensor].flags, kSearchOutOfRange);
+      current.x = kNobody;
+    } else if (enters && current.x == kNobody) {
+      current = uvec3(sensorBits(sensor, kTexelReach).w | kLinkPair, objectBits(object, kTexelReach).w, 0);
     }
   }
-  pushLeaves(leaves, a, b, approach.gap);
 }
 
-// Descends both meshes' trees: tests the two children of one node with the other node.
+// Descends both meshes' trees: tests the two children of one node with the other node, or two roots with each other.
 void descend() {
+  ++work;
   // Whether lanes without work could find some after the loop.
   const bool more = countOf(current.x == kNobody && (depth > 0 || tasksLeft)) != 0;
   for (uint step = 0; step < kNodeSteps; ++step) {
@@ -291,72 +280,74 @@ void descend() {
     const bool tries = current.x != kNobody && depth < kStack;
     const uint count = countOf(tries);
     if (count == 0 || leafTail - leafHead + 2 * kLanes > kQueue || (count < kFew && step > 0 && more)) break;
-    ++work;
-    bool leaves0 = false, leaves1 = false;
-    Node a0, a1, b0, b1;
-    Approach at0, at1;
+    work += 4;
     const bool near = tries && uintBitsToFloat(current.z) <= limit && object <= least;
-    if (near) {
-      const bool intoA = isLeaf(current.x);
-      const uint child = intoA ? current.x & kLinkItem : current.y, other = intoA ? current.y : current.x;
-      const Node child0 = nodeAt(child), child1 = nodeAt(child + 1), stays = nodeAt(other);
-      if (intoA) {
-        a0 = child0;
-        a1 = child1;
-        b0 = b1 = stays;
-      } else {
-        a0 = a1 = stays;
-        b0 = child0;
-        b1 = child1;
+    const bool intoA = isLeaf(current.x), areRoots = (current.x & kLinkPair) != 0;
+    uvec3 nearest = uvec3(kNobody, 0, 0), other = nearest;
+    [[dont_unroll]] for (uint child = 0; child < 2; ++child) {
+      bool leaves = false;
+      uint linkA = 0, linkB = 0;
+      float gap = 0.0;
+      if (near && (child == 0 || !areRoots)) {
+        const uint ia = (current.x & kLinkItem) + (intoA ? child : 0), ib = current.y + (intoA ? 0 : child);
+        const Node a = nodeAt(ia), b = nodeAt(ib);
+        const Approach approach = approachOf(meshes, a, b, limit);
+        linkA = a.link;
+        linkB = b.link;
+        gap = approach.gap;
+        leaves = gap < kMiss && isLeaf(linkA & linkB);
+        if (gap < kMiss && !leaves) {
+          const uvec3 entry = entryOf(ia, a, ib, b, approach);
+          const bool first = nearest.x == kNobody || gap < uintBitsToFloat(nearest.z);
+          other = first ? nearest : entry;
+          nearest = first ? entry : nearest;
+        }
       }
-      at0 = approachOf(meshes, a0, b0, limit);
-      at1 = approachOf(meshes, a1, b1, limit);
-      leaves0 = at0.gap < kMiss && isLeaf(a0.link & b0.link);
-      leaves1 = at1.gap < kMiss && isLeaf(a1.link & b1.link);
-      const bool goes0 = at0.gap < kMiss && !leaves0, goes1 = at1.gap < kMiss && !leaves1;
-      const bool swap = goes1 && (!goes0 || at1.gap < at0.gap);
-      const uvec3 entry0 = entryOf(intoA ? child : other, a0, intoA ? other : child, b0, at0),
-                  entry1 = entryOf(intoA ? child + 1 : other, a1, intoA ? other : child + 1, b1, at1);
-      if (goes0 && goes1) stack[depth++] = swap ? entry0 : entry1;
-      current = swap ? entry1 : entry0;
-      if (!goes0 && !goes1) current.x = kNobody;
-    } else if (tries) {
-      current.x = kNobody;
+      pushLeaves(leaves, linkA, linkB, gap);
     }
-    pushLeaves(leaves0, a0, b0, at0.gap);
-    pushLeaves(leaves1, a1, b1, at1.gap);
+    if (other.x != kNobody) stack[depth++] = other;
+    if (tries) current = nearest;
   }
 }
 
 // ---- triangles ---------------------------------------------------------------------------------------------------------
 
+void exchange(inout PlacedTriangle x, inout PlacedTriangle y) {
+  const PlacedTriangle first = x;
+  x = y;
+  y = first;
+}
+
 // Tests the pairs of triangles, up to two per leaf, and queues those that may meet. `all`: until no leaf is left.
 void tryLeaves(bool all) {
   while ((leafTail - leafHead >= kLanes || (all && leafTail != leafHead)) && pairTail - pairHead + 4 * kLanes <= kQueue) {
-    ++work;
+    work += kLeafIterations;
     const uint at = leafHead + gl_SubgroupInvocationID;
-    bool meets[4] = bool[4](false, false, false, false);
-    uvec4 entry = uvec4(0);
+    uint meets = 0;  // bit 2 i + j: triangle i of a may meet triangle j of b
+    uvec4 leaf = uvec4(0);
     if (at < leafTail) {
-      entry = leafQueue[at % kQueue];
-      const float bound = limitOf(entry.w, entry.z);
-      if (leafGaps[at % kQueue] <= bound) {
+      leaf = queued[leaves + at % kQueue].pair;
+      const float bound = limitOf(leaf.w, leaf.z);
+      if (queued[leaves + at % kQueue].gap <= bound) {
         ++trianglePairs;
-        const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
-        const bool twoA = (entry.x & kLinkPair) != 0, twoB = (entry.y & kLinkPair) != 0;
-        const PairFrame f = pairFrameOf(entry.w, entry.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
-        const PlacedTriangle a0 = placedA(f, slotA), a1 = placedA(f, slotA + (twoA ? 1 : 0)), b0 = placedB(f, slotB),
-                             b1 = placedB(f, slotB + (twoB ? 1 : 0));
-        const float clearance = clearanceOf(entry.w);
-        meets = bool[4](mayMeet(a0, b0, clearance, bound), twoB && mayMeet(a0, b1, clearance, bound),
-                        twoA && mayMeet(a1, b0, clearance, bound), twoA && twoB && mayMeet(a1, b1, clearance, bound));
+        const uint slotA = leaf.x & kLinkItem, slotB = leaf.y & kLinkItem;
+        const uint endA = (leaf.x & kLinkPair) != 0 ? 1 : 0, endB = (leaf.y & kLinkPair) != 0 ? 1 : 0;
+        const PairFrame f = pairFrameOf(leaf.w, leaf.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
+        const float clearance = clearanceOf(leaf.w);
+        PlacedTriangle a = placedA(f, slotA), b = placedB(f, slotB), nextA = placedA(f, slotA + endA), nextB = placedB(f, slotB + endB);
+        // One of the triangles changes at a time.
+        [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
+          if (mayMeet(a, b, clearance, bound)) meets |= 1u << (k ^ k >> 1);
+          if (k == 1) exchange(a, nextA);
+          if (k != 1) exchange(b, nextB);
+        }
+        if (endA == 0) meets &= 3;
+        if (endB == 0) meets &= 5;
       }
     }
-    const uint slotA = entry.x & kLinkItem, slotB = entry.y & kLinkItem;
-    pushPair(meets[0], slotA, slotB, entry.z, entry.w);
-    pushPair(meets[1], slotA, slotB + 1, entry.z, entry.w);
-    pushPair(meets[2], slotA + 1, slotB, entry.z, entry.w);
-    pushPair(meets[3], slotA + 1, slotB + 1, entry.z, entry.w);
+    [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
+      pushPair((meets >> k & 1) != 0, (leaf.x & kLinkItem) + (k >> 1), (leaf.y & kLinkItem) + (k & 1), leaf.z, leaf.w);
+    }
     leafHead = min(leafHead + kLanes, leafTail);
   }
 }
@@ -379,35 +370,35 @@ void keepCandidate(bool keeps, uvec4 pair, float low, uint feature) {
 // Solves pairs in float: lowers the upper bound of first contact, and keeps the pairs that may be first as candidates.
 void solvePairs(bool all) {
   while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
-    work += kHasClearances ? kClearanceSteps : 1;
+    work += kSolveIterations + (kHasClearances ? kClearanceSteps + 1 : 0);
     const uint at = pairHead + gl_SubgroupInvocationID;
     bool keeps = false;
     float low = 0.0;
     uint feature = kNobody;
     uvec4 pair = uvec4(0);
     if (at < pairTail) {
-      pair = pairQueue[at % kQueue];
+      pair = queued[pairs + at % kQueue].pair;
       const PairFrame f = pairFrameOf(pair.w, pair.z, vertexAt(triangleAt(pair.x).x), vertexAt(triangleAt(pair.y).x));
       const PlacedTriangle a = placedA(f, pair.x), b = placedB(f, pair.y);
       const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
-      low = max(min(m.earliest, m.unknown), 0.0);
+      low = max(min(firstOf(m), m.unknown), 0.0);
       feature = m.feature;
       float bound = limitOf(pair.w, pair.z);
       // A subnormal number might be flushed to 0 later.
-      float by = m.ahead ? max(m.by, 1e-37) : kMiss;
-      bool isOver = m.latest < 0.0;
+      float by = m.ahead ? max(lastOf(m), 1e-37) : kMiss;
+      bool isOver = m.isOver;
       const float clearance = clearanceOf(pair.w);
       if (clearance > 0.0) {
         const WithinClearance within = withinClearance(a, b, clearance, bound);
         // So many pairs may be that near that only the CPU finds the least of them quickly.
-        if (within.by == 0.0 || (m.ahead && m.by < 0.0)) atomicOr(states[pair.w].flags, kSearchWithin);
+        if (within.by == 0.0 || (m.ahead && lastOf(m) < 0.0)) atomicOr(states[pair.w].flags, kSearchWithin);
         low = within.low;
         // Pairs whose brackets begin this late do not widen that of the answer (ClearanceContact::consider).
         by = min(by, within.by) * 1.000001 + sensorTexel(pair.w, kTexelFrame + 2).w;
         isOver = false;
       }
       if (by < bound) atomicMin(states[pair.w].hi, floatBitsToUint(by));
-      if (m.ahead && m.by < 0.0) atomicMin(states[pair.w].least, pair.z);
+      if (m.ahead && lastOf(m) < 0.0) atomicMin(states[pair.w].least, pair.z);
       bound = min(bound, by);
       keeps = !isOver && low <= bound;
     }
@@ -418,6 +409,13 @@ void solvePairs(bool all) {
 
 // ------------------------------------------------------------------------------------------------------------------------
 
+// Whether the driver has run all loops to their ends. The number is hidden from compilers.
+bool loopsEnd() {
+  uint turns = 0;
+  while (turns < gl_NumWorkGroups.z + 2) ++turns;
+  return turns == gl_NumWorkGroups.z + 2;
+}
+
 void addCount() {
   const uint before = atomicAdd(counts.trianglePairs, trianglePairs);
   if (before + trianglePairs < before) atomicAdd(counts.trianglePairsHigh, 1);
@@ -425,7 +423,7 @@ void addCount() {
 
 void main() {
   if (gl_NumSubgroups != 1) {
-    counts.broken = 1;
+    counts.broken = kBrokenSubgroups;
     return;
   }
   const uint count = counts.rounds[push.round].tasks;
@@ -433,24 +431,29 @@ void main() {
   const uint room = (push.taskCapacity - count) / ((kStack + 1) * kLanes);
   if (count == 0 || workgroupIndex() >= max(room, 1u)) return;
   const uint budget = count < push.width ? min(push.budget, kSplitBudget) : push.budget;
+  leaves = 2 * kQueue * workgroupIndex();
+  pairs = leaves + kQueue;
   leafHead = leafTail = pairHead = pairTail = work = 0;
   tasksLeft = true;
   sensor = object = depth = objectDepth = 0;
   current = uvec3(kNobody, 0, 0);
-  limit = scale = unscale = stopBefore = 0.0;
+  limit = 0.0;
   least = kNobody;
   trianglePairs = 0;
   bool last = false;
   while (!last) {
-    bool idle = false;
+    bool idle = false, resumes = true;
+    meshes = kNoMeshes;
     do {
       ++work;
       uint named = takeTasks();
       named = shareTasks(named);
-      limit = limitOf(states[sensor], stopBefore);
-      least = states[sensor].least;
+      const SearchState state = states[sensor];
+      limit = limitOf(sensor, state);
+      least = state.least;
       named = findObjects(named);
-      enterObjects(named);
+      enterObjects(named, resumes);
+      resumes = false;
       descend();
       idle = subgroupAll(isIdle()) && !tasksLeft;
       last = idle || work >= budget || subgroupAny(depth + 2 > kStack);
@@ -465,4 +468,5 @@ void main() {
   }
   spill();
   addCount();
+  if (!loopsEnd()) counts.broken = kBrokenLoops;
 }

@@ -1,6 +1,7 @@
 // Encodes the queries that a host's shader has written for the search, one invocation per query, as engine/contact/sensors.cpp
 // does (docs/method.md, "A host's geometry").
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -62,7 +63,7 @@ float scaledDistance(uint distance, int exponent) {
 }
 
 #ifndef RADAR_NO_DOUBLES
-#include "contact/double_double.glsl"
+#include "contact/root.glsl"
 // The length, rounded to nearest, by the steps of exact::length; 0 where that needs exact arithmetic.
 double lengthOf(dvec3 d) {
   const DoubleDouble square = plus(plus(product(d.x, d.x), product(d.y, d.y)), product(d.z, d.z));

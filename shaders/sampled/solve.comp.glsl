@@ -2,6 +2,7 @@
 // time, best first, until a round has a pair that certainly meets within D. With RADAR_NO_DOUBLES, for devices without
 // doubles, all pairs are unresolved.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -70,15 +71,15 @@ uint solve(uint v, uint lane, uint object, uint slotA, uint slotB) {
   // Contact fills one interval, and a feature certainly meets at or after the start, so the pair certainly meets by `s`.
   // It is solved if no feature that may count comes earlier by more than the tolerance. Features without a parameter are
   // bounded by the extents of their parts.
-  const double s = max(meeting.by, 0.0LF);
+  const double s = max(lastOf(meeting), 0.0LF);
   const double tolerance = kTolerance * max(quotient(views[v].size, length), s);
-  const double earliest = max(min(meeting.earliest, meeting.unknown), 0.0LF);
+  const double earliest = max(min(firstOf(meeting), meeting.unknown), 0.0LF);
   const bool meets = meeting.ahead && s - earliest <= tolerance;
   const double hi = s * length * (1.0LF + 8.881784197001252e-16LF);
   pairHi[lane] = hi;
   const double low = earliest * length * (1.0LF - 8.881784197001252e-16LF);
   pairLow[lane] = low;
-  isUnresolved[lane] = !meets && meeting.latest >= 0.0LF && low <= views[v].distance;
+  isUnresolved[lane] = !meets && !meeting.isOver && low <= views[v].distance;
   return meets && hi <= views[v].distance ? meeting.feature : kNobody;
 }
 

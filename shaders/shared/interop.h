@@ -13,10 +13,12 @@ using uint = uint32_t;
 using Rows = float[12];
 using PreciseRows = double[12];
 using Point = float[3];
+using Quadruple = uint[4];
 #else
 // Vectors, because lavapipe loads a vector as fast as a scalar.
 #define Rows vec4[3]
 #define Point vec3
+#define Quadruple uvec4
 #ifdef RADAR_NO_DOUBLES  // the bits of doubles, for shaders that do no arithmetic with them
 #define double uvec2
 #define PreciseRows uvec4[6]

@@ -15,16 +15,50 @@ const float kFlushed = 2.4e-38;
 // -1, 1: certain; 0: unknown.
 int signOf(BoundedFloat x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 : 0); }
 
-// The state of a feature: 1 its two parts certainly pass over each other, 0 unknown, -1 certainly not.
-int vertexOverFace(int side0, int side1, int side2, int face) {
-  if (face == 0) return (side0 > 0 || side1 > 0 || side2 > 0) && (side0 < 0 || side1 < 0 || side2 < 0) ? -1 : 0;
-  if (side0 == -face || side1 == -face || side2 == -face) return -1;
-  return side0 == face && side1 == face && side2 == face ? 1 : 0;
+// The sides of corners against edges that are certain; bit 3 i + j is of corner or edge i of a, and edge or corner j of b. Edges
+// are (0,1), (1,2), (2,0).
+struct Sides {
+  uint positive, negative;
+};
+
+void addSide(inout Sides sides, uint at, int side) {
+  sides.positive |= uint(side > 0) << at;
+  sides.negative |= uint(side < 0) << at;
 }
 
-int edgeOverEdge(int a0, int a1, int b0, int b1) {
-  if ((a0 != 0 && a0 == a1) || (b0 != 0 && b0 == b1)) return -1;
-  return a0 != 0 && a1 != 0 && b0 != 0 && b1 != 0 ? 1 : 0;
+// Features whose two parts may pass over each other, and those that certainly do.
+struct Features {
+  uint possible, certain;
+};
+
+// Of corners over a face, a corner's bit: `any` and `all` tell of its sides against the face's edges.
+Features cornersOver(Sides any, Sides all, int face) {
+  if (face == 0) return Features(~(any.positive & any.negative) & 7, 0);
+  return face > 0 ? Features(~any.negative & 7, all.positive) : Features(~any.positive & 7, all.negative);
+}
+
+// Bits 0, 3, 6 to 0, 1, 2.
+uint everyThird(uint x) { return (x | x >> 2 | x >> 4) & 7; }
+uint anyOfRow(uint x) { return everyThird((x | x >> 1 | x >> 2) & 0x49); }
+uint allOfRow(uint x) { return everyThird(x & x >> 1 & x >> 2 & 0x49); }
+uint anyOfColumn(uint x) { return (x | x >> 3 | x >> 6) & 7; }
+uint allOfColumn(uint x) { return x & x >> 3 & x >> 6 & 7; }
+// Of the next corner of a, and of b.
+uint nextRow(uint x) { return (x >> 3 | x << 6) & 0x1ff; }
+uint nextColumn(uint x) { return (x >> 1 & 0xdb) | (x << 2 & 0x124); }
+
+// `ofA`: corners of a against edges of b. `faceA`, `faceB`: the signs of the faces' areas.
+Features featuresOf(Sides ofA, Sides ofB, int faceA, int faceB) {
+  const Features a = cornersOver(Sides(anyOfRow(ofA.positive), anyOfRow(ofA.negative)),
+                                Sides(allOfRow(ofA.positive), allOfRow(ofA.negative)), faceB);
+  const Features b = cornersOver(Sides(anyOfColumn(ofB.positive), anyOfColumn(ofB.negative)),
+                                Sides(allOfColumn(ofB.positive), allOfColumn(ofB.negative)), faceA);
+  // Edges miss each other if both ends of one are on the same side of the other.
+  const uint misses = (ofA.positive & nextRow(ofA.positive)) | (ofA.negative & nextRow(ofA.negative)) |
+                      (ofB.positive & nextColumn(ofB.positive)) | (ofB.negative & nextColumn(ofB.negative));
+  const uint knownA = ofA.positive | ofA.negative, knownB = ofB.positive | ofB.negative;
+  const uint cross = knownA & nextRow(knownA) & knownB & nextColumn(knownB) & ~misses;
+  return Features(a.possible | b.possible << 3 | (~misses & 0x1ff) << kFeatureEdges, a.certain | b.certain << 3 | cross << kFeatureEdges);
 }
 
 float norm1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
@@ -61,7 +95,8 @@ BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) 
 
 float quotient(float x, float y) { return x / y; }
 float depthOf(vec3 x, float error) { return x.z; }
-float depthSlack(vec3 span, float error) { return 4.0 * error + 8.0 * kUlp * span.z; }
+float reachOf(vec3 x, float error) { return abs(x.z); }
+float depthSlack(float reach, float error) { return 4.0 * error + 8.0 * kUlp * reach; }
 float squaredOf(float error) { return 1.0; }
 float neverOf(float error) { return 3.0e38; }
 
@@ -118,7 +153,8 @@ Bounded quotientOf(Bounded above, Bounded below, out bool known) {
 }
 
 double depthOf(dvec3 x, dvec3 direction) { return dot(direction, x); }
-double depthSlack(dvec3 span, dvec3 direction) { return 3.552713678800501e-15LF * dot(abs(direction), span); }
+double reachOf(dvec3 x, dvec3 direction) { return dot(abs(direction), abs(x)); }
+double depthSlack(double reach, dvec3 direction) { return 3.552713678800501e-15LF * reach; }
 double squaredOf(dvec3 direction) { return dot(direction, direction); }
 // Far above every contact; its products with lengths and scales do not overflow.
 const double kNever = 1.0e200LF;

@@ -26,7 +26,6 @@ VKAPI_ATTR void VKAPI_CALL leastProperties(VkPhysicalDevice device, VkPhysicalDe
   VkPhysicalDeviceLimits& limits = properties->limits;
   limits.maxComputeWorkGroupInvocations = limits.maxComputeWorkGroupSize[0] = 128;
   limits.maxComputeWorkGroupCount[0] = limits.maxComputeWorkGroupCount[1] = 65535;
-  limits.maxComputeSharedMemorySize = 16384;
   limits.maxPushConstantsSize = 128;
   limits.maxPerStageDescriptorStorageBuffers = 8;  // the only one that must be higher: Vulkan guarantees 4
   limits.maxPerStageDescriptorSampledImages = 16;

@@ -1,5 +1,6 @@
 // Evaluates the search's bounds for pairs that are known to touch.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -45,7 +46,7 @@ void main() {
   found.errorB = b.error;
   found.mayMeet = mayMeet(a, b, 0.0, t.limit) ? 1 : 0;
   const ImpactFloat m = impactOf(a.corners, b.corners, differenceError(a, b));
-  found.pairGap = m.latest >= 0.0 ? max(min(m.earliest, m.unknown), 0.0) : kMiss;
+  found.pairGap = m.isOver ? kMiss : max(min(firstOf(m), m.unknown), 0.0);
   clearance = t.clearance;
   found.gapNear = approachOf(meshPairOf(t.sensor, t.object), nodeA, nodeB, t.nearLimit).gap;
   found.mayComeNear = mayMeet(a, b, clearance, t.nearLimit) ? 1 : 0;

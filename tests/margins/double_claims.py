@@ -66,14 +66,14 @@ def lower_hi(sources):
     yield Inequality("upper bound as a float", floats[0].least, exact, [without_flushing])
 
 
-REFINED = "max(min(m.earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded)"
+REFINED = "max(min(earliest, m.unknown), 0.0LF) * sweep.directionLength * (1.0LF - kRounded)"
 LIMIT = "max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded)"
 
 
 def rounded_down(sources):
     """A lower bound in multiples of the direction, times its length, which is rounded to nearest."""
-    m = {"earliest": positive("s"), "unknown": positive("s")}
-    low = Evaluator(sources, DEVICE_DOUBLES).expression("main", REFINED, m=m, sweep=SWEEP)
+    parts = {"earliest": positive("s"), "m": {"unknown": positive("s")}}
+    low = Evaluator(sources, DEVICE_DOUBLES).expression("main", REFINED, **parts, sweep=SWEEP)
     exact = symbol("s") * symbol("length") * (1 - DIFFERENCE)
     yield Inequality("lower bound of a pair", exact, low.size, [without_flushing])
 
@@ -99,7 +99,7 @@ def allowed(sources):
 
 BOUNDS = "shaders/shared/triangle_pair_bounds.glsl"
 LOWER_HI = "shaders/contact/lower_hi.glsl"
-RESOLVE = ["shaders/contact/interop.h", "shaders/contact/resolve.comp.glsl"]
+ANSWERS = ["shaders/contact/interop.h", "shaders/contact/answers.glsl"]
 BLOCK = ["shaders/contact/interop.h", "shaders/contact/block.comp.glsl"]
 TRIPLE = [("kTripleError", "10.0LF"), ("kTiny", "1.0e-280LF")]
 QUOTIENT = ["9.094947017729282e-13LF", "8.881784197001252e-16LF * abs"]
@@ -111,7 +111,7 @@ PRODUCT = [("productError", "3.0LF * kHalfUlp"), MORE]
 def claims():
     bounds = [BOUNDS, "shaders/shared/divide.glsl"]
     refine = [LOWER_HI, "shaders/contact/refine.comp.glsl"]
-    certificate = [BOUNDS, "shaders/contact/certificate.glsl"]
+    prove = [BOUNDS, "shaders/contact/prove.comp.glsl"]
     vectors = bounded_vector("p"), bounded_vector("q")
     directions = *(vector(name, DIFFERENCE) for name in "xyz"), vector("d")
     # What a difference loses is relative to the result; and it loses nothing to underflow, since numbers are 0 or far
@@ -124,11 +124,11 @@ def claims():
     return [
         Claim("x . (y cross z)", "planeOf (doubles)", TRIPLE, bounds, plane_of),
         Claim("quotient of bounded numbers", "quotientOf", QUOTIENT, bounds, quotient_of),
-        Claim("side beyond a slack", "sideBeyond", ["2.125LF * slack"], certificate, side_beyond),
+        Claim("side beyond a slack", "sideBeyond", ["2.125LF * slack"], prove, side_beyond),
         Claim("lower bound as a float", "scaledDown", AS_FLOAT, [LOWER_HI], scaled_down),
         Claim("upper bound as a float", "lowerHi", AS_FLOAT, [LOWER_HI], lower_hi),
         Claim("lower bound of a pair", "main", [("kRounded", "8.881784197001252e-16LF")], refine, rounded_down),
-        Claim("upper bound of a pair", "summarise", [("kRounded", "8.0LF")], RESOLVE, rounded_up),
+        Claim("upper bound of a pair", "summarise", [("kRounded", "8.0LF")], ANSWERS, rounded_up),
         Claim("difference", "minus", [HALF_ULP, MORE], BLOCK, minus),
         Claim("difference of exact vectors", "difference", [HALF_ULP], BLOCK, exact),
         Claim("inner product", "inner", PRODUCT, BLOCK, inner),

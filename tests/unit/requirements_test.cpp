@@ -16,7 +16,6 @@ VkPhysicalDeviceLimits leastLimits() {
   limits.maxComputeWorkGroupInvocations = 128;
   limits.maxComputeWorkGroupSize[0] = 128;
   limits.maxComputeWorkGroupCount[0] = limits.maxComputeWorkGroupCount[1] = 65535;
-  limits.maxComputeSharedMemorySize = 16384;
   limits.maxPushConstantsSize = 128;
   limits.maxPerStageDescriptorStorageBuffers = 8;
   limits.maxPerStageDescriptorSampledImages = 16;
@@ -76,17 +75,15 @@ TEST_CASE("each thing that a device lacks is a separate reason in words") {
   facts.computeQueue = facts.graphicsAndComputeQueue = false;
   facts.subgroups = {.size = 32};
   VkPhysicalDeviceLimits limits = leastLimits();
-  limits.maxComputeSharedMemorySize = 4096;
   limits.maxPerStageDescriptorStorageBuffers = 4;
   facts.limits = gpu::limitsOf(limits, kSubgroups);
   const std::vector<std::string> reasons = gpu::unsupportedReasons(facts, Mode::contact);
-  REQUIRE(reasons.size() == 6);
+  REQUIRE(reasons.size() == 5);
   CHECK(reasons[0] == "lacks the feature scalarBlockLayout (buffers have the layout of the C++ structs)");
   CHECK(reasons[1].find("queue family") != std::string::npos);
   CHECK(reasons[2].find("votes and ballots") != std::string::npos);
   CHECK(reasons[3].find("subgroup size varies") != std::string::npos);
-  CHECK(reasons[4] == "the limit maxComputeSharedMemorySize is 4096, must be at least 7552");
-  CHECK(reasons[5] == "the limit maxPerStageDescriptorStorageBuffers is 4, must be at least 8");
+  CHECK(reasons[4] == "the limit maxPerStageDescriptorStorageBuffers is 4, must be at least 8");
 }
 
 TEST_CASE("a device without what only mode sampled needs supports mode contact") {
@@ -137,12 +134,6 @@ TEST_CASE("the required descriptors per stage are the most that a shader binds, 
   // Mode sampled binds no more.
   CHECK(mostOf({kStorage}, Mode::sampled) <= mostOf({kStorage}, Mode::contact));
   CHECK(mostOf({kTexels, kImage}, Mode::sampled) <= mostOf({kTexels, kImage}, Mode::contact));
-}
-
-TEST_CASE("the search fits into the shared memory that every device has, for subgroups of up to 64") {
-  constexpr uint32_t kEveryDevice = 16384;  // the least maxComputeSharedMemorySize
-  for (const uint32_t lanes : {4u, 8u, 16u, 32u, 64u}) CHECK(gpu::searchSharedBytes(lanes) <= kEveryDevice);
-  CHECK(gpu::searchSharedBytes(32, 256) > gpu::searchSharedBytes(32));
 }
 
 TEST_CASE("requirements() lists the features of a mode, and doubles only on request") {

@@ -1,4 +1,27 @@
-// Quick proofs that a contact blocks: those of engine/cpu/certificate.cpp. Included after shared/triangle_pair_bounds.glsl.
+// Proves quickly of open pairs that they block, which spares block.comp the others that begin later; the proofs are those of
+// engine/cpu/certificate.cpp.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+#include "interop.h"
+#include "shared/triangle_pair_bounds.glsl"
+#include "shared/scene.glsl"
+#include "placed_corners.glsl"
+#include "shared/workgroup.glsl"
+
+layout(local_size_x = kContactGroup) in;
+
+layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
+layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
+layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
+layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
+layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+
+#include "lower_hi.glsl"
+#include "slack.glsl"
 
 double largest(dvec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
@@ -36,4 +59,21 @@ bool certainlyBlocks(uint feature, dvec3 a[3], dvec3 b[3], dvec3 d, double slack
   const dvec3 x = a1 - a0, y = b1 - b0, w = b0 - a0;
   return sideBeyond(w, d, x, slack) * sideBeyond(b1 - a0, d, x, slack) < 0 &&
          sideBeyond(w, d, y, slack) * sideBeyond(b0 - a1, d, y, slack) < 0 && sideBeyond(w, x, y, slack) != 0;
+}
+
+void main() {
+  const uint place = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
+  if (place >= counts.openPairs) return;
+  const uint i = refinedPairs[place].open;
+  const RefinedPair c = refinedPairs[i];
+  const double last = c.at + c.error;
+  if ((c.flags & kPairMeets) == 0 || c.at <= c.error || !wouldLowerHi(c.sensor, sweeps[c.sensor], last)) return;
+  dvec3 a[3], b[3];
+  placedCorners(sweeps[c.sensor].pose, c.slotA, a);
+  placedCorners(objects[c.object].pose, c.slotB, b);
+  const Bounded slack = slackOf(sweeps[c.sensor], c);
+  const double direction[3] = sweeps[c.sensor].direction;
+  if (!certainlyBlocks(c.flags & 0xffu, a, b, dvec3(direction[0], direction[1], direction[2]), slack.value + slack.error)) return;
+  refinedPairs[i].flags = c.flags | kPairBlocks;
+  lowerHi(c.sensor, sweeps[c.sensor], last);
 }

@@ -32,16 +32,6 @@ void main() {
   if (kFalsified == kFloatOfDouble) ofDouble = uintBitsToFloat(floatBitsToUint(ofDouble) + 4);
   const bool isOrdered = abs(x) >= abs(y);
   const double rests[3] = double[3](sum(x, y).low, quickSum(isOrdered ? x : y, isOrdered ? y : x).low, product(x, y).low);
-  const dvec3 p3 = dvec3(x, y, x), q3 = dvec3(y, x, y);
-  const dvec3 sums = sum(p3, q3).low;
-  const dvec3 quickSums = quickSum(isOrdered ? p3.xzx : p3.yyy, isOrdered ? q3.xzx : q3.yyy).low;
-  const dvec3 products = times(DoubleDoubleVector(p3, dvec3(0.0LF)), DoubleDoubleVector(q3, dvec3(0.0LF))).low;
-  double vectorRests[9];
-  for (int k = 0; k < 3; ++k) {
-    vectorRests[k] = reported(kDoubleVectors, sums[k]);
-    vectorRests[3 + k] = quickSums[k];
-    vectorRests[6 + k] = products[k];
-  }
   const DoubleDouble xy = product(x, y), one = DoubleDouble(x, 0.0LF), other = DoubleDouble(y, 0.0LF);
   const DoubleDouble chain = times(plus(one, xy), minus(xy, other));
   float high, low;
@@ -50,6 +40,6 @@ void main() {
       DoubleOutcome(reported(kDoubleSum, total), reported(kDoubleProduct, multiplied), reported(kDoubleQuotient, ratio),
                     reported(kDoubleCorrected, correctedQuotient(x, y)), reported(kDoublePlaced, placed),
                     reported(kDoubleOfFloat, p.x), reported(kDoubleCopy, trials[i].row[0]),
-                    double[3](reported(kDoubleRests, rests[0]), rests[1], rests[2]), vectorRests, double[2](chain.high, chain.low), ofDouble, high,
-                    kFalsified == kDoubleSplit ? 0.0 : low, order);
+                    double[3](reported(kDoubleRests, rests[0]), rests[1], rests[2]), double[2](chain.high, chain.low), ofDouble,
+                    high, kFalsified == kDoubleSplit ? 0.0 : low, order);
 }

@@ -36,9 +36,8 @@ INTEROP_CONST kDoubleOfFloat = 20;
 INTEROP_CONST kFloatOfDouble = 21;
 INTEROP_CONST kDoubleCopy = 22;
 INTEROP_CONST kDoubleRests = 23;  // what sums and products of double_double.glsl lose
-INTEROP_CONST kDoubleVectors = 24;  // the same, of vectors
-INTEROP_CONST kDoubleSplit = 25;  // split() of widen.glsl
-INTEROP_CONST kOperations = 26;
+INTEROP_CONST kDoubleSplit = 24;  // split() of widen.glsl
+INTEROP_CONST kOperations = 25;
 
 struct FloatTrial {
   float x, y, z;
@@ -67,9 +66,8 @@ struct DoubleTrial {
 
 struct DoubleOutcome {
   double sum, product, quotient, corrected, placed, ofFloat, copied;
-  double rests[3];        // of x + y, of the larger plus the smaller, of x * y
-  double vectorRests[9];  // of (x, y, x) and (y, x, y): the same, for each axis
-  double chain[2];        // high and low of (x + x * y) * (x * y - y)
+  double rests[3];  // of x + y, of the larger plus the smaller, of x * y
+  double chain[2];  // high and low of (x + x * y) * (x * y - y)
   float ofDouble;
   float high, low;  // x split
   uint order;  // as above

@@ -134,17 +134,28 @@ int exponentOf(double x) { return int(unpackDouble2x32(x).y >> 20 & 0x7ffu) - 10
 double powerOfTwo(int exponent) { return packDouble2x32(uvec2(0, uint(exponent + 1023) << 20)); }
 double mostOf(double x, double y, double z) { return max(max(abs(x), abs(y)), abs(z)); }
 
+FineVector scaled(FineVector v, double by) {
+  return FineVector(DoubleDouble(v.x.high * by, v.x.low * by), DoubleDouble(v.y.high * by, v.y.low * by),
+                    DoubleDouble(v.z.high * by, v.z.low * by));
+}
+
 // Returns false if only the CPU finds it.
 bool normalOf(Event e, double turn, out dvec3 normal) {
-  DoubleDoubleVector x = sum(e.x1, -e.x0), y = sum(e.y1, -e.y0);
-  const int sizeX = exponentOf(mostOf(x.high.x, x.high.y, x.high.z)), sizeY = exponentOf(mostOf(y.high.x, y.high.y, y.high.z));
-  const double scaleX = powerOfTwo(clamp(-sizeX, -1000, 1000)), scaleY = powerOfTwo(clamp(-sizeY, -1000, 1000));
-  x = DoubleDoubleVector(x.high * scaleX, x.low * scaleX);
-  y = DoubleDoubleVector(y.high * scaleY, y.low * scaleY);
-  const DoubleDoubleVector over = times(yzx(x), zxy(y)), under = times(zxy(x), yzx(y));
-  dvec3 n = minus(over, under).high;
-  const dvec3 products = abs(over.high) + abs(under.high);
-  const bool isPrecise = mostOf(products.x, products.y, products.z) < 1099511627776.0LF * mostOf(n.x, n.y, n.z);  // 2^40
+  // Apart from x and y: glslang does not end if a precise struct is made of itself.
+  const FineVector ofA = difference(e.x1, e.x0), ofB = difference(e.y1, e.y0);
+  const int sizeX = exponentOf(mostOf(ofA.x.high, ofA.y.high, ofA.z.high)),
+            sizeY = exponentOf(mostOf(ofB.x.high, ofB.y.high, ofB.z.high));
+  FineVector x = scaled(ofA, powerOfTwo(clamp(-sizeX, -1000, 1000))), y = scaled(ofB, powerOfTwo(clamp(-sizeY, -1000, 1000)));
+  dvec3 n = dvec3(0.0LF);
+  double products = 0.0LF;
+  [[dont_unroll]] for (uint i = 0; i < 3; ++i) {
+    const DoubleDouble over = times(x.y, y.z), under = times(x.z, y.y);
+    n = dvec3(n.y, n.z, minus(over, under).high);
+    products = max(products, abs(over.high) + abs(under.high));
+    cycle(x);
+    cycle(y);
+  }
+  const bool isPrecise = products < 1099511627776.0LF * mostOf(n.x, n.y, n.z);  // 2^40
   const int size = exponentOf(mostOf(n.x, n.y, n.z));
   n *= powerOfTwo(clamp(-size, -1000, 1000));
   precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;

@@ -13,6 +13,8 @@
 #include "shared/workgroup.glsl"
 #include "answers.glsl"
 
+uint described = kNobody;  // the refined pair whose contact is the answer
+
 #ifndef RADAR_NO_DOUBLES
 // 0: vertex on face, 1: face on vertex, 2: edge on edge.
 uint kindOf(uint feature) { return feature < 3 ? 0 : feature < kFeatureEdges ? 1 : 2; }
@@ -52,10 +54,10 @@ bool setOverlap(RefinedPair c, inout RadarResult r) {
   return at != kNobody;
 }
 
-// Sets the answer if it is certain, else returns false; `describes` is the refined pair of which only the numbers are missing. It is
-// certain if all pairs that may be first certainly begin at the same features; or if a pair certainly meets at the start, and every
-// pair of a lesser name that may be first does, too.
-bool setCertainAnswer(PairSummary pairs, inout RadarResult r, inout uint describes) {
+// Sets the answer if it is certain, or leaves it to describe.comp; else returns false. It is certain if all pairs that may be first
+// certainly begin at the same features; or if a pair certainly meets at the start, and every pair of a lesser name that may be first
+// does, too.
+bool setCertainAnswer(PairSummary pairs, inout RadarResult r) {
   if (pairs.count > kMostCompared || sweeps[s].anyHit != 0) return false;
   const bool pierces = pairs.pierced.w != kNobody;
   const uvec4 winner = pierces ? pairs.pierced : pairs.least;
@@ -72,13 +74,15 @@ bool setCertainAnswer(PairSummary pairs, inout RadarResult r, inout uint describ
     }
   }
   if (!certain) return false;
+  if (!pierces) {
+    described = winner.w;
+    return true;
+  }
   r.detected = RADAR_DETECTED_yes;
   r.object = winner.x;
   r.triB = winner.y;
   r.triA = winner.z;
-  if (pierces) return setOverlap(one, r);
-  describes = winner.w;
-  return true;
+  return setOverlap(one, r);
 }
 
 RadarResult decide(SearchState state, bool met) {
@@ -87,10 +91,7 @@ RadarResult decide(SearchState state, bool met) {
   if (pairs.least.w == kNobody) return noContact(met);
   if (pairs.count == kMostListed) return invalid(RADAR_FLAG_candidates);
   RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
-  uint describes = kNobody;
-  if (!setCertainAnswer(pairs, r, describes)) r = leaveThese(pairs, met);
-  refinedPairs[heads[s]].left = describes;
-  return r;
+  return setCertainAnswer(pairs, r) ? r : leaveThese(pairs, met);
 }
 #else
 RadarResult decide(SearchState state, bool met) { return leaveAll(met); }
@@ -105,7 +106,6 @@ void main() {
   s = workgroupIndex() * kContactGroup + gl_LocalInvocationID.x;
   if (s >= push.sensors) return;
   const SearchState state = states[s];
-  if (heads[s] != kNobody) refinedPairs[heads[s]].left = kNobody;
   const uint missing = ((state.flags & kSearchLost) != 0 ? RADAR_FLAG_candidates : 0) |
                        ((state.flags & kSearchUnfinished) != 0 || counts.broken != 0 ? RADAR_FLAG_rounds : 0) |
                        ((state.flags & kSearchOutOfRange) != 0 ? RADAR_FLAG_range : 0) |
@@ -118,5 +118,6 @@ void main() {
   } else {
     r = answer(state);
   }
-  results[sweeps[s].result] = r;
+  if (described == kNobody) results[sweeps[s].result] = r;
+  if (heads[s] != kNobody) refinedPairs[heads[s]].left = described;
 }

@@ -50,46 +50,4 @@ DoubleDouble times(DoubleDouble p, DoubleDouble q) {
   return quickSum(r.high, low);
 }
 
-// A DoubleDouble for each component.
-struct DoubleDoubleVector {
-  dvec3 high;
-  dvec3 low;
-};
-
-DoubleDoubleVector quickSum(dvec3 p, dvec3 q) {
-  precise dvec3 s = p + q;
-  precise dvec3 low = q - (s - p);
-  return DoubleDoubleVector(s, low);
-}
-
-DoubleDoubleVector sum(dvec3 p, dvec3 q) {
-  precise dvec3 s = p + q;
-  precise dvec3 qPart = s - p;
-  precise dvec3 low = (p - (s - qPart)) + (q - qPart);
-  return DoubleDoubleVector(s, low);
-}
-
-DoubleDoubleVector minus(DoubleDoubleVector p, DoubleDoubleVector q) {
-  const DoubleDoubleVector s = sum(p.high, -q.high), t = sum(p.low, -q.low);
-  precise dvec3 below = s.low + t.high;
-  const DoubleDoubleVector v = quickSum(s.high, below);
-  precise dvec3 rest = t.low + v.low;
-  return quickSum(v.high, rest);
-}
-
-DoubleDoubleVector times(DoubleDoubleVector p, DoubleDoubleVector q) {
-  const double kSplit = 134217729.0LF;  // 2^27 + 1
-  precise dvec3 pc = kSplit * p.high, qc = kSplit * q.high;
-  precise dvec3 p1 = pc - (pc - p.high), q1 = qc - (qc - q.high);
-  precise dvec3 p2 = p.high - p1, q2 = q.high - q1;
-  precise dvec3 r = p.high * q.high;
-  precise dvec3 rest = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
-  precise dvec3 low = rest + (p.high * q.low + p.low * q.high);
-  return quickSum(r, low);
-}
-
-DoubleDoubleVector yzx(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.yzx, v.low.yzx); }
-DoubleDoubleVector zxy(DoubleDoubleVector v) { return DoubleDoubleVector(v.high.zxy, v.low.zxy); }
-double sum3(dvec3 v) { return v.x + v.y + v.z; }
-
 #endif

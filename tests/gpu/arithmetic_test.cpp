@@ -31,7 +31,6 @@ const char* const kNames[] = {"",
                               "double to float",
                               "loading and storing doubles",
                               "what double sums and products lose, declared precise",
-                              "the same, of vectors",
                               "double split into two floats"};
 static_assert(std::size(kNames) == gpu::kOperations);
 
@@ -47,7 +46,7 @@ std::vector<std::string> failed(const gpu::Arithmetic& arithmetic) {
 
 TEST_CASE("a device's arithmetic passes every check, and its doubles are used unless they are switched off") {
   const std::vector<ArithmeticCheck> checks = checkArithmetic(test::device());
-  CHECK(checks.size() == (test::wantsDoubles() ? 26 : 13));
+  CHECK(checks.size() == (test::wantsDoubles() ? 25 : 13));
   for (const ArithmeticCheck& check : checks) {
     CAPTURE(check.operation);
     CHECK(check.passed());

@@ -39,13 +39,13 @@ void checkExcluded(const Device::Impl& device, uint64_t count) {
                         " bytes, the device allows " + std::to_string(limit));
 }
 
-// The lanes of a workgroup, which is one subgroup; the capacities of its queues and stacks; whether sensors have
-// clearances.
+// The lanes of a workgroup, which is one subgroup; the capacities of its queues and stacks.
 gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool hasClearances) {
   const uint32_t lanes = device.subgroupSize;
   const uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
   const uint32_t stack = room.stack != 0 ? std::max(room.stack, 4u) : 40;
-  return {shaders::kSearch, {lanes, queue, stack, hasClearances ? 1u : 0u}, gpu::Subgroups::full};
+  const gpu::Shader& shader = hasClearances ? shaders::kSearchWithClearance : shaders::kSearch;
+  return {shader, {lanes, queue, stack}, gpu::Subgroups::full};
 }
 
 // Those that need doubles.
@@ -209,9 +209,11 @@ void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& s
 void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, bool isLast) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = scene_.buffers();
+  // What is waiting when the budget ends takes more iterations then.
+  const uint32_t budget = hasClearances_ ? std::max(room_.budget / 2, 1u) : room_.budget;
   const Array<SearchTask>&from = round % 2 == 0 ? tasks_ : spilled_, &to = round % 2 == 0 ? spilled_ : tasks_;
   run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(sensorCount_),
-       SearchPush{round, taskRoom_, candidateRoom_, room_.budget, room_.width},
+       SearchPush{round, taskRoom_, candidateRoom_, budget, room_.width},
        {{kSlotMeshNodes, scene.meshNodes},
         {kSlotObjectNodes, scene.objectNodes},
         {kSlotVertices, scene.vertices},

@@ -8,6 +8,8 @@ struct WithinClearance {
 
 // Steps converge quadratically, except where the triangles only just come that near.
 const uint kClearanceSteps = 10;
+// Iterations of all loops in one search: of each step, itself, 9 + 1 pairs of edges, 6 + 1 corners.
+const uint kClearanceIterations = 18 * kClearanceSteps + 1;
 // Of the product of two unit vectors.
 const float kRateError = 64.0 * kUlp;
 
@@ -30,29 +32,36 @@ void offerEdges(inout vec3 gap, vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
 }
 
 // From a corner to the face's point nearest to it, if that is inside the face. `turn`: 1 or -1.
-void offerCorner(inout vec3 gap, vec3 corner, vec3 face[3], float turn) {
-  const vec3 x = face[1] - face[0], y = face[2] - face[0], r = corner - face[0], n = cross(x, y);
+void offerCorner(inout vec3 gap, vec3 corner, vec3 face0, vec3 face1, vec3 face2, float turn) {
+  const vec3 x = face1 - face0, y = face2 - face0, r = corner - face0, n = cross(x, y);
   const float nn = dot(n, n), v = dot(cross(r, y), n), w = dot(cross(x, r), n);
   if (nn > 0.0 && v >= 0.0 && w >= 0.0 && v + w <= nn) offer(gap, turn * ((v / nn) * x + (w / nn) * y - r));
 }
 
+void exchange(inout vec3 x, inout vec3 y) {
+  const vec3 first = x;
+  x = y;
+  y = first;
+}
+
 vec3 nearestGap(vec3 a[3], vec3 b[3]) {
-  vec3 gap = b[0] - a[0];
-  offerEdges(gap, a[0], a[1], b[0], b[1]);
-  offerEdges(gap, a[0], a[1], b[1], b[2]);
-  offerEdges(gap, a[0], a[1], b[2], b[0]);
-  offerEdges(gap, a[1], a[2], b[0], b[1]);
-  offerEdges(gap, a[1], a[2], b[1], b[2]);
-  offerEdges(gap, a[1], a[2], b[2], b[0]);
-  offerEdges(gap, a[2], a[0], b[0], b[1]);
-  offerEdges(gap, a[2], a[0], b[1], b[2]);
-  offerEdges(gap, a[2], a[0], b[2], b[0]);
-  offerCorner(gap, a[0], b, 1.0);
-  offerCorner(gap, a[1], b, 1.0);
-  offerCorner(gap, a[2], b, 1.0);
-  offerCorner(gap, b[0], a, -1.0);
-  offerCorner(gap, b[1], a, -1.0);
-  offerCorner(gap, b[2], a, -1.0);
+  vec3 a0 = a[0], a1 = a[1], a2 = a[2], b0 = b[0], b1 = b[1], b2 = b[2];
+  vec3 gap = b0 - a0;
+  [[dont_unroll]] for (uint pair = 0; pair < 9; ++pair) {
+    offerEdges(gap, a0, a1, b0, b1);
+    cycle(b0, b1, b2);
+    if (pair % 3 == 2) cycle(a0, a1, a2);
+  }
+  // The corners of a over b; then the triangles change places.
+  [[dont_unroll]] for (uint corner = 0; corner < 6; ++corner) {
+    offerCorner(gap, a0, b0, b1, b2, corner < 3 ? 1.0 : -1.0);
+    cycle(a0, a1, a2);
+    if (corner == 2) {
+      exchange(a0, b0);
+      exchange(a1, b1);
+      exchange(a2, b2);
+    }
+  }
   return gap;
 }
 

@@ -1,6 +1,7 @@
 // Records the contact tier into any command buffer: rounds of the search, then the answers. Owns its buffers.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <span>
 
@@ -21,6 +22,8 @@ struct SearchRoom {
   uint32_t width = 0;       ///< below this number, tasks are split early
   uint32_t queue = 0;       ///< waiting pairs per workgroup
   uint32_t stack = 0;       ///< entries per lane
+  /// The time, in place of the machine's: then the device is hurried (Pace), even if it runs on the CPU.
+  std::function<std::chrono::steady_clock::time_point()> now;
 };
 
 class ContactPass {
@@ -54,11 +57,14 @@ class ContactPass {
   using OpenStage = std::function<void(const char*)>;
   /// Records the copies and the barrier after them.
   void recordUpload(const gpu::Commands& commands, const OpenStage& stage);
-  /// Records the search in `rounds` rounds, an even number up to kMostRounds, then the answers. `isLast`: searches
-  /// still unfinished are abandoned. The caller records the barrier between the answers and their readers.
+  /// Records the search in `rounds` rounds, an even number up to kMostRounds, then the answers, which are none if
+  /// searches are unfinished. `isLast`: those are abandoned. The caller records the barrier between the answers and
+  /// their readers.
   void record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast);
   /// Stages the continuation of the search, once the device has finished and left `counts`.
   void stageMore(const gpu::SearchCounts& counts);
+  /// Iterations of a workgroup in each round recorded from now on.
+  void setBudget(uint32_t iterations) { room_.budget = iterations; }
   /// Tasks left over by the rounds recorded last.
   uint32_t tasksLeft(const gpu::SearchCounts& counts) const { return counts.rounds[rounds_].tasks; }
 

@@ -1,5 +1,8 @@
 #include "contact/submitter.h"
 
+#include <algorithm>
+#include <chrono>
+
 #include "gpu/barrier.h"
 
 namespace radar {
@@ -19,15 +22,32 @@ uint64_t joined(uint32_t low, uint32_t high) {
 
 ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room)
     : scene_(scene),
+      now_(room.now),
+      pace_(room.budget == 0 && (room.now || device.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU),
+            room.budget != 0 ? room.budget : ContactPass::kMostBudget),
       submission_(device, timestamps),
       pass_(device, scene, room),
       readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+std::chrono::steady_clock::time_point ContactSubmitter::now() const {
+  return now_ ? now_() : std::chrono::steady_clock::now();
+}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {
   return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());
 }
 
+void Pace::took(double ms) {
+  if (!isHurried_) return;
+  if (ms > kWantedMs) {
+    budget_ = std::max(static_cast<uint32_t>(budget_ * (kWantedMs / ms)), kLeast);
+  } else if (ms < kWantedMs / 2) {
+    budget_ = std::min(2 * budget_, most_);
+  }
+}
+
 void ContactSubmitter::recordAndSubmit() {
+  pass_.setBudget(pace_.budget());
   const gpu::Commands commands = submission_.begin();
   gpu::computeToOverwrite(commands);  // a recording that shares the scene's copy may still be searching it
   const auto stage = [this](const char* name) { submission_.stage(name); };
@@ -58,8 +78,10 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
     if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
     pass_.stageMore(counts());
+    const auto begun = now();
     recordAndSubmit();
     submission_.wait();
+    pace_.took(std::chrono::duration<double, std::milli>(now() - begun).count());
     submission_.addTimes(stages);
   }
   const gpu::SearchCounts& all = counts();

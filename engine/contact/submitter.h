@@ -15,6 +15,25 @@ struct SearchAnswers {
   uint64_t trianglePairs = 0;  ///< tested
 };
 
+/// How many iterations a workgroup may take in a round, so that a device ends each submission soon: systems reset one
+/// that takes seconds. Begins with few; learns from submissions that left work over.
+class Pace {
+ public:
+  /// `isHurried`: else `most`, always.
+  Pace(bool isHurried, uint32_t most) : most_(most), isHurried_(isHurried), budget_(isHurried ? kFirst : most) {}
+  uint32_t budget() const { return budget_; }
+  /// Ever more while submissions take less than half of kWantedMs, fewer when one takes longer.
+  void took(double ms);
+
+  static constexpr double kWantedMs = 20;
+  static constexpr uint32_t kFirst = 1000, kLeast = 16;
+
+ private:
+  uint32_t most_;
+  bool isHurried_;
+  uint32_t budget_;
+};
+
 class ContactSubmitter {
  public:
   ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room);
@@ -28,9 +47,12 @@ class ContactSubmitter {
 
  private:
   void recordAndSubmit();
+  std::chrono::steady_clock::time_point now() const;
   const gpu::SearchCounts& counts() const;
 
   GpuScene& scene_;
+  decltype(SearchRoom::now) now_;
+  Pace pace_;
   gpu::Submission submission_;
   ContactPass pass_;
   gpu::Buffer readback_;  ///< counts, then results

@@ -34,7 +34,10 @@ void main() {
     }
   }
   if (me != 0) return;
-  counts.rounds[push.round + 1].tasks = min(kept + left, push.taskCapacity);
-  const uvec3 rows = workgroupRows((counts.candidates + kContactGroup - 1) / kContactGroup);
+  const uint pending = min(kept + left, push.taskCapacity);
+  counts.rounds[push.round + 1].tasks = pending;
+  // While searches are unfinished, their candidates wait.
+  const uint ready = pending == 0 || push.isLast != 0 ? counts.candidates : 0;
+  const uvec3 rows = workgroupRows((ready + kContactGroup - 1) / kContactGroup);
   counts.filterGroups = uint[3](rows.x, rows.y, rows.z);
 }

@@ -139,6 +139,34 @@ TEST_CASE("a search whose loops the driver ends early gives no answer instead of
   CHECK(answers.results[0].object == 0);
 }
 
+TEST_CASE("a device that takes long is given less at a time, and another ever more", "[subgroups]") {
+  Pace slow(true, 40'000), quick(true, 40'000), calm(false, 40'000);
+  for (int i = 0; i < 20; ++i) {
+    slow.took(3 * Pace::kWantedMs);
+    quick.took(Pace::kWantedMs / 3);
+    calm.took(3 * Pace::kWantedMs);
+  }
+  CHECK(slow.budget() == Pace::kLeast);
+  CHECK(quick.budget() == 40'000);
+  CHECK(calm.budget() == 40'000);
+  slow.took(0);
+  CHECK(slow.budget() == 2 * Pace::kLeast);
+
+  const TrianglesOverhead triangles(true);
+  // A second between any two looks at the clock, and none.
+  std::vector<uint32_t> submissions;
+  for (const auto tick : {std::chrono::seconds(1), std::chrono::seconds(0)}) {
+    std::chrono::steady_clock::time_point time;
+    DeviceSearch search(triangles.scene, {.candidates = 100'000, .groups = 1, .now = [&] { return time += tick; }});
+    const Answers answers = search.run({&triangles.query, 1});
+    CHECK(answers.results[0].status == Status::hit);
+    CHECK(answers.results[0].object == 0);
+    submissions.push_back(answers.stats.submissions);
+  }
+  CAPTURE(submissions);
+  CHECK(submissions[0] > 2 * submissions[1]);
+}
+
 TEST_CASE("queries that floats cannot represent are answered on the CPU") {
   Scene scene;
   const MeshId mesh = add(scene, tools::makeBox({1, 1, 1}));

@@ -28,17 +28,24 @@ uvec3 cornersIn(uint feature, bool ofA) {
   return ofA == feature < 3 ? uvec3(feature % 3) : uvec3(0, 1, 2);
 }
 
-// Whether the certain features of two pairs of triangles, of one kind, join the same points.
-bool joinSamePoints(RefinedPair one, RefinedPair other) {
+// Whether the certain features of all pairs that may be first join the points that those of `one` do. All are of one kind.
+bool joinSamePoints(PairSummary pairs, uint one) {
   bool same = true;
   [[dont_unroll]] for (uint side = 0; side < 2; ++side) {
     const bool ofA = side == 0;
-    const uvec3 which = cornersIn(one.flags & 0xffu, ofA), whichOther = cornersIn(other.flags & 0xffu, ofA);
-    dvec3 p[3], q[3];
-    cornersOf(one, ofA, p);
-    cornersOf(other, ofA, q);
-    same = same && picked(p, which.x) == picked(q, whichOther.x) && picked(p, which.y) == picked(q, whichOther.y) &&
-           picked(p, which.z) == picked(q, whichOther.z);
+    const RefinedPair first = refinedPairs[one];
+    const uvec3 which = cornersIn(first.flags & 0xffu, ofA);
+    dvec3 p[3];
+    cornersOf(first, ofA, p);
+    const dvec3 p0 = picked(p, which.x), p1 = picked(p, which.y), p2 = picked(p, which.z);
+    for (uint i = heads[s]; i != kNobody && same; i = refinedPairs[i].next) {
+      const RefinedPair c = refinedPairs[i];
+      if (i == one || c.low > pairs.limit) continue;
+      const uvec3 whichOther = cornersIn(c.flags & 0xffu, ofA);
+      dvec3 q[3];
+      cornersOf(c, ofA, q);
+      same = p0 == picked(q, whichOther.x) && p1 == picked(q, whichOther.y) && p2 == picked(q, whichOther.z);
+    }
   }
   return same;
 }
@@ -69,11 +76,10 @@ bool setCertainAnswer(PairSummary pairs, inout RadarResult r) {
     if (pierces) {
       certain = (c.flags & kPairPierces) != 0 || !isLess(nameOf(c), winner.xyz);
     } else {
-      certain = (c.flags & kPairSharp) != 0 && c.at == one.at && kindOf(c.flags & 0xffu) == kindOf(one.flags & 0xffu) &&
-                (i == winner.w || joinSamePoints(one, c));
+      certain = (c.flags & kPairSharp) != 0 && c.at == one.at && kindOf(c.flags & 0xffu) == kindOf(one.flags & 0xffu);
     }
   }
-  if (!certain) return false;
+  if (!certain || (!pierces && pairs.possible > 1 && !joinSamePoints(pairs, winner.w))) return false;
   if (!pierces) {
     described = winner.w;
     return true;

@@ -26,11 +26,6 @@ constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidate
 // Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
 constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolved = 1u << 20;
 
-// Whether the device runs on the CPU: it then has as many lanes at work as threads times the width of a vector.
-bool runsOnCpu(const Device::Impl& device) {
-  return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-}
-
 // Kernels bind no more than that; all other lists are bounded by their capacities or by those of sensors.
 void checkExcluded(const Device::Impl& device, uint64_t count) {
   const uint64_t bytes = count * sizeof(uint32_t), limit = device.properties.limits.maxStorageBufferRange;
@@ -50,7 +45,7 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
 
 // Those that need doubles.
 const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kProve,
-                                                      shaders::kBlock};
+                                                      shaders::kBlock, shaders::kDescribe};
 
 }  // namespace
 
@@ -89,16 +84,17 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
       results_(device, "results", BufferDomain::device, kReadBack),
       unresolved_(device, "unresolved pairs", BufferDomain::readback) {
   if (room_.budget == 0) room_.budget = kMostBudget;
+  // On the CPU, as many lanes are at work as threads times the width of a vector.
   if (room_.width == 0) {
     room_.width =
-        runsOnCpu(device) ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
+        device.runsOnCpu() ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
   }
   if (device.doubles) run_.reserve(kPrecise);
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
   if (room_.groups != 0) return room_.groups;
-  return runsOnCpu(*device_) ? std::max(32u, sensors / 256) : 2048;
+  return device_->runsOnCpu() ? std::max(32u, sensors / 256) : 2048;
 }
 
 void ContactPass::reserveLists(uint32_t sensors) {
@@ -250,23 +246,18 @@ void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, 
         {kSlotRefinedPairs, refinedPairs_}});
   computeWriteToComputeReadWrite(commands);
   if (device_->doubles) {
-    run_(commands, shaders::kCertify, perCandidates,
-         {{kSlotStates, states_},
-          {kSlotCounts, counts_},
-          {kSlotRefinedPairs, refinedPairs_},
-          {kSlotVertices, scene.vertices},
-          {kSlotTriangles, scene.triangles},
-          {kSlotSweeps, sweeps_},
-          {kSlotObjects, scene.objects}});
-    computeWriteToIndirect(commands);
-    run_(commands, shaders::kRefine, {counts_, offsetof(SearchCounts, refineGroups)},
-         {{kSlotStates, states_},
-          {kSlotCounts, counts_},
-          {kSlotRefinedPairs, refinedPairs_},
-          {kSlotVertices, scene.vertices},
-          {kSlotTriangles, scene.triangles},
-          {kSlotSweeps, sweeps_},
-          {kSlotObjects, scene.objects}});
+    for (const Shader* shader : {&shaders::kCertify, &shaders::kRefine}) {
+      const bool refines = shader == &shaders::kRefine;
+      if (refines) computeWriteToIndirect(commands);
+      run_(commands, *shader, refines ? Groups{counts_, offsetof(SearchCounts, refineGroups)} : perCandidates,
+           {{kSlotStates, states_},
+            {kSlotCounts, counts_},
+            {kSlotRefinedPairs, refinedPairs_},
+            {kSlotVertices, scene.vertices},
+            {kSlotTriangles, scene.triangles},
+            {kSlotSweeps, sweeps_},
+            {kSlotObjects, scene.objects}});
+    }
     for (const Shader* shader : {&shaders::kProve, &shaders::kBlock}) {
       if (!ignoresLeaving_) break;
       computeWriteToIndirect(commands);

@@ -78,7 +78,7 @@ class ContactPass {
 
   /// Where the results begin in a readback of counts, then results.
   static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
-  /// Few enough iterations that no device aborts the dispatch or reports a hang.
+  /// Below lavapipe's limit (shaders/contact/search.glsl), with room for what is waiting when the budget ends.
   static constexpr uint32_t kMostBudget = 40'000;
 
  private:

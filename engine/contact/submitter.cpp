@@ -20,23 +20,6 @@ uint64_t joined(uint32_t low, uint32_t high) {
 
 }  // namespace
 
-ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room)
-    : scene_(scene),
-      now_(room.now),
-      pace_(room.budget == 0 && (room.now || device.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU),
-            room.budget != 0 ? room.budget : ContactPass::kMostBudget),
-      submission_(device, timestamps),
-      pass_(device, scene, room),
-      readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
-
-std::chrono::steady_clock::time_point ContactSubmitter::now() const {
-  return now_ ? now_() : std::chrono::steady_clock::now();
-}
-
-const gpu::SearchCounts& ContactSubmitter::counts() const {
-  return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());
-}
-
 void Pace::took(double ms) {
   if (!isHurried_) return;
   if (ms > kWantedMs) {
@@ -44,6 +27,19 @@ void Pace::took(double ms) {
   } else if (ms < kWantedMs / 2) {
     budget_ = std::min(2 * budget_, most_);
   }
+}
+
+ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room)
+    : scene_(scene),
+      now_(room.now ? room.now : std::chrono::steady_clock::now),
+      pace_(room.budget == 0 && (room.now || !device.runsOnCpu()),
+            room.budget != 0 ? room.budget : ContactPass::kMostBudget),
+      submission_(device, timestamps),
+      pass_(device, scene, room),
+      readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+const gpu::SearchCounts& ContactSubmitter::counts() const {
+  return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());
 }
 
 void ContactSubmitter::recordAndSubmit() {
@@ -78,10 +74,10 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
   while (counts().broken == 0 && pass_.tasksLeft(counts()) != 0) {
     if (submissions_ == kMostSubmissions) throw Error("the contact search makes no progress", VK_ERROR_UNKNOWN);
     pass_.stageMore(counts());
-    const auto begun = now();
+    const auto begun = now_();
     recordAndSubmit();
     submission_.wait();
-    pace_.took(std::chrono::duration<double, std::milli>(now() - begun).count());
+    pace_.took(std::chrono::duration<double, std::milli>(now_() - begun).count());
     submission_.addTimes(stages);
   }
   const gpu::SearchCounts& all = counts();

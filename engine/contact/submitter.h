@@ -47,11 +47,10 @@ class ContactSubmitter {
 
  private:
   void recordAndSubmit();
-  std::chrono::steady_clock::time_point now() const;
   const gpu::SearchCounts& counts() const;
 
   GpuScene& scene_;
-  decltype(SearchRoom::now) now_;
+  decltype(SearchRoom::now) now_;  ///< the machine's clock, if there is no other
   Pace pace_;
   gpu::Submission submission_;
   ContactPass pass_;

@@ -15,7 +15,7 @@ namespace {
 
 // Covers underflow, with a margin; subnormal numbers would be slow.
 constexpr double kLeast = 0x1p-1000;
-// Products that cancel by more than this cost a normal in double-doubles too many bits (double_double.glsl).
+// Products that cancel by more than this cost a normal in double-doubles too many bits (describe.comp).
 constexpr double kMostCancelled = 0x1p40;
 
 Determinant numerator(const Event& e) {
@@ -240,7 +240,7 @@ Vector point(const Event& e, double s) {
   const FineEstimate p = fineEstimate(at0), q = fineEstimate(at1);
   const double both = (p.value - q.value).high;
   double share = p.value.high / both;
-  // Not where a device is certain of the signs of both (double_double.glsl).
+  // Not where a device is certain of the signs of both (describe.comp).
   if (!(p.error + q.error <= 0x1p-45 * std::abs(both))) {
     const Dyadic above = exactly(at0);
     share = quotient(above, above - exactly(at1));
@@ -262,7 +262,7 @@ class Scale {
   double factor_;  // 0: the power may not be a number
 };
 
-/// The square root of 1 <= x < 16, by operations with the same bits on every device (double_double.glsl).
+/// The square root of 1 <= x < 16, by operations with the same bits on every device (root.glsl).
 double rootOf(double x) {
   double root = 0.5 * (1 + x);
   for (int i = 0; i < 7; ++i) root = 0.5 * (root + x / root);

@@ -48,6 +48,7 @@ struct Device::Impl {
   bool capturesStatistics = false;  ///< VK_KHR_pipeline_executable_properties tells of pipelines
 
   VkDevice device() const { return host.device; }
+  bool runsOnCpu() const { return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   /// Throws with the reasons, naming `who`, if the device does not support mode sampled.
   void requireSampled(const std::string& who) const;
   /// Throws, naming `who`, if the host gave no queue.

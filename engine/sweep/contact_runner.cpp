@@ -32,7 +32,7 @@ size_t mostSensorsOf(const Device::Impl& device) {
 
 uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
   if (options.cpuBatch != kNone) return options.cpuBatch;
-  return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? kCpuBatchOnCpu : kCpuBatchElsewhere;
+  return device.runsOnCpu() ? kCpuBatchOnCpu : kCpuBatchElsewhere;
 }
 
 }  // namespace

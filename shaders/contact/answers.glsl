@@ -1,5 +1,14 @@
-// What resolve.comp and describe.comp share: the forms of answers, and the lists of a sensor's refined pairs and of what is left to
-// the CPU.
+// What resolve.comp and describe.comp share: the forms of answers, and the lists of a sensor's refined pairs and of what is left
+// to the CPU.
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "interop.h"
+#include "shared/scene.glsl"
+#define RADAR_RESULT_BITS
+#include "radar/result.glsl"
+#include "shared/workgroup.glsl"
+
 layout(local_size_x = kContactGroup) in;
 
 layout(scalar, binding = kSlotStates) readonly restrict buffer States { SearchState states[]; };
@@ -184,8 +193,6 @@ void cornersOf(RefinedPair c, bool ofA, out dvec3 corners[3]) {
     placedCorners(objects[c.object].pose, c.slotB, corners);
   }
 }
-
-dvec3 picked(dvec3 p[3], uint i) { return i == 0 ? p[0] : (i == 1 ? p[1] : p[2]); }
 #endif
 
 bool hasMet(SearchState state) { return uintBitsToFloat(state.hi) < sweeps[s].start; }

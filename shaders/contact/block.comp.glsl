@@ -1,26 +1,9 @@
-// Decides which refined pairs block of which prove.comp does not know it, for the sensors that ignore all others (docs/exact.md, "Pairs that block"), and lowers
-// their upper bounds. The decisions are those of engine/exact/blocking.cpp, in doubles with error bounds; what they leave open
-// is left to the CPU.
+// Decides of the open pairs of which prove.comp does not know it whether they block (docs/exact.md, "Pairs that block"), and
+// lowers their sensors' upper bounds. The decisions are those of engine/exact/blocking.cpp, in doubles with error bounds; what
+// they leave open is left to the CPU.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
-#include "shared/scene.glsl"
-#include "placed_corners.glsl"
-#include "shared/workgroup.glsl"
-
-layout(local_size_x = kContactGroup) in;
-
-layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
-layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
-layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-
-#include "lower_hi.glsl"
+#include "refined_pair.glsl"
 
 // ---- numbers with error bounds -----------------------------------------------------------------------------------------
 
@@ -64,7 +47,8 @@ Bounded inner(BoundedVector p, BoundedVector q) {
   return Bounded(sum, error * kMore);
 }
 
-Bounded crossComponent(double p0, double errorP0, double p1, double errorP1, double q0, double errorQ0, double q1, double errorQ1) {
+Bounded crossComponent(double p0, double errorP0, double p1, double errorP1, double q0, double errorQ0, double q1,
+                       double errorQ1) {
   const double error = productError(p0, errorP0, q1, errorQ1) + productError(p1, errorP1, q0, errorQ0);
   precise double value = p0 * q1 - p1 * q0;
   return Bounded(value, error * kMore);
@@ -88,8 +72,8 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 
 // ---- pairs -------------------------------------------------------------------------------------------------------------
 
-// The pair: its corners, the direction, the slack. Loops turn corners in place, and compute all else anew where they need it: there
-// is no room in registers for more, nor for corners that an index selects.
+// The pair: its corners, the direction, the slack. Loops turn corners in place, and compute all else anew where they need it:
+// there is no room in registers for more, nor for corners that an index selects.
 dvec3 a0, a1, a2, b0, b1, b2;
 BoundedVector direction;
 Bounded slack;
@@ -166,11 +150,11 @@ int separates(BoundedVector n, bool isAcross) {
 // and the products of an edge of each.
 int areInseparable() {
   int exists = kOpen, apart = kNo;
-  [[dont_unroll]] for (uint k = 0; k < 18 && apart != kYes; ++k) {
-    // Of an edge of a: its products with all edges of b, with the direction; then that of the direction with an edge of b.
+  [[dont_unroll]] for (uint k = 0; k < 17 && apart != kYes; ++k) {
+    // Of an edge of a: its products with all edges of b, and with the direction; then that of the direction with an edge of b,
+    // and after the first two edges a face's normal.
     const uint step = k % 6;
     const bool isPair = step < 3, isAcross = step == 3 || step == 4, faceOfA = k == 5;
-    if (k == 17) break;
     const BoundedVector edgeA = edgeOf(true), edgeB = edgeOf(false);
     const BoundedVector x = selected(isAcross, direction, selected(isPair || faceOfA, edgeA, edgeB));
     const BoundedVector y = selected(isPair || step == 4, edgeB, selected(step == 3, edgeA, secondEdgeOf(faceOfA)));

@@ -1,29 +1,11 @@
 // Solves those refined pairs in double precision whose contact certainly begins at the feature that the search names, whatever
 // the time, as engine/cpu/certificate.cpp does: a fraction of the work. The others are left to refine.comp.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
+#include "refined_pair.glsl"
 #include "shared/triangle_pair_bounds.glsl"
-#include "shared/scene.glsl"
-#include "placed_corners.glsl"
-#include "shared/workgroup.glsl"
-
-layout(local_size_x = kContactGroup) in;
-
-layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
-layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
-layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-
-#include "lower_hi.glsl"
 
 int sideOf(dvec3 w, dvec3 x, dvec3 y) { return signOf(planeOf(w, x, y, w)); }
-
-dvec3 picked(dvec3 p[3], uint i) { return i == 0 ? p[0] : i == 1 ? p[1] : p[2]; }
 
 // The place of a corner once they are sorted.
 uint placeOf(uint corner, dvec3 p[3]) {

@@ -1,15 +1,7 @@
-// Computes the numbers of the contacts that resolve.comp is certain of, in the arithmetic of engine/exact, with the same bits. Where
-// doubles do not suffice, lists the pairs that may be first as unresolved.
+// Computes the numbers of the contacts that resolve.comp is certain of, in the arithmetic of engine/exact, with the same bits.
+// Where doubles do not suffice, lists the pairs that may be first as unresolved.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
-#include "shared/scene.glsl"
-#define RADAR_RESULT_BITS
-#include "radar/result.glsl"
-#include "shared/workgroup.glsl"
 #include "answers.glsl"
 #include "root.glsl"
 

@@ -30,3 +30,6 @@ void placedCorners(PreciseRows pose, uint slot, out dvec3 p[3]) {
   cornersInOrder(pose, slot, p);
   sortCorners(p);
 }
+
+// A function rather than an index, which would keep the corners in memory.
+dvec3 picked(dvec3 p[3], uint i) { return i == 0 ? p[0] : i == 1 ? p[1] : p[2]; }

@@ -1,26 +1,9 @@
 // Proves quickly of open pairs that they block, which spares block.comp the others that begin later; the proofs are those of
 // engine/cpu/certificate.cpp.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
+#include "refined_pair.glsl"
 #include "shared/triangle_pair_bounds.glsl"
-#include "shared/scene.glsl"
-#include "placed_corners.glsl"
-#include "shared/workgroup.glsl"
-
-layout(local_size_x = kContactGroup) in;
-
-layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotCounts) readonly restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
-layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
-layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-
-#include "lower_hi.glsl"
 #include "slack.glsl"
 
 double largest(dvec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }

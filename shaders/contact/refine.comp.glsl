@@ -1,24 +1,8 @@
 // Solves the refined pairs that certify.comp leaves in double precision, which may lower the upper bound of first contact.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
+#include "refined_pair.glsl"
 #include "shared/triangle_pair_bounds.glsl"
-#include "shared/scene.glsl"
-#include "placed_corners.glsl"
-#include "shared/workgroup.glsl"
-
-layout(local_size_x = kContactGroup) in;
-
-layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
-layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
-layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
-layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
-
-#include "lower_hi.glsl"
 
 // Leaves it to prove.comp and block.comp whether a pair blocks.
 void leaveOpen(uint pair) {

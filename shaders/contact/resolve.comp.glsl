@@ -1,16 +1,8 @@
 // Decides the answers, one invocation per sensor. If the device is certain which features touch first, it leaves the numbers to
-// describe.comp; of an overlap, it gives all but the point. Otherwise it lists the pairs that may be first as unresolved, for the CPU
-// to decide. A device without doubles lists all of them.
+// describe.comp; of an overlap, it gives all but the point. Otherwise it lists the pairs that may be first as unresolved, for the
+// CPU to decide. A device without doubles lists all of them.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-#include "interop.h"
-#include "shared/scene.glsl"
-#define RADAR_RESULT_BITS
-#include "radar/result.glsl"
-#include "shared/workgroup.glsl"
 #include "answers.glsl"
 
 uint described = kNobody;  // the refined pair whose contact is the answer
@@ -61,9 +53,9 @@ bool setOverlap(RefinedPair c, inout RadarResult r) {
   return at != kNobody;
 }
 
-// Sets the answer if it is certain, or leaves it to describe.comp; else returns false. It is certain if all pairs that may be first
-// certainly begin at the same features; or if a pair certainly meets at the start, and every pair of a lesser name that may be first
-// does, too.
+// Sets the answer if it is certain, or leaves it to describe.comp; else returns false. It is certain if all pairs that may be
+// first certainly begin at the same features; or if a pair certainly meets at the start, and every pair of a lesser name that may
+// be first does, too.
 bool setCertainAnswer(PairSummary pairs, inout RadarResult r) {
   if (pairs.count > kMostCompared || sweeps[s].anyHit != 0) return false;
   const bool pierces = pairs.pierced.w != kNobody;

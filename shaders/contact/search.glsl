@@ -3,11 +3,16 @@
 // leaf pairs and a queue of triangle pairs that may meet, so that all lanes take part in the expensive tests. When the budget
 // ends or a stack is nearly full, pending nodes become tasks of the next round; none is dropped silently.
 //
-// `work` counts as lavapipe does, which silently ends loops after 65,535 iterations of a subgroup in total: in each loop, also that in
-// which it finds that the loop has ended. If it is mistaken, no answer of the submission counts (`loopsEnd`).
+// `work` counts as lavapipe does, which silently ends loops after 65,535 iterations of a subgroup in total: in each loop, also
+// that in which it finds that the loop has ended. If it is mistaken, no answer of the submission counts (`loopsEnd`).
 //
-// search.comp.glsl has no clearances. search_with_clearance.comp.glsl defines RADAR_CLEARANCES, for batches in which a query has one:
-// compilers also take their time for what no query needs.
+// search.comp.glsl has no clearances. search_with_clearance.comp.glsl defines RADAR_CLEARANCES, for batches in which a query has
+// one: compilers take their time even for what a constant switches off.
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_vote : require
 #define RADAR_NO_DOUBLES
 #include "interop.h"
 #include "shared/triangle_pair_bounds.glsl"
@@ -74,8 +79,8 @@ uvec3 stack[kStack];                 // a, b, gap of a SearchTask; for the tree 
 uint depth, objectDepth;             // entries in use; those of the tree over objects come first
 uvec3 current;                       // the pair to test next; none if x is kNobody
 MeshPair meshes;
-const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
-                                    vec3(0.0), 0.0, 0.0, 0.0, false);
+const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
+                                    vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, false);
 uint trianglePairs;
 
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
@@ -336,7 +341,8 @@ void tryLeaves(bool all) {
         const uint endA = (leaf.x & kLinkPair) != 0 ? 1 : 0, endB = (leaf.y & kLinkPair) != 0 ? 1 : 0;
         const PairFrame f = pairFrameOf(leaf.w, leaf.z, vertexAt(triangleAt(slotA).x), vertexAt(triangleAt(slotB).x));
         const float clearance = clearanceOf(leaf.w);
-        PlacedTriangle a = placedA(f, slotA), b = placedB(f, slotB), nextA = placedA(f, slotA + endA), nextB = placedB(f, slotB + endB);
+        PlacedTriangle a = placedA(f, slotA), b = placedB(f, slotB), nextA = placedA(f, slotA + endA),
+                       nextB = placedB(f, slotB + endB);
         // One of the triangles changes at a time.
         [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
           if (mayMeet(a, b, clearance, bound)) meets |= 1u << (k ^ k >> 1);

@@ -1,6 +1,8 @@
 // How far surfaces at rest may sink into each other by rounding. Included after a struct Bounded{value, error} of doubles.
 #include "magnitude.glsl"
 
+layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
+
 Bounded slackOf(Sweep sweep, RefinedPair c) {
   if (sweep.slack >= 0.0LF) return Bounded(sweep.slack, 0.0LF);
   const double magnitude = max(sweep.magnitude, magnitudeOf(objects[c.object].pose, meshes[objects[c.object].mesh]));

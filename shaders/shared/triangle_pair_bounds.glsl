@@ -58,7 +58,8 @@ Features featuresOf(Sides ofA, Sides ofB, int faceA, int faceB) {
                       (ofB.positive & nextColumn(ofB.positive)) | (ofB.negative & nextColumn(ofB.negative));
   const uint knownA = ofA.positive | ofA.negative, knownB = ofB.positive | ofB.negative;
   const uint cross = knownA & nextRow(knownA) & knownB & nextColumn(knownB) & ~misses;
-  return Features(a.possible | b.possible << 3 | (~misses & 0x1ff) << kFeatureEdges, a.certain | b.certain << 3 | cross << kFeatureEdges);
+  return Features(a.possible | b.possible << 3 | (~misses & 0x1ff) << kFeatureEdges,
+                  a.certain | b.certain << 3 | cross << kFeatureEdges);
 }
 
 float norm1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }

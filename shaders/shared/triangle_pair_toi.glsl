@@ -84,9 +84,11 @@ IMPACT impactOf(REAL3 a[3], REAL3 b[3], ALONG along) {
       const REAL depthB0 = depthOf(b0 - a0, along), depthB1 = depthOf(b1 - a0, along), depthB2 = depthOf(b2 - a0, along);
       const REAL reach = reachOf(a1 - a0, along) + reachOf(a2 - a0, along) + reachOf(b0 - a0, along) +
                          reachOf(b1 - a0, along) + reachOf(b2 - a0, along);
-      const REAL ofA0 = i == 1 ? depthA1 : cornerA && i == 2 ? depthA2 : REAL(0), ofA1 = cornerA ? ofA0 : i == 0 ? depthA1 : depthA2;
-      const REAL ofB0 = j == 1 ? depthB1 : cornerB && j == 2 ? depthB2 : depthB0, ofB1 = cornerB ? ofB0 : j == 0 ? depthB1 : depthB2;
-      const REAL ofA2 = cornerB ? depthA2 : ofA1, ofB2 = cornerA ? depthB2 : ofB1, slack = depthSlack(reach, along);
+      const REAL ofA0 = i == 1 ? depthA1 : cornerA && i == 2 ? depthA2 : REAL(0);
+      const REAL ofB0 = j == 1 ? depthB1 : cornerB && j == 2 ? depthB2 : depthB0;
+      const REAL ofA1 = cornerA ? ofA0 : i == 0 ? depthA1 : depthA2, ofA2 = cornerB ? depthA2 : ofA1;
+      const REAL ofB1 = cornerB ? ofB0 : j == 0 ? depthB1 : depthB2, ofB2 = cornerA ? depthB2 : ofB1;
+      const REAL slack = depthSlack(reach, along);
       lower = quotient(least3(ofB0, ofB1, ofB2) - most3(ofA0, ofA1, ofA2) - slack, squaredOf(along));
       isOver = most3(ofB0, ofB1, ofB2) - least3(ofA0, ofA1, ofA2) + slack < REAL(0);
     }

@@ -98,7 +98,7 @@ def allowed(sources):
 
 
 BOUNDS = "shaders/shared/triangle_pair_bounds.glsl"
-LOWER_HI = "shaders/contact/lower_hi.glsl"
+LOWER_HI = "shaders/contact/refined_pair.glsl"
 ANSWERS = ["shaders/contact/interop.h", "shaders/contact/answers.glsl"]
 BLOCK = ["shaders/contact/interop.h", "shaders/contact/block.comp.glsl"]
 TRIPLE = [("kTripleError", "10.0LF"), ("kTiny", "1.0e-280LF")]

@@ -1,3 +1,21 @@
+// What certify.comp, refine.comp, prove.comp and block.comp share: a lane judges one refined pair, and may lower its sensor's
+// upper bound.
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "interop.h"
+#include "shared/scene.glsl"
+#include "placed_corners.glsl"
+#include "shared/workgroup.glsl"
+
+layout(local_size_x = kContactGroup) in;
+
+layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
+layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
+layout(scalar, binding = kSlotRefinedPairs) restrict buffer RefinedPairs { RefinedPair refinedPairs[]; };
+layout(scalar, binding = kSlotSweeps) readonly restrict buffer Sweeps { Sweep sweeps[]; };
+layout(scalar, binding = kSlotObjects) readonly restrict buffer Objects { ObjectRecord objects[]; };
+
 // Bounds of pairs in doubles as floats: lowers a sensor's upper bound of first contact to that of a pair.
 
 // Lower bounds are lowered and upper bounds raised by this, relative to their value: products may round them inwards.

@@ -80,6 +80,8 @@ class ContactPass {
   static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
   /// Below lavapipe's limit (shaders/contact/search.glsl), with room for what is waiting when the budget ends.
   static constexpr uint32_t kMostBudget = 40'000;
+  /// So that a round is brief on any GPU.
+  static constexpr uint32_t kBriefBudget = 1000;
 
  private:
   void addCounts(uint32_t tasks);

@@ -26,7 +26,7 @@ class Pace {
   void took(double ms);
 
   static constexpr double kWantedMs = 20;
-  static constexpr uint32_t kFirst = 1000, kLeast = 16;
+  static constexpr uint32_t kFirst = ContactPass::kBriefBudget, kLeast = 16;
 
  private:
   uint32_t most_;

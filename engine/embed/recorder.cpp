@@ -22,8 +22,10 @@ namespace {
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
 constexpr VkDeviceSize kFirstResult = ContactPass::kFirstResult;
-SearchRoom roomFor(const Capacity& capacity) {
-  return {.candidates = capacity.candidates, .unresolved = capacity.unresolvedPairs};
+SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
+  return {.candidates = capacity.candidates,
+          .unresolved = capacity.unresolvedPairs,
+          .budget = device.runsOnCpu() ? ContactPass::kMostBudget : ContactPass::kBriefBudget};
 }
 
 }  // namespace
@@ -35,7 +37,7 @@ struct Recorder::Impl {
         capacity(completed(given, openDevice)),
         copy(std::move(ownCopy)),
         geometry(openDevice, *copy),
-        pass(openDevice, *copy, roomFor(capacity)),
+        pass(openDevice, *copy, roomFor(capacity, openDevice)),
         gathers(openDevice, capacity.searches),
         readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from

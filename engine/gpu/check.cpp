@@ -43,4 +43,8 @@ bool isOutOfMemory(const Error& error) {
   return error.vulkan == VK_ERROR_OUT_OF_HOST_MEMORY || error.vulkan == VK_ERROR_OUT_OF_DEVICE_MEMORY;
 }
 
+bool isLost(const Error& error) {
+  return error.vulkan == VK_ERROR_DEVICE_LOST;
+}
+
 }  // namespace radar::gpu

@@ -24,5 +24,6 @@ void check(VkResult result, const char* call, const char* about = nullptr, uint6
 
 /// Whether a call failed for lack of memory, of the device or of the host.
 bool isOutOfMemory(const Error& error);
+bool isLost(const Error& error);  ///< the device
 
 }  // namespace radar::gpu

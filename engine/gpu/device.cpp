@@ -30,7 +30,9 @@ Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceP
   subgroupSize = subgroups.size;
   choosesSubgroupSize = subgroups.canChoose;
   if (host.sampled) {
-    reasonsAgainstSampled = gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), Mode::sampled);
+    const gpu::DeviceFacts facts = gpu::factsOf(vk, host.physicalDevice);
+    choosesLayers = facts.outputLayer;
+    reasonsAgainstSampled = gpu::unsupportedReasons(facts, Mode::sampled);
     if (reasonsAgainstSampled.empty() && !gpu::doesGraphics(vk, host.physicalDevice, host.queueFamily)) {
       reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does not support graphics"};
     }

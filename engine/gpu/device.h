@@ -39,6 +39,7 @@ struct Device::Impl {
   std::string name, driver;
   std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled is not supported; empty if it is
   uint32_t maxLayers = 0;
+  bool choosesLayers = false;  ///< a vertex shader may choose the layer; else a render pass draws one
   uint64_t maxBufferBytes = 0;
   uint32_t subgroupSize = 0;         ///< of full subgroups (gpu/kernel.h)
   bool choosesSubgroupSize = false;  ///< a compute pipeline may request a size; else all have the same

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <future>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "gpu/check.h"
 #include "shaders/shared/interop.h"
@@ -145,30 +148,77 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std:
 
 }  // namespace
 
+namespace {
+
+// A call that makes a compute pipeline, with all that it reads, since a driver that is given up goes on reading.
+struct Compilation {
+  Compilation(const Device::Impl& device, VkPipelineLayout layout, const ShaderModule& module,
+              std::span<const uint32_t> values, Subgroups subgroups);
+  VkResult run() { return create(device, cache, 1, &info, allocator, &pipeline); }
+
+  PFN_vkCreateComputePipelines create;
+  VkDevice device;
+  VkPipelineCache cache;
+  const VkAllocationCallbacks* allocator;
+  std::vector<uint32_t> constants;
+  std::vector<VkSpecializationMapEntry> entries;
+  VkSpecializationInfo specialization{};
+  VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{};
+  VkComputePipelineCreateInfo info{};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+Compilation::Compilation(const Device::Impl& its, VkPipelineLayout layout, const ShaderModule& module,
+                         std::span<const uint32_t> values, Subgroups subgroups)
+    : create(its.vk.CreateComputePipelines),
+      device(its.device()),
+      cache(its.host.pipelineCache),
+      allocator(its.host.allocator),
+      constants(values.begin(), values.end()),
+      size{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO,
+           .requiredSubgroupSize = its.subgroupSize} {
+  for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, sizeof(uint32_t)});
+  specialization = {static_cast<uint32_t>(entries.size()), entries.data(), constants.size() * sizeof(uint32_t),
+                    constants.data()};
+  VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
+  if (!constants.empty()) stage.pSpecializationInfo = &specialization;
+  if (subgroups == Subgroups::full) stage.flags |= VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+  if (subgroups == Subgroups::full && its.choosesSubgroupSize) stage.pNext = &size;
+  info = {
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .flags = flagsOf(its), .stage = stage, .layout = layout};
+}
+
+// Runs it on a thread of its own, and asks the host each second whether to go on.
+VkResult runWatched(const Device::Impl& device, const std::shared_ptr<Compilation>& compilation, const char* name) {
+  std::packaged_task<VkResult()> task([compilation] { return compilation->run(); });
+  std::future<VkResult> result = task.get_future();
+  std::thread(std::move(task)).detach();
+  for (uint32_t seconds = 1; result.wait_for(std::chrono::seconds(1)) != std::future_status::ready; ++seconds) {
+    bool goesOn = false;
+    try {
+      goesOn = device.host.onCompiling(name, seconds);
+    } catch (...) {
+      result.wait();
+      throw;
+    }
+    if (goesOn) continue;
+    device.abandoned = true;
+    throw Error(device.name + " has not compiled " + name + " in " + std::to_string(seconds) + " s, and is given up",
+                VK_ERROR_DEVICE_LOST);
+  }
+  return result.get();
+}
+
+}  // namespace
+
 Pipeline computePipeline(const Device::Impl& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                          const char* name, std::span<const uint32_t> constants, Subgroups subgroups) {
   const ShaderModule module = shaderModule(device, spirv, name);
-  std::vector<VkSpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, sizeof(uint32_t)});
-  const VkSpecializationInfo values{static_cast<uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
-                                    constants.data()};
-  VkPipelineShaderStageCreateInfo stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module);
-  if (!constants.empty()) stage.pSpecializationInfo = &values;
-  const VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO,
-      .requiredSubgroupSize = device.subgroupSize};
-  if (subgroups == Subgroups::full) stage.flags |= VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
-  if (subgroups == Subgroups::full && device.choosesSubgroupSize) stage.pNext = &size;
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .flags = flagsOf(device),
-                                         .stage = stage,
-                                         .layout = layout};
-  VkPipeline pipeline;
-  check(device.vk.CreateComputePipelines(device.device(), device.host.pipelineCache, 1, &info, device.host.allocator,
-                                         &pipeline),
+  const auto compilation = std::make_shared<Compilation>(device, layout, module, constants, subgroups);
+  check(device.host.onCompiling ? runWatched(device, compilation, name) : compilation->run(),
         "vkCreateComputePipelines", name);
-  Pipeline owned(device, pipeline);
-  device.setName(VK_OBJECT_TYPE_PIPELINE, pipeline, name);
+  Pipeline owned(device, compilation->pipeline);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, compilation->pipeline, name);
   return owned;
 }
 

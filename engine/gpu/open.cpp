@@ -215,6 +215,7 @@ struct Opened {
 Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
   auto owned = openInstance(options.onValidation);
   HostDevice host{.instance = owned->instance, .debugNames = options.onValidation != nullptr};
+  host.onCompiling = options.onCompiling;
   host.physicalDevice = choose(owned->vk, physicalDevices(owned->vk, owned->instance), options.index);
   host.queueFamily = gpu::queueFamilyOf(owned->vk, host.physicalDevice);
   const float priority = 1.0f;
@@ -226,6 +227,7 @@ Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
   host.doubles = options.doubles && facts.doubles;
   host.sampled = gpu::unsupportedReasons(facts, Mode::sampled).empty();
   Requirements needed = requirements(host.sampled ? Mode::sampled : Mode::contact, host.doubles);
+  if (!facts.outputLayer) needed.vulkan12.shaderOutputLayer = VK_FALSE;
   const std::vector<VkExtensionProperties> available = extensionsOf(owned->vk, host.physicalDevice);
   std::vector<const char*> extensions;
   // Such a driver wants to be told that the application knows.

@@ -15,24 +15,21 @@ namespace {
 struct Requirement {
   const char* name;
   const char* why;
-  Mode mode;
   bool isOf13;  // see MissingFeature
   VkBool32& (*in)(Requirements&);
 };
 
 const Requirement kRequired[] = {
-    {"scalarBlockLayout", "buffers have the layout of the C++ structs", Mode::contact, false,
+    {"scalarBlockLayout", "buffers have the layout of the C++ structs", false,
      [](Requirements& f) -> VkBool32& { return f.vulkan12.scalarBlockLayout; }},
-    {"synchronization2", "barriers name exact stages", Mode::contact, true,
+    {"synchronization2", "barriers name exact stages", true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.synchronization2; }},
-    {"maintenance4", "shaders are compiled for Vulkan 1.3", Mode::contact, true,
+    {"maintenance4", "shaders are compiled for Vulkan 1.3", true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.maintenance4; }},
-    {"subgroupSizeControl", "a workgroup of the search is one subgroup", Mode::contact, true,
+    {"subgroupSizeControl", "a workgroup of the search is one subgroup", true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.subgroupSizeControl; }},
-    {"computeFullSubgroups", "a workgroup of the search is one subgroup", Mode::contact, true,
+    {"computeFullSubgroups", "a workgroup of the search is one subgroup", true,
      [](Requirements& f) -> VkBool32& { return f.vulkan13.computeFullSubgroups; }},
-    {"shaderOutputLayer", "each sensor is a layer, chosen in the vertex stage", Mode::sampled, false,
-     [](Requirements& f) -> VkBool32& { return f.vulkan12.shaderOutputLayer; }},
 };
 
 bool isNeeded(Mode what, Mode mode) {
@@ -111,10 +108,10 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   features.chain();
   vk.GetPhysicalDeviceFeatures2(device, &features.core);
   facts.doubles = features.core.features.shaderFloat64 == VK_TRUE;
+  facts.outputLayer = features.vulkan12.shaderOutputLayer == VK_TRUE;
   for (const Requirement& required : kRequired) {
     if (required.in(features)) continue;
-    facts.missingFeatures.push_back(
-        {std::string(required.name) + " (" + required.why + ")", required.mode, required.isOf13});
+    facts.missingFeatures.push_back({std::string(required.name) + " (" + required.why + ")", required.isOf13});
   }
   return facts;
 }
@@ -130,7 +127,7 @@ std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode)
             versionText(facts.apiVersion) + ", lacks the feature " + feature.text};
   }
   for (const MissingFeature& feature : facts.missingFeatures) {
-    if (isNeeded(feature.mode, mode)) reasons.push_back("lacks the feature " + feature.text);
+    reasons.push_back("lacks the feature " + feature.text);
   }
   if (!facts.computeQueue) reasons.push_back("has no queue family that supports compute");
   if (mode == Mode::sampled && !facts.graphicsAndComputeQueue) {
@@ -219,9 +216,8 @@ const void* Requirements::chain(void* next) {
 Requirements requirements(Mode mode, bool doubles) {
   Requirements needed;
   needed.core.features.shaderFloat64 = doubles ? VK_TRUE : VK_FALSE;
-  for (const gpu::Requirement& required : gpu::kRequired) {
-    if (gpu::isNeeded(required.mode, mode)) required.in(needed) = VK_TRUE;
-  }
+  needed.vulkan12.shaderOutputLayer = mode == Mode::sampled ? VK_TRUE : VK_FALSE;
+  for (const gpu::Requirement& required : gpu::kRequired) required.in(needed) = VK_TRUE;
   return needed;
 }
 

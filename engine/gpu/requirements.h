@@ -20,7 +20,6 @@ SubgroupFacts subgroupFactsOf(const Api& vk, VkPhysicalDevice device);
 
 struct MissingFeature {
   std::string text;     ///< its name, with its purpose in brackets
-  Mode mode;            ///< the least mode that needs it: sampled needs everything that contact needs
   bool isOf13 = false;  ///< every device of Vulkan 1.3 has it, but no instance of an older version shows it
 };
 
@@ -29,7 +28,8 @@ struct DeviceFacts {
   bool computeQueue = false;             ///< a queue family supports compute
   bool graphicsAndComputeQueue = false;  ///< a queue family supports both
   SubgroupFacts subgroups;
-  bool doubles = false;  ///< shaderFloat64: not required
+  bool doubles = false;      ///< shaderFloat64: not required
+  bool outputLayer = false;  ///< shaderOutputLayer: not required
   std::vector<MissingFeature> missingFeatures;
   std::vector<DeviceLimit> limits;
 };

@@ -8,8 +8,7 @@
 
 namespace radar {
 
-std::vector<Device> openDevices(std::span<const uint32_t> indices,
-                                const std::function<void(const std::string&)>& onValidation) {
+std::vector<Device> openDevices(std::span<const uint32_t> indices, const DeviceOptions& options) {
   std::vector<uint32_t> wanted(indices.begin(), indices.end());
   for (const uint32_t index : wanted) {
     if (std::count(wanted.begin(), wanted.end(), index) > 1) {
@@ -30,7 +29,9 @@ std::vector<Device> openDevices(std::span<const uint32_t> indices,
   std::vector<Device> devices;
   devices.reserve(wanted.size());
   for (const uint32_t index : wanted) {
-    devices.push_back(Device::open({.index = index, .onValidation = onValidation}));
+    DeviceOptions own = options;
+    own.index = index;
+    devices.push_back(Device::open(own));
   }
   return devices;
 }

@@ -17,6 +17,7 @@ void addStats(SweepStats& sum, const SweepStats& stats) {
   sum.pairs += stats.pairs;
   sum.cpuPairs += stats.cpuPairs;
   sum.cpuQueries += stats.cpuQueries;
+  if (sum.lost.empty()) sum.lost = stats.lost;
   for (const StageTime& stage : stats.stages) gpu::addStageTime(sum.stages, stage.name, stage.ms);
 }
 
@@ -194,15 +195,24 @@ void WorkQueue::deliver(const Chunk& chunk, Answers found, ChunkTrace trace, dou
   if (waiting() > 0) work_.notify_all();  // estimated speeds have changed, so a worker that deferred may be needed now
 }
 
+void WorkQueue::report(uint32_t worker, const std::string& reason) {
+  devices_[worker].retired = reason;
+  const std::string line = "device " + std::to_string(worker) + ", " + devices_[worker].name + ": " + reason;
+  for (const auto& job : open_) job->answers.retired.push_back(line);
+}
+
+void WorkQueue::giveUp(uint32_t worker, const std::string& reason) {
+  const Lock lock(mutex_);
+  if (devices_[worker].retired.empty()) report(worker, reason);
+}
+
 void WorkQueue::retire(uint32_t worker, const std::string& reason, std::vector<Chunk> chunks) {
   {
     const Lock lock(mutex_);
     giveBack(chunks.size());
     share_.retire(worker);
     try {
-      devices_[worker].retired = reason;
-      const std::string line = "device " + std::to_string(worker) + ", " + devices_[worker].name + ": " + reason;
-      for (const auto& job : open_) job->answers.retired.push_back(line);
+      report(worker, reason);
       for (Chunk& chunk : chunks) returned_.push_back(std::move(chunk));
     } catch (const std::bad_alloc&) {
       while (!open_.empty()) end(std::shared_ptr<Job>(open_.front()), std::current_exception());

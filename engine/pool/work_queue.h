@@ -60,6 +60,8 @@ class WorkQueue {
   /// Gives the worker no more chunks: it is about to retire. Returns false, and changes nothing, if it is the only one
   /// left; if the last two call at once, one stays.
   bool leave(uint32_t worker);
+  /// Records why the last worker, which stays, no longer uses its device.
+  void giveUp(uint32_t worker, const std::string& reason);
 
   /// Milliseconds since this was made.
   double now() const { return at(std::chrono::steady_clock::now()); }
@@ -72,6 +74,7 @@ class WorkQueue {
 
   size_t waiting() const;
   std::optional<Chunk> next(uint32_t worker, size_t inFlight);
+  void report(uint32_t worker, const std::string& reason);
   void answerUntaken(const char* reason);
   void fail(const std::shared_ptr<Job>& job, size_t first, size_t count, const char* reason);
   void settle(const std::shared_ptr<Job>& job, size_t count);

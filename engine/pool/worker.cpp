@@ -114,13 +114,14 @@ void Worker::finish(Lane& lane) {
   lane.trace.done = std::max(lane.trace.submitted, queue_.at(flight.deviceDone));
   lane.trace.decoded = queue_.now();
   lane.trace.stages = flight.answers.stats.stages;
-  // A lost device retires the worker; so does a lack of memory, unless it is the last worker or the chunk has run out
-  // of memory on another device, too. Any other failure makes the chunk's queries invalid.
+  // A lost device retires the worker, unless it is the last; so does a lack of memory, unless the chunk has run out of
+  // memory on another device, too. Any other failure makes the chunk's queries invalid.
   if (flight.failure) {
-    const bool forMemory = gpu::isOutOfMemory(*flight.failure);
-    const bool ofQueries = forMemory && (lane.chunk.outOfMemory || !queue_.leave(number_));
+    const bool isLost = gpu::isLost(*flight.failure), forMemory = gpu::isOutOfMemory(*flight.failure);
+    const bool mayLeave = isLost || (forMemory && !lane.chunk.outOfMemory);
+    if (mayLeave && queue_.leave(number_)) throw Error(*flight.failure);
     lane.chunk.outOfMemory = lane.chunk.outOfMemory || forMemory;
-    if (flight.failure->vulkan == VK_ERROR_DEVICE_LOST || (forMemory && !ofQueries)) throw Error(*flight.failure);
+    if (isLost) queue_.giveUp(number_, flight.failure->what());
   }
   // The first use of a pipeline may take a hundred times as long and is no measure of the device's speed.
   bool& warm = lane.warm[static_cast<size_t>(lane.chunk.job->mode)];

@@ -14,7 +14,8 @@ constexpr uint64_t kPassTriangles = 8192;
 // Maximum number of layers per render pass.
 constexpr uint32_t kMaxPassLayers = 64;
 
-uint32_t layersPerPass(std::span<const ViewPlan* const> plans) {
+uint32_t layersPerPass(std::span<const ViewPlan* const> plans, bool choosesLayers) {
+  if (!choosesLayers) return 1;
   uint64_t triangles = 0;
   for (const ViewPlan* plan : plans) triangles += plan->triangles;
   const uint64_t fit =
@@ -78,8 +79,8 @@ DepthPass addPass(SampledBatch& batch, std::vector<Pending>& pending, DepthPass 
 }
 
 // Packs plans of one resolution, which become the views from `firstView` on.
-void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView) {
-  const uint32_t perPass = layersPerPass(plans);
+void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint32_t firstView, bool choosesLayers) {
+  const uint32_t perPass = layersPerPass(plans, choosesLayers);
   const uint32_t firstLayer = batch.layers;
   std::vector<Pending> pending;
   for (uint32_t begin = 0; begin < plans.size(); begin += perPass) {
@@ -108,12 +109,12 @@ void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint
 
 }  // namespace
 
-SampledBatch packBatch(std::span<const ViewPlan* const> plans) {
+SampledBatch packBatch(std::span<const ViewPlan* const> plans, bool choosesLayers) {
   SampledBatch batch;
   for (size_t begin = 0; begin < plans.size();) {
     size_t end = begin;
     while (end < plans.size() && plans[end]->view.resolution == plans[begin]->view.resolution) ++end;
-    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin));
+    fillClass(batch, plans.subspan(begin, end - begin), static_cast<uint32_t>(begin), choosesLayers);
     begin = end;
   }
   if (!plans.empty()) batch.resolution = plans.back()->view.resolution;

@@ -34,6 +34,7 @@ struct SampledBatch {
 };
 
 /// `plans`: in ascending resolution, each with at least one object in reach. Plan i becomes view i, in layer i.
-SampledBatch packBatch(std::span<const ViewPlan* const> plans);
+/// `choosesLayers`: see Device::Impl.
+SampledBatch packBatch(std::span<const ViewPlan* const> plans, bool choosesLayers);
 
 }  // namespace radar

@@ -55,6 +55,7 @@ bool ContactRunner::isOnCpu() const {
 void ContactRunner::begin(Flight& flight) {
   std::vector<size_t> all(flight.queries.size());
   std::iota(all.begin(), all.end(), size_t{0});
+  flight.answers.stats.lost = lost_;
   plan(flight, all);
   answerLeft(flight);
 }
@@ -77,7 +78,7 @@ void ContactRunner::abandon(Flight& flight) noexcept {
 }
 
 void ContactRunner::plan(Flight& flight, std::span<const size_t> which) {
-  if (which.size() < cpuBatchOf(options_, device_)) {
+  if (!lost_.empty() || which.size() < cpuBatchOf(options_, device_)) {
     flight.left.insert(flight.left.end(), which.begin(), which.end());
     return;
   }
@@ -127,6 +128,7 @@ bool ContactRunner::attempt(Flight& flight, std::span<const PlannedSearches::Gro
     leave();
   } catch (const Error& error) {
     if (flight.survives(error)) {
+      if (gpu::isLost(error)) flight.answers.stats.lost = lost_ = error.what();
       leave();
     } else {
       for (const PlannedSearches::Group& group : groups) flight.fail(group.query, error);

@@ -33,8 +33,8 @@ class ContactRunner {
   void decide(Flight& flight, const SearchAnswers& found, std::span<const PlannedSearches::Group> groups,
               std::span<Result> results) const;
   void answerLeft(Flight& flight);
-  /// Calls `step`; leaves the queries to the CPU if memory, or a limit of the device, does not suffice for it, and
-  /// without an answer if another Vulkan call fails. Returns whether nothing did.
+  /// Calls `step`; leaves the queries to the CPU if memory, or a limit of the device, does not suffice for it, or the
+  /// device is lost, and without an answer if another Vulkan call fails. Returns whether nothing did.
   template <class Step>
   bool attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step);
 
@@ -46,6 +46,7 @@ class ContactRunner {
   const size_t mostSensors_;                   ///< per submission
   std::optional<ContactSubmitter> submitter_;  ///< made when first needed, since all batches may be small
   cpu::Search cpu_;
+  std::string lost_;  ///< as SweepStats::lost
 };
 
 }  // namespace radar

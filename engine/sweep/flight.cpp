@@ -17,7 +17,7 @@ void Flight::fail(size_t query, const Error& error) {
 }
 
 bool Flight::survives(const Error& error) {
-  if (!gpu::isOutOfMemory(error)) return false;
+  if (!gpu::isOutOfMemory(error) && !gpu::isLost(error)) return false;
   if (!failure) failure = error;
   return true;
 }

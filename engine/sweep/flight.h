@@ -48,7 +48,8 @@ struct Flight {
 
   /// Records that a failed Vulkan call left the query without an answer; rethrows any other error.
   void fail(size_t query, const Error& error);
-  /// If a call failed for lack of memory, records that, and returns true: its queries can be answered otherwise.
+  /// If a call failed for lack of memory, or because the device is lost, records that, and returns true: its queries
+  /// can be answered otherwise.
   bool survives(const Error& error);
   void addCpuTime(const char* name, double ms);
 };

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "gpu/check.h"
 #include "sampled/decode.h"
 
 namespace radar {
@@ -55,12 +56,12 @@ bool SampledRunner::trySubmit(Flight& flight, std::span<Planned> part, bool isLa
     plans.push_back(&planned.plan);
     queries.push_back(planned.query);
   }
-  drawn_ = packBatch(plans);
+  drawn_ = packBatch(plans, device_.choosesLayers);
   flight.addCpuTime("encode", msSince(start));
   try {
     submitter_.submit(drawn_, scene_.impl());
   } catch (const Error& error) {
-    if (!isLast && flight.survives(error)) return false;
+    if (!isLast && gpu::isOutOfMemory(error) && flight.survives(error)) return false;
     for (const size_t query : queries) flight.fail(query, error);
     return true;
   }
@@ -163,7 +164,7 @@ Scopes SampledRunner::scopes(const Query& query) {
   const ViewPlan plan = planOf(query, options_.select ? Drawn::wholeMask : Drawn::everything);
   if (std::string reason = reasonAgainst(plan); !reason.empty()) throw Error("scopes: " + reason);
   const ViewPlan* plans[] = {&plan};
-  drawn_ = packBatch(plans);
+  drawn_ = packBatch(plans, device_.choosesLayers);
   StoredScopes stored;
   SweepStats stats;
   submitter_.submit(drawn_, scene_.impl(), true);

@@ -42,7 +42,7 @@ std::optional<Error> Sweeper::Impl::sync() {
   } catch (const gpu::LimitError&) {
     if (copy->hasIndices()) throw;  // mode sampled draws it; mode contact is answered on the CPU
   } catch (const Error& error) {
-    if (!gpu::isOutOfMemory(error)) throw;
+    if (!gpu::isOutOfMemory(error) && !gpu::isLost(error)) throw;
     return error;
   }
   return {};

@@ -12,7 +12,8 @@ struct Sweeper::Impl {
   Impl(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, std::shared_ptr<GpuScene> copy,
        const SearchRoom& room = {}, bool needsProof = true);
 
-  /// Returns the error if memory does not suffice: then each batch tries again, and answers as run() says.
+  /// Returns the error if memory does not suffice, or the device is lost: then each batch tries again, and answers as
+  /// run() says.
   std::optional<Error> sync();
   /// Plans and submits a batch of valid queries, of one mode; on return the last submission may still be running.
   /// finish() completes its answers. If either throws, nothing of the batch stays with the device; one batch at a time.

@@ -22,10 +22,10 @@ struct Batch {
   explicit Batch(const tools::Workload& workload) : Batch(sceneOf(workload), test::queriesOf(workload)) {}
 
   /// Of a recording; no answer may be wrong.
-  fuzz::Outcomes outcomes(const Capacity& capacity) const {
-    Recorder recorder(test::device(), scene, capacity);
+  fuzz::Outcomes outcomes(const Capacity& capacity, const Device& device = test::device()) const {
+    Recorder recorder(device, scene, capacity);
     fuzz::Outcomes outcomes;
-    fuzz::checkRecorded(queries, execute(test::device(), recorder, queries), truth, outcomes);
+    fuzz::checkRecorded(queries, execute(device, recorder, queries), truth, outcomes);
     CHECK(outcomes.outOfRange + outcomes.reordered == 0);
     return outcomes;
   }
@@ -91,6 +91,19 @@ TEST_CASE("a query that exceeds Capacity::rounds gets Flag::rounds, and a short 
   CHECK(hasty.hits == 1);
   const Capacity patient{.queries = 2, .candidates = 1u << 18, .rounds = 64, .unresolvedPairs = 1u << 16};
   CHECK(batch.outcomes(patient).answered == 2);
+}
+
+TEST_CASE("rounds are brief on a GPU, and enough of them suffice", "[subgroups]") {
+  const Device device = Device::open({.onValidation = test::onValidation, .doubles = test::wantsDoubles()});
+  const Batch batch = hardBatch("soup");
+  const auto unfinished = [&](uint32_t rounds) {
+    const Capacity capacity{.queries = 48, .candidates = 1u << 17, .rounds = rounds, .unresolvedPairs = 1u << 17};
+    return batch.outcomes(capacity, device).rounds;
+  };
+  CHECK(unfinished(2) == 0);
+  device.impl().properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+  CHECK(unfinished(2) > 0);
+  CHECK(unfinished(64) == 0);
 }
 
 TEST_CASE("a query that exceeds Capacity::unresolvedPairs gets Flag::unresolved and a valid lower bound",

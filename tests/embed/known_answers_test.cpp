@@ -1,6 +1,9 @@
 // A device proves itself by known answers: one that computes wrongly, never ends or is lost is refused before it
 // answers.
 #include "sweep/known_answers.h"
+
+#include <future>
+
 #include "embed/known_recordings.h"
 #include "gpu/device.h"
 #include "radar/recorder.h"
@@ -29,6 +32,14 @@ VKAPI_ATTR VkResult VKAPI_CALL waitsAndSays(VkDevice device, uint32_t count, con
                                             uint64_t patience) {
   waitForFences(device, count, fences, all, patience);
   return kResult;
+}
+std::promise<void> endCompiling, compiled;
+VKAPI_ATTR VkResult VKAPI_CALL compilesUntilTold(VkDevice, VkPipelineCache, uint32_t,
+                                                 const VkComputePipelineCreateInfo*, const VkAllocationCallbacks*,
+                                                 VkPipeline*) {
+  endCompiling.get_future().wait();
+  compiled.set_value();
+  return VK_ERROR_UNKNOWN;
 }
 VKAPI_ATTR void VKAPI_CALL doesNothing(VkCommandBuffer, uint32_t, uint32_t, uint32_t) {}
 
@@ -103,6 +114,26 @@ TEST_CASE("a device that never ends is given up, and nothing of it is destroyed"
   const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
   CHECK_THAT(error.what(), test::Contains("has not ended a submission"));
   CHECK(error.vulkan == VK_ERROR_DEVICE_LOST);
+}
+
+TEST_CASE("a device that compiles for longer than its host waits is given up") {
+  const Scene scene;
+  std::string shader;
+  uint32_t waited = 0;
+  const Device device = Device::open({.onValidation = test::onValidation,
+                                      .doubles = test::wantsDoubles(),
+                                      .onCompiling = [&](const std::string& name, uint32_t seconds) {
+                                        shader = name;
+                                        waited = seconds;
+                                        return seconds < 2;
+                                      }});
+  device.impl().vk.CreateComputePipelines = compilesUntilTold;
+  const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
+  CHECK_THAT(error.what(), test::Contains(" has not compiled " + shader + " in 2 s, and is given up"));
+  CHECK(error.vulkan == VK_ERROR_DEVICE_LOST);
+  CHECK(waited == 2);
+  endCompiling.set_value();
+  compiled.get_future().wait();
 }
 
 TEST_CASE("a device that is lost while it proves itself is refused") {

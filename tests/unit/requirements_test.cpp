@@ -71,7 +71,7 @@ TEST_CASE("each thing that a device lacks is a separate reason in words") {
   facts.apiVersion = VK_API_VERSION_1_1;
   CHECK(gpu::unsupportedReasons(facts, Mode::contact) == std::vector<std::string>{"needs Vulkan 1.3, has 1.1.0"});
   facts = goodDevice();
-  facts.missingFeatures = {{"scalarBlockLayout (buffers have the layout of the C++ structs)", Mode::contact}};
+  facts.missingFeatures = {{"scalarBlockLayout (buffers have the layout of the C++ structs)"}};
   facts.computeQueue = facts.graphicsAndComputeQueue = false;
   facts.subgroups = {.size = 32};
   VkPhysicalDeviceLimits limits = leastLimits();
@@ -89,17 +89,15 @@ TEST_CASE("each thing that a device lacks is a separate reason in words") {
 TEST_CASE("a device without what only mode sampled needs supports mode contact") {
   gpu::DeviceFacts facts = goodDevice();
   facts.graphicsAndComputeQueue = false;
-  facts.missingFeatures = {{"shaderOutputLayer (each sensor is a layer)", Mode::sampled}};
   VkPhysicalDeviceLimits limits = leastLimits();
   limits.maxImageArrayLayers = limits.maxFramebufferLayers = 1;
   limits.subPixelPrecisionBits = 0;
   facts.limits = gpu::limitsOf(limits, kSubgroups);
   CHECK(gpu::unsupportedReasons(facts, Mode::contact).empty());
   const std::vector<std::string> reasons = gpu::unsupportedReasons(facts, Mode::sampled);
-  REQUIRE(reasons.size() == 7);
-  CHECK(reasons[0] == "lacks the feature shaderOutputLayer (each sensor is a layer)");
-  CHECK(reasons[1] == "has no queue family that supports graphics and compute");
-  CHECK(reasons[2] == "the limit maxComputeWorkGroupInvocations is 128, must be at least 256");
+  REQUIRE(reasons.size() == 6);
+  CHECK(reasons[0] == "has no queue family that supports graphics and compute");
+  CHECK(reasons[1] == "the limit maxComputeWorkGroupInvocations is 128, must be at least 256");
 }
 
 TEST_CASE("mode contact needs no more than the least limits of Vulkan 1.3, except for storage buffers") {

@@ -18,12 +18,14 @@ void Answerer::open(AnswerMode mode) {
   if (sweeper_ || pool_) return;
   const SweeperOptions options{
       .timestamps = options_.timestamps, .cpuBatch = options_.cpuBatch, .cpuThreads = options_.threads};
+  const DeviceOptions device{
+      .index = options_.device, .onValidation = options_.onValidation, .onCompiling = options_.onCompiling};
   if (options_.pool) {
-    devices_ = openDevices(*options_.pool, options_.onValidation);
+    devices_ = openDevices(*options_.pool, device);
     pool_.emplace(devices_, scene_, options);
   } else {
     devices_.clear();
-    devices_.push_back(Device::open({.index = options_.device, .onValidation = options_.onValidation}));
+    devices_.push_back(Device::open(device));
     sweeper_.emplace(devices_[0], scene_, options);
   }
 }

@@ -94,6 +94,12 @@ AnsweringOptions EngineOptions::checked() const {
   options.resolution = resolutionFrom(resolution);
   options.cpuBatch = cpuBatch.value_or(kNone);
   options.threads = threads;
+  options.onCompiling = [](const std::string& shader, uint32_t seconds) {
+    if (seconds == 2 || seconds % 10 == 0) {
+      std::cerr << "cyber-radar: the driver compiles " + shader + ", for " + std::to_string(seconds) + " s so far\n";
+    }
+    return true;
+  };
   if (device.empty()) return options;
   const std::vector<uint32_t> devices = devicesFrom(device);
   if (devices.size() == 1) {

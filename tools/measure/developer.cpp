@@ -90,7 +90,7 @@ struct Town {
 
 template <class Searcher>
 Session sessionOf(const std::string& name, Searcher& searcher, const std::function<void()>& change) {
-  return {name, [&](std::span<const Query> queries) { return searcher.run(queries).results; },
+  return {name, [&](std::span<const Query> queries) { return resultsOf(searcher.run(queries)); },
           [&, change](uint32_t) {
             change();
             searcher.sync();

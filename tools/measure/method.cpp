@@ -26,7 +26,7 @@ Session searching(const Workload& workload, const Make& make, const Ask& ask) {
     std::invoke_result_t<Make, const Scene&> searcher;
   };
   const auto search = std::make_shared<Search>(workload, make);
-  return {"", [search, ask](std::span<const Query> queries) { return ask(search->searcher, queries).results; },
+  return {"", [search, ask](std::span<const Query> queries) { return resultsOf(ask(search->searcher, queries)); },
           [search](uint32_t scene) {
             search->player.show(scene);
             search->searcher.sync();

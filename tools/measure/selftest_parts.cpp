@@ -61,7 +61,7 @@ class Race {
   double measure(
       const char* workload, std::span<const Batch> batches, const Deadline& deadline, Json& rows,
       const std::function<void(uint32_t)>& show = [](uint32_t) {}) {
-    const std::vector<Session> methods{{"device", [&](auto queries) { return sweeper_.run(queries).results; }, show},
+    const std::vector<Session> methods{{"device", [&](auto queries) { return resultsOf(sweeper_.run(queries)); }, show},
                                        {"CPU", [&](auto queries) { return cpu_.run(queries).results; }, show}};
     const std::vector<Series> all =
         tools::measure(methods, batches, {.warmUps = 0, .least = 1, .most = 9, .seconds = 0.5, .deadline = deadline});
@@ -284,7 +284,7 @@ bool measureLanes(std::span<const Device> devices, std::span<const uint32_t>, co
   Pool pool(devices, standing.scene(), kOnDevice);
   const auto oneByOne = [&](std::span<const Query> queries) {
     for (uint32_t i = 1; i < kInFlight; ++i) sweeper.run(queries);
-    return sweeper.run(queries).results;
+    return resultsOf(sweeper.run(queries));
   };
   return addLanes({{"a Sweeper: one batch after the other", oneByOne}, laneOf("a Pool: two batches in flight", pool)},
                   standing.batch, deadline, rows);

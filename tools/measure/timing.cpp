@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "workloads/same_answer.h"
 
@@ -20,6 +21,11 @@ double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
   return values[std::max<size_t>(rank, 1) - 1];
+}
+
+std::vector<Result> resultsOf(Answers answers) {
+  if (!answers.stats.lost.empty()) throw Error("the device is lost: " + answers.stats.lost);
+  return std::move(answers.results);
 }
 
 void inTurns(const Repetition& repetition, size_t sessions, const std::function<void(size_t, bool)>& run) {

@@ -24,6 +24,9 @@ struct Session {
   std::function<void(uint32_t scene)> show = [](uint32_t) {};  ///< called before each batch, and timed apart
 };
 
+/// The results of `answers`. Throws Error if the device is lost, and they are the CPU's.
+std::vector<Result> resultsOf(Answers answers);
+
 /// How often each session answers. One pass counts whatever the time is.
 struct Repetition {
   uint32_t warmUps = 1;            ///< passes that do not count

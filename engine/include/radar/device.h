@@ -36,6 +36,11 @@ struct DeviceReport {
 /// Lists the Vulkan loader's physical devices, in its order. Throws if there is no loader or no driver.
 RADAR_API std::vector<DeviceReport> listDevices();
 
+/// Called each second, on the thread that waits, while a driver compiles a pipeline; with the shader's name and the
+/// seconds so far. If it returns false, the device is given up: who waits gets an Error, or the CPU's answers, as if
+/// the device were lost. Nothing on that device may then be destroyed, since its driver goes on.
+using OnCompiling = std::function<bool(const std::string& shader, uint32_t seconds)>;
+
 /// Vulkan handles that the host owns. All outlive the Device made from them. `device` has the features of
 /// requirements() enabled. `queue` belongs to family `queueFamily`, which supports compute and, for mode sampled,
 /// graphics.
@@ -51,7 +56,7 @@ struct HostDevice {
   uint32_t queueFamily = 0;
   VkQueue queue = VK_NULL_HANDLE;
   bool doubles = true;      ///< shaderFloat64 is enabled on `device`
-  bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) are enabled on `device`
+  bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) that it has are enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
   /// Used to look up all Vulkan functions. Null: the system's loader.
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
@@ -60,6 +65,7 @@ struct HostDevice {
   /// Called around each vkQueueSubmit2, on the submitting thread. Set both if the host or another Device uses the queue
   /// on other threads, else none: Sweepers of one Device take turns.
   std::function<void()> lockQueue{}, unlockQueue{};
+  OnCompiling onCompiling{};
 };
 
 /// What a VkDevice must have enabled: the version, and VK_TRUE for each feature needed. The host chains it into its
@@ -80,7 +86,8 @@ struct Requirements {
   /// struct of that version. Valid until this object moves or ends.
   const void* chain(void* next = nullptr);
 };
-/// `mode`: sampled needs everything that contact needs, and graphics. `doubles`: includes shaderFloat64, which is
+/// `mode`: sampled needs everything that contact needs, and graphics. Clear shaderOutputLayer if the device lacks it:
+/// mode sampled then draws each sensor in a render pass of its own. `doubles`: includes shaderFloat64, which is
 /// optional but lets mode contact leave less to the CPU.
 RADAR_API Requirements requirements(Mode mode, bool doubles);
 
@@ -93,6 +100,7 @@ struct DeviceOptions {
   /// Receives each warning or error of active validation layers, on any thread.
   std::function<void(const std::string&)> onValidation{};
   bool doubles = true;  ///< false: do not use them, as if shaderFloat64 were missing
+  OnCompiling onCompiling{};
 };
 
 /// A logical device with one queue: opened here and owned, or borrowed from a host. It, and all that uses it, ends

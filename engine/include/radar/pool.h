@@ -11,10 +11,10 @@
 
 namespace radar {
 
-/// Opens the devices with these indices in listDevices(), in this order; with none given, every usable device. Throws
-/// Error naming the device, also for an index given twice, or with all reasons if none is usable.
-RADAR_API std::vector<Device> openDevices(std::span<const uint32_t> indices = {},
-                                          const std::function<void(const std::string&)>& onValidation = nullptr);
+/// Opens the devices with these indices in listDevices(), in this order, whatever `options.index` is; with none given,
+/// every usable device. Throws Error naming the device, also for an index given twice, or with all reasons if none is
+/// usable.
+RADAR_API std::vector<Device> openDevices(std::span<const uint32_t> indices = {}, const DeviceOptions& options = {});
 
 /// Timing of one chunk of a batch on its device. Times are milliseconds since the pool was made, on the host's clock.
 struct ChunkTrace {
@@ -31,8 +31,8 @@ struct ChunkTrace {
 /// The answers to a batch. Reasons beyond a Sweeper's: "cancelled", "the pool was closed", or that no device is left
 /// and why. Statistics are summed over devices.
 struct PoolAnswers : Answers {
-  std::vector<ChunkTrace> chunks;      ///< in order of completion
-  std::vector<std::string> retired;    ///< one line per device retired while working on this batch
+  std::vector<ChunkTrace> chunks;    ///< in order of completion
+  std::vector<std::string> retired;  ///< one line per device retired, or the last one lost, while working on this batch
   double submitted = 0, answered = 0;  ///< as in ChunkTrace
 };
 
@@ -40,7 +40,7 @@ struct PoolAnswers : Answers {
 struct PoolDevice {
   std::string name, driver;
   uint64_t queries = 0, chunks = 0;
-  std::string retired;  ///< why it was retired; empty if it works
+  std::string retired;  ///< why it was retired or, being the last, is lost; empty if it works
 };
 
 /// Answers batches on all its devices. A batch is cut into chunks. A free device takes the next chunk; faster devices
@@ -50,7 +50,7 @@ struct PoolDevice {
 ///
 /// A device that is lost, fails to allocate, or cannot hold the scene is retired, and the other devices redo its
 /// chunks. If a chunk runs out of memory on a second device too, or on the last one, the device is kept and the chunk
-/// is answered as Sweeper::run() says.
+/// is answered as Sweeper::run() says; so are all chunks once the last device is lost.
 class RADAR_API Pool {
  public:
   /// Starts a thread per device, which creates its pipelines; does not wait. `devices` and `scene` must outlive the

@@ -71,7 +71,8 @@ struct Scopes {
   Result result;  ///< the answer to the same query
 };
 
-/// Answers batches of queries against one scene on one device.
+/// Answers batches of queries against one scene on one device. Once that is lost, the CPU answers mode contact, with
+/// the same bits (SweepStats::lost).
 class RADAR_API Sweeper {
  public:
   /// Creates the pipelines of mode contact if the device answers it; those of mode sampled are created at first use.

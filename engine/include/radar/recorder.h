@@ -28,8 +28,8 @@ namespace radar {
 /// Flag::unresolved.
 ///
 /// Candidates are some 10 per query among boxes, 30 among meshes, 1,000 where meshes of 5,000 triangles interlock. A
-/// round takes a few milliseconds at most, and next to nothing if unneeded. A query with Query::hits above 1, and any
-/// if objects have motions, takes a search for each object in reach, and for each that is moved, or whose mesh is
+/// round takes a GPU a few milliseconds at most, and next to nothing if unneeded. A query with Query::hits above 1, and
+/// any if objects have motions, takes a search for each object in reach, and for each that is moved, or whose mesh is
 /// deformed, without bounds; for every object if its sensor's mesh is.
 struct Capacity {
   uint32_t queries = 64;

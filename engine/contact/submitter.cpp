@@ -14,6 +14,18 @@ constexpr uint32_t kRounds = 8;
 // A batch whose searches take more submissions than this makes no progress.
 constexpr uint32_t kMostSubmissions = 1u << 20;
 
+// Such a device is given up.
+const char* wordsFor(uint32_t broken) {
+  switch (broken) {
+    case gpu::kBrokenSubgroups:
+      return "the device runs a workgroup of the contact search as several subgroups";
+    case gpu::kBrokenLoops:
+      return "the driver ends loops of the contact search early";
+    default:
+      return "the device lets lanes go apart where the contact search needs all";
+  }
+}
+
 uint64_t joined(uint32_t low, uint32_t high) {
   return uint64_t{high} << 32 | low;
 }
@@ -81,12 +93,7 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
     submission_.addTimes(stages);
   }
   const gpu::SearchCounts& all = counts();
-  if (all.broken != 0) {
-    throw Error(all.broken == gpu::kBrokenLoops
-                    ? "the driver ends loops of the contact search early"
-                    : "the device runs a workgroup of the contact search as several subgroups",
-                VK_ERROR_UNKNOWN);
-  }
+  if (all.broken != 0) throw Error(wordsFor(all.broken), VK_ERROR_DEVICE_LOST);
   const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + ContactPass::kFirstResult);
   return {{results, pass_.sensorCount()},
           pass_.unresolved(all),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <cstring>
 #include <future>
 #include <map>
 #include <memory>
@@ -150,6 +151,29 @@ Pipeline depthPipeline(const Device::Impl& device, VkPipelineLayout layout, std:
 
 namespace {
 
+// The module, declaring that lanes which part in a branch meet behind it, if all came to it together: glslang can do so
+// only for all devices.
+std::vector<uint32_t> withUniformControlFlow(std::span<const uint32_t> spirv) {
+  constexpr uint32_t kHeader = 5, kExtension = 10, kEntryPoint = 15, kExecutionMode = 16, kCapability = 17;
+  constexpr uint32_t kSubgroupUniformControlFlow = 4421;
+  constexpr char kName[] = "SPV_KHR_subgroup_uniform_control_flow";
+  constexpr uint32_t kNameWords = sizeof(kName) / 4 + 1;
+  std::vector<uint32_t> all(spirv.begin(), spirv.begin() + kHeader);
+  const auto opcodeAt = [&](size_t at) { return at < spirv.size() ? spirv[at] & 0xffff : 0; };
+  for (size_t at = kHeader, next = 0; at < spirv.size(); at = next) {
+    next = at + (spirv[at] >> 16);
+    all.insert(all.end(), spirv.begin() + at, spirv.begin() + next);
+    if (opcodeAt(at) == kCapability && opcodeAt(next) != kCapability) {
+      all.push_back((kNameWords + 1) << 16 | kExtension);
+      all.resize(all.size() + kNameWords);
+      std::memcpy(&all[all.size() - kNameWords], kName, sizeof(kName));
+    } else if (opcodeAt(at) == kEntryPoint) {
+      all.insert(all.end(), {3u << 16 | kExecutionMode, spirv[at + 2], kSubgroupUniformControlFlow});
+    }
+  }
+  return all;
+}
+
 // A call that makes a compute pipeline, with all that it reads, since a driver that is given up goes on reading.
 struct Compilation {
   Compilation(const Device::Impl& device, VkPipelineLayout layout, const ShaderModule& module,
@@ -233,7 +257,7 @@ Kernel::Kernel(const Device::Impl& device, const Program& program)
     : setLayout(makeSetLayout(device, *program.shader)),
       layout(makePipelineLayout(device, setLayout.get(), *program.shader)) {
   const Shader& shader = *program.shader;
-  const std::span<const uint32_t> spirv =
+  std::span<const uint32_t> spirv =
       device.doubles || shader.spirvWithoutDoubles.empty() ? shader.spirv : shader.spirvWithoutDoubles;
   if (shader.stage == VK_SHADER_STAGE_VERTEX_BIT) {
     pipeline = depthPipeline(device, layout.get(), spirv, shader.name);
@@ -242,6 +266,11 @@ Kernel::Kernel(const Device::Impl& device, const Program& program)
   std::array<uint32_t, Program::kMostConstants + 1> constants;
   std::copy(program.constants.begin(), program.constants.end(), constants.begin());
   constants.back() = device.dividesRight ? 1 : 0;
+  std::vector<uint32_t> declaring;
+  if (program.subgroups == Subgroups::full && device.host.uniformControlFlow) {
+    declaring = withUniformControlFlow(spirv);
+    spirv = declaring;
+  }
   pipeline = computePipeline(device, layout.get(), spirv, shader.name, constants, program.subgroups);
 }
 

@@ -240,8 +240,17 @@ Opened openHandles(const DeviceOptions& options, bool wantsStatistics) {
     extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     statistics.pipelineExecutableInfo = VK_TRUE;
   }
+  VkPhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR flow{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_FEATURES_KHR};
+  if (has(available, VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME)) {
+    VkPhysicalDeviceFeatures2 chain{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &flow};
+    owned->vk.GetPhysicalDeviceFeatures2(host.physicalDevice, &chain);
+    host.uniformControlFlow = flow.shaderSubgroupUniformControlFlow == VK_TRUE;
+  }
+  flow.pNext = capturesStatistics ? &statistics : nullptr;
+  if (host.uniformControlFlow) extensions.push_back(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME);
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                .pNext = needed.chain(capturesStatistics ? &statistics : nullptr),
+                                .pNext = needed.chain(host.uniformControlFlow ? &flow : flow.pNext),
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
                                 .enabledExtensionCount = static_cast<uint32_t>(extensions.size()),

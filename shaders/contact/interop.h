@@ -131,9 +131,11 @@ struct SearchRound {
 };
 INTEROP_CONST kMostRounds = 64;
 
-// What drivers do that the search cannot do with: run a workgroup as several subgroups, or end loops early.
+// What drivers do that the search cannot do with: run a workgroup as several subgroups, end loops early, or let lanes go apart
+// where all are needed.
 INTEROP_CONST kBrokenSubgroups = 1;
 INTEROP_CONST kBrokenLoops = 2;
+INTEROP_CONST kBrokenLanes = 3;
 
 // Counts of a submission.
 struct SearchCounts {

@@ -6,6 +6,9 @@
 // `work` counts as lavapipe does, which silently ends loops after 65,535 iterations of a subgroup in total: in each loop, also
 // that in which it finds that the loop has ended. If it is mistaken, no answer of the submission counts (`loopsEnd`).
 //
+// All lanes take part in each ballot: lanes that part in a branch meet behind it. What they find out together is the same in all.
+// The search notices if that fails, too (`whole`; docs/method.md, "What lanes assume").
+//
 // search.comp.glsl has no clearances. search_with_clearance.comp.glsl defines RADAR_CLEARANCES, for batches in which a query has
 // one: compilers take their time even for what a constant switches off.
 #extension GL_EXT_control_flow_attributes : require
@@ -25,7 +28,8 @@ layout(constant_id = 0) const uint kLanes = 32;
 layout(constant_id = 1) const uint kQueue = 256;     // pairs in each queue: at least 6 times the lanes
 layout(constant_id = 2) const uint kStack = 40;      // entries of a lane: at least 4
 
-layout(scalar, binding = kSlotStates) restrict buffer States { SearchState states[]; };
+// Other workgroups lower what is here. To have missed that costs time only.
+layout(scalar, binding = kSlotStates) coherent restrict buffer States { SearchState states[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
 layout(scalar, binding = kSlotTasks) readonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSpilled) writeonly restrict buffer Spilled { SearchTask spilled[]; };
@@ -70,6 +74,7 @@ uint leaves, leafHead, leafTail;     // where the queue begins; numbers of entri
 uint pairs, pairHead, pairTail;
 uint work;
 bool tasksLeft;
+bool whole;                          // at each meet() all lanes were there
 
 // Of a lane.
 uint sensor, object;
@@ -84,6 +89,7 @@ const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), 
 uint trianglePairs;
 
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
+void meet() { whole = whole && countOf(true) == kLanes; }
 uint rankOf(uvec4 ballot) { return subgroupBallotExclusiveBitCount(ballot); }
 
 // Contacts beyond this do not count. It is negative, which ends the search, if an `anyHit` query has a certain contact or the
@@ -197,6 +203,7 @@ void spill() {
     if (subgroupElect()) first = atomicAdd(counts.rounds[push.round].spilled, subgroupBallotBitCount(who));
     first = subgroupBroadcastFirst(first);
     const uint at = first + rankOf(who);
+    meet();
     if (keeps && at < push.taskCapacity) {
       spilled[at] = SearchTask(sensor, named, entry.x, entry.y, uintBitsToFloat(entry.z));
     } else if (keeps) {
@@ -312,6 +319,7 @@ void descend() {
       }
       pushLeaves(leaves, linkA, linkB, gap);
     }
+    meet();
     if (other.x != kNobody) stack[depth++] = other;
     if (tries) current = nearest;
   }
@@ -356,6 +364,7 @@ void tryLeaves(bool all) {
     [[dont_unroll]] for (uint k = 0; k < 4; ++k) {
       pushPair((meets >> k & 1) != 0, (leaf.x & kLinkItem) + (k >> 1), (leaf.y & kLinkItem) + (k & 1), leaf.z, leaf.w);
     }
+    meet();
     leafHead = min(leafHead + kLanes, leafTail);
   }
 }
@@ -412,6 +421,7 @@ void solvePairs(bool all) {
       bound = min(bound, by);
       keeps = !isOver && low <= bound;
     }
+    meet();
     keepCandidate(keeps, pair, low, feature);
     pairHead = min(pairHead + kLanes, pairTail);
   }
@@ -444,7 +454,7 @@ void main() {
   leaves = 2 * kQueue * workgroupIndex();
   pairs = leaves + kQueue;
   leafHead = leafTail = pairHead = pairTail = work = 0;
-  tasksLeft = true;
+  tasksLeft = whole = true;
   sensor = object = depth = objectDepth = 0;
   current = uvec3(kNobody, 0, 0);
   limit = 0.0;
@@ -465,6 +475,7 @@ void main() {
       enterObjects(named, resumes);
       resumes = false;
       descend();
+      meet();
       idle = subgroupAll(isIdle()) && !tasksLeft;
       last = idle || work >= budget || subgroupAny(depth + 2 > kStack);
     } while (!last && leafTail - leafHead < kLeafBatch);
@@ -479,4 +490,5 @@ void main() {
   spill();
   addCount();
   if (!loopsEnd()) counts.broken = kBrokenLoops;
+  if (!whole || !subgroupAllEqual(uvec3(leafTail, pairTail, work))) counts.broken = kBrokenLanes;
 }

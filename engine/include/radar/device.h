@@ -58,6 +58,8 @@ struct HostDevice {
   bool doubles = true;      ///< shaderFloat64 is enabled on `device`
   bool sampled = false;     ///< the features of requirements(Mode::sampled, ...) that it has are enabled on `device`
   bool debugNames = false;  ///< VK_EXT_debug_utils is enabled on the instance
+  /// VK_KHR_shader_subgroup_uniform_control_flow and its feature are enabled on `device`: optional, and then used.
+  bool uniformControlFlow = false;
   /// Used to look up all Vulkan functions. Null: the system's loader.
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
   const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's

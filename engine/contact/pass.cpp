@@ -1,7 +1,6 @@
 #include "contact/pass.h"
 
 #include <algorithm>
-#include <bit>
 #include <thread>
 
 #include "gpu/barrier.h"
@@ -52,6 +51,7 @@ const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders
 std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
   std::vector<gpu::Program> all{searchOf(device, {}, false),
                                 searchOf(device, {}, true),
+                                shaders::kEncode,
                                 shaders::kCollect,
                                 shaders::kFilter,
                                 shaders::kLink,
@@ -67,15 +67,16 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
       search_(searchOf(device, room, false)),
       searchWithClearance_(searchOf(device, room, true)),
       // Rounds alternate between two lists of tasks.
-      run_(device, {search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter, shaders::kLink,
-                    shaders::kResolve}),
+      run_(device, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter,
+                    shaders::kLink, shaders::kResolve}),
       upload_(device),
-      sensors_(device, "sensors", BufferDomain::device, kUploaded | gpu::kAsTexels),
+      stated_(device, "stated searches", BufferDomain::device, kUploaded),
+      sensors_(device, "sensors", BufferDomain::device, gpu::kAsTexels),
       sweeps_(device, "sweeps", BufferDomain::device, kReadBack),
-      states_(device, "search states", BufferDomain::device, kUploaded),
+      states_(device, "search states", BufferDomain::device),
       heads_(device, "refined pair lists", BufferDomain::device, kUploaded),
       excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
-      tasks_(device, "search tasks", BufferDomain::device, kUploaded),
+      tasks_(device, "search tasks", BufferDomain::device),
       spilled_(device, "spilled search tasks", BufferDomain::device),
       queues_(device, "search queues", BufferDomain::device),
       candidates_(device, "candidate pairs", BufferDomain::device),
@@ -118,6 +119,7 @@ void ContactPass::reserveLists(uint32_t sensors) {
 }
 
 void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded) {
+  stated_.reserve(sensors);
   sensors_.reserve(sensors);
   sweeps_.reserve(sensors);
   states_.reserve(sensors);
@@ -126,61 +128,47 @@ void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded)
   results_.reserve(results);
   counts_.reserve(1);
   reserveLists(sensors);
-  constexpr size_t kPerSensor =
-      sizeof(gpu::Sensor) + sizeof(gpu::Sweep) + sizeof(gpu::SearchState) + sizeof(gpu::SearchTask);
+  constexpr size_t kPerSensor = sizeof(gpu::StatedSearch) + sizeof(gpu::Sweep);
   upload_.reserve(sensors * kPerSensor + excluded * sizeof(uint32_t) + results * sizeof(Result) +
-                  sizeof(gpu::SearchCounts) + 7 * 8);  // each of seven pieces may be rounded up
+                  sizeof(gpu::SearchCounts) + 5 * 8);  // each of five pieces may be rounded up
 }
 
-GpuScene::Staged ContactPass::stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
-                                    GpuScene::Overwritten next) {
-  sensorCount_ = batch.count();
-  ignoresLeaving_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
-                                [](const gpu::Sweep& sweep) { return sweep.ignoreLeaving != 0; });
-  hasClearances_ = std::any_of(batch.sweeps.begin(), batch.sweeps.end(),
-                               [](const gpu::Sweep& sweep) { return sweep.hasClearance != 0; });
-  if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
-  checkExcluded(*device_, batch.excluded.size());
+// Begins an upload with the changes of the scene and the counts of a search without tasks.
+GpuScene::Staged ContactPass::begin(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
+  sensorCount_ = searches;
+  encoding_ = {.count = searches};
+  setAnchor(encoding_, scene.objectTree());
   upload_.begin();
   GpuScene::Staged staged = scene_.stage(scene, std::move(next), upload_);
-  const auto results = static_cast<uint32_t>(std::max(known.size(), batch.sensors.size()));
-  reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
-  stateList_.clear();
-  taskList_.clear();
-  for (uint32_t i = 0; i < sensorCount_; ++i) {
-    gpu::Sensor& sensor = batch.sensors[i];
-    sensor.placement.root = scene_.record(sensor.placement.mesh).firstNode;
-    stateList_.push_back({std::bit_cast<uint32_t>(sensor.distance), 0, gpu::kNobody});
-    taskList_.push_back({i, gpu::kNobody, gpu::kNobody, batch.starts[i], 0.0f});
-  }
-  upload_.add(batch.sensors.data(), bytesOf(batch.sensors), sensors_);
-  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
-  upload_.add(stateList_.data(), bytesOf(stateList_), states_);
-  upload_.add(taskList_.data(), bytesOf(taskList_), tasks_);
-  upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
-  upload_.add(known.data(), known.size_bytes(), results_);
-  addCounts(sensorCount_);
-  run_.begin();
-  return staged;
-}
-
-GpuScene::Staged ContactPass::stageEncoded(uint32_t sensors, const Scene::Impl& scene, GpuScene::Overwritten next) {
-  sensorCount_ = sensors;
-  ignoresLeaving_ = hasClearances_ = false;
-  upload_.begin();
-  GpuScene::Staged staged = scene_.stage(scene, std::move(next), upload_);
-  reserve(sensors, sensors, sensors);
-  addCounts(0);
-  run_.begin();
-  return staged;
-}
-
-// Uploads the counts of a search that begins with this many tasks.
-void ContactPass::addCounts(uint32_t tasks) {
   gpu::SearchCounts counts{};
   counts.refineGroups[2] = counts.blockGroups[2] = 1;
-  counts.rounds[0].tasks = tasks;
+  counts_.reserve(1);
   upload_.add(&counts, sizeof(counts), counts_);
+  run_.begin();
+  return staged;
+}
+
+GpuScene::Staged ContactPass::stage(const SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
+                                    GpuScene::Overwritten next) {
+  ignoresLeaving_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::ignoreLeaving);
+  hasClearances_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::hasClearance);
+  if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
+  checkExcluded(*device_, batch.excluded.size());
+  GpuScene::Staged staged = begin(batch.count(), scene, std::move(next));
+  const auto results = static_cast<uint32_t>(std::max(known.size(), batch.stated.size()));
+  reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
+  upload_.add(batch.stated.data(), bytesOf(batch.stated), stated_);
+  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
+  upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
+  upload_.add(known.data(), known.size_bytes(), results_);
+  return staged;
+}
+
+GpuScene::Staged ContactPass::stageWritten(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
+  ignoresLeaving_ = hasClearances_ = false;
+  GpuScene::Staged staged = begin(searches, scene, std::move(next));
+  reserve(searches, searches, searches);
+  return staged;
 }
 
 void ContactPass::stageMore(const gpu::SearchCounts& before) {
@@ -199,6 +187,21 @@ void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& s
   upload_.record(commands);
   commands->CmdFillBuffer(commands, heads_.get(), 0, VK_WHOLE_SIZE, gpu::kNobody);
   gpu::transferToComputeReadWrite(commands);
+}
+
+void ContactPass::recordEncoding(const gpu::Commands& commands, const OpenStage& stage) {
+  using namespace gpu;  // the slots
+  stage("encode");
+  run_(commands, shaders::kEncode, gpu::groupsFor(sensorCount_, kContactGroup), encoding_,
+       {{kSlotMeshes, scene_.buffers().meshes},
+        {kSlotObjectNodes, scene_.buffers().objectNodes},
+        {kSlotStated, stated_},
+        {kSlotSweeps, sweeps_},
+        {kSlotSensors, sensors_},
+        {kSlotStates, states_},
+        {kSlotCounts, counts_},
+        {kSlotTasks, tasks_}});
+  computeWriteToComputeReadWrite(commands);
 }
 
 // `isLast`: searches that this leaves unfinished are abandoned.

@@ -35,21 +35,18 @@ class ContactPass {
   void reserve(uint32_t sensors, uint32_t results, uint32_t excluded);
   /// Makes room for the batch, and stages it with the changes of the scene. `known`: answers that need no search; if
   /// given, they include placeholders for those of the batch. `next`: see GpuScene::stage. The device is idle.
-  GpuScene::Staged stage(SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
+  GpuScene::Staged stage(const SensorBatch& batch, std::span<const Result> known, const Scene::Impl& scene,
                          GpuScene::Overwritten next = {});
-  /// The same for `sensors` that a shader encodes after the upload. None has a clearance or ignores what does not
+  /// The same for `searches` that a shader states after the upload. None has a clearance or ignores what does not
   /// block.
-  GpuScene::Staged stageEncoded(uint32_t sensors, const Scene::Impl& scene, GpuScene::Overwritten next = {});
-  /// What that shader writes: sensors, sweeps and states, one per result; tasks, whose number it adds to counts(); and
-  /// excluded objects, for which there is room for one per sensor.
-  struct Encoded {
-    const gpu::Array<gpu::Sensor>& sensors;
+  GpuScene::Staged stageWritten(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next = {});
+  /// What that shader writes: one of each per search, but for excluded objects, for which there is that much room.
+  struct Stated {
+    const gpu::Array<gpu::StatedSearch>& searches;
     const gpu::Array<gpu::Sweep>& sweeps;
-    const gpu::Array<gpu::SearchState>& states;
-    const gpu::Array<gpu::SearchTask>& tasks;
     const gpu::Array<uint32_t>& excluded;
   };
-  Encoded encoded() const { return {sensors_, sweeps_, states_, tasks_, excluded_}; }
+  Stated stated() const { return {stated_, sweeps_, excluded_}; }
 
   /// Every program that a pass may run on the device.
   static std::vector<gpu::Program> programs(const Device::Impl& device);
@@ -57,6 +54,8 @@ class ContactPass {
   using OpenStage = std::function<void(const char*)>;
   /// Records the copies and the barrier after them.
   void recordUpload(const gpu::Commands& commands, const OpenStage& stage);
+  /// Records the encoding of what is stated, once the scene on the device is as the search is to find it.
+  void recordEncoding(const gpu::Commands& commands, const OpenStage& stage);
   /// Records the search in `rounds` rounds, an even number up to kMostRounds, then the answers, which are none if
   /// searches are unfinished. `isLast`: those are abandoned. The caller records the barrier between the answers and
   /// their readers.
@@ -68,6 +67,10 @@ class ContactPass {
   /// Tasks left over by the rounds recorded last.
   uint32_t tasksLeft(const gpu::SearchCounts& counts) const { return counts.rounds[rounds_].tasks; }
 
+  /// As encoded.
+  const gpu::Array<gpu::Sensor>& sensors() const { return sensors_; }
+  const gpu::Array<gpu::SearchState>& states() const { return states_; }
+  const gpu::Array<gpu::SearchTask>& tasks() const { return tasks_; }
   const gpu::Array<Result>& results() const { return results_; }
   const gpu::Array<gpu::SearchCounts>& counts() const { return counts_; }
   /// The unresolved pairs, in host memory. Valid until the device works again.
@@ -84,7 +87,7 @@ class ContactPass {
   static constexpr uint32_t kBriefBudget = 1000;
 
  private:
-  void addCounts(uint32_t tasks);
+  GpuScene::Staged begin(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
   void reserveLists(uint32_t sensors);
   uint32_t groupsFor(uint32_t sensors) const;
@@ -95,6 +98,7 @@ class ContactPass {
   gpu::Program search_, searchWithClearance_;
   gpu::Passes run_;
   gpu::Upload upload_;
+  gpu::Array<gpu::StatedSearch> stated_;
   gpu::Array<gpu::Sensor> sensors_;
   gpu::Array<gpu::Sweep> sweeps_;
   gpu::Array<gpu::SearchState> states_;
@@ -106,8 +110,7 @@ class ContactPass {
   gpu::Array<gpu::SearchCounts> counts_;
   gpu::Array<Result> results_;
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
-  std::vector<gpu::SearchState> stateList_;
-  std::vector<gpu::SearchTask> taskList_;
+  gpu::EncodePush encoding_{};
   uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;
   bool ignoresLeaving_ = false, hasClearances_ = false;
   uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;

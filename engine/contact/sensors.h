@@ -1,4 +1,4 @@
-// Converts queries of the contact tier to the input of its passes.
+// States the searches of queries for the device, which encodes them (shaders/contact/encode.comp.glsl).
 #pragma once
 
 #include <vector>
@@ -11,12 +11,11 @@ namespace radar {
 
 /// The queries of one submission that are searched on the device.
 struct SensorBatch {
-  std::vector<gpu::Sensor> sensors;  ///< without Placement::root, which depends on the device's copy of the scene
+  std::vector<gpu::StatedSearch> stated;
   std::vector<gpu::Sweep> sweeps;
-  std::vector<uint32_t> starts;  ///< link of the tree over objects at which each search starts
   std::vector<uint32_t> excluded;
 
-  uint32_t count() const { return static_cast<uint32_t>(sensors.size()); }
+  uint32_t count() const { return static_cast<uint32_t>(stated.size()); }
   void clear();
   /// Forgets all but the first `count` queries.
   void truncate(uint32_t count);
@@ -25,7 +24,7 @@ struct SensorBatch {
 enum class Planned {
   added,
   clear,      ///< nothing is in reach
-  outOfRange  ///< floats cannot hold the sensor, the scene, the distance or their ratios
+  outOfRange  ///< floats cannot hold the scene or the direction; for the rest, the device finds out
 };
 
 /// Adds a valid query; its answer gets the index `result`. `object`: the only one to search, or kNone: all, if none

@@ -60,6 +60,7 @@ void ContactSubmitter::recordAndSubmit() {
   gpu::computeToOverwrite(commands);  // a recording that shares the scene's copy may still be searching it
   const auto stage = [this](const char* name) { submission_.stage(name); };
   pass_.recordUpload(commands, stage);
+  if (submissions_ == 0) pass_.recordEncoding(commands, stage);
   pass_.record(commands, stage, kRounds, false);
   gpu::computeWriteToCopy(commands);
   stage("readback");
@@ -72,7 +73,7 @@ void ContactSubmitter::recordAndSubmit() {
   ++submissions_;
 }
 
-void ContactSubmitter::submit(SensorBatch& batch, const Scene::Impl& scene) {
+void ContactSubmitter::submit(const SensorBatch& batch, const Scene::Impl& scene) {
   submissions_ = 0;
   staged_ = pass_.stage(batch, {}, scene);
   readback_.reserve(ContactPass::kFirstResult + batch.count() * sizeof(Result));

@@ -39,7 +39,7 @@ class ContactSubmitter {
   ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room);
 
   /// Submits the batch and returns without waiting; call collect() next.
-  void submit(SensorBatch& batch, const Scene::Impl& scene);
+  void submit(const SensorBatch& batch, const Scene::Impl& scene);
   /// Waits, and submits more rounds until the search is complete. The flags of an invalid result tell what the device
   /// had no room or range for.
   SearchAnswers collect(std::vector<StageTime>& stages);

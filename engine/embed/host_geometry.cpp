@@ -17,8 +17,6 @@ using gpu::BufferDomain;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-// Longer lengths are out of range anyway.
-constexpr double kLongest = 1e38;
 
 bool repeats(std::vector<uint32_t> ids) {
   std::sort(ids.begin(), ids.end());
@@ -52,26 +50,11 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
   return {};
 }
 
-gpu::DeformedSensor deformedSensor(uint32_t sensor, const Query& query, const Motion& motion) {
-  gpu::DeformedSensor out{.sensor = sensor, .mesh = query.mesh};
-  if (query.ignoreLeaving && query.slack) out.slack = roundUp(std::min(2 * *query.slack, kLongest));
-  out.clearance = roundUp(std::min(query.clearance, kLongest));
-  out.tolerance = roundUp(std::min(query.tolerance.value_or(kLongest), kLongest));
-  const double way = motion.wayUntil(motion.distance);
-  out.exponent = way > 0 ? std::ilogb(way) : 0;
-  const double mantissa = std::ldexp(way, -out.exponent);
-  out.way = roundUp(mantissa);
-  out.certain = motion.isStep ? roundDown((1 - 0x1p-48) * mantissa) : out.way;
-  out.stopBefore = query.anyHit ? std::min(out.certain, roundDown(mantissa)) : -1;
-  if (motion.isStep) out.perWay = way > 0 ? roundDown((1 - 0x1p-20) / mantissa) : -1;
-  return out;
-}
-
 HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& resident)
     : device_(&device),
       resident_(resident),
       run_(device, {shaders::kDeform, shaders::kBound, shaders::kNormalise, shaders::kMove, shaders::kRefit,
-                    shaders::kFit, shaders::kPlace, shaders::kReach, shaders::kInvalidate}),
+                    shaders::kFit, shaders::kInvalidate}),
       upload_(device),
       words_(device, "host words", BufferDomain::device, kUploaded),
       refitNodes_(device, "nodes to refit", BufferDomain::device, kUploaded),
@@ -81,7 +64,6 @@ HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& r
       movedObjects_(device, "moved objects", BufferDomain::device, kUploaded),
       extents_(device, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
       readback_(device, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      sensors_(device, "deformed sensors", BufferDomain::device, kUploaded),
       violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
   violation_.reserve(1);
 }
@@ -120,7 +102,6 @@ std::vector<uint32_t> HostGeometryPass::copyFrom(const HostGeometry& geometry, c
 void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& scene) {
   run_.begin();
   upload_.begin();
-  sensorCount_ = 0;
   const bool isEmpty = geometry.meshes.empty() && std::ranges::all_of(geometry.objects, [](const MovedObjects& moved) {
                          return moved.objects.empty();
                        });
@@ -159,13 +140,6 @@ GpuScene::Overwritten HostGeometryPass::overwritten() const {
   GpuScene::Overwritten overwritten{.meshes = {}, .moved = moved_.overwritten};
   for (const DeformedList::Deformed& deformed : deformed_.meshes) overwritten.meshes.push_back(deformed.mesh);
   return overwritten;
-}
-
-void HostGeometryPass::stageSensors(std::span<const gpu::DeformedSensor> sensors) {
-  if (sensors.empty()) return;
-  sensors_.reserve(sensors.size());
-  upload_.add(sensors.data(), sensors.size_bytes(), sensors_);
-  sensorCount_ = static_cast<uint32_t>(sensors.size());
 }
 
 void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& scene) {
@@ -237,28 +211,6 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
     const uint32_t first = depth == 0 ? 0 : moved_.fitEnds[depth - 1], count = moved_.fitEnds[depth] - first;
     run_(commands, shaders::kFit, groupsFor(count, kHostGroup), FitPush{first, count},
          {{kSlotObjectNodes, to.objectNodes}, {kSlotFitNodes, fitNodes_}});
-    computeWriteToComputeReadWrite(commands);
-  }
-}
-
-void HostGeometryPass::recordReach(const gpu::Commands& commands, const ContactPass& search, const Scene::Impl& scene) {
-  using namespace gpu;  // the slots
-  const ContactPass::Encoded to = search.encoded();
-  if (sensorCount_ != 0) {
-    PlacePush push{.count = sensorCount_};
-    setAnchor(push, scene.objectTree());
-    run_(commands, shaders::kPlace, groupsFor(sensorCount_, kHostGroup), push,
-         {{kSlotMeshes, resident_.buffers().meshes},
-          {kSlotObjectNodes, resident_.buffers().objectNodes},
-          {kSlotSensors, to.sensors},
-          {kSlotStates, to.states},
-          {kSlotSweeps, to.sweeps},
-          {kSlotDeformedSensors, sensors_}});
-    computeWriteToComputeReadWrite(commands);
-  }
-  if (!unbounded().empty() && search.sensorCount() != 0) {
-    run_(commands, shaders::kReach, groupsFor(search.sensorCount(), kHostGroup), ReachPush{search.sensorCount()},
-         {{kSlotSensors, to.sensors}, {kSlotStates, to.states}, {kSlotObjectNodes, resident_.buffers().objectNodes}});
     computeWriteToComputeReadWrite(commands);
   }
 }

@@ -20,10 +20,6 @@ namespace radar {
 /// Empty if `geometry` is valid, but for the numbers of the objects.
 std::string validate(const HostGeometry& geometry, const Scene& scene);
 
-/// What the device needs to place the sensor with this number, which the CPU has encoded for its mesh as the scene has
-/// it, if a host deforms that without bounds.
-gpu::DeformedSensor deformedSensor(uint32_t sensor, const Query& query, const Motion& motion);
-
 class HostGeometryPass {
  public:
   HostGeometryPass(const Device::Impl& device, const GpuScene& resident);
@@ -31,8 +27,6 @@ class HostGeometryPass {
   /// Stores valid `geometry` and makes room for it, while the device is idle. Throws Error if it does not fit the
   /// device, or if an object does not exist or is named twice.
   void stage(const HostGeometry& geometry, const Scene::Impl& scene);
-  /// Then stores the sensors whose meshes are isUnbounded().
-  void stageSensors(std::span<const gpu::DeformedSensor> sensors);
   bool empty() const { return deformed_.meshes.empty() && moved_.moved.empty(); }
   /// Objects of which only the device knows where they are. Ascending.
   std::span<const ObjectId> unbounded() const { return moved_.unbounded; }
@@ -44,9 +38,6 @@ class HostGeometryPass {
 
   /// Call after recording the scene's upload. The geometry is then visible to compute shaders.
   void record(const gpu::Commands& commands, const Scene::Impl& scene);
-  /// Then call it for a search whose sensors the CPU has encoded: adapts them to where meshes and objects are now, and
-  /// makes them visible to compute shaders.
-  void recordReach(const gpu::Commands& commands, const ContactPass& search, const Scene::Impl& scene);
   /// Call after recording the answers: invalidates them if anything has left its bounds. The caller records the barrier
   /// from compute shaders to their readers.
   void recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results, uint32_t count);
@@ -76,12 +67,10 @@ class HostGeometryPass {
   gpu::Array<uint32_t> words_, refitNodes_, numbers_, unboundedMeshes_, fitNodes_;
   gpu::Array<gpu::Moved> movedObjects_;
   gpu::Array<gpu::Extent> extents_, readback_;
-  gpu::Array<gpu::DeformedSensor> sensors_;
   gpu::Array<gpu::BoundsViolation> violation_;  ///< in host memory: rarely written
   std::vector<Source> sources_;                 ///< of `words_`
   DeformedList deformed_;
   MovedList moved_;
-  uint32_t sensorCount_ = 0;
 };
 
 }  // namespace radar

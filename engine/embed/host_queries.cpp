@@ -20,7 +20,6 @@ static_assert(offsetof(HostQuery, direction) == gpu::kQueryDirection &&
 void describe(const ObjectTree& tree, gpu::PlanPush& push) {
   push.inRange = tree.inRange() ? 1 : 0;
   push.start = tree.nodes().empty() ? gpu::kNobody : tree.nodes()[0].link;
-  setAnchor(push, tree);
 }
 
 }  // namespace
@@ -67,7 +66,7 @@ void HostQueriesPass::record(const gpu::Commands& commands, const ContactPass& s
     commands->CmdCopyBuffer(commands, queries_.countBuffer, words_.get(), 1, &number);
   }
   gpu::transferToComputeReadWrite(commands);
-  const ContactPass::Encoded to = search.encoded();
+  const ContactPass::Stated to = search.stated();
   gpu::PlanPush push{.queries = queries_.count,
                      .stride = static_cast<uint32_t>(queries_.stride),
                      .countByte = isCounted ? static_cast<uint32_t>(span_) : gpu::kNobody,
@@ -76,11 +75,8 @@ void HostQueriesPass::record(const gpu::Commands& commands, const ContactPass& s
   run_(commands, shaders::kPlan, gpu::groupsFor(queries_.count, gpu::kHostGroup), push,
        {{gpu::kSlotWords, words_},
         {gpu::kSlotMeshes, resident.buffers().meshes},
-        {gpu::kSlotObjectNodes, resident.buffers().objectNodes},
-        {gpu::kSlotSensors, to.sensors},
+        {gpu::kSlotStated, to.searches},
         {gpu::kSlotSweeps, to.sweeps},
-        {gpu::kSlotStates, to.states},
-        {gpu::kSlotTasks, to.tasks},
         {gpu::kSlotExcluded, to.excluded},
         {gpu::kSlotCounts, search.counts()}});
   gpu::computeWriteToComputeReadWrite(commands);

@@ -47,7 +47,6 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
   count = static_cast<uint32_t>(asked.size());
   queries.assign(asked.begin(), asked.end());
   sensors.clear();
-  deformedSensors.clear();
   gathered.clear();
   hitOffsets.clear();
   tolerances.clear();
@@ -93,16 +92,13 @@ void Recorded::planSearch(const Query& query, uint32_t result, ObjectId object, 
                           const HostGeometryPass& geometry) {
   const Planned planned = addSensor(sensors, query, result, scene, scene.objectTree(), object);
   if (planned == Planned::outOfRange) known[result] = outOfRange();
-  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) {
-    deformedSensors.push_back(deformedSensor(sensors.count() - 1, query, motionPast(query, scene, object)));
-  }
+  if (planned == Planned::added && geometry.isUnbounded(query.mesh)) sensors.sweeps.back().magnitude = -1;
 }
 
 void Recorded::planWritten(uint32_t most) {
   isWritten = true;
   count = most;
   queries.clear();
-  deformedSensors.clear();
   gathered.clear();
   hitOffsets.assign(size_t{most} + 1, most);
   tolerances.clear();

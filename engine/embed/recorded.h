@@ -19,7 +19,6 @@ struct Recorded {
   uint32_t count = 0;          ///< of queries; of written ones, HostQueries::count
   std::vector<Query> queries;  ///< none if they are written
   SensorBatch sensors;
-  std::vector<gpu::DeformedSensor> deformedSensors;
   std::vector<gpu::Gathered> gathered;  ///< queries that take several searches, in their order
   std::vector<uint32_t> hitOffsets;     ///< where the lists of the queries begin in `known`, and the last one ends
   std::vector<Result> known;            ///< of queries, their lists, and searches past one object each

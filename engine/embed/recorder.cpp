@@ -107,7 +107,6 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
 // Stages what both kinds of record() have planned, but for the search.
 void Recorder::Impl::stage() {
-  geometry.stageSensors(recorded.deformedSensors);
   gathers.stage(recorded.gathered);
   usedBuffers.reset();
 }
@@ -134,7 +133,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
     stage("plan");
     hostQueries->record(commands, pass, *copy, scene.impl());
   }
-  if (!areWritten) geometry.recordReach(commands, pass, scene.impl());
+  pass.recordEncoding(commands, stage);
   pass.record(commands, stage, capacity.rounds, true);
   if (!gathers.empty()) {
     stage("gather");
@@ -150,7 +149,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
   geometry.recordReadback(commands);
   readBack(pass.counts(), 0, sizeof(gpu::SearchCounts));
   readBack(pass.results(), kFirstResult, results * sizeof(Result));
-  if (areWritten) readBack(pass.encoded().sweeps, firstSweep(), results * sizeof(gpu::Sweep));
+  if (areWritten) readBack(pass.stated().sweeps, firstSweep(), results * sizeof(gpu::Sweep));
   gpu::writtenToHost(commands);
   device.endLabel(commands);
   copy->commit(std::move(staged));
@@ -182,7 +181,7 @@ void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, cons
   self.geometry.stage(geometry, self.scene.impl());
   self.recorded.planWritten(queries.count);
   self.stage();
-  GpuScene::Staged staged = self.pass.stageEncoded(queries.count, self.scene.impl(), self.geometry.overwritten());
+  GpuScene::Staged staged = self.pass.stageWritten(queries.count, self.scene.impl(), self.geometry.overwritten());
   self.readback.reserve(self.firstSweep() + self.capacity.queries * sizeof(gpu::Sweep));
   if (!self.hostQueries) self.hostQueries.emplace(self.device);
   if (queries.count != 0) self.hostQueries->stage(queries);

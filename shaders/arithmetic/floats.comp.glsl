@@ -5,7 +5,7 @@
 #define RADAR_NO_DOUBLES
 #include "interop.h"
 #include "shared/two_floats.glsl"
-#include "embed/transform.glsl"
+#include "shared/transform.glsl"
 #include "embed/box_around.glsl"
 
 layout(local_size_x = kTrialGroup) in;

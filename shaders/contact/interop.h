@@ -12,6 +12,30 @@ struct Result;
 namespace gpu {
 #endif
 
+// A search as the CPU states it, or plan.comp for a host's shader; encode.comp makes a Sensor of it. Lengths are the world's;
+// those with an exponent are the mantissas of lengths.
+struct StatedSearch {
+  Point across;      // unit axes of the sensor's frame in the world: across the motion, across, along
+  float clearance;   // rounded up
+  Point upwards;
+  float slackShare;  // by how much a default slack may move a corner, as a share of both placements' errors
+  Point direction;
+  float tolerance;       // of the clearance, as asked, rounded up
+  float directionError;  // of the axes' components, beyond their rounding
+  float slack;           // by which the sensor's vertices may be moved, rounded up
+  int exponent;          // of `way`, `certain`, `stopBefore`
+  float way;             // to the end, rounded up
+  float certain;         // as `way`, and of a step rounded down
+  float stopBefore;      // see Sensor
+  float perWay;          // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
+  uint mesh;
+  uint mask;
+  uint firstExcluded;  // in the list of excluded objects
+  uint endExcluded;
+  uint start;  // link of the tree over objects at which the search starts; kNobody: there is nothing to search
+  uint flags;  // SearchState::flags, if it cannot be searched
+};
+
 // The input of a search.
 struct Sensor {
   Placement placement;
@@ -46,7 +70,7 @@ struct Sweep {
   uint hasClearance;   // the CPU decides all pairs that may be first; also where the length is not known to the last bit
   float stepPerUnit;   // of a step: t per scaled length, rounded down; negative if nothing moves; of a sweep 0
   double slack;        // radar::Query::slack; negative: by default
-  double magnitude;    // of the placed mesh, for the default
+  double magnitude;    // of the placed mesh, for the default; stated negative if only the device knows the mesh
   double perParameter; // t per `direction`
   double drift[3];     // of a step: the object's displacement
 };
@@ -154,6 +178,11 @@ struct SearchCounts {
   SearchRound rounds[kMostRounds + 1];
 };
 
+struct EncodePush {
+  uint count;       // searches
+  Point anchor;     // of the tree over objects, which is the sum of this
+  Point anchorLow;  // and this
+};
 struct SearchPush {
   uint round;
   uint taskCapacity;
@@ -190,6 +219,7 @@ INTEROP_SLOT(kSlotExcluded, 14, uint);
 INTEROP_SLOT(kSlotResults, 15, Result);
 INTEROP_SLOT(kSlotUnresolved, 16, UnresolvedPair);
 INTEROP_SLOT(kSlotQueuedPairs, 30, QueuedPair);
+INTEROP_SLOT(kSlotStated, 23, StatedSearch);
 INTEROP_SLOT(kSlotHeads, 18, uint);  // one per sensor: its first RefinedPair, linked by `next`, or kNobody
 
 #ifdef __cplusplus

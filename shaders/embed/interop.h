@@ -46,21 +46,6 @@ struct Moved {
   Point halfExtent;  // of its bounds about the anchor; without bounds, the most of its coordinates
 };
 
-// A sensor whose mesh a host deforms without bounds: what its encoding by the CPU does not tell. Lengths are the world's;
-// those with an exponent are the mantissas of lengths.
-struct DeformedSensor {
-  uint sensor;
-  uint mesh;
-  float slack;      // by which its vertices may be moved, rounded up
-  float clearance;  // rounded up
-  float tolerance;  // of the clearance, as asked, rounded up
-  int exponent;     // of `way`, `certain`, `stopBefore`
-  float way;        // to the end, rounded up
-  float certain;    // as way, and of a step rounded down
-  float stopBefore; // see Sensor
-  float perWay;     // of a step: t per way, rounded down; negative if nothing moves; of a sweep 0
-};
-
 // A query that several searches answer together, each past one object.
 struct Gathered {
   uint query;   // index of the query's answer
@@ -87,11 +72,6 @@ struct BoundPush {
 struct NormalisePush {
   uint count;  // meshes
 };
-struct PlacePush {
-  uint count;       // sensors
-  Point anchor;     // of the tree over objects, which is the sum of this
-  Point anchorLow;  // and this
-};
 struct RefitPush {
   uint first;  // in the list of nodes to refit
   uint count;
@@ -106,9 +86,6 @@ struct MovePush {
   Point anchor;     // of the tree over objects, which is the sum of this
   Point anchorLow;  // and this
 };
-struct ReachPush {
-  uint count;  // sensors
-};
 struct PlanPush {
   uint queries;     // the most
   uint stride;      // bytes from one query to the next, in the copied words
@@ -116,8 +93,6 @@ struct PlanPush {
   uint meshes;      // in the list of meshes
   uint start;       // link of the tree over objects at which each search starts; kNobody: there are no objects
   uint inRange;     // floats can hold the tree over objects
-  Point anchor;     // of that tree, which is the sum of this
-  Point anchorLow;  // and this
 };
 struct InvalidatePush {
   uint count;  // results
@@ -151,7 +126,6 @@ INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects,
 INTEROP_SLOT(kSlotVertexNumbers, 20, uint);  // of deformed meshes, in the host's buffers
 INTEROP_SLOT(kSlotUnbounded, 21, uint);      // meshes
 INTEROP_SLOT(kSlotExtents, 22, Extent);      // of those
-INTEROP_SLOT(kSlotDeformedSensors, 23, DeformedSensor);
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

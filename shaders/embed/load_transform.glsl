@@ -17,3 +17,19 @@ Transform transformAt(uint firstByte, TransformLayout format) {
   }
   return t;
 }
+
+// The transform in doubles, exactly.
+PreciseRows preciseRows(Transform t) {
+  PreciseRows pose;
+  for (uint row = 0; row < 3; ++row) {
+    const uvec2 x = doubleBits(t.bits[row].x), y = doubleBits(t.bits[row].y), z = doubleBits(t.bits[row].z),
+                w = doubleBits(t.bits[row].w);
+#ifdef RADAR_NO_DOUBLES
+    pose[2 * row] = uvec4(x, y);
+    pose[2 * row + 1] = uvec4(z, w);
+#else
+    pose[row] = dvec4(packDouble2x32(x), packDouble2x32(y), packDouble2x32(z), packDouble2x32(w));
+#endif
+  }
+  return pose;
+}

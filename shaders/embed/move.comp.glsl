@@ -15,9 +15,9 @@ layout(scalar, binding = kSlotMoved) readonly restrict buffer MovedObjects { Mov
 layout(scalar, binding = kSlotObjectNodes) writeonly restrict buffer Nodes { ObjectNode nodes[]; };
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
 #include "byte_load.glsl"
-#include "transform.glsl"
+#include "shared/transform.glsl"
 #include "load_transform.glsl"
-#include "placement.glsl"
+#include "shared/placement.glsl"
 #include "shared/workgroup.glsl"
 
 layout(scalar, push_constant) uniform PushConstants { MovePush push; };

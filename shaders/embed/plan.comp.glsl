@@ -1,4 +1,4 @@
-// Encodes the queries that a host's shader has written for the search, one invocation per query, as engine/contact/sensors.cpp
+// States the searches for the queries that a host's shader has written, one invocation per query, as engine/contact/sensors.cpp
 // does (docs/method.md, "A host's geometry").
 #version 460
 #extension GL_EXT_control_flow_attributes : require
@@ -11,20 +11,15 @@
 layout(local_size_x = kHostGroup) in;
 
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
-layout(scalar, binding = kSlotSensors) writeonly restrict buffer Sensors { Sensor sensors[]; };
-layout(scalar, binding = kSlotStates) writeonly restrict buffer States { SearchState states[]; };
+layout(scalar, binding = kSlotStated) writeonly restrict buffer Stated { StatedSearch stated[]; };
 layout(scalar, binding = kSlotCounts) restrict buffer Counts { SearchCounts counts; };
-layout(scalar, binding = kSlotTasks) writeonly restrict buffer Tasks { SearchTask tasks[]; };
 layout(scalar, binding = kSlotSweeps) writeonly restrict buffer Sweeps { Sweep sweeps[]; };
 layout(scalar, binding = kSlotExcluded) writeonly restrict buffer Excluded { uint excluded[]; };
 #include "byte_load.glsl"
-#include "transform.glsl"
+#include "shared/transform.glsl"
 #include "load_transform.glsl"
-#include "placement.glsl"
 #include "direction.glsl"
 #include "shared/workgroup.glsl"
-#include "world.glsl"
-#include "sensor.glsl"
 
 layout(scalar, push_constant) uniform PushConstants { PlanPush push; };
 
@@ -53,15 +48,6 @@ bool isValid(HostQuery q) {
   return isMesh && q.pose.isFinite && isDirection && isDistance && (q.flags & ~kQueryAnyHit) == 0;
 }
 
-// The distance over 2^exponent, exactly, or the limits of engine/contact/sensors.cpp: at most 2^42; negative below 2^-100.
-float scaledDistance(uint distance, int exponent) {
-  if ((distance & 0x7fffffffu) == 0) return 0.0;
-  const int e = exponentOf(distance) - exponent;
-  if (e >= 42) return 4398046511104.0;
-  const uint significand = distance >= 0x800000u ? distance : distance << (23 - findMSB(distance));
-  return e < -100 ? -1.0 : uintBitsToFloat(uint(e + 127) << 23 | (significand & 0x7fffffu));
-}
-
 #ifndef RADAR_NO_DOUBLES
 #include "contact/root.glsl"
 // The length, rounded to nearest, by the steps of exact::length; 0 where that needs exact arithmetic.
@@ -75,13 +61,12 @@ double lengthOf(dvec3 d) {
 }
 #endif
 
-void writeSweep(uint i, HostQuery q, int directionExponent, Sensor sensor) {
+void writeSweep(uint i, HostQuery q, int directionExponent) {
   Sweep sweep;
   sweep.pose = preciseRows(q.pose);
   sweep.anyHit = q.flags & kQueryAnyHit;
   sweep.result = i;
-  sweep.scale = sensor.scale;
-  sweep.start = sensor.distance;
+  sweep.scale = sweep.start = 0.0;
   sweep.ignoreLeaving = sweep.isMirrored = sweep.hasClearance = 0;
   sweep.stepPerUnit = 0.0;
   const uvec2 x = scaledBits(q.direction.x, directionExponent), y = scaledBits(q.direction.y, directionExponent),
@@ -103,35 +88,30 @@ void writeSweep(uint i, HostQuery q, int directionExponent, Sensor sensor) {
   sweeps[i] = sweep;
 }
 
-// Returns SearchState::flags. `hi`: SearchState::hi.
-uint plan(uint i, HostQuery q, out uint hi) {
-  hi = 0;
-  if (!isValid(q)) return kSearchNoQuery;
-  const MeshRecord mesh = meshes[q.mesh];
-  if (push.inRange == 0) return kSearchOutOfRange;
-  const PlacedSensor placed = placedSensor(q.pose, mesh, q.mesh, push.anchor, push.anchorLow, push.start != kNobody, 0.0);
-  if (!placed.inRange) return kSearchOutOfRange;
-  Sensor sensor;
-  sensor.placement = placed.placement;
-  const int exponent = placed.exponent, directionExponent = exponentOf(q.direction);
-  sensor.scale = twoTo(-exponent);
-  sensor.unscale = twoTo(exponent);
-  sensor.distance = scaledDistance(q.distance, exponent);
-  if (sensor.distance < 0.0) return kSearchOutOfRange;
-  sensor.stopBefore = (q.flags & kQueryAnyHit) != 0 ? sensor.distance : -1.0;
+StatedSearch statedFor(uint i, HostQuery q) {
+  StatedSearch s;
+  s.flags = !isValid(q) ? kSearchNoQuery : push.inRange == 0 ? kSearchOutOfRange : 0;
+  if (s.flags != 0) return s;
+  const int directionExponent = exponentOf(q.direction);
   const vec3[3] axes = axesAlong(q.direction, directionExponent);
-  for (uint row = 0; row < 3; ++row) sensor.frame[row] = vec4(axes[row], 0.0);
-  sensor.direction = axes[2];
-  sensor.centre = placed.centre;
-  sensor.halfExtent = placed.halfExtent + 3e-8 * placed.farthest;  // 2^-25 of the way, for the direction
-  sensor.mask = q.mask;
-  sensor.firstExcluded = i;
-  sensor.endExcluded = q.exclude == kNobody ? i : i + 1;
+  s.across = axes[0];
+  s.upwards = axes[1];
+  s.direction = axes[2];
+  s.directionError = 3e-8;  // 2^-25
+  s.clearance = s.slackShare = s.tolerance = s.slack = s.perWay = 0.0;
+  const uint significand = q.distance >= 0x800000u ? q.distance : q.distance << (23 - findMSB(q.distance));
+  const bool moves = (q.distance & 0x7fffffffu) != 0;
+  s.exponent = moves ? exponentOf(q.distance) : 0;
+  s.way = s.certain = moves ? uintBitsToFloat(0x3f800000u | (significand & 0x7fffffu)) : 0.0;
+  s.stopBefore = (q.flags & kQueryAnyHit) != 0 ? s.way : -1.0;
+  s.mesh = q.mesh;
+  s.mask = q.mask;
+  s.firstExcluded = i;
+  s.endExcluded = q.exclude == kNobody ? i : i + 1;
+  s.start = push.start;
   excluded[i] = q.exclude;
-  sensors[i] = sensor;
-  writeSweep(i, q, directionExponent, sensor);
-  hi = floatBitsToUint(sensor.distance);
-  return 0;
+  writeSweep(i, q, directionExponent);
+  return s;
 }
 
 void main() {
@@ -139,12 +119,9 @@ void main() {
   if (i >= push.queries) return;
   const uint count = push.countByte == kNobody ? push.queries : min(loadWord(push.countByte), push.queries);
   if (i == 0) counts.queries = count;
-  uint hi = 0, flags = kSearchNoQuery;
-  if (i < count) flags = plan(i, queryAt(i * push.stride), hi);
-  states[i] = SearchState(hi, flags, kNobody);
-  if (flags != 0) {
-    sweeps[i].result = i;
-  } else if (push.start != kNobody) {
-    tasks[atomicAdd(counts.rounds[0].tasks, 1)] = SearchTask(i, kNobody, kNobody, push.start, 0.0);
-  }
+  StatedSearch s;
+  s.flags = kSearchNoQuery;
+  if (i < count) s = statedFor(i, queryAt(i * push.stride));
+  if (s.flags != 0) sweeps[i].result = i;
+  stated[i] = s;
 }

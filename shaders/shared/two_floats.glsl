@@ -14,6 +14,16 @@ void addExactly(inout float high, inout float low, float q) {
   low = more;
 }
 
+// Adds p q to high + low, as the four products of their halves, which are exact unless they flush to 0.
+void addProduct(inout float high, inout float low, float p, float q) {
+  const float p1 = uintBitsToFloat(floatBitsToUint(p) & 0xfffff000u), q1 = uintBitsToFloat(floatBitsToUint(q) & 0xfffff000u);
+  precise float p2 = p - p1, q2 = q - q1;
+  addExactly(high, low, p1 * q1);
+  addExactly(high, low, p1 * q2);
+  addExactly(high, low, p2 * q1);
+  addExactly(high, low, p2 * q2);
+}
+
 // The difference of two such numbers.
 float differenceInParts(float high, float low, float otherHigh, float otherLow) {
   precise float sum = (high - otherHigh) + (low - otherLow);

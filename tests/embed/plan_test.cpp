@@ -1,15 +1,14 @@
-// The input of the search that a shader encodes from a host's queries, against exact arithmetic and the CPU's encoding.
+// The input of the search that the device makes of a host's queries, against exact arithmetic.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "contact/pass.h"
 #include "embed/host_queries.h"
 #include "embed/written_queries.h"
 #include "exact/contact.h"
 #include "math/frame.h"
-#include "support/buffer_words.h"
 #include "support/catch.h"
+#include "support/encoded.h"
 #include "support/exact_placement.h"
 #include "support/small_scenes.h"
 
@@ -19,36 +18,22 @@ using namespace radar;
 using Real = long double;
 using Row = std::array<Real, 3>;
 
-/// What the shader writes for a scene and queries.
-struct OnDevicePlan {
+/// What the device makes of written queries in a scene.
+struct OnDevicePlan : test::Encoded {
   OnDevicePlan(const Scene& scene, std::span<const HostQuery> queries) : copy(test::device().impl()) {
     const Device::Impl& device = test::device().impl();
     const auto count = static_cast<uint32_t>(queries.size());
     ContactPass search(device, copy, {});
     HostQueriesPass pass(device);
     const test::OnDevice buffer(test::bytesOf(queries));
-    search.stageEncoded(count, scene.impl());
+    search.stageWritten(count, scene.impl());
     pass.stage({.buffer = buffer.get(), .count = count});
-    gpu::Submission submission(device, false);
-    const gpu::Commands commands = submission.begin();
-    search.recordUpload(commands, [](const char*) {});
-    pass.record(commands, search, copy, scene.impl());
-    submission.submitAndWait();
-    const ContactPass::Encoded encoded = search.encoded();
-    sensors = test::elementsOf(encoded.sensors, 0, count);
-    sweeps = test::elementsOf(encoded.sweeps, 0, count);
-    states = test::elementsOf(encoded.states, 0, count);
-    excluded = test::elementsOf(encoded.excluded, 0, count);
-    counts = test::elementsOf(search.counts(), 0, 1)[0];
-    tasks = test::elementsOf(encoded.tasks, 0, counts.rounds[0].tasks);
+    Encoded::operator=(test::encodedBy(
+        search, count, [&](const gpu::Commands& commands) { pass.record(commands, search, copy, scene.impl()); }));
+    excluded = test::elementsOf(search.stated().excluded, 0, count);
   }
   GpuScene copy;
-  std::vector<gpu::Sensor> sensors;
-  std::vector<gpu::Sweep> sweeps;
-  std::vector<gpu::SearchState> states;
   std::vector<uint32_t> excluded;
-  std::vector<gpu::SearchTask> tasks;
-  gpu::SearchCounts counts;
 };
 
 Real dot(const Row& p, const Row& q) {
@@ -195,20 +180,24 @@ TEST_CASE(
   }
   const OnDevicePlan planned(scene, written);
   const ObjectTree& tree = scene.impl().objectTree();
+  // The same queries, as the CPU states them.
   SensorBatch batch;
+  for (uint32_t i = 0; i < written.size(); ++i) {
+    REQUIRE(addSensor(batch, test::queryOf(written[i]), i, scene.impl(), tree) == Planned::added);
+  }
+  GpuScene copy(test::device().impl());
+  const test::Encoded ofCpu = test::encodedBy(copy, scene.impl(), batch);
   test::BoundsUsed used;
   Real worst = 0;
   uint32_t tasks = 0;
   for (uint32_t i = 0; i < written.size(); ++i) {
     CAPTURE(i);
     const Query query = test::queryOf(written[i]);
-    const bool isInRange = addSensor(batch, query, i, scene.impl(), tree) == Planned::added;
+    CHECK(planned.states[i].flags == ofCpu.states[i].flags);
     if (planned.states[i].flags != 0) {
       CHECK(planned.states[i].flags == gpu::kSearchOutOfRange);
-      CHECK_FALSE(isInRange);
       continue;
     }
-    CHECK(isInRange);
     ++tasks;
     const gpu::Sensor& sensor = planned.sensors[i];
     const Mesh& mesh = scene.impl().meshes[query.mesh];

@@ -1,5 +1,5 @@
-// How the device describes and places what a host deforms without bounds, against exact arithmetic and the CPU's
-// encoding.
+// How the device describes and places what a host deforms without bounds, against exact arithmetic and what it makes of
+// the same vertices in a scene.
 #include <bit>
 #include <cmath>
 #include <deque>
@@ -7,10 +7,9 @@
 #include "cpu/clearance.h"
 #include "embed/host_geometry.h"
 #include "embed/on_device.h"
-#include "gpu/barrier.h"
 #include "query/swept.h"
-#include "support/buffer_words.h"
 #include "support/catch.h"
+#include "support/encoded.h"
 #include "support/exact_placement.h"
 #include "workloads/random.h"
 #include "workloads/shapes.h"
@@ -21,8 +20,16 @@ using namespace radar;
 using test::bufferOf;
 using test::OnDevice;
 
+SensorBatch statedFor(const Scene& scene, std::span<const Query> queries) {
+  SensorBatch batch;
+  for (const Query& query : queries) {
+    REQUIRE(addSensor(batch, query, batch.count(), scene.impl(), scene.impl().objectTree()) == Planned::added);
+  }
+  return batch;
+}
+
 /// What the device writes for queries of the scene in which a host deforms all meshes.
-struct OnDevicePlaces {
+struct OnDevicePlaces : test::Encoded {
   OnDevicePlaces(const Scene& scene, std::span<const DeformedMesh> meshes, std::span<const Query> queries)
       : copy(test::device().impl()) {
     const Device::Impl& device = test::device().impl();
@@ -30,37 +37,20 @@ struct OnDevicePlaces {
     ContactPass search(device, copy, {});
     HostGeometryPass geometry(device, copy);
     geometry.stage({.meshes = meshes}, impl);
-    SensorBatch batch;
-    std::vector<gpu::DeformedSensor> sensorsOfThem;
-    std::vector<Result> known;
-    for (const Query& query : queries) {
-      REQUIRE(addSensor(batch, query, batch.count(), impl, impl.objectTree()) == Planned::added);
-      sensorsOfThem.push_back(deformedSensor(batch.count() - 1, query, motionPast(query, impl)));
-      known.emplace_back();
-    }
-    geometry.stageSensors(sensorsOfThem);
+    SensorBatch batch = statedFor(scene, queries);
+    for (gpu::Sweep& sweep : batch.sweeps) sweep.magnitude = -1;
+    const std::vector<Result> known(queries.size());
     search.stage(batch, known, impl, geometry.overwritten());
+    Encoded::operator=(test::encodedBy(search, queries.size(),
+                                       [&](const gpu::Commands& commands) { geometry.record(commands, impl); }));
     gpu::Submission submission(device, false);
-    const gpu::Commands commands = submission.begin();
-    search.recordUpload(commands, [](const char*) {});
-    geometry.record(commands, impl);
-    geometry.recordReach(commands, search, impl);
-    gpu::computeWriteToCopy(commands);
-    geometry.recordReadback(commands);
-    gpu::writtenToHost(commands);
+    geometry.recordReadback(submission.begin());
     submission.submitAndWait();
-    const ContactPass::Encoded encoded = search.encoded();
-    sensors = test::elementsOf(encoded.sensors, 0, queries.size());
-    sweeps = test::elementsOf(encoded.sweeps, 0, queries.size());
-    states = test::elementsOf(encoded.states, 0, queries.size());
     records = test::elementsOf(copy.buffers().meshes, 0, impl.meshes.size());
     placements = test::elementsOf(copy.buffers().placements, 0, impl.objects.size());
     boxes = geometry.unboundedBoxes();
   }
   GpuScene copy;
-  std::vector<gpu::Sensor> sensors;
-  std::vector<gpu::Sweep> sweeps;
-  std::vector<gpu::SearchState> states;
   std::vector<gpu::MeshRecord> records;
   std::vector<gpu::Placement> placements;
   std::map<MeshId, Box> boxes;
@@ -143,14 +133,12 @@ TEST_CASE("the device places what a host deforms without bounds as precisely as 
       query.direction = {};
       query.distance = 0;
     }
-    const bool wasEncoded = [&] {
-      SensorBatch batch;
-      return addSensor(batch, query, 0, scene.impl(), scene.impl().objectTree()) == Planned::added;
-    }();
-    if (validate(query, scene).empty() && wasEncoded) queries.push_back(query);
+    if (validate(query, scene).empty()) queries.push_back(query);
   }
   const OnDevicePlaces places(scene, deformed, queries);
   const Scene::Impl& impl = truth.impl();
+  GpuScene copyOfTruth(test::device().impl());
+  const test::Encoded known = test::encodedBy(copyOfTruth, impl, statedFor(truth, queries));
   std::vector<Mesh> meshes;
   for (MeshId id = 0; id < 60; ++id) {
     CAPTURE(id);
@@ -176,17 +164,15 @@ TEST_CASE("the device places what a host deforms without bounds as precisely as 
   for (uint32_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
     CAPTURE(i, query.mesh, query.distance, query.clearance, query.ignoreLeaving, query.anyHit);
-    SensorBatch batch;
-    const bool isEncoded = addSensor(batch, query, 0, impl, impl.objectTree()) == Planned::added;
     if (places.states[i].flags != 0) {
       CHECK(places.states[i].flags == gpu::kSearchOutOfRange);
-      refused += isEncoded ? 1 : 0;
+      refused += known.states[i].flags == 0 ? 1 : 0;
       continue;
     }
-    REQUIRE(isEncoded);
+    REQUIRE(known.states[i].flags == 0);
     ++sensorsInRange;
-    const gpu::Sensor &sensor = places.sensors[i], &encoded = batch.sensors[0];
-    const gpu::Sweep &sweep = places.sweeps[i], &encodedSweep = batch.sweeps[0];
+    const gpu::Sensor &sensor = places.sensors[i], &encoded = known.sensors[i];
+    const gpu::Sweep &sweep = places.sweeps[i], &encodedSweep = known.sweeps[i];
     test::checkPlacement(meshes[query.mesh], query.worldFromMesh, sensor.placement, used);
     CHECK(sensor.scale * sensor.unscale == 1);
     CHECK(sweep.scale == sensor.scale);

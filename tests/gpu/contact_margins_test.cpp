@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/sensors.h"
 #include "cpu/approach.h"
 #include "exact/motion.h"
 #include "gpu/contact_margins_interop.h"
@@ -11,6 +10,7 @@
 #include "math/rounding.h"
 #include "scene/gpu_scene.h"
 #include "support/catch.h"
+#include "support/encoded.h"
 #include "support/world.h"
 #include "workloads/shapes.h"
 
@@ -229,16 +229,21 @@ void Margins::check() {
   SensorBatch batch;
   std::vector<Touch> touches;
   std::vector<const Case*> of;
-  gpuScene_.sync(impl);
+  std::vector<const Case*> stated;
   for (const Case& c : cases_) {
-    const uint32_t sensor = batch.count();
-    if (addSensor(batch, c.query, sensor, impl, tree) != Planned::added) continue;
-    batch.sensors.back().placement.root = gpuScene_.record(c.query.mesh).firstNode;
+    if (addSensor(batch, c.query, batch.count(), impl, tree) == Planned::added) stated.push_back(&c);
+  }
+  const test::Encoded encoded = test::encodedBy(gpuScene_, impl, batch);
+  uint32_t searched = 0;
+  for (uint32_t sensor = 0; sensor < stated.size(); ++sensor) {
+    if (encoded.states[sensor].flags != 0) continue;
+    ++searched;
+    const Case& c = *stated[sensor];
     const MeshId meshB = impl.objects[c.object].object.mesh;
     const MeshTree &treeA = impl.meshes[c.query.mesh].tree, &treeB = impl.meshes[meshB].tree;
     const gpu::MeshRecord &recordA = gpuScene_.record(c.query.mesh), &recordB = gpuScene_.record(meshB);
     const std::vector<uint32_t> pathA = pathTo(treeA, c.triangleA), pathB = pathTo(treeB, c.triangleB);
-    const double scale = batch.sensors.back().scale;
+    const double scale = encoded.sensors[sensor].scale;
     const float limit = roundUp(static_cast<double>((c.contact + c.doubt) * scale));
     const float nearLimit = c.nearing && c.nearing->hi < 1e30 / scale ? roundUp(c.nearing->hi * scale) : limit;
     for (const uint32_t a : pathA) {
@@ -251,7 +256,7 @@ void Margins::check() {
       }
     }
   }
-  CHECK(batch.sensors.size() > cases_.size() / 2);
+  CHECK(searched > cases_.size() / 2);
 
   const auto upload = [](const auto& from, auto array) {
     array.reserve(from.size());
@@ -259,7 +264,7 @@ void Margins::check() {
     return array;
   };
   const auto sensors = upload(
-      batch.sensors, gpu::Array<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, gpu::kAsTexels));
+      encoded.sensors, gpu::Array<gpu::Sensor>(test::impl(), "sensors", gpu::BufferDomain::upload, gpu::kAsTexels));
   const auto touchBuffer = upload(touches, gpu::Array<Touch>(test::impl(), "touches", gpu::BufferDomain::upload));
   gpu::Array<PairBounds> answers(test::impl(), "pair bounds", gpu::BufferDomain::readback);
   answers.reserve(touches.size());
@@ -283,7 +288,7 @@ void Margins::check() {
   for (uint32_t i = 0; i < count; ++i) {
     const PairBounds& found = answers.mapped()[i];
     const Case& c = *of[i];
-    const gpu::Sensor& sensor = batch.sensors[touches[i].sensor];
+    const gpu::Sensor& sensor = encoded.sensors[touches[i].sensor];
     const Real scale = sensor.scale, contact = (c.contact + c.doubt) * scale;
     CAPTURE(i, c.query.mesh, c.object, double(c.contact), double(contact), found.gap, found.boxGap, found.boxEnd);
     if (found.inRange == 0) continue;

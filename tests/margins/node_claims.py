@@ -269,7 +269,7 @@ def boxes_of_objects(sources):
 
     |gap - s d| <= halves. The direction d is rounded to nearest; its inverse is off by a division's rounding. Both are
     relative to s d, which is at most gap + reach. The boxes hold what rounding them, and raising d, takes
-    (contact/sensors.cpp; by hand).
+    (contact/encode.comp.glsl; by hand).
     """
     half, inverse = vector("half", nonnegative=True), vector("1/d")
     box = {"type": "SensorBox", "centre": vector("centre"), "halfExtent": half, "inverseDirection": inverse}

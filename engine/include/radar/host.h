@@ -63,8 +63,7 @@ inline constexpr TransformLayout kColumnMajor{4, 16};  ///< a 4x4 matrix by colu
 
 /// New transforms of objects, one each, in this order. Coordinates are at most 2^80; the device fits the tree over
 /// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds
-/// them by at most a millionth of their largest coordinate. Without Device::doubles(), a mesh whose transformed middle
-/// is farther from its own origin than that coordinate needs room inside instead: two millionths of the distance.
+/// them by at most a millionth of their largest coordinate.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes

@@ -97,8 +97,7 @@ class RADAR_API Recorder {
   /// The same for queries that the host's shaders write; they are read when the commands execute. An answer that
   /// shaders read may be left to read() as above. Answers beyond the number of queries, up to
   /// HostQueries::count, become Status::invalid with Flag::query, as do queries that break the contract of HostQuery.
-  /// Matrices of nothing but subnormal floats are out of range, too. Without Device::doubles(), a sensor modelled far
-  /// from its own origin is placed with the precision of floats, and may need more candidates.
+  /// Matrices of nothing but subnormal floats are out of range, too.
   ///
   /// - Before: writes to the buffers of `queries` are visible to VK_PIPELINE_STAGE_2_COPY_BIT,
   ///   VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them wait for that stage.

@@ -1,5 +1,5 @@
 // A transform in two floats per entry: a host's, or the double-precision pose of an object or a query.
-#include "shared/double_bits.glsl"
+#include "double_bits.glsl"
 
 struct Transform {
   uvec4 bits[3];  // of floats

@@ -1,8 +1,8 @@
 // Where a transform puts a mesh, with error bounds (docs/method.md, "A host's geometry"). Included after
 // transform.glsl.
-#include "shared/two_floats.glsl"
+#include "two_floats.glsl"
 #ifndef RADAR_NO_DOUBLES
-#include "shared/widen.glsl"
+#include "widen.glsl"
 #endif
 
 const float kUnit = 5.9604645e-8;  // 2^-24
@@ -40,10 +40,15 @@ Position positionOf(Transform t, vec3 origin) {
     const vec4 m = uintBitsToFloat(t.bits[row]);
     const float sum = dot(abs(m.xyz), abs(origin));
 #ifdef RADAR_NO_DOUBLES
-    // Exact if the origin is 0, but for what `low` lacks.
-    p.high[row] = origin == vec3(0.0) ? m.w : dot(m.xyz, origin) + m.w;
-    p.low[row] = t.low[row].w;
-    p.error[row] = origin == vec3(0.0) ? 0.0 : 20.0 * kUnit * (sum + abs(m.w));
+    float high = m.w, low = t.low[row].w;
+    for (int k = 0; k < 3; ++k) {
+      addProduct(high, low, m[k], origin[k]);
+      addExactly(high, low, t.low[row][k] * origin[k]);
+    }
+    p.high[row] = p.low[row] = 0.0;
+    addExactly(p.high[row], p.low[row], high);
+    addExactly(p.high[row], p.low[row], low);
+    p.error[row] = origin == vec3(0.0) ? 0.0 : 1.9e-12 * (sum + abs(m.w)) + 4e-37;  // 2^-39
 #else
     const dvec4 exact = dvec4(m) + dvec4(t.low[row]);
     const double at = dot(exact.xyz, dvec3(origin)) + exact.w;
@@ -139,20 +144,4 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   p.size = 1.00001 * size + 1e-37;
   p.perUnit = inRange && size <= 1.2e24 ? mesh.perUnit : 0.0;
   return p;
-}
-
-// The transform in doubles, exactly.
-PreciseRows preciseRows(Transform t) {
-  PreciseRows pose;
-  for (uint row = 0; row < 3; ++row) {
-    const uvec2 x = doubleBits(t.bits[row].x), y = doubleBits(t.bits[row].y), z = doubleBits(t.bits[row].z),
-                w = doubleBits(t.bits[row].w);
-#ifdef RADAR_NO_DOUBLES
-    pose[2 * row] = uvec4(x, y);
-    pose[2 * row + 1] = uvec4(z, w);
-#else
-    pose[row] = dvec4(packDouble2x32(x), packDouble2x32(y), packDouble2x32(z), packDouble2x32(w));
-#endif
-  }
-  return pose;
 }

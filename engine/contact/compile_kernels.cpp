@@ -27,9 +27,9 @@ std::vector<KernelReport> compileKernels(uint32_t index) {
   for (const gpu::Shader* shader : shaders::kAll) {
     const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
     const bool runs = device->doubles || !shader->spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader->spirv);
-    const gpu::Shader* other = device->choosesLayers ? &shaders::kDepthOfOneLayer : &shaders::kDepth;
-    const bool isInMode = shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || device->reasonsAgainstSampled.empty();
-    if (!isListed && runs && isInMode && shader != other) programs.push_back(*shader);
+    const bool isUsed = shader->stage == VK_SHADER_STAGE_COMPUTE_BIT ||
+                        (device->reasonsAgainstSampled.empty() && shader == &gpu::depthShader(*device));
+    if (!isListed && runs && isUsed) programs.push_back(*shader);
   }
   std::vector<KernelReport> reports;
   for (const gpu::Program& program : programs) {

@@ -134,7 +134,7 @@ void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded)
 }
 
 // Begins an upload with the changes of the scene and the counts of a search without tasks.
-GpuScene::Staged ContactPass::begin(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
+GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
   sensorCount_ = searches;
   encoding_ = {.count = searches};
   setAnchor(encoding_, scene.objectTree());
@@ -154,7 +154,7 @@ GpuScene::Staged ContactPass::stage(const SensorBatch& batch, std::span<const Re
   hasClearances_ = std::ranges::any_of(batch.sweeps, &gpu::Sweep::hasClearance);
   if (hasClearances_) run_.reserve({searchWithClearance_, searchWithClearance_});
   checkExcluded(*device_, batch.excluded.size());
-  GpuScene::Staged staged = begin(batch.count(), scene, std::move(next));
+  GpuScene::Staged staged = beginStaging(batch.count(), scene, std::move(next));
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.stated.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   upload_.add(batch.stated.data(), bytesOf(batch.stated), stated_);
@@ -166,7 +166,7 @@ GpuScene::Staged ContactPass::stage(const SensorBatch& batch, std::span<const Re
 
 GpuScene::Staged ContactPass::stageWritten(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next) {
   ignoresLeaving_ = hasClearances_ = false;
-  GpuScene::Staged staged = begin(searches, scene, std::move(next));
+  GpuScene::Staged staged = beginStaging(searches, scene, std::move(next));
   reserve(searches, searches, searches);
   return staged;
 }

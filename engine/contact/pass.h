@@ -87,7 +87,7 @@ class ContactPass {
   static constexpr uint32_t kBriefBudget = 1000;
 
  private:
-  GpuScene::Staged begin(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
+  GpuScene::Staged beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
   void reserveLists(uint32_t sensors);
   uint32_t groupsFor(uint32_t sensors) const;

@@ -3,6 +3,7 @@
 #include "gpu/barrier.h"
 #include "gpu/buffer.h"
 #include "gpu/check.h"
+#include "spirv/radar_shaders.h"
 
 namespace radar::gpu {
 
@@ -74,6 +75,10 @@ Sampler texelSampler(const Device::Impl& device) {
   VkSampler sampler;
   check(device.vk.CreateSampler(device.device(), &info, device.host.allocator, &sampler), "vkCreateSampler");
   return {device, sampler};
+}
+
+const Shader& depthShader(const Device::Impl& device) {
+  return device.choosesLayers ? shaders::kDepth : shaders::kDepthOfOneLayer;
 }
 
 DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side,

@@ -6,6 +6,7 @@
 
 #include "gpu/device.h"
 #include "gpu/handle.h"
+#include "gpu/shader.h"
 
 namespace radar::gpu {
 
@@ -15,6 +16,9 @@ RenderPass depthRenderPass(const Device::Impl& device);
 
 /// Nearest, clamped, for exact texels and gathers.
 Sampler texelSampler(const Device::Impl& device);
+
+/// Draws into it: chooses layers where the device can.
+const Shader& depthShader(const Device::Impl& device);
 
 class DepthArray {
  public:

@@ -16,10 +16,6 @@ namespace {
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
-const gpu::Shader& depthOf(const Device::Impl& device) {
-  return device.choosesLayers ? shaders::kDepth : shaders::kDepthOfOneLayer;
-}
-
 }  // namespace
 
 SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
@@ -29,7 +25,7 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       resident_(resident),
       upload_(device),
       submission_(device, timestamps),
-      run_(device, {depthOf(device), shaders::kReduce, shaders::kIdentify, shaders::kSolve}),
+      run_(device, {gpu::depthShader(device), shaders::kReduce, shaders::kIdentify, shaders::kSolve}),
       renderPass_(gpu::depthRenderPass(device)),
       sampler_(gpu::texelSampler(device)),
       views_(device, "views", BufferDomain::device, kUploaded),
@@ -105,7 +101,7 @@ void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch&
   const GpuScene::Buffers& scene = resident_.buffers();
   const VkBuffer vertices = scene.vertices.get();
   const VkDeviceSize zero = 0;
-  run_.bindForDraws(commands, depthOf(*device_), {{kSlotDraws, draws_}});
+  run_.bindForDraws(commands, gpu::depthShader(*device_), {{kSlotDraws, draws_}});
   commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
   commands->CmdBindIndexBuffer(commands, scene.indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");

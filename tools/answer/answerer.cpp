@@ -1,5 +1,7 @@
 #include "answer/answerer.h"
 
+#include <utility>
+
 namespace radar::tools {
 
 void Answerer::edit(const std::function<void()>& change) {
@@ -39,7 +41,9 @@ Answers Answerer::run(const std::vector<Query>& queries, AnswerMode mode) {
   open(mode);
   if (mode == AnswerMode::reference) return cpu_->run(queries);
   const Mode ofDevice = mode == AnswerMode::sampled ? Mode::sampled : Mode::contact;
-  return pool_ ? pool_->submit(queries, ofDevice).get() : sweeper_->run(queries, ofDevice);
+  Answers answers = pool_ ? Answers(pool_->submit(queries, ofDevice).get()) : sweeper_->run(queries, ofDevice);
+  if (options_.onLost && !answers.stats.lost.empty()) std::exchange(options_.onLost, nullptr)(answers.stats.lost);
+  return answers;
 }
 
 }  // namespace radar::tools

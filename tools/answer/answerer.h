@@ -21,6 +21,7 @@ struct AnswererOptions {
   uint32_t threads = 0;                                  ///< of the CPU's exact search; 0: one for each core
   std::function<void(const std::string&)> onValidation;  ///< messages of active validation layers
   OnCompiling onCompiling;
+  std::function<void(const std::string&)> onLost;  ///< called once, with how the device was lost
 };
 
 /// One thread at a time may use an Answerer.

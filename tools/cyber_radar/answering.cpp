@@ -1,9 +1,7 @@
 #include "cyber_radar/answering.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "cyber_radar/options.h"
 #include "measure/clock.h"
 
 namespace radar::tools {
@@ -66,9 +64,6 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
     }
     for (size_t i = 0; i < found.lists.size(); ++i) answers[batch.numbers[i]].listed = std::move(found.lists[i]);
     for (const auto& [i, reason] : found.reasons) answers[batch.numbers[i]].reason = reason;
-    if (!found.stats.lost.empty() && !std::exchange(saidLost_, true)) {
-      printWarnings({"the CPU alone answers mode contact: " + found.stats.lost});
-    }
     stats_.pairs += found.stats.pairs;
     stats_.cpuPairs += found.stats.cpuPairs;
     for (const StageTime& stage : found.stats.stages) addStage(stats_.stages, stage);

@@ -54,7 +54,6 @@ class Answering {
   AnsweringOptions options_;
   AnsweringStats stats_;
   std::vector<AnswerMode> modes_;
-  bool saidLost_ = false;
   ScenePlayer player_;
   Answerer answerer_;
 };

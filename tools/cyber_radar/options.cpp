@@ -100,6 +100,7 @@ AnsweringOptions EngineOptions::checked() const {
     }
     return true;
   };
+  options.onLost = [](const std::string& how) { printWarnings({"the CPU alone answers mode contact: " + how}); };
   if (device.empty()) return options;
   const std::vector<uint32_t> devices = devicesFrom(device);
   if (devices.size() == 1) {

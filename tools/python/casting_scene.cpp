@@ -24,6 +24,7 @@ CastingScene::CastingScene(tools::AnswererOptions options) : options_(std::move(
     const std::lock_guard lock(mutex);
     messages.push_back(message);
   };
+  options_.onLost = [this](const std::string& how) { losses_.push_back(how); };
 }
 
 CastingScene::~CastingScene() {

@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "answer/answerer.h"
@@ -25,11 +27,14 @@ class CastingScene {
   /// This process's: a forked process makes its own.
   tools::Answerer& answerer();
   std::span<const Device> devices() const;
+  /// How the device was lost, if that happened since the last call.
+  std::vector<std::string> takeLosses() { return std::exchange(losses_, {}); }
 
  private:
   void leaveForked();
 
   tools::AnswererOptions options_;
+  std::vector<std::string> losses_;
   Scene scene_;
   pid_t process_ = 0;
   std::unique_ptr<tools::Answerer> answerer_;

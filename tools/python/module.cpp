@@ -436,6 +436,7 @@ PYBIND11_MODULE(_engine, module) {
              for (const radar::Device& device : scene.devices()) names.push_back(device.name());
              return names;
            })
+      .def("take_losses", &CastingScene::takeLosses)
       .def("cast", &castArrays)
       .def("page", &castsPage);
   module.def("first_singular", &firstSingular);

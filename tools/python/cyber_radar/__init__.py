@@ -27,12 +27,13 @@ from ._casts import Casts, Feature, Hits, Overlapping, Status, Tier
 from ._engine import Error
 from ._files import read_mesh
 from ._scene import Objects, Scene
-from ._warnings import MeshFileWarning, RoundingWarning, ValidationWarning
+from ._warnings import DeviceLostWarning, MeshFileWarning, RoundingWarning, ValidationWarning
 
 __version__: str = _engine.version
 __all__ = [
     "Casts",
     "DeviceInfo",
+    "DeviceLostWarning",
     "Error",
     "Feature",
     "Hits",

@@ -28,7 +28,7 @@ from ._arrays import LEAST_MASK, MOST_MASK, common_shape, poses as _poses, reals
 from ._casts import Casts, Hits, Overlapping, _arrays_of, _new_arrays
 from ._files import Path, read_mesh
 from ._show import Asked
-from ._warnings import MeshFileWarning, ValidationWarning, warn_of
+from ._warnings import DeviceLostWarning, MeshFileWarning, ValidationWarning, warn_of
 
 _ALL_BITS = MOST_MASK
 
@@ -313,6 +313,7 @@ class Scene:
                 )
             finally:
                 warn_of(_engine.take_validation_messages(), ValidationWarning)
+                warn_of(engine.take_losses(), DeviceLostWarning)
         casts = Casts(**results) if out is None else out
         if not sampled:
             casts.paper_min_l = casts.resolution = None

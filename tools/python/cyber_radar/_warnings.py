@@ -14,6 +14,10 @@ class MeshFileWarning(UserWarning):
     """Something in a mesh file was left out."""
 
 
+class DeviceLostWarning(UserWarning):
+    """The device was lost: the CPU alone answers mode "contact" now, with the same answers."""
+
+
 class ValidationWarning(UserWarning):
     """A message of a Vulkan validation layer."""
 

@@ -16,7 +16,6 @@ using gpu::bytesOf;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // Default maximum number of tasks, in addition to one per sensor: 20 bytes each, in two lists.
 constexpr uint32_t kMostTasks = 1u << 21;
 // Capacity for candidates, of 24 bytes and 64 as refined pairs: at first per sensor, at least in total, and the most
@@ -42,21 +41,12 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
   return {shader, {lanes, queue, stack}, gpu::Subgroups::full};
 }
 
-// Those that need doubles.
-const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kProve,
-                                                      shaders::kBlock, shaders::kDescribe};
-
 }  // namespace
 
 std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
-  std::vector<gpu::Program> all{searchOf(device, {}, false),
-                                searchOf(device, {}, true),
-                                shaders::kEncode,
-                                shaders::kCollect,
-                                shaders::kFilter,
-                                shaders::kLink,
-                                shaders::kResolve};
-  if (device.doubles) all.insert(all.end(), kPrecise);
+  std::vector<gpu::Program> all = PairSolver::programs(device);
+  all.insert(all.begin(), {searchOf(device, {}, false), searchOf(device, {}, true), shaders::kEncode, shaders::kCollect,
+                           shaders::kFilter});
   return all;
 }
 
@@ -67,30 +57,22 @@ ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const Sear
       search_(searchOf(device, room, false)),
       searchWithClearance_(searchOf(device, room, true)),
       // Rounds alternate between two lists of tasks.
-      run_(device, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter,
-                    shaders::kLink, shaders::kResolve}),
+      run_(device, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter}),
       upload_(device),
       stated_(device, "stated searches", BufferDomain::device, kUploaded),
       sensors_(device, "sensors", BufferDomain::device, gpu::kAsTexels),
-      sweeps_(device, "sweeps", BufferDomain::device, kReadBack),
-      states_(device, "search states", BufferDomain::device),
-      heads_(device, "refined pair lists", BufferDomain::device, kUploaded),
       excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
       tasks_(device, "search tasks", BufferDomain::device),
       spilled_(device, "spilled search tasks", BufferDomain::device),
       queues_(device, "search queues", BufferDomain::device),
       candidates_(device, "candidate pairs", BufferDomain::device),
-      refinedPairs_(device, "refined pairs", BufferDomain::device),
-      counts_(device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT),
-      results_(device, "results", BufferDomain::device, kReadBack),
-      unresolved_(device, "unresolved pairs", BufferDomain::readback) {
+      solver_(device, scene) {
   if (room_.budget == 0) room_.budget = kMostBudget;
   // On the CPU, as many lanes are at work as threads times the width of a vector.
   if (room_.width == 0) {
     room_.width =
         device.runsOnCpu() ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
   }
-  if (device.doubles) run_.reserve(kPrecise);
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
@@ -98,7 +80,7 @@ uint32_t ContactPass::groupsFor(uint32_t sensors) const {
   return device_->runsOnCpu() ? std::max(32u, sensors / 256) : 2048;
 }
 
-void ContactPass::reserveLists(uint32_t sensors) {
+void ContactPass::reserveLists(uint32_t sensors, uint32_t results) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
   const uint64_t all = uint64_t{groupsFor(sensors)} * device_->subgroupSize * (search_.constants[2] + 1);
   const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
@@ -109,25 +91,18 @@ void ContactPass::reserveLists(uint32_t sensors) {
       room_.unresolved != 0 ? room_.unresolved : std::clamp(std::max(usual, wantedUnresolved_), 4096u, kMostUnresolved);
   taskRoom_ = static_cast<uint32_t>(std::min(sensors + tasks, limit / sizeof(gpu::SearchTask)));
   candidateRoom_ = static_cast<uint32_t>(std::min(candidates, limit / sizeof(gpu::RefinedPair)));
-  unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
   tasks_.reserve(taskRoom_);
   spilled_.reserve(taskRoom_);
   queues_.reserve(groupsFor(sensors) * 2 * search_.constants[1]);
   candidates_.reserve(candidateRoom_);
-  refinedPairs_.reserve(candidateRoom_);
-  unresolved_.reserve(unresolvedRoom_);
+  solver_.reserve(sensors, results, candidateRoom_, unresolved);
 }
 
 void ContactPass::reserve(uint32_t sensors, uint32_t results, uint32_t excluded) {
   stated_.reserve(sensors);
   sensors_.reserve(sensors);
-  sweeps_.reserve(sensors);
-  states_.reserve(sensors);
-  heads_.reserve(sensors);
   excluded_.reserve(excluded);
-  results_.reserve(results);
-  counts_.reserve(1);
-  reserveLists(sensors);
+  reserveLists(sensors, results);
   constexpr size_t kPerSensor = sizeof(gpu::StatedSearch) + sizeof(gpu::Sweep);
   upload_.reserve(sensors * kPerSensor + excluded * sizeof(uint32_t) + results * sizeof(Result) +
                   sizeof(gpu::SearchCounts) + 5 * 8);  // each of five pieces may be rounded up
@@ -140,10 +115,7 @@ GpuScene::Staged ContactPass::beginStaging(uint32_t searches, const Scene::Impl&
   setAnchor(encoding_, scene.objectTree());
   upload_.begin();
   GpuScene::Staged staged = scene_.stage(scene, std::move(next), upload_);
-  gpu::SearchCounts counts{};
-  counts.refineGroups[2] = counts.blockGroups[2] = 1;
-  counts_.reserve(1);
-  upload_.add(&counts, sizeof(counts), counts_);
+  solver_.begin(searches, upload_);
   run_.begin();
   return staged;
 }
@@ -158,9 +130,9 @@ GpuScene::Staged ContactPass::stage(const SensorBatch& batch, std::span<const Re
   const auto results = static_cast<uint32_t>(std::max(known.size(), batch.stated.size()));
   reserve(sensorCount_, results, static_cast<uint32_t>(batch.excluded.size()));
   upload_.add(batch.stated.data(), bytesOf(batch.stated), stated_);
-  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), sweeps_);
+  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), solver_.lists().sweeps);
   upload_.add(batch.excluded.data(), bytesOf(batch.excluded), excluded_);
-  upload_.add(known.data(), known.size_bytes(), results_);
+  upload_.add(known.data(), known.size_bytes(), solver_.lists().results);
   return staged;
 }
 
@@ -179,13 +151,13 @@ void ContactPass::stageMore(const gpu::SearchCounts& before) {
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;
   upload_.begin();
-  upload_.add(&counts, sizeof(counts), counts_);
+  upload_.add(&counts, sizeof(counts), solver_.lists().counts);
 }
 
 void ContactPass::recordUpload(const gpu::Commands& commands, const OpenStage& stage) {
   stage("upload");
   upload_.record(commands);
-  commands->CmdFillBuffer(commands, heads_.get(), 0, VK_WHOLE_SIZE, gpu::kNobody);
+  solver_.recordReset(commands);
   gpu::transferToComputeReadWrite(commands);
 }
 
@@ -196,10 +168,10 @@ void ContactPass::recordEncoding(const gpu::Commands& commands, const OpenStage&
        {{kSlotMeshes, scene_.buffers().meshes},
         {kSlotObjectNodes, scene_.buffers().objectNodes},
         {kSlotStated, stated_},
-        {kSlotSweeps, sweeps_},
+        {kSlotSweeps, solver_.lists().sweeps},
         {kSlotSensors, sensors_},
-        {kSlotStates, states_},
-        {kSlotCounts, counts_},
+        {kSlotStates, states()},
+        {kSlotCounts, counts()},
         {kSlotTasks, tasks_}});
   computeWriteToComputeReadWrite(commands);
 }
@@ -219,8 +191,8 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
         {kSlotTriangles, scene.triangles},
         {kSlotPlacements, scene.placements},
         {kSlotSensors, sensors_},
-        {kSlotStates, states_},
-        {kSlotCounts, counts_},
+        {kSlotStates, states()},
+        {kSlotCounts, counts()},
         {kSlotTasks, from},
         {kSlotSpilled, to},
         {kSlotQueuedPairs, queues_},
@@ -228,83 +200,31 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
         {kSlotExcluded, excluded_}});
   computeWriteToComputeReadWrite(commands);
   run_(commands, shaders::kCollect, kCollectGroups, CollectPush{round, taskRoom_, isLast ? 1u : 0u},
-       {{kSlotCounts, counts_}, {kSlotStates, states_}, {kSlotTasks, from}, {kSlotSpilled, to}});
+       {{kSlotCounts, counts()}, {kSlotStates, states()}, {kSlotTasks, from}, {kSlotSpilled, to}});
   computeWriteToComputeReadWrite(commands);
 }
 
 void ContactPass::record(const gpu::Commands& commands, const OpenStage& stage, uint32_t rounds, bool isLast) {
   using namespace gpu;  // the slots
-  const GpuScene::Buffers& scene = scene_.buffers();
+  const PairSolver::Lists& lists = solver_.lists();
   rounds_ = rounds;
   if (sensorCount_ == 0) return;
   stage("search");
   for (uint32_t round = 0; round < rounds; ++round) recordRound(commands, round, isLast && round + 1 == rounds);
   stage("solve");
   computeWriteToIndirect(commands);
-  const Groups perCandidates{counts_, offsetof(SearchCounts, filterGroups)};
+  const Groups perCandidates{lists.counts, offsetof(SearchCounts, filterGroups)};
   run_(commands, shaders::kFilter, perCandidates, FilterPush{candidateRoom_},
-       {{kSlotStates, states_},
-        {kSlotCounts, counts_},
+       {{kSlotStates, lists.states},
+        {kSlotCounts, lists.counts},
         {kSlotCandidatePairs, candidates_},
-        {kSlotRefinedPairs, refinedPairs_}});
+        {kSlotRefinedPairs, lists.refinedPairs}});
   computeWriteToComputeReadWrite(commands);
-  if (device_->doubles) {
-    for (const Shader* shader : {&shaders::kCertify, &shaders::kRefine}) {
-      const bool refines = shader == &shaders::kRefine;
-      if (refines) computeWriteToIndirect(commands);
-      run_(commands, *shader, refines ? Groups{counts_, offsetof(SearchCounts, refineGroups)} : perCandidates,
-           {{kSlotStates, states_},
-            {kSlotCounts, counts_},
-            {kSlotRefinedPairs, refinedPairs_},
-            {kSlotVertices, scene.vertices},
-            {kSlotTriangles, scene.triangles},
-            {kSlotSweeps, sweeps_},
-            {kSlotObjects, scene.objects}});
-    }
-    for (const Shader* shader : {&shaders::kProve, &shaders::kBlock}) {
-      if (!ignoresLeaving_) break;
-      computeWriteToIndirect(commands);
-      run_(commands, *shader, {counts_, offsetof(SearchCounts, blockGroups)},
-           {{kSlotStates, states_},
-            {kSlotCounts, counts_},
-            {kSlotRefinedPairs, refinedPairs_},
-            {kSlotVertices, scene.vertices},
-            {kSlotTriangles, scene.triangles},
-            {kSlotSweeps, sweeps_},
-            {kSlotObjects, scene.objects},
-            {kSlotMeshes, scene.meshes}});
-    }
-    computeWriteToComputeReadWrite(commands);
-  }
-  run_(commands, shaders::kLink, perCandidates,
-       {{kSlotStates, states_}, {kSlotHeads, heads_}, {kSlotCounts, counts_}, {kSlotRefinedPairs, refinedPairs_}});
-  computeWriteToComputeReadWrite(commands);
-  stage("resolve");
-  for (const Shader* shader : {&shaders::kResolve, &shaders::kDescribe}) {
-    if (shader == &shaders::kDescribe) {
-      if (!device_->doubles) break;
-      computeWriteToComputeReadWrite(commands);
-    }
-    run_(commands, *shader, gpu::groupsFor(sensorCount_, kContactGroup), ResolvePush{sensorCount_, unresolvedRoom_},
-         {{kSlotStates, states_},
-          {kSlotHeads, heads_},
-          {kSlotCounts, counts_},
-          {kSlotRefinedPairs, refinedPairs_},
-          {kSlotVertices, scene.vertices},
-          {kSlotTriangles, scene.triangles},
-          {kSlotSweeps, sweeps_},
-          {kSlotObjects, scene.objects},
-          {kSlotResults, results_},
-          {kSlotUnresolved, unresolved_}});
-  }
-}
-
-std::span<const gpu::UnresolvedPair> ContactPass::unresolved(const gpu::SearchCounts& counts) const {
-  return {unresolved_.mapped(), std::min(counts.unresolved, unresolvedRoom_)};
+  solver_.record(commands, stage, perCandidates, true, ignoresLeaving_);
 }
 
 bool ContactPass::learn(const gpu::SearchCounts& counts) {
-  if (counts.unresolved > unresolvedRoom_) wantedUnresolved_ = 2 * counts.unresolved;
+  if (counts.unresolved > solver_.unresolvedRoom()) wantedUnresolved_ = 2 * counts.unresolved;
   // Searches without room ended early, so their actual need is unknown.
   if (counts.candidates <= candidateRoom_ || candidateRoom_ >= kMostCandidates || room_.candidates != 0) return false;
   wantedCandidates_ = std::min(4 * candidateRoom_, kMostCandidates);

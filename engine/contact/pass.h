@@ -5,9 +5,8 @@
 #include <functional>
 #include <span>
 
+#include "contact/pair_solver.h"
 #include "contact/sensors.h"
-#include "gpu/kernel.h"
-#include "scene/gpu_scene.h"
 
 namespace radar {
 
@@ -46,12 +45,11 @@ class ContactPass {
     const gpu::Array<gpu::Sweep>& sweeps;
     const gpu::Array<uint32_t>& excluded;
   };
-  Stated stated() const { return {stated_, sweeps_, excluded_}; }
+  Stated stated() const { return {stated_, solver_.lists().sweeps, excluded_}; }
 
   /// Every program that a pass may run on the device.
   static std::vector<gpu::Program> programs(const Device::Impl& device);
 
-  using OpenStage = std::function<void(const char*)>;
   /// Records the copies and the barrier after them.
   void recordUpload(const gpu::Commands& commands, const OpenStage& stage);
   /// Records the encoding of what is stated, once the scene on the device is as the search is to find it.
@@ -69,12 +67,14 @@ class ContactPass {
 
   /// As encoded.
   const gpu::Array<gpu::Sensor>& sensors() const { return sensors_; }
-  const gpu::Array<gpu::SearchState>& states() const { return states_; }
+  const gpu::Array<gpu::SearchState>& states() const { return solver_.lists().states; }
   const gpu::Array<gpu::SearchTask>& tasks() const { return tasks_; }
-  const gpu::Array<Result>& results() const { return results_; }
-  const gpu::Array<gpu::SearchCounts>& counts() const { return counts_; }
-  /// The unresolved pairs, in host memory. Valid until the device works again.
-  std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const;
+  const gpu::Array<Result>& results() const { return solver_.lists().results; }
+  const gpu::Array<gpu::SearchCounts>& counts() const { return solver_.lists().counts; }
+  /// See PairSolver.
+  std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const {
+    return solver_.unresolved(counts);
+  }
   uint32_t sensorCount() const { return sensorCount_; }
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
@@ -89,7 +89,7 @@ class ContactPass {
  private:
   GpuScene::Staged beginStaging(uint32_t searches, const Scene::Impl& scene, GpuScene::Overwritten next);
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
-  void reserveLists(uint32_t sensors);
+  void reserveLists(uint32_t sensors, uint32_t results);
   uint32_t groupsFor(uint32_t sensors) const;
 
   const Device::Impl* device_;
@@ -100,18 +100,13 @@ class ContactPass {
   gpu::Upload upload_;
   gpu::Array<gpu::StatedSearch> stated_;
   gpu::Array<gpu::Sensor> sensors_;
-  gpu::Array<gpu::Sweep> sweeps_;
-  gpu::Array<gpu::SearchState> states_;
-  gpu::Array<uint32_t> heads_, excluded_;
+  gpu::Array<uint32_t> excluded_;
   gpu::Array<gpu::SearchTask> tasks_, spilled_;
   gpu::Array<gpu::QueuedPair> queues_;
   gpu::Array<gpu::CandidatePair> candidates_;
-  gpu::Array<gpu::RefinedPair> refinedPairs_;
-  gpu::Array<gpu::SearchCounts> counts_;
-  gpu::Array<Result> results_;
-  gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
+  PairSolver solver_;
   gpu::EncodePush encoding_{};
-  uint32_t taskRoom_ = 0, candidateRoom_ = 0, unresolvedRoom_ = 0;
+  uint32_t taskRoom_ = 0, candidateRoom_ = 0;
   bool ignoresLeaving_ = false, hasClearances_ = false;
   uint32_t sensorCount_ = 0, rounds_ = 0, wantedCandidates_ = 0, wantedUnresolved_ = 0;
 };

@@ -40,6 +40,22 @@ void SensorBatch::truncate(uint32_t count) {
   sweeps.resize(count);
 }
 
+gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direction, uint32_t result) {
+  gpu::Sweep sweep{};
+  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
+  std::copy(direction.begin(), direction.end(), sweep.direction);
+  sweep.directionLength = exact::length(direction);
+  sweep.distance = motion.distance;
+  sweep.perParameter = sweep.directionLength;
+  if (motion.isStep) {
+    sweep.perParameter = largest(direction) / largest(motion.direction);
+    std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
+  }
+  sweep.anyHit = query.anyHit ? 1 : 0;
+  sweep.result = result;
+  return sweep;
+}
+
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,
                   const ObjectTree& tree, ObjectId object) {
   if (!tree.inRange()) return Planned::outOfRange;
@@ -69,18 +85,7 @@ Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const
   std::sort(batch.excluded.begin() + stated.firstExcluded, batch.excluded.end());
   stated.endExcluded = static_cast<uint32_t>(batch.excluded.size());
 
-  gpu::Sweep sweep{};
-  std::copy(query.worldFromMesh.m.begin(), query.worldFromMesh.m.end(), sweep.pose);
-  std::copy(direction.begin(), direction.end(), sweep.direction);
-  sweep.directionLength = exact::length(direction);
-  sweep.distance = motion.distance;
-  sweep.perParameter = sweep.directionLength;
-  if (motion.isStep) {
-    sweep.perParameter = largest(direction) / largest(motion.direction);
-    std::copy(motion.drift.begin(), motion.drift.end(), sweep.drift);
-  }
-  sweep.anyHit = query.anyHit ? 1 : 0;
-  sweep.result = result;
+  gpu::Sweep sweep = sweepOf(query, motion, direction, result);
   sweep.hasClearance = query.clearance > 0 ? 1 : 0;
   if (query.ignoreLeaving) {
     sweep.ignoreLeaving = 1;

@@ -27,6 +27,10 @@ enum class Planned {
   outOfRange  ///< floats cannot hold the scene or the direction; for the rest, the device finds out
 };
 
+/// A query's search in double precision, but for what depends on a scale. `motion`: the query's; `direction`: that of
+/// the motion, by scaledDirection(). `result`: the index of its answer.
+gpu::Sweep sweepOf(const Query& query, const Motion& motion, const Vector& direction, uint32_t result);
+
 /// Adds a valid query; its answer gets the index `result`. `object`: the only one to search, or kNone: all, if none
 /// moves. Times of a step are fractions.
 Planned addSensor(SensorBatch& batch, const Query& query, uint32_t result, const Scene::Impl& scene,

@@ -101,6 +101,8 @@ void fillClass(SampledBatch& batch, std::span<const ViewPlan* const> plans, uint
     for (uint32_t i = begin; i < end; ++i) {
       batch.views.push_back(plans[i]->view);
       batch.views.back().layer = firstLayer + i;
+      batch.sweeps.push_back(plans[i]->sweep);
+      batch.sweeps.back().result = firstView + i;
       batch.triangles += plans[i]->triangles;
     }
     batch.layers = firstLayer + end;

@@ -23,6 +23,7 @@ struct DepthPass {
 
 struct SampledBatch {
   std::vector<gpu::View> views;
+  std::vector<gpu::Sweep> sweeps;  ///< by view
   std::vector<gpu::Draw> draws;
   std::vector<gpu::Item> items;
   std::vector<DrawCall> calls;

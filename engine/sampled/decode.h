@@ -1,9 +1,7 @@
-// Converts the shaders' output to a Result.
+// Completes the shaders' output to answers.
 #pragma once
 
-#include <span>
-
-#include "scene/scene.h"
+#include "contact/decode.h"
 #include "shaders/sampled/interop.h"
 
 namespace radar {
@@ -11,10 +9,9 @@ namespace radar {
 /// The answer to a query with nothing in reach: certainly clear.
 Result decodeClear();
 
-/// The answer to a query whose scopes were drawn, in a window of `resolution`. Unresolved pairs that may come before
-/// the device's contact are decided exactly, and counted in `cpuPairs`; for a query with `anyHit`, only until one
-/// meets.
-Result decodeSampled(const gpu::Answer& answer, std::span<const gpu::SampledUnresolved> unresolved, const Query& query,
-                     const Scene::Impl& scene, uint32_t resolution, uint64_t& cpuPairs);
+/// The answer to a query whose scopes were drawn with so many pixels, from the device's `answer`, the first contact
+/// among the proposed pairs, and its open ones, which are decided exactly.
+Result decodeSampled(const gpu::Answer& answer, const Result& contact, std::span<const gpu::UnresolvedPair* const> open,
+                     const Query& query, uint32_t resolution);
 
 }  // namespace radar

@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 
+#include "contact/sensors.h"
 #include "math/frame.h"
+#include "math/rounding.h"
 #include "query/swept.h"
 #include "sampled/in_frame.h"
 #include "scene/placement.h"
@@ -16,6 +18,8 @@ namespace {
 // Larger clip coordinates might overflow in products of the identify stage (docs/method.md, "Ranges, infinities and
 // rounding"). Units: half the window across, the picture's depth along.
 constexpr double kMostAcross = 0x1p40, kMostAlong = 0x1p48;
+// Longer distances D, in sensor's sizes, are solved as this one: nothing that is drawn is as far away.
+constexpr double kMostScaled = 1e38;
 // Largest number of triangles in a cluster: neighbours that are drawn or skipped together.
 constexpr uint32_t kClusterTriangles = 64;
 
@@ -59,6 +63,7 @@ class Planner {
   bool mayReach(const Box& world) const;
   std::vector<ObjectId> objectsInPrism() const;
   void selectObjects();
+  void setSweep();
   void setView();
   void setVisible();
   Placed framed(ObjectId object, MeshId mesh, const Transform& worldFromMesh) const;
@@ -194,6 +199,17 @@ void Planner::selectObjects() {
   depth_ = std::min(plan_.d, std::max(farthest - window_.lo[2], 0.0));
 }
 
+// The proposed pairs are solved about the sensor's size, up to D.
+void Planner::setSweep() {
+  const Motion motion(query_);
+  plan_.sweep = sweepOf(query_, motion, scaledDirection(motion.direction), 0);
+  const int exponent = std::ilogb(std::max(size_, margin_));
+  plan_.sweep.scale = static_cast<float>(std::ldexp(1.0, -exponent));
+  // No less than what shaders might flush to 0.
+  const double distance = std::ldexp(query_.distance, -exponent);
+  plan_.sweep.start = plan_.view.start = std::max(roundUp(std::min(distance, kMostScaled)), 1e-37f);
+}
+
 void Planner::setView() {
   const double across[2] = {window_.hi[0] - window_.lo[0], window_.hi[1] - window_.lo[1]};
   const double side = std::max(across[0], across[1]), scale = std::cbrt(std::abs(determinant(query_.worldFromMesh)));
@@ -210,14 +226,8 @@ void Planner::setView() {
   // The far plane is a little beyond the depth that must be visible, so that contact exactly at D is not clipped.
   const double rangeScale = depth_ + std::max({64 * kFloatUnit * depth_, 2 * error_, margin_});
   const double maskScale = plan_.length + 2 * margin_;
+  setSweep();
   gpu::View& view = plan_.view;
-  std::copy(query_.worldFromMesh.m.begin(), query_.worldFromMesh.m.end(), view.pose);
-  const Vector direction = scaledDirection(query_.direction);
-  std::copy(direction.begin(), direction.end(), view.direction);
-  view.directionLength = lengthOf(direction);
-  view.distance = query_.distance;
-  view.size = size_;
-  view.mesh = query_.mesh;
   view.resolution = resolution;
   view.width = pixels(across[0]);
   view.height = pixels(across[1]);

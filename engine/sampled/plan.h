@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "shaders/contact/interop.h"
 #include "shaders/sampled/interop.h"
 
 namespace radar {
@@ -34,6 +35,7 @@ enum class Drawn {
 /// A submission's data for one query.
 struct ViewPlan {
   gpu::View view{};             ///< all but `layer`
+  gpu::Sweep sweep{};           ///< all but `result`
   Placed mask;                  ///< the sensor, from the far end
   std::vector<Placed> inReach;  ///< in order of objects; empty: certainly clear
   std::vector<Placed> others;   ///< also drawn, only for Drawn::everything

@@ -14,7 +14,6 @@ using gpu::bytesOf;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-constexpr VkBufferUsageFlags kComputed = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
 }  // namespace
 
@@ -25,16 +24,16 @@ SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& residen
       resident_(resident),
       upload_(device),
       submission_(device, timestamps),
-      run_(device, {gpu::depthShader(device), shaders::kReduce, shaders::kIdentify, shaders::kSolve}),
+      run_(device, {gpu::depthShader(device), shaders::kReduce, shaders::kIdentify, shaders::kNominate}),
+      solver_(device, resident),
       renderPass_(gpu::depthRenderPass(device)),
       sampler_(gpu::texelSampler(device)),
       views_(device, "views", BufferDomain::device, kUploaded),
       draws_(device, "draws", BufferDomain::device, kUploaded),
       items_(device, "items", BufferDomain::device, kUploaded),
-      candidates_(device, "candidates", BufferDomain::device, kComputed),
-      ranks_(device, "ranks", BufferDomain::device, kComputed),
-      answers_(device, "answers", BufferDomain::device, kComputed),
-      unresolvedPairs_(device, "unresolved pairs", BufferDomain::device, kComputed),
+      candidates_(device, "candidates", BufferDomain::device),
+      ranks_(device, "ranks", BufferDomain::device),
+      answers_(device, "answers", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
       readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& batch) {
@@ -51,15 +50,20 @@ SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& ba
 }
 
 void SampledSubmitter::stage(const SampledBatch& batch, const Scene::Impl& scene) {
-  views_.reserve(batch.views.size());
+  const auto views = static_cast<uint32_t>(batch.views.size());
+  // A device without doubles leaves all pairs to the CPU.
+  const uint32_t pairs = views * gpu::kPairsPerView;
+  solver_.reserve(views, views, pairs, pairs);
+  views_.reserve(views);
   draws_.reserve(batch.draws.size());
   items_.reserve(batch.items.size());
-  candidates_.reserve(batch.views.size() * gpu::kCells);
-  ranks_.reserve(batch.views.size() * gpu::kCells);
-  answers_.reserve(batch.views.size());
-  unresolvedPairs_.reserve(batch.views.size() * gpu::kUnresolvedPerView);
+  candidates_.reserve(views * gpu::kCells);
+  ranks_.reserve(views * gpu::kCells);
+  answers_.reserve(views);
   upload_.begin();
   staged_ = resident_.stage(scene, {}, upload_);
+  solver_.begin(views, upload_);
+  upload_.add(batch.sweeps.data(), bytesOf(batch.sweeps), solver_.lists().sweeps);
   upload_.add(batch.views.data(), bytesOf(batch.views), views_);
   upload_.add(batch.draws.data(), bytesOf(batch.draws), draws_);
   upload_.add(batch.items.data(), bytesOf(batch.items), items_);
@@ -79,11 +83,16 @@ void SampledSubmitter::drawScopes(const gpu::Commands& commands, const SampledBa
   }
 }
 
-// Where the parts of the readback lie.
 SampledSubmitter::Readback SampledSubmitter::readbackOf(const SampledBatch& batch, bool scopes) {
   const VkDeviceSize views = batch.views.size();
-  return {views * sizeof(gpu::Answer), views * gpu::kUnresolvedPerView * sizeof(gpu::SampledUnresolved),
-          scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0};
+  const VkDeviceSize picture = scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0;
+  Readback parts{};
+  parts.contacts = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
+  parts.answers = parts.contacts + views * sizeof(Result);
+  parts.range = parts.answers + views * sizeof(gpu::Answer);
+  parts.mask = parts.range + picture;
+  parts.end = parts.mask + picture;
+  return parts;
 }
 
 void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
@@ -95,7 +104,7 @@ void SampledSubmitter::submit(const SampledBatch& batch, const Scene::Impl& scen
   }
 }
 
-// Draws R and M, and solves by them.
+// Draws R and M, and solves the pairs that they propose.
 void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch& batch, Pictures& pictures) {
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = resident_.buffers();
@@ -116,6 +125,7 @@ void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch&
         {kSlotCandidates, candidates_},
         {kSlotRanks, ranks_},
         {kSlotAnswers, answers_},
+        {kSlotStates, solver_.lists().states},
         {kSlotRange, pictures.range, sampler_.get()},
         {kSlotMask, pictures.mask, sampler_.get()}});
   computeWriteToComputeReadWrite(commands);
@@ -132,31 +142,32 @@ void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch&
         {kSlotCandidates, candidates_}});
   computeWriteToComputeReadWrite(commands);
   submission_.stage("solve");
-  run_(commands, shaders::kSolve, views,
-       {{kSlotVertices, scene.vertices},
-        {kSlotTriangles, scene.triangles},
-        {kSlotMeshes, scene.meshes},
-        {kSlotObjects, scene.objects},
-        {kSlotViews, views_},
+  run_(commands, shaders::kNominate, views,
+       {{kSlotMeshes, scene.meshes},
         {kSlotDraws, draws_},
         {kSlotItems, items_},
         {kSlotCandidates, candidates_},
         {kSlotAnswers, answers_},
-        {kSlotSampledUnresolved, unresolvedPairs_}});
+        {kSlotCounts, solver_.lists().counts},
+        {kSlotRefinedPairs, solver_.lists().refinedPairs}});
+  computeWriteToComputeReadWrite(commands);
+  const uint32_t pairs = gpu::groupsFor(uint64_t{views} * kPairsPerView, kContactGroup);
+  solver_.record(
+      commands, [this](const char* name) { submission_.stage(name); }, pairs, false, false);
 }
 
 void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::Impl& scene, bool scopes) {
   Pictures& pictures = picturesFor(batch);
   stage(batch, scene);
   run_.begin();
-  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes);
-  const VkDeviceSize listBytes = answerBytes + openBytes;
-  readback_.reserve(listBytes + 2 * pictureBytes);
+  const Readback parts = readbackOf(batch, scopes);
+  readback_.reserve(parts.end);
 
   const gpu::Commands commands = submission_.begin();
   gpu::computeToOverwrite(commands);  // a recording that shares the scene's copy may still be searching it
   submission_.stage("upload");
   upload_.record(commands);
+  solver_.recordReset(commands);
   pictures.range.recordFirstUse(commands);
   pictures.mask.recordFirstUse(commands);
   gpu::uploadToRead(commands);
@@ -165,13 +176,17 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
   gpu::computeWriteToCopy(commands);
 
   submission_.stage("readback");
-  const VkBufferCopy answerCopy{0, 0, answerBytes}, openCopy{0, answerBytes, openBytes};
-  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answerCopy);
-  commands->CmdCopyBuffer(commands, unresolvedPairs_.get(), readback_.get(), 1, &openCopy);
+  const PairSolver::Lists& lists = solver_.lists();
+  const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)},
+      contacts{0, parts.contacts, parts.answers - parts.contacts},
+      answers{0, parts.answers, parts.range - parts.answers};
+  commands->CmdCopyBuffer(commands, lists.counts.get(), readback_.get(), 1, &counts);
+  commands->CmdCopyBuffer(commands, lists.results.get(), readback_.get(), 1, &contacts);
+  commands->CmdCopyBuffer(commands, answers_.get(), readback_.get(), 1, &answers);
   if (scopes) {
     const auto [layer, width, height] = std::tuple(batch.views[0].layer, batch.views[0].width, batch.views[0].height);
-    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), listBytes);
-    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), listBytes + pictureBytes);
+    pictures.range.recordCopy(commands, layer, width, height, readback_.get(), parts.range);
+    pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), parts.mask);
   }
   gpu::copyToHost(commands);
   submission_.submit();
@@ -182,16 +197,19 @@ SampledAnswers SampledSubmitter::collect(const SampledBatch& batch, std::vector<
   submission_.wait();
   resident_.commit(std::move(staged_));
   submission_.addTimes(stages);
-  const auto [answerBytes, openBytes, pictureBytes] = readbackOf(batch, scopes != nullptr);
+  const Readback parts = readbackOf(batch, scopes != nullptr);
+  const auto* const read = readback_.mapped();
   if (scopes != nullptr) {
-    const auto* at = reinterpret_cast<const float*>(readback_.mapped() + answerBytes + openBytes);
-    scopes->range.assign(at, at + pictureBytes / sizeof(float));
-    scopes->mask.assign(at + pictureBytes / sizeof(float), at + 2 * pictureBytes / sizeof(float));
+    const auto floatsAt = [&](VkDeviceSize at) { return reinterpret_cast<const float*>(read + at); };
+    scopes->range.assign(floatsAt(parts.range), floatsAt(parts.mask));
+    scopes->mask.assign(floatsAt(parts.mask), floatsAt(parts.end));
   }
+  const auto& counts = *reinterpret_cast<const gpu::SearchCounts*>(read);
   const size_t views = batch.views.size();
-  return {{reinterpret_cast<const gpu::Answer*>(readback_.mapped()), views},
-          {reinterpret_cast<const gpu::SampledUnresolved*>(readback_.mapped() + answerBytes),
-           views * gpu::kUnresolvedPerView}};
+  return {{reinterpret_cast<const gpu::Answer*>(read + parts.answers), views},
+          {reinterpret_cast<const Result*>(read + parts.contacts), views},
+          solver_.unresolved(counts),
+          counts.refinedPairs};
 }
 
 }  // namespace radar

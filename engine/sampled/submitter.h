@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "contact/pair_solver.h"
 #include "gpu/depth_array.h"
 #include "gpu/kernel.h"
 #include "gpu/submission.h"
@@ -11,10 +12,12 @@
 
 namespace radar {
 
-/// The shaders' output, by view; kUnresolvedPerView unresolved pairs per view. Valid until the next submission.
+/// The shaders' output, answers and contacts by view. Valid until the next submission.
 struct SampledAnswers {
   std::span<const gpu::Answer> answers;
-  std::span<const gpu::SampledUnresolved> unresolvedPairs;
+  std::span<const Result> contacts;  ///< the first among the proposed pairs, as in mode contact
+  std::span<const gpu::UnresolvedPair> unresolved;
+  uint32_t pairs;  ///< proposed
 };
 
 /// Depth of one view, as stored: 0 near, 1 empty.
@@ -38,9 +41,9 @@ class SampledSubmitter {
     gpu::DepthArray range, mask;
   };
 
-  /// Bytes of each part.
+  /// Where the parts of the readback begin: the counts of pairs, contacts, answers, two pictures; and where it ends.
   struct Readback {
-    VkDeviceSize answers, unresolvedPairs, picture;
+    VkDeviceSize contacts, answers, range, mask, end;
   };
 
   static Readback readbackOf(const SampledBatch& batch, bool scopes);
@@ -57,6 +60,7 @@ class SampledSubmitter {
   gpu::Upload upload_;
   gpu::Submission submission_;
   gpu::Passes run_;
+  PairSolver solver_;
   gpu::RenderPass renderPass_;
   gpu::Sampler sampler_;
   gpu::Array<gpu::View> views_;
@@ -65,7 +69,6 @@ class SampledSubmitter {
   gpu::Array<gpu::Candidate> candidates_;
   gpu::Array<uint32_t> ranks_;
   gpu::Array<gpu::Answer> answers_;
-  gpu::Array<gpu::SampledUnresolved> unresolvedPairs_;
   gpu::Buffer readback_;
   GpuScene::Staged staged_;
   std::map<uint32_t, Pictures> pictures_;  ///< by side

@@ -92,12 +92,14 @@ void SampledRunner::finish(Flight& flight) {
   try {
     const SampledAnswers found = submitter_.collect(drawn_, answers.stats.stages);
     flight.deviceDone = Clock::now();
-    for (size_t i = 0; i < queries.size(); ++i) {
-      answers.results[queries[i]] = decodeSampled(
-          found.answers[i], found.unresolvedPairs.subspan(i * gpu::kUnresolvedPerView, gpu::kUnresolvedPerView),
-          flight.queries[queries[i]], scene_.impl(), drawn_.views[i].resolution, answers.stats.cpuPairs);
-      answers.stats.pairs += found.answers[i].pairs;
+    const UnresolvedPairs unresolved(found.unresolved);
+    for (uint32_t i = 0; i < queries.size(); ++i) {
+      const auto open = unresolved.of(i, found.contacts[i]);
+      answers.results[queries[i]] = decodeSampled(found.answers[i], found.contacts[i], open, flight.queries[queries[i]],
+                                                  drawn_.views[i].resolution);
+      answers.stats.cpuPairs += open.size();
     }
+    answers.stats.pairs += found.pairs;
     flight.addCpuTime("decode", msSince(flight.deviceDone));
   } catch (const Error& error) {
     for (const size_t query : queries) flight.fail(query, error);
@@ -172,8 +174,9 @@ Scopes SampledRunner::scopes(const Query& query) {
 
   Scopes out;
   out.result = plan.inReach.empty() ? decodeClear()
-                                    : decodeSampled(found.answers[0], found.unresolvedPairs, query, scene_.impl(),
-                                                    plan.view.resolution, stats.cpuPairs);
+                                    : decodeSampled(found.answers[0], found.contacts[0],
+                                                    UnresolvedPairs(found.unresolved).of(0, found.contacts[0]), query,
+                                                    plan.view.resolution);
   out.width = plan.view.width;
   out.height = plan.view.height;
   out.pixel = plan.pixel;

@@ -2,7 +2,7 @@
 #ifndef RADAR_SAMPLED_INTEROP_H
 #define RADAR_SAMPLED_INTEROP_H
 
-#include "../shared/interop.h"
+#include "../contact/interop.h"
 
 #ifdef __cplusplus
 namespace radar::gpu {
@@ -12,11 +12,8 @@ namespace radar::gpu {
 // one cell.
 INTEROP_CONST kCellsPerSide = 16;
 INTEROP_CONST kCells = 256;
-// Candidates are identified and solved in order of (L, pixel), kRound at a time, until one meets.
-INTEROP_CONST kRound = 64;
-// Maximum number of unresolved pairs per sensor, in order of candidates: one round, which is what a device without
-// doubles leaves to the CPU.
-INTEROP_CONST kUnresolvedPerView = 64;
+// Maximum number of pairs that a sensor's candidates propose: the first distinct ones, in order of (L, pixel).
+INTEROP_CONST kPairsPerView = 64;
 // Triangles of one draw per identify workgroup. Each invocation takes several, since loading the draw's matrix costs as
 // much as a triangle.
 INTEROP_CONST kItemTriangles = 512;
@@ -24,12 +21,6 @@ INTEROP_CONST kItemInvocations = 64;
 
 // One sensor. Lengths are in world units along the motion from the sensor's back plane, unless noted otherwise.
 struct View {
-  PreciseRows pose;
-  double direction[3];
-  double directionLength;
-  double distance;       // D
-  double size;           // of the sensor: what "1e-6 of the size" refers to
-  uint mesh;
   uint layer;
   uint resolution;       // pixels of the layer's viewport, both ways
   uint width;            // pixels of the window
@@ -40,7 +31,7 @@ struct View {
   float maskScale;
   float slack;           // rounding of R and M: L this far below 0 may be a contact at the start
   float rangeLimit;      // stored R of d, the end of the target volume
-  uint pad;
+  float start;           // see Sweep
 };
 
 // One mesh placed in one view: an instance of a depth-only draw.
@@ -72,25 +63,9 @@ struct Candidate {
 };
 
 struct Answer {
-  double hi;       // upper end of the best solved pair, world units; only if object != kNobody
-  uint object;
-  uint triB;
-  uint triA;
-  uint feature;    // the feature that attains hi
-  float minL;      // the paper's min(L)
-  uint flags;      // kAnswer*
-  uint candidates;
-  uint pairs;      // distinct pairs solved
-  uint unresolvedPairs;
-  uint pad;
-};
-
-struct SampledUnresolved {
-  double low;  // no contact before this, world units
-  uint object;
-  uint triB;
-  uint triA;
-  uint pad;
+  float minL;       // the paper's min(L)
+  uint flags;       // kAnswer*
+  uint candidates;  // how many, in order of (L, pixel)
 };
 INTEROP_CONST kAnswerDetected = 1;  // some R < d
 INTEROP_CONST kAnswerHasL = 2;      // minL exists
@@ -99,15 +74,15 @@ struct IdentifyPush {
   uint items;
 };
 
-INTEROP_SLOT(kSlotViews, 5, View);
-INTEROP_SLOT(kSlotDraws, 6, Draw);
-INTEROP_SLOT(kSlotItems, 7, Item);
-INTEROP_SLOT(kSlotCandidates, 8, Candidate);  // kCells per view
-INTEROP_SLOT(kSlotRanks, 9, uint);            // kCells per view: the cell's candidate, or kNobody
-INTEROP_SLOT(kSlotAnswers, 10, Answer);
-INTEROP_SLOT(kSlotRange, 11, SampledImage);   // depth of R, one layer per view
-INTEROP_SLOT(kSlotMask, 12, SampledImage);    // depth of M, one layer per view
-INTEROP_SLOT(kSlotSampledUnresolved, 14, SampledUnresolved);   // kUnresolvedPerView per view
+// Beside those of the contact tier, by which proposed pairs are solved.
+INTEROP_SLOT(kSlotViews, 19, View);
+INTEROP_SLOT(kSlotDraws, 20, Draw);
+INTEROP_SLOT(kSlotItems, 21, Item);
+INTEROP_SLOT(kSlotCandidates, 22, Candidate);  // kCells per view
+INTEROP_SLOT(kSlotRanks, 24, uint);            // kCells per view: the cell's candidate, or kNobody
+INTEROP_SLOT(kSlotAnswers, 25, Answer);
+INTEROP_SLOT(kSlotRange, 26, SampledImage);    // depth of R, one layer per view
+INTEROP_SLOT(kSlotMask, 27, SampledImage);     // depth of M, one layer per view
 
 #ifdef __cplusplus
 }  // namespace radar::gpu

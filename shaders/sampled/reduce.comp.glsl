@@ -12,6 +12,7 @@ layout(scalar, binding = kSlotViews) readonly restrict buffer Views { View views
 layout(scalar, binding = kSlotCandidates) writeonly restrict buffer Candidates { Candidate candidates[]; };
 layout(scalar, binding = kSlotRanks) writeonly restrict buffer Ranks { uint ranks[]; };
 layout(scalar, binding = kSlotAnswers) writeonly restrict buffer Answers { Answer answers[]; };
+layout(scalar, binding = kSlotStates) writeonly restrict buffer States { SearchState states[]; };
 layout(binding = kSlotRange) uniform sampler2DArray rangeScope;
 layout(binding = kSlotMask) uniform sampler2DArray maskScope;
 
@@ -109,6 +110,7 @@ void main() {
   if (cell == 0) {
     const float least = unordered(minLOrdered);
     const uint flags = (detectedAny != 0 ? kAnswerDetected : 0) | (least < kFar ? kAnswerHasL : 0);
-    answers[v] = Answer(double(0), kNobody, kNobody, kNobody, kNobody, least, flags, count, 0, 0, 0);
+    answers[v] = Answer(least, flags, count);
+    states[v] = SearchState(floatBitsToUint(view.start), 0, kNobody);
   }
 }

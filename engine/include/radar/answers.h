@@ -17,7 +17,7 @@ namespace radar {
 /// Other absent numbers, and all of an invalid answer, are NaN.
 ///
 /// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; ids, features, point and
-/// normal are absent, and for a hit t and fraction are; then lo is 0 and hi at most D (in mode contact: D).
+/// normal are absent, and for a hit t and fraction are; then lo is 0 and hi is D.
 struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
@@ -31,7 +31,7 @@ struct RADAR_API Result {
   uint32_t triA = kNone;    ///< the sensor's triangle
   uint32_t flags = 0;       ///< Flag: why a Recorder gave no answer; else 0
   /// The smallest features of the two triangles that contain every point at which they touch then, exactly; with a
-  /// clearance, of the nearest points. Tier sampled: those that were found, none at the start.
+  /// clearance, of the nearest points.
   Feature featureB = Feature::none, featureA = Feature::none;
   /// World position of the contact at the moment of contact. Where featureB is a vertex, it is that corner as placed,
   /// exactly (in a step, moved with its object); where only featureA is one, that corner moved by t. Where surfaces
@@ -44,8 +44,8 @@ struct RADAR_API Result {
   /// triangles of both meshes around `point`, this one does, so that who slides along it slides; likewise all pairs
   /// that touch then, if a normal of one of them does (docs/exact.md). Starts that cross have none: at the start it
   /// exists only if contact of the two triangles begins there, and keeps these two apart. With a clearance, it lies
-  /// along the line between the nearest points, and is absent where they touch. Mode sampled: that of the features
-  /// found, absent if parallel.
+  /// along the line between the nearest points, and is absent where they touch.
+  /// Mode sampled knows of the pairs that it has found.
   std::array<double, 3> normal;
   double paperMinL;  ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();

@@ -1,0 +1,129 @@
+#include "contact/pair_solver.h"
+
+#include <algorithm>
+
+#include "gpu/barrier.h"
+#include "spirv/radar_shaders.h"
+
+namespace radar {
+
+using gpu::BufferDomain;
+
+namespace {
+
+constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+// Those that need doubles.
+const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kProve,
+                                                      shaders::kBlock, shaders::kDescribe};
+
+}  // namespace
+
+std::vector<gpu::Program> PairSolver::programs(const Device::Impl& device) {
+  std::vector<gpu::Program> all{shaders::kLink, shaders::kResolve};
+  if (device.doubles) all.insert(all.end(), kPrecise);
+  return all;
+}
+
+PairSolver::PairSolver(const Device::Impl& device, GpuScene& scene)
+    : device_(&device),
+      scene_(scene),
+      run_(device, {shaders::kLink, shaders::kResolve}),
+      lists_{.sweeps{device, "sweeps", BufferDomain::device, kReadBack},
+             .states{device, "search states", BufferDomain::device},
+             .refinedPairs{device, "refined pairs", BufferDomain::device},
+             .counts{device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+             .results{device, "results", BufferDomain::device, kReadBack}},
+      heads_(device, "refined pair lists", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      unresolved_(device, "unresolved pairs", BufferDomain::readback) {
+  lists_.counts.reserve(1);
+  if (device.doubles) run_.reserve(kPrecise);
+}
+
+void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uint32_t unresolved) {
+  const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
+  unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
+  lists_.sweeps.reserve(sensors);
+  lists_.states.reserve(sensors);
+  heads_.reserve(sensors);
+  lists_.results.reserve(results);
+  lists_.refinedPairs.reserve(pairs);
+  unresolved_.reserve(unresolvedRoom_);
+}
+
+void PairSolver::begin(uint32_t sensors, gpu::Upload& upload) {
+  sensorCount_ = sensors;
+  gpu::SearchCounts counts{};
+  counts.refineGroups[2] = counts.blockGroups[2] = 1;
+  upload.add(&counts, sizeof(counts), lists_.counts);
+  run_.begin();
+}
+
+void PairSolver::recordReset(const gpu::Commands& commands) {
+  commands->CmdFillBuffer(commands, heads_.get(), 0, VK_WHOLE_SIZE, gpu::kNobody);
+}
+
+void PairSolver::record(const gpu::Commands& commands, const OpenStage& stage, const gpu::Groups& pairs,
+                        bool areCertified, bool ignoresLeaving) {
+  using namespace gpu;  // the slots
+  const GpuScene::Buffers& scene = scene_.buffers();
+  if (device_->doubles) {
+    for (const Shader* shader : {&shaders::kCertify, &shaders::kRefine}) {
+      const bool refines = shader == &shaders::kRefine;
+      if (!refines && !areCertified) continue;
+      if (refines) computeWriteToIndirect(commands);
+      run_(commands, *shader, refines ? Groups{lists_.counts, offsetof(SearchCounts, refineGroups)} : pairs,
+           {{kSlotStates, lists_.states},
+            {kSlotCounts, lists_.counts},
+            {kSlotRefinedPairs, lists_.refinedPairs},
+            {kSlotVertices, scene.vertices},
+            {kSlotTriangles, scene.triangles},
+            {kSlotSweeps, lists_.sweeps},
+            {kSlotObjects, scene.objects}});
+    }
+    for (const Shader* shader : {&shaders::kProve, &shaders::kBlock}) {
+      if (!ignoresLeaving) break;
+      computeWriteToIndirect(commands);
+      run_(commands, *shader, {lists_.counts, offsetof(SearchCounts, blockGroups)},
+           {{kSlotStates, lists_.states},
+            {kSlotCounts, lists_.counts},
+            {kSlotRefinedPairs, lists_.refinedPairs},
+            {kSlotVertices, scene.vertices},
+            {kSlotTriangles, scene.triangles},
+            {kSlotSweeps, lists_.sweeps},
+            {kSlotObjects, scene.objects},
+            {kSlotMeshes, scene.meshes}});
+    }
+    computeWriteToComputeReadWrite(commands);
+  }
+  run_(commands, shaders::kLink, pairs,
+       {{kSlotStates, lists_.states},
+        {kSlotHeads, heads_},
+        {kSlotCounts, lists_.counts},
+        {kSlotRefinedPairs, lists_.refinedPairs}});
+  computeWriteToComputeReadWrite(commands);
+  stage("resolve");
+  for (const Shader* shader : {&shaders::kResolve, &shaders::kDescribe}) {
+    if (shader == &shaders::kDescribe) {
+      if (!device_->doubles) break;
+      computeWriteToComputeReadWrite(commands);
+    }
+    run_(commands, *shader, gpu::groupsFor(sensorCount_, kContactGroup), ResolvePush{sensorCount_, unresolvedRoom_},
+         {{kSlotStates, lists_.states},
+          {kSlotHeads, heads_},
+          {kSlotCounts, lists_.counts},
+          {kSlotRefinedPairs, lists_.refinedPairs},
+          {kSlotVertices, scene.vertices},
+          {kSlotTriangles, scene.triangles},
+          {kSlotSweeps, lists_.sweeps},
+          {kSlotObjects, scene.objects},
+          {kSlotResults, lists_.results},
+          {kSlotUnresolved, unresolved_}});
+  }
+}
+
+std::span<const gpu::UnresolvedPair> PairSolver::unresolved(const gpu::SearchCounts& counts) const {
+  return {unresolved_.mapped(), std::min(counts.unresolved, unresolvedRoom_)};
+}
+
+}  // namespace radar

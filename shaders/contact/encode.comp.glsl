@@ -92,9 +92,12 @@ uint encode(uint i, StatedSearch s, out uint hi) {
     return kSearchOutOfRange;
   }
   const float tolerance = min(s.tolerance, 2.00001e-6 * max(box.halfExtent.x, max(box.halfExtent.y, box.halfExtent.z)));
-  sensor.frame = vec4[3](vec4(s.across, s.clearance * sensor.scale), vec4(s.upwards, s.slackShare),
-                         vec4(s.direction, tolerance * sensor.scale));
-  sensor.direction = s.direction;
+  sensor.across = s.across;
+  sensor.clearance = s.clearance * sensor.scale;
+  sensor.upwards = s.upwards;
+  sensor.slackShare = s.slackShare;
+  sensor.along = sensor.direction = s.direction;
+  sensor.tolerance = tolerance * sensor.scale;
   sensor.centre = box.centre;
   // 2^-44 of what is placed far away.
   const vec3 halfExtent = 1.000001 * (box.halfExtent + s.slack) + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + 1e-37;

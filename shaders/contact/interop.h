@@ -39,9 +39,12 @@ struct StatedSearch {
 // The input of a search.
 struct Sensor {
   Placement placement;
-  Rows frame;      // world axes of the sensor's frame: across, across, along the motion; in [3] of the first row: the
-                   // clearance, scaled, rounded up; of the second: by how much a default slack may move a corner, as a share
-                   // of both placements' errors; of the third: the clearance's tolerance, scaled, rounded up
+  Point across;    // unit axes of the sensor's frame in the world: across the motion, across, along
+  float clearance; // scaled, rounded up
+  Point upwards;
+  float slackShare;  // by how much a default slack may move a corner, as a share of both placements' errors
+  Point along;
+  float tolerance; // of the clearance, scaled, rounded up
   Point direction; // unit, world
   float scale;
   Point centre;    // of the sensor's box in the world, about the anchor of the tree over objects

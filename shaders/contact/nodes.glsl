@@ -29,7 +29,7 @@ uvec4 objectBits(uint object, int texel) { return texelFetch(placementTexels, in
 vec4 objectTexel(uint object, int texel) { return uintBitsToFloat(objectBits(object, texel)); }
 
 // Texels of a Sensor, its placement's first.
-const int kTexelFrame = 12, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
+const int kTexelAcross = 12, kTexelUpwards = 13, kTexelAlong = 14, kTexelDirection = 15, kTexelCentre = 16, kTexelHalfExtent = 17, kTexelMask = 18;
 uvec4 sensorBits(uint sensor, int texel) { return texelFetch(sensorTexels, int(kSensorTexels * sensor) + texel); }
 vec4 sensorTexel(uint sensor, int texel) { return uintBitsToFloat(sensorBits(sensor, texel)); }
 

@@ -43,7 +43,7 @@ layout(push_constant) uniform PushConstants { SearchPush push; };
 
 // A sensor's clearance, scaled, rounded up.
 #ifdef RADAR_CLEARANCES
-float clearanceOf(uint sensor) { return sensorTexel(sensor, kTexelFrame).w; }
+float clearanceOf(uint sensor) { return sensorTexel(sensor, kTexelAcross).w; }
 #else
 float clearanceOf(uint sensor) { return 0.0; }
 #endif
@@ -412,7 +412,7 @@ void solvePairs(bool all) {
         if (within.by == 0.0 || (m.ahead && lastOf(m) < 0.0)) atomicOr(states[pair.w].flags, kSearchWithin);
         low = within.low;
         // Pairs whose brackets begin this late do not widen that of the answer (ClearanceContact::consider).
-        by = min(by, within.by) * 1.000001 + sensorTexel(pair.w, kTexelFrame + 2).w;
+        by = min(by, within.by) * 1.000001 + sensorTexel(pair.w, kTexelAlong).w;
         isOver = false;
       }
 #endif

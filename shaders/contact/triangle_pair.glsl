@@ -39,10 +39,10 @@ PairFrame pairFrameOf(uint sensor, uint object, vec3 vertexA, vec3 vertexB) {
   const vec4 fb0 = objectTexel(object, kTexelFine), fb1 = objectTexel(object, kTexelFine + 1),
              fb2 = objectTexel(object, kTexelFine + 2);
   const vec4 originA = sensorTexel(sensor, kTexelOrigin), originB = objectTexel(object, kTexelOrigin);
-  const mat3 frame = rows(sensorTexel(sensor, kTexelFrame).xyz, sensorTexel(sensor, kTexelFrame + 1).xyz,
-                          sensorTexel(sensor, kTexelFrame + 2).xyz);
+  const mat3 frame = rows(sensorTexel(sensor, kTexelAcross).xyz, sensorTexel(sensor, kTexelUpwards).xyz,
+                          sensorTexel(sensor, kTexelAlong).xyz);
   const float scale = sensorTexel(sensor, kTexelDirection).w;
-  const float slack = sensorTexel(sensor, kTexelFrame + 1).w * scale *
+  const float slack = sensorTexel(sensor, kTexelUpwards).w * scale *
                       (sensorTexel(sensor, kTexelError).x + objectTexel(object, kTexelError).x);
   PairFrame f;
   f.originA = originA.xyz;

@@ -54,14 +54,14 @@ Row unitOf(const std::array<double, 3>& direction) {
 /// The frame's rows are orthonormal and turn the direction to z, within little more than the rounding of its floats,
 /// for which the margins of the search have room.
 void checkFrame(const gpu::Sensor& sensor, const std::array<double, 3>& direction, Real& worst) {
+  CHECK(std::max({sensor.clearance, sensor.slackShare, sensor.tolerance}) == 0);
   const Row unit = unitOf(direction);
-  const Row rows[3] = {rowOf(&sensor.frame[0]), rowOf(&sensor.frame[4]), rowOf(&sensor.frame[8])};
+  const Row rows[3] = {rowOf(sensor.across), rowOf(sensor.upwards), rowOf(sensor.along)};
   for (int row = 0; row < 3; ++row) {
     const Real off = std::abs(dot(rows[row], unit) - (row == 2 ? 1 : 0));
     worst = std::max(worst, off);
     CHECK(off < 1.5 * 0x1p-24L);
-    CHECK(sensor.frame[4 * row + 3] == 0);
-    CHECK(sensor.direction[row] == sensor.frame[8 + row]);
+    CHECK(sensor.direction[row] == sensor.along[row]);
     for (int other = 0; other < row; ++other) CHECK(std::abs(dot(rows[row], rows[other])) < 0x1p-22L);
     CHECK(std::abs(dot(rows[row], rows[row]) - 1) < 0x1p-22L);
   }

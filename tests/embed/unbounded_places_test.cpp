@@ -185,18 +185,18 @@ TEST_CASE("the device places what a host deforms without bounds as precisely as 
     };
     CHECK((sensor.distance >= clipped && sensor.distance <= 1.00001 * clipped));
     CHECK(double{sweep.start} == Approx(clipped).epsilon(2e-6));
-    checkScaled(sensor.frame[3], encoded.frame[3]);
+    checkScaled(sensor.clearance, encoded.clearance);
     if (query.anyHit) CHECK(double{sensor.stopBefore} == Approx(clipped).epsilon(2e-6));
     if (!query.anyHit) CHECK(sensor.stopBefore == -1);
-    CHECK(sensor.frame[7] == encoded.frame[7]);
+    CHECK(sensor.slackShare == encoded.slackShare);
     CHECK((sweep.start <= way || !motion.isStep));
     CHECK((sensor.stopBefore <= way));
     if (way > 0) CHECK(sweep.stepPerUnit * way <= (motion.isStep ? 1 : 0));
     if (way > 0) CHECK(double{sweep.stepPerUnit} * ratio == Approx(encodedSweep.stepPerUnit).epsilon(1e-5));
-    CHECK(sensor.frame[3] >= query.clearance * sensor.scale);
+    CHECK(sensor.clearance >= query.clearance * sensor.scale);
     if (query.clearance > 0) {
-      CHECK(sensor.frame[11] >= cpu::toleranceOf(query, impl.meshes[query.mesh]) * sensor.scale);
-      CHECK(sensor.frame[11] <= 1.001 * query.tolerance.value_or(1e38) * sensor.scale);
+      CHECK(sensor.tolerance >= cpu::toleranceOf(query, impl.meshes[query.mesh]) * sensor.scale);
+      CHECK(sensor.tolerance <= 1.001 * query.tolerance.value_or(1e38) * sensor.scale);
     }
     if (query.slack) CHECK(sensor.placement.error >= 2 * *query.slack);
     if (query.ignoreLeaving && test::device().doubles())

@@ -175,7 +175,7 @@ std::array<Place, 3> frameOf(const gpu::Sensor& sensor, const std::array<double,
     return p;
   };
   const Place z = unit({direction[0], direction[1], direction[2]});
-  Place x{sensor.frame[0], sensor.frame[1], sensor.frame[2]};
+  Place x{sensor.across[0], sensor.across[1], sensor.across[2]};
   const Real along = dot(x, z);
   for (int k = 0; k < 3; ++k) x[k] -= along * z[k];
   x = unit(x);

@@ -240,7 +240,7 @@ def positions(sources):
     texels = {
         sources.value("kTexelError"): Vector([known(bound, nonnegative=True)] + ones[1:]),
         # The slack, which the frame's second row holds, is for something else.
-        sources.value("kTexelFrame") + 1: Vector(map(exactly, (1, 1, 1, 0))),
+        sources.value("kTexelUpwards"): Vector(map(exactly, (1, 1, 1, 0))),
     }
     frame = frame_of(sources, lambda _, number: texels.get(number, ones), exactly(0))
     for side in "AB":

@@ -38,7 +38,7 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
   const uint32_t queue = std::max(room.queue != 0 ? room.queue : std::max(8 * lanes, 128u), 6 * lanes);
   const uint32_t stack = room.stack != 0 ? std::max(room.stack, 4u) : 40;
   const gpu::Shader& shader = hasClearances ? shaders::kSearchWithClearance : shaders::kSearch;
-  return {shader, {lanes, queue, stack}, gpu::Subgroups::full};
+  return {shader, {lanes, queue, stack, room.countsWork ? 1u : 0u}, gpu::Subgroups::full};
 }
 
 }  // namespace

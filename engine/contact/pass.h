@@ -21,6 +21,7 @@ struct SearchRoom {
   uint32_t width = 0;       ///< below this number, tasks are split early
   uint32_t queue = 0;       ///< waiting pairs per workgroup
   uint32_t stack = 0;       ///< entries per lane
+  bool countsWork = false;  ///< SearchCounts::done and steps
   /// The time, in place of the machine's: then the device is hurried (Pace), even if it runs on the CPU.
   std::function<std::chrono::steady_clock::time_point()> now;
 };

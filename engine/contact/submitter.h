@@ -44,10 +44,11 @@ class ContactSubmitter {
   /// had no room or range for.
   SearchAnswers collect(std::vector<StageTime>& stages);
   uint32_t submissions() const { return submissions_; }  ///< made for the last batch
+  /// Of the last batch, once collected.
+  const gpu::SearchCounts& counts() const;
 
  private:
   void recordAndSubmit();
-  const gpu::SearchCounts& counts() const;
 
   GpuScene& scene_;
   decltype(SearchRoom::now) now_;  ///< the machine's clock, if there is no other

@@ -25,7 +25,6 @@ using Triangle = std::array<Vector, 3>;
 struct PairName {
   ObjectId object = kNone;
   uint32_t triB = kNone, triA = kNone;
-  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the zero compared with for a pointer
   friend auto operator<=>(const PairName&, const PairName&) = default;
 };
 

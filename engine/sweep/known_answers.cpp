@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <span>
 
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
@@ -75,10 +75,10 @@ Shape sheet(Numbers& numbers) {
   constexpr uint32_t kSide = 5;
   Shape shape;
   for (uint32_t i = 0; i < kSide * kSide; ++i) {
-    const double x = i % kSide, y = i / kSide;
+    const uint32_t column = i % kSide, row = i / kSide;
     shape.positions.insert(shape.positions.end(),
-                           {static_cast<float>(x - 2), static_cast<float>(y - 2), numbers.near(0, 0.2)});
-    if (i % kSide == kSide - 1 || i / kSide == kSide - 1) continue;
+                           {static_cast<float>(column) - 2, static_cast<float>(row) - 2, numbers.near(0, 0.2)});
+    if (column == kSide - 1 || row == kSide - 1) continue;
     for (const uint32_t corner : {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide})
       shape.indices.push_back(corner);
   }
@@ -160,7 +160,8 @@ AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<cons
   for (size_t i = 0; i < exact.size(); ++i) {
     Result same = exact[i];
     same.tier = found[i].tier;
-    if (std::memcmp(&found[i], &same, sizeof(Result)) == 0) continue;  // a Result has no padding
+    // A Result has no padding.
+    if (std::ranges::equal(std::as_bytes(std::span(&found[i], 1)), std::as_bytes(std::span(&same, 1)))) continue;
     ++check.wrong;
     if (check.wrong > 1) continue;
     const auto words = [](const Result& result) {

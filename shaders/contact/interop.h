@@ -164,6 +164,15 @@ INTEROP_CONST kBrokenSubgroups = 1;
 INTEROP_CONST kBrokenLoops = 2;
 INTEROP_CONST kBrokenLanes = 3;
 
+// What lanes of the search do, one at a time: test a node of the tree over objects, enter an object, test a pair of nodes, of
+// leaves; solve a pair of triangles.
+INTEROP_CONST kWorkObjectNode = 0;
+INTEROP_CONST kWorkObject = 1;
+INTEROP_CONST kWorkNodePair = 2;
+INTEROP_CONST kWorkLeafPair = 3;
+INTEROP_CONST kWorkSolve = 4;
+INTEROP_CONST kWorks = 5;
+
 // Counts of a submission.
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
@@ -178,6 +187,8 @@ struct SearchCounts {
   uint trianglePairs;    // tested; low word
   uint trianglePairsHigh;
   uint queries;          // written by a host's shader, as far as they count
+  uint done[kWorks];     // times a lane did it, if the search counts its work;
+  uint steps[kWorks];    // and times that it could have, had it had something to do
   SearchRound rounds[kMostRounds + 1];
 };
 

@@ -27,6 +27,7 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint kLanes = 32;
 layout(constant_id = 1) const uint kQueue = 256;     // pairs in each queue: at least 6 times the lanes
 layout(constant_id = 2) const uint kStack = 40;      // entries of a lane: at least 4
+layout(constant_id = 3) const bool kCountsWork = false;
 
 // Other workgroups lower what is here. To have missed that costs time only.
 layout(scalar, binding = kSlotStates) coherent restrict buffer States { SearchState states[]; };
@@ -87,6 +88,13 @@ MeshPair meshes;
 const MeshPair kNoMeshes = MeshPair(mat3(0.0), mat3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0),
                                     vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, false);
 uint trianglePairs;
+uint done[kWorks], steps[kWorks];    // see SearchCounts
+
+void countWork(uint what, bool does) {
+  if (!kCountsWork) return;
+  done[what] += uint(does);
+  ++steps[what];
+}
 
 uint countOf(bool has) { return subgroupBallotBitCount(subgroupBallot(has)); }
 void meet() { whole = whole && countOf(true) == kLanes; }
@@ -225,6 +233,7 @@ uint findObjects(uint named) {
     const uint count = countOf(searching);
     if (count == 0 || (count < kFew && step > 0)) break;
     ++work;
+    countWork(kWorkObjectNode, searching);
     if (searching) {
       const uvec3 entry = stack[--depth];
       const bool near = uintBitsToFloat(entry.z) <= limit, leaf = isLeaf(entry.y);
@@ -273,7 +282,9 @@ void enterObjects(uint named, bool resumes) {
   // All lanes run the loop over excluded objects.
   const bool enters = isEligible(named == kNobody ? 0 : named) && named != kNobody;
   if (enters) object = named;
-  if (enters || (resumes && (current.x != kNobody || depth > objectDepth))) {
+  const bool places = enters || (resumes && (current.x != kNobody || depth > objectDepth));
+  countWork(kWorkObject, places);
+  if (places) {
     meshes = meshPairOf(sensor, object);
     if (!meshes.inRange) {
       atomicOr(states[sensor].flags, kSearchOutOfRange);
@@ -302,7 +313,9 @@ void descend() {
       bool leaves = false;
       uint linkA = 0, linkB = 0;
       float gap = 0.0;
-      if (near && (child == 0 || !areRoots)) {
+      const bool tests = near && (child == 0 || !areRoots);
+      countWork(kWorkNodePair, tests);
+      if (tests) {
         const uint ia = (current.x & kLinkItem) + (intoA ? child : 0), ib = current.y + (intoA ? 0 : child);
         const Node a = nodeAt(ia), b = nodeAt(ib);
         const Approach approach = approachOf(meshes, a, b, limit);
@@ -338,6 +351,7 @@ void tryLeaves(bool all) {
   while ((leafTail - leafHead >= kLanes || (all && leafTail != leafHead)) && pairTail - pairHead + 4 * kLanes <= kQueue) {
     work += kLeafIterations;
     const uint at = leafHead + gl_SubgroupInvocationID;
+    countWork(kWorkLeafPair, at < leafTail);
     uint meets = 0;  // bit 2 i + j: triangle i of a may meet triangle j of b
     uvec4 leaf = uvec4(0);
     if (at < leafTail) {
@@ -389,6 +403,7 @@ void solvePairs(bool all) {
   while (pairTail - pairHead >= kLanes || (all && pairTail != pairHead)) {
     work += kSolveIterations;
     const uint at = pairHead + gl_SubgroupInvocationID;
+    countWork(kWorkSolve, at < pairTail);
     bool keeps = false;
     float low = 0.0;
     uint feature = kNobody;
@@ -439,6 +454,10 @@ bool loopsEnd() {
 void addCount() {
   const uint before = atomicAdd(counts.trianglePairs, trianglePairs);
   if (before + trianglePairs < before) atomicAdd(counts.trianglePairsHigh, 1);
+  for (uint what = 0; kCountsWork && what < kWorks; ++what) {
+    atomicAdd(counts.done[what], done[what]);
+    atomicAdd(counts.steps[what], steps[what]);
+  }
 }
 
 void main() {
@@ -460,6 +479,7 @@ void main() {
   limit = 0.0;
   least = kNobody;
   trianglePairs = 0;
+  for (uint what = 0; kCountsWork && what < kWorks; ++what) done[what] = steps[what] = 0;
   bool last = false;
   while (!last) {
     bool idle = false, resumes = true;

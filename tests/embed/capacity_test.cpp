@@ -209,12 +209,9 @@ TEST_CASE("an object that floats cannot represent gives Flag::range only to the 
   add(cube, 20, 1, 1e-40);
   add(mountain, 30, 0x1p-100, 0x1p-100);
   add(cube, 40, 1, 1);
-  std::vector<Query> queries;
+  std::vector<Query> queries(5, {.mesh = cube, .direction = {0, 0.01, 1}, .distance = 20});
   for (int i = 0; i < 5; ++i) {
-    queries.push_back({.mesh = cube,
-                       .worldFromMesh = {{0.9, 0.1, 0.2, 10.0 * i, -0.1, 0.9, 0.3, 0, -0.2, -0.3, 0.9, 0}},
-                       .direction = {0, 0.01, 1},
-                       .distance = 20});
+    queries[i].worldFromMesh = {{0.9, 0.1, 0.2, 10.0 * i, -0.1, 0.9, 0.3, 0, -0.2, -0.3, 0.9, 0}};
   }
   const std::vector<Result> truth = test::expectedOf(scene, queries);
   for (const Result& result : truth) CHECK(result.status == Status::hit);

@@ -79,7 +79,7 @@ struct LeastDevice {
 
 /// Answers have the CPU's bits, but for the tier.
 Answers checkCpus(Sweeper& sweeper, const Scene& scene, const std::vector<Query>& queries) {
-  const Answers found = sweeper.run(queries);
+  Answers found = sweeper.run(queries);
   fuzz::requireSame(found, CpuSweeper(scene).run(queries));
   return found;
 }

@@ -38,7 +38,7 @@ template <class AttemptAt>
 int64_t failEach(const AttemptAt& attemptAt) {
   for (int64_t n = 0;; ++n) {
     CAPTURE(n);
-    const Attempt made = attemptAt(n);
+    Attempt made = attemptAt(n);
     CHECK(made.failed >= made.threw);
     if (!made.failed) return n;
   }

@@ -80,7 +80,7 @@ TEST_CASE(
       queries.answersBy(other);
       growing.grow(hasNewMesh);
       Answers found;
-      const Attempt made = attempt(Of::device, n, [&] { found = queries.answersBy(other); });
+      Attempt made = attempt(Of::device, n, [&] { found = queries.answersBy(other); });
       CAPTURE(made.function);
       CHECK_FALSE(made.threw);
       checkAnswers(found, expected, test::shortage(n));
@@ -150,7 +150,7 @@ TEST_CASE(
     const HostGeometry geometry = world.geometry();
     const std::vector<Query> queries = world.queries(16);
     const gpu::Commands commands = submission.begin();
-    const Attempt made = attempt(of, n, [&] { recorder.record(commands, queries, geometry); });
+    Attempt made = attempt(of, n, [&] { recorder.record(commands, queries, geometry); });
     if (made.failed) {
       recorder.reset();
       recorder.record(submission.begin(), queries, geometry);
@@ -173,7 +173,7 @@ TEST_CASE("whichever call of the device, or allocation, fails while setting up, 
     setUp();
     const int64_t objects = test::liveVulkanObjects(), blocks = test::host_memory::live();
     return failEach([&](int64_t n) {
-      const Attempt made = attempt(of, n, setUp);
+      Attempt made = attempt(of, n, setUp);
       const bool waitsAgain = made.function == "vkWaitForFences";
       if (of == Of::device && made.failed) CHECK((made.threw || waitsAgain));
       CHECK(test::liveVulkanObjects() == objects);

@@ -25,9 +25,9 @@ int64_t live();
 
 /// What became of a call of which one request was to fail.
 struct Attempt {
-  bool failed = false;        ///< there were enough requests for one to fail
-  bool threw = false;         ///< because of it
-  std::string function = "";  ///< of the device, that failed
+  bool failed = false;   ///< there were enough requests for one to fail
+  bool threw = false;    ///< because of it
+  std::string function;  ///< of the device, that failed
 };
 
 /// Makes request number `n` of a call for host memory fail; it may throw std::bad_alloc then.

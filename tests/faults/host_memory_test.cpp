@@ -92,7 +92,7 @@ TEST_CASE("whichever allocation of an edit fails, the scene is as it was, and th
       CHECK(sameContacts(onDevice.run(queries), expected));
     };
     failed += failEach([&](int64_t n) {
-      const Attempt made = attempt(Of::host, n, [&] { change(scene); });
+      Attempt made = attempt(Of::host, n, [&] { change(scene); });
       if (made.threw) {
         CHECK(scene.meshLimit() <= reference.meshLimit() + 1);
         checkSame();
@@ -122,7 +122,7 @@ TEST_CASE("whichever allocation of a batch fails, the same sweeper then answers 
     return failEach([&](int64_t n) {
       changing.change();
       Answers found;
-      const Attempt made = attempt(Of::host, n, [&] { found = ask(); });
+      Attempt made = attempt(Of::host, n, [&] { found = ask(); });
       if (made.threw) found = ask();
       CHECK(sameBits(found, expected.at(changing.isChanged)));
       return made;
@@ -139,7 +139,7 @@ TEST_CASE("whichever allocation of a batch fails, the same sweeper then answers 
 TEST_CASE("if threads cannot be started, a parallel loop does its work on those that run") {
   for (int64_t n = 0; n < 12; ++n) {
     std::atomic<size_t> done = 0;
-    const Attempt made = attempt(Of::host, n, [&] {
+    Attempt made = attempt(Of::host, n, [&] {
       parallelFor(1000, 1, 4, [&](unsigned, size_t first, size_t last) { done += last - first; });
     });
     CAPTURE(n);
@@ -161,7 +161,7 @@ TEST_CASE("whichever allocation of a batch with lists fails, a later and shorter
   Sweeper sweeper(test::watchedDevice(), scene, {.cpuBatch = 0});
   const Answers expected = sweeper.run(later);
   const int64_t failed = failEach([&](int64_t n) {
-    const Attempt made = attempt(Of::host, n, [&] { sweeper.run(queries); });
+    Attempt made = attempt(Of::host, n, [&] { sweeper.run(queries); });
     CHECK(sameBits(sweeper.run(later), expected));
     return made;
   });

@@ -42,7 +42,7 @@ TEST_CASE("a shared object is created once per device, for all callers and threa
     CHECK(Counted::made == 1);
     for (const Counted* one : found) CHECK(one == found[0]);
     CHECK(own.impl().shared<AsksForAnother>().other == found[0]);
-    gpu::Passes(own.impl(), {test::kScaleOf64});  // the layers report its pipeline if that outlives the device
+    const gpu::Passes passes(own.impl(), {test::kScaleOf64});  // the layers report a pipeline that outlives the device
     CHECK(&test::impl().shared<Counted>() != found[0]);
     CHECK(Counted::made == 2);
     CHECK(Counted::destroyed == 0);

@@ -48,7 +48,8 @@ inline std::vector<Case> cases() {
     row.push_back({{x, 0, 4}, {x + 1, 1, 5}});
   }
   for (int i = 1023; i >= 0; --i) {
-    const double x = 2 * (i % 32), y = 2.0 * (i / 32);
+    const int column = i % 32, line = i / 32;
+    const double x = 2 * column, y = 2 * line;
     field.push_back({{x, y, 4}, {x + 1, y + 1, 5}});
   }
   return {

@@ -51,7 +51,7 @@ std::vector<Case> frontCases(Extent extent) {
   const auto add = [&](const char* name, const std::string& about, std::function<Workload()> make) {
     cases.push_back({.section = "front", .workload = name, .about = about, .make = std::move(make)});
   };
-  const auto addFamilies = [&](const char* name, const char* about, std::vector<const char*> families,
+  const auto addFamilies = [&](const char* name, const char* about, const std::vector<const char*>& families,
                                Company company) {
     add(name, about, [=] { return familyScenes(families, extent, company); });
   };

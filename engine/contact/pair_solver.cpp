@@ -36,13 +36,13 @@ PairSolver::PairSolver(const Device::Impl& device, GpuScene& scene)
              .results{device, "results", BufferDomain::device, kReadBack}},
       heads_(device, "refined pair lists", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
       unresolved_(device, "unresolved pairs", BufferDomain::readback) {
-  lists_.counts.reserve(1);
   if (device.doubles) run_.reserve(kPrecise);
 }
 
 void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uint32_t unresolved) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
   unresolvedRoom_ = static_cast<uint32_t>(std::min<uint64_t>(unresolved, limit / sizeof(gpu::UnresolvedPair)));
+  lists_.counts.reserve(1);
   lists_.sweeps.reserve(sensors);
   lists_.states.reserve(sensors);
   heads_.reserve(sensors);
@@ -55,6 +55,7 @@ void PairSolver::begin(uint32_t sensors, gpu::Upload& upload) {
   sensorCount_ = sensors;
   gpu::SearchCounts counts{};
   counts.refineGroups[2] = counts.blockGroups[2] = 1;
+  lists_.counts.reserve(1);
   upload.add(&counts, sizeof(counts), lists_.counts);
   run_.begin();
 }

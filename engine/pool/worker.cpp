@@ -89,12 +89,24 @@ bool Worker::serve() {
   return true;
 }
 
+void Worker::makeSweep(Lane& lane) {
+  try {
+    lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
+  } catch (const Error& error) {
+    if (!gpu::isOutOfMemory(error) || queue_.leave(number_)) throw;
+    SweeperOptions onCpu = options_;
+    onCpu.cpuBatch = kNone - 1;
+    lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, onCpu, copy_, SearchRoom{}, false);
+    lane.isMakeshift = true;
+  }
+}
+
 void Worker::begin(Lane& lane, Chunk chunk) {
   lane.chunk = std::move(chunk);
   ++inFlight_;
   lane.trace = {.device = number_, .queries = static_cast<uint32_t>(lane.chunk.count), .begun = queue_.now()};
   if (!copy_) copy_ = std::make_shared<GpuScene>(device_.impl());
-  if (!lane.sweep) lane.sweep = std::make_unique<Sweeper::Impl>(device_.impl(), scene_, options_, copy_);
+  if (!lane.sweep) makeSweep(lane);
   // The scene changes only while nothing is in flight, so the copy that both lanes use may be written now.
   if (const uint64_t version = scene_.version(); version != seenVersion_) {
     const std::optional<Error> error = lane.sweep->sync();
@@ -129,6 +141,7 @@ void Worker::finish(Lane& lane) {
   const double deviceMs = warm || !usedDevice ? lane.trace.done - std::max(lane.trace.begun, lastDone_) : 0;
   warm = warm || usedDevice;
   lastDone_ = lane.trace.done;
+  if (std::exchange(lane.isMakeshift, false)) lane.sweep.reset();
   oldest_ = (oldest_ + 1) % kLanes;
   --inFlight_;
   queue_.deliver(std::exchange(lane.chunk, {}), std::move(flight.answers), std::move(lane.trace), deviceMs);

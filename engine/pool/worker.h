@@ -22,6 +22,7 @@ class Worker {
   static constexpr size_t kLanes = 2;
   struct Lane {
     std::unique_ptr<Sweeper::Impl> sweep;  // made on first use, since pipelines take time
+    bool isMakeshift = false;              // it answers on the CPU: the device lacked memory to prove itself
     Chunk chunk;
     std::optional<Flight> flight;
     ChunkTrace trace;
@@ -31,6 +32,7 @@ class Worker {
   void run();
   bool serve();
   void begin(Lane& lane, Chunk chunk);
+  void makeSweep(Lane& lane);
   void finish(Lane& lane);
   void endLanes();
   void abandon(const std::exception_ptr& exception);

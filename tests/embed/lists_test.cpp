@@ -67,7 +67,7 @@ void checkOnDevice(const Recorder& recorder, const Recorded& recorded, uint32_t 
 
 Recorded check(Recorder& recorder, const std::vector<Query>& queries, const Answers& expected, fuzz::Outcomes& outcomes,
                const HostGeometry& geometry = {}) {
-  const Recorded recorded = execute(recorder, queries, geometry);
+  Recorded recorded = execute(recorder, queries, geometry);
   fuzz::checkRecorded(queries, recorded, expected, outcomes);
   for (uint32_t i = 0; i < queries.size(); ++i) {
     CAPTURE(i);

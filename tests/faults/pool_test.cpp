@@ -162,6 +162,22 @@ TEST_CASE("queries for which every device is out of memory are invalid, and one 
   CHECK_FALSE(std::ranges::all_of(pool.devices(), isRetired));
 }
 
+TEST_CASE("devices that lack memory to prove themselves leave mode contact to the CPU, and one stays in use") {
+  const Asked& two = asked();
+  const Answers expected = Sweeper(twoDevices()[0], two.scene, kOnDevice).run(two.queries.contact);
+  Pool pool(twoDevices(), two.scene, kOnDevice);
+  {
+    const VulkanFault fault(0, VK_ERROR_OUT_OF_DEVICE_MEMORY, VulkanFault::When::onwards, {.name = "vkAllocateMemory"});
+    CHECK_FALSE(pool.submit(test::sampledQueries(30), Mode::sampled).get().reasons.empty());
+    CHECK(sameBits(pool.submit(two.queries.contact).get(), expected));
+  }
+  const PoolAnswers answers = pool.submit(two.queries.contact).get();
+  CHECK(sameBits(answers, expected));
+  CHECK(answers.stats.submissions > 0);
+  CHECK(pool.submit(test::sampledQueries(30), Mode::sampled).get().reasons.empty());
+  CHECK_FALSE(std::ranges::all_of(pool.devices(), isRetired));
+}
+
 TEST_CASE("whichever request of a pool's threads for memory fails, it throws or answers, and then answers again") {
   const Asked& two = asked();
   const test::EngineWork counting;  // the pool's threads count, too

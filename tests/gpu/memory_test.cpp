@@ -63,6 +63,16 @@ struct Teapots : test::Case {
 
 }  // namespace
 
+TEST_CASE("a Sweeper whose first batch finds no memory on the device says so in the answers") {
+  const Teapots teapots(24, Mode::sampled);
+  const ScarceMemory scarce;
+  ScarceMemory::most = 0;
+  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
+  const Answers answers = sweeper.run(teapots.queries, teapots.mode);
+  CHECK_FALSE(answers.reasons.empty());
+  for (const auto& [i, reason] : answers.reasons) CHECK(answers.results[i].status == Status::invalid);
+}
+
 TEST_CASE("queries of mode contact that do not fit the device's memory are answered on the CPU, later ones there") {
   const Teapots teapots(64, Mode::contact);
   Sweeper sweeper(test::device(), teapots.scene, kOnDevice);

@@ -113,7 +113,8 @@ TEST_CASE("the blocking graph of a burr puzzle is the known one, and peeling tak
     for (size_t piece = 0; piece < pieces.size(); ++piece) {
       if (std::find(removed.begin(), removed.end(), piece) != removed.end()) continue;
       for (int i = 0; i < 27; ++i) {
-        const Vec3 direction{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+        const int x = i % 3, y = i / 3 % 3, z = i / 9;
+        const Vec3 direction{x - 1.0, y - 1.0, z - 1.0};
         if (direction == Vec3{}) continue;
         Query query{.mesh = meshes[piece], .direction = direction, .distance = 100, .exclude = removed};
         query.exclude.push_back(static_cast<ObjectId>(piece));

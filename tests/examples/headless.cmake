@@ -1,0 +1,22 @@
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+run(${PROGRAM} --headless --agents 48 --frames 1000 --every 500 --size 160x90 --show normals --out made/pictures)
+expect_quiet("48 agents, 16 of them walkers" "queries: [1-9][0-9]+, without an answer: 0\n"
+  "checks by the CPU: 20, crossings: 0\n")
+file(GLOB files RELATIVE ${FOLDER}/made/pictures ${FOLDER}/made/pictures/*)
+list(SORT files)
+if(NOT files STREQUAL "film.gif;frame-000000.png;frame-000500.png")
+  message(FATAL_ERROR "expected a film and two pictures, got ${files}")
+endif()
+foreach(file ${files})
+  file(READ ${FOLDER}/made/pictures/${file} begin LIMIT 8 HEX)
+  if(NOT begin MATCHES "^(474946383961|89504e470d0a1a0a)")
+    message(FATAL_ERROR "${file} begins with ${begin}")
+  endif()
+endforeach()
+# Agents have moved, so the pictures differ.
+file(MD5 ${FOLDER}/made/pictures/frame-000000.png first)
+file(MD5 ${FOLDER}/made/pictures/frame-000500.png second)
+if(first STREQUAL second)
+  message(FATAL_ERROR "both pictures are the same")
+endif()

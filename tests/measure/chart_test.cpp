@@ -61,7 +61,7 @@ std::vector<Cell> run(const test::ScratchFolder& folder) {
   size_t steps = 0;
   Json report = newReport("");
   measureCases(settings, report, folder.path(), [&] { ++steps; });
-  const std::vector<Cell> cells = cellsOf(report);
+  std::vector<Cell> cells = cellsOf(report);
   CHECK(steps == cells.size());
   CHECK(nlohmann::json::parse(folder.read("report.json"))["parts"][1]["rows"].size() == steps);
   return cells;

@@ -171,6 +171,7 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
   pictures.range.recordFirstUse(commands);
   pictures.mask.recordFirstUse(commands);
   gpu::uploadToRead(commands);
+  gpu::transferToComputeReadWrite(commands);
 
   record(commands, batch, pictures);
   gpu::computeWriteToCopy(commands);

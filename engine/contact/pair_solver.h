@@ -45,6 +45,9 @@ class PairSolver {
   std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const;
   uint32_t unresolvedRoom() const { return unresolvedRoom_; }
 
+  /// Where the results begin in a readback of counts, then results.
+  static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
+
  private:
   const Device::Impl* device_;
   GpuScene& scene_;

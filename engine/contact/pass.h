@@ -80,8 +80,6 @@ class ContactPass {
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
 
-  /// Where the results begin in a readback of counts, then results.
-  static constexpr VkDeviceSize kFirstResult = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
   /// Below lavapipe's limit (shaders/contact/search.glsl), with room for what is waiting when the budget ends.
   static constexpr uint32_t kMostBudget = 40'000;
   /// So that a round is brief on any GPU.

@@ -65,7 +65,7 @@ void ContactSubmitter::recordAndSubmit() {
   gpu::computeWriteToCopy(commands);
   stage("readback");
   const VkBufferCopy counts{0, 0, sizeof(gpu::SearchCounts)};
-  const VkBufferCopy results{0, ContactPass::kFirstResult, pass_.sensorCount() * sizeof(Result)};
+  const VkBufferCopy results{0, PairSolver::kFirstResult, pass_.sensorCount() * sizeof(Result)};
   commands->CmdCopyBuffer(commands, pass_.counts().get(), readback_.get(), 1, &counts);
   commands->CmdCopyBuffer(commands, pass_.results().get(), readback_.get(), 1, &results);
   gpu::writtenToHost(commands);
@@ -76,7 +76,7 @@ void ContactSubmitter::recordAndSubmit() {
 void ContactSubmitter::submit(const SensorBatch& batch, const Scene::Impl& scene) {
   submissions_ = 0;
   staged_ = pass_.stage(batch, {}, scene);
-  readback_.reserve(ContactPass::kFirstResult + batch.count() * sizeof(Result));
+  readback_.reserve(PairSolver::kFirstResult + batch.count() * sizeof(Result));
   recordAndSubmit();
 }
 
@@ -95,7 +95,7 @@ SearchAnswers ContactSubmitter::collect(std::vector<StageTime>& stages) {
   }
   const gpu::SearchCounts& all = counts();
   if (all.broken != 0) throw Error(wordsFor(all.broken), VK_ERROR_DEVICE_LOST);
-  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + ContactPass::kFirstResult);
+  const auto* results = reinterpret_cast<const Result*>(readback_.mapped() + PairSolver::kFirstResult);
   return {{results, pass_.sensorCount()},
           pass_.unresolved(all),
           pass_.learn(all),

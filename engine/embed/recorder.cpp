@@ -21,7 +21,7 @@ namespace {
 
 // Excluded objects per query for which memory is reserved in advance.
 constexpr uint32_t kExcluded = 8;
-constexpr VkDeviceSize kFirstResult = ContactPass::kFirstResult;
+constexpr VkDeviceSize kFirstResult = PairSolver::kFirstResult;
 SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
   return {.candidates = capacity.candidates,
           .unresolved = capacity.unresolvedPairs,

@@ -87,7 +87,7 @@ SampledSubmitter::Readback SampledSubmitter::readbackOf(const SampledBatch& batc
   const VkDeviceSize views = batch.views.size();
   const VkDeviceSize picture = scopes ? VkDeviceSize{batch.views[0].width} * batch.views[0].height * sizeof(float) : 0;
   Readback parts{};
-  parts.contacts = gpu::roundedUp(sizeof(gpu::SearchCounts), alignof(Result));
+  parts.contacts = PairSolver::kFirstResult;
   parts.answers = parts.contacts + views * sizeof(Result);
   parts.range = parts.answers + views * sizeof(gpu::Answer);
   parts.mask = parts.range + picture;
@@ -189,7 +189,7 @@ void SampledSubmitter::recordAndSubmit(const SampledBatch& batch, const Scene::I
     pictures.range.recordCopy(commands, layer, width, height, readback_.get(), parts.range);
     pictures.mask.recordCopy(commands, layer, width, height, readback_.get(), parts.mask);
   }
-  gpu::copyToHost(commands);
+  gpu::writtenToHost(commands);
   submission_.submit();
 }
 

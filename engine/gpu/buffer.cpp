@@ -66,9 +66,12 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   }
   // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
   // seldom made and filled anew.
-  const VkDeviceSize wanted = std::max(roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
-                                       roundedUp(capacity_ + capacity_ / 2, 256));
-  const VkDeviceSize size = std::min(std::max<VkDeviceSize>(wanted, 256), most);
+  VkDeviceSize wanted = std::max({roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
+                                  roundedUp(capacity_ + capacity_ / 2, 256), VkDeviceSize{256}});
+  // An odd number of times 256: lavapipe compiles a kernel anew for a texel buffer whose size is a power of two or a
+  // multiple of 64 KiB, if its sizes were neither before, and the other way round.
+  if ((usage_ & kAsTexels) != 0) wanted = roundedUp(wanted, 512) + 256;
+  const VkDeviceSize size = std::min(wanted, most);
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
   DeviceMemory owned;  // outlives the buffer in it, old or new
   VkBuffer handle;

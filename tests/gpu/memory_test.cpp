@@ -1,5 +1,6 @@
 // Devices without enough memory: the tests make the engine's allocations fail. Queries are answered even so.
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "gpu/buffer.h"
@@ -177,4 +178,16 @@ TEST_CASE("a buffer takes at most a quarter more memory than asked for, or half 
     REQUIRE(2 * buffer.capacity() <= 3 * bytes + 2 * 256);
   }
   CHECK(steps <= 20);
+}
+
+TEST_CASE("lavapipe compiles a kernel once, whatever the sizes of its texel buffers") {
+  for (VkDeviceSize bytes = 0; bytes < 10'000'000; bytes += 1 + bytes / 9) {
+    for (const VkDeviceSize asked : {bytes, std::bit_floor(bytes), gpu::roundedUp(bytes, 1u << 16)}) {
+      gpu::Buffer texels(test::device().impl(), "texels", gpu::BufferDomain::device, gpu::kAsTexels);
+      texels.reserve(asked);
+      REQUIRE(texels.capacity() >= asked);
+      REQUIRE_FALSE(std::has_single_bit(texels.capacity()));
+      REQUIRE(texels.capacity() % (1u << 16) >= 256);
+    }
+  }
 }

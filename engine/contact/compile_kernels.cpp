@@ -1,4 +1,7 @@
+#include "contact/compile_kernels.h"
+
 #include <algorithm>
+#include <string_view>
 
 #include "contact/pass.h"
 #include "math/float_environment.h"
@@ -8,7 +11,12 @@ namespace radar {
 
 namespace {
 
-// "contact/search 32 256 40 1".
+bool isIn(const char* folder, const gpu::Shader& shader) {
+  return std::string_view(shader.name).starts_with(folder);
+}
+
+}  // namespace
+
 std::string nameOf(const gpu::Program& program) {
   std::string name = program.shader->name;
   const auto& values = program.constants;
@@ -17,19 +25,29 @@ std::string nameOf(const gpu::Program& program) {
   return name;
 }
 
-}  // namespace
+std::vector<gpu::Program> programsOf(const Device::Impl& device, Mode mode) {
+  std::vector<gpu::Program> programs = ContactPass::programs(device);
+  // The others are never specialized.
+  for (const gpu::Shader* shader : shaders::kAll) {
+    const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
+    const bool runs = device.doubles || !shader->spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader->spirv);
+    const bool isUsed = isIn("sampled/", *shader)
+                            ? mode == Mode::sampled &&
+                                  (shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || shader == &gpu::depthShader(device))
+                            : !isIn("arithmetic/", *shader);
+    if (!isListed && runs && isUsed) programs.push_back(*shader);
+  }
+  return programs;
+}
 
 std::vector<KernelReport> compileKernels(uint32_t index) {
   const FloatEnvironment floats;
   const std::unique_ptr<Device::Impl> device = gpu::openForStatistics(index);
-  std::vector<gpu::Program> programs = ContactPass::programs(*device);
-  // The others are never specialized.
+  const bool isSampled = device->reasonsAgainstSampled.empty();
+  std::vector<gpu::Program> programs = programsOf(*device, isSampled ? Mode::sampled : Mode::contact);
   for (const gpu::Shader* shader : shaders::kAll) {
-    const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
-    const bool runs = device->doubles || !shader->spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader->spirv);
-    const bool isUsed = shader->stage == VK_SHADER_STAGE_COMPUTE_BIT ||
-                        (device->reasonsAgainstSampled.empty() && shader == &gpu::depthShader(*device));
-    if (!isListed && runs && isUsed) programs.push_back(*shader);
+    if (isIn("arithmetic/", *shader) && (device->doubles || !gpu::hasDoubles(shader->spirv)))
+      programs.push_back(*shader);
   }
   std::vector<KernelReport> reports;
   for (const gpu::Program& program : programs) {

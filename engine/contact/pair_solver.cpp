@@ -25,18 +25,18 @@ std::vector<gpu::Program> PairSolver::programs(const Device::Impl& device) {
   return all;
 }
 
-PairSolver::PairSolver(const Device::Impl& device, GpuScene& scene)
-    : device_(&device),
+PairSolver::PairSolver(const gpu::Owner& owner, GpuScene& scene)
+    : device_(&owner.device()),
       scene_(scene),
-      run_(device, {shaders::kLink, shaders::kResolve}),
-      lists_{.sweeps{device, "sweeps", BufferDomain::device, kReadBack},
-             .states{device, "search states", BufferDomain::device},
-             .refinedPairs{device, "refined pairs", BufferDomain::device},
-             .counts{device, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
-             .results{device, "results", BufferDomain::device, kReadBack}},
-      heads_(device, "refined pair lists", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      unresolved_(device, "unresolved pairs", BufferDomain::readback) {
-  if (device.doubles) run_.reserve(kPrecise);
+      run_(owner, {shaders::kLink, shaders::kResolve}),
+      lists_{.sweeps{owner, "sweeps", BufferDomain::device, kReadBack},
+             .states{owner, "search states", BufferDomain::device},
+             .refinedPairs{owner, "refined pairs", BufferDomain::device},
+             .counts{owner, "search counts", BufferDomain::device, kReadBack | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+             .results{owner, "results", BufferDomain::device, kReadBack}},
+      heads_(owner, "refined pair lists", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      unresolved_(owner, "unresolved pairs", BufferDomain::readback) {
+  if (owner.device().doubles) run_.reserve(kPrecise);
 }
 
 void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uint32_t unresolved) {

@@ -15,7 +15,7 @@ using OpenStage = std::function<void(const char*)>;
 
 class PairSolver {
  public:
-  PairSolver(const Device::Impl& device, GpuScene& scene);
+  PairSolver(const gpu::Owner& owner, GpuScene& scene);
 
   /// Every program that one may run on the device.
   static std::vector<gpu::Program> programs(const Device::Impl& device);

@@ -50,28 +50,29 @@ std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
   return all;
 }
 
-ContactPass::ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room)
-    : device_(&device),
+ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room)
+    : device_(&owner.device()),
       scene_(scene),
       room_(room),
-      search_(searchOf(device, room, false)),
-      searchWithClearance_(searchOf(device, room, true)),
+      search_(searchOf(owner, room, false)),
+      searchWithClearance_(searchOf(owner, room, true)),
       // Rounds alternate between two lists of tasks.
-      run_(device, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter}),
-      upload_(device),
-      stated_(device, "stated searches", BufferDomain::device, kUploaded),
-      sensors_(device, "sensors", BufferDomain::device, gpu::kAsTexels),
-      excluded_(device, "excluded objects", BufferDomain::device, kUploaded),
-      tasks_(device, "search tasks", BufferDomain::device),
-      spilled_(device, "spilled search tasks", BufferDomain::device),
-      queues_(device, "search queues", BufferDomain::device),
-      candidates_(device, "candidate pairs", BufferDomain::device),
-      solver_(device, scene) {
+      run_(owner, {shaders::kEncode, search_, search_, shaders::kCollect, shaders::kCollect, shaders::kFilter}),
+      upload_(owner),
+      stated_(owner, "stated searches", BufferDomain::device, kUploaded),
+      sensors_(owner, "sensors", BufferDomain::device, gpu::kAsTexels),
+      excluded_(owner, "excluded objects", BufferDomain::device, kUploaded),
+      tasks_(owner, "search tasks", BufferDomain::device),
+      spilled_(owner, "spilled search tasks", BufferDomain::device),
+      queues_(owner, "search queues", BufferDomain::device),
+      candidates_(owner, "candidate pairs", BufferDomain::device),
+      solver_(owner, scene) {
   if (room_.budget == 0) room_.budget = kMostBudget;
   // On the CPU, as many lanes are at work as threads times the width of a vector.
   if (room_.width == 0) {
-    room_.width =
-        device.runsOnCpu() ? 2 * std::max(1u, std::thread::hardware_concurrency()) * device.subgroupSize : 1u << 15;
+    room_.width = owner.device().runsOnCpu()
+                      ? 2 * std::max(1u, std::thread::hardware_concurrency()) * owner.device().subgroupSize
+                      : 1u << 15;
   }
 }
 

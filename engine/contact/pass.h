@@ -28,7 +28,7 @@ struct SearchRoom {
 
 class ContactPass {
  public:
-  ContactPass(const Device::Impl& device, GpuScene& scene, const SearchRoom& room);
+  ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room);
 
   /// Makes room for this many sensors and known answers; stage() then allocates nothing for batches up to this size,
   /// but for changes of the scene.

@@ -41,14 +41,14 @@ void Pace::took(double ms) {
   }
 }
 
-ContactSubmitter::ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room)
+ContactSubmitter::ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room)
     : scene_(scene),
       now_(room.now ? room.now : std::chrono::steady_clock::now),
-      pace_(room.budget == 0 && (room.now || !device.runsOnCpu()),
+      pace_(room.budget == 0 && (room.now || !owner.device().runsOnCpu()),
             room.budget != 0 ? room.budget : ContactPass::kMostBudget),
-      submission_(device, timestamps),
-      pass_(device, scene, room),
-      readback_(device, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+      submission_(owner, timestamps),
+      pass_(owner, scene, room),
+      readback_(owner, "contact readback", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 const gpu::SearchCounts& ContactSubmitter::counts() const {
   return *reinterpret_cast<const gpu::SearchCounts*>(readback_.mapped());

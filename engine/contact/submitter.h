@@ -36,7 +36,7 @@ class Pace {
 
 class ContactSubmitter {
  public:
-  ContactSubmitter(const Device::Impl& device, GpuScene& scene, bool timestamps, const SearchRoom& room);
+  ContactSubmitter(const gpu::Owner& owner, GpuScene& scene, bool timestamps, const SearchRoom& room);
 
   /// Submits the batch and returns without waiting; call collect() next.
   void submit(const SensorBatch& batch, const Scene::Impl& scene);

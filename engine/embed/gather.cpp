@@ -7,11 +7,11 @@
 
 namespace radar {
 
-GatherPass::GatherPass(const Device::Impl& device, uint32_t searches)
-    : upload_(device),
-      gathered_(device, "queries to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      order_(device, "order of searches", gpu::BufferDomain::device),
-      run_(device, {shaders::kGather}) {
+GatherPass::GatherPass(const gpu::Owner& owner, uint32_t searches)
+    : upload_(owner),
+      gathered_(owner, "queries to gather", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      order_(owner, "order of searches", gpu::BufferDomain::device),
+      run_(owner, {shaders::kGather}) {
   gathered_.reserve(searches);
   order_.reserve(VkDeviceSize{2} * searches);
   upload_.reserve(searches * sizeof(gpu::Gathered));

@@ -15,7 +15,7 @@ namespace radar {
 class GatherPass {
  public:
   /// Makes room for this many searches.
-  GatherPass(const Device::Impl& device, uint32_t searches);
+  GatherPass(const gpu::Owner& owner, uint32_t searches);
 
   bool empty() const { return queries_ == 0; }
   /// Stages these queries, whose searches follow one another.

@@ -50,21 +50,21 @@ std::string validate(const HostGeometry& geometry, const Scene& scene) {
   return {};
 }
 
-HostGeometryPass::HostGeometryPass(const Device::Impl& device, const GpuScene& resident)
-    : device_(&device),
+HostGeometryPass::HostGeometryPass(const gpu::Owner& owner, const GpuScene& resident)
+    : device_(&owner.device()),
       resident_(resident),
-      run_(device, {shaders::kDeform, shaders::kBound, shaders::kNormalise, shaders::kMove, shaders::kRefit,
-                    shaders::kFit, shaders::kInvalidate}),
-      upload_(device),
-      words_(device, "host words", BufferDomain::device, kUploaded),
-      refitNodes_(device, "nodes to refit", BufferDomain::device, kUploaded),
-      numbers_(device, "host vertex numbers", BufferDomain::device, kUploaded),
-      unboundedMeshes_(device, "unbounded meshes", BufferDomain::device, kUploaded),
-      fitNodes_(device, "nodes to fit", BufferDomain::device, kUploaded),
-      movedObjects_(device, "moved objects", BufferDomain::device, kUploaded),
-      extents_(device, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
-      readback_(device, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
-      violation_(device, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+      run_(owner, {shaders::kDeform, shaders::kBound, shaders::kNormalise, shaders::kMove, shaders::kRefit,
+                   shaders::kFit, shaders::kInvalidate}),
+      upload_(owner),
+      words_(owner, "host words", BufferDomain::device, kUploaded),
+      refitNodes_(owner, "nodes to refit", BufferDomain::device, kUploaded),
+      numbers_(owner, "host vertex numbers", BufferDomain::device, kUploaded),
+      unboundedMeshes_(owner, "unbounded meshes", BufferDomain::device, kUploaded),
+      fitNodes_(owner, "nodes to fit", BufferDomain::device, kUploaded),
+      movedObjects_(owner, "moved objects", BufferDomain::device, kUploaded),
+      extents_(owner, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
+      readback_(owner, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
+      violation_(owner, "bounds violation", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
   violation_.reserve(1);
 }
 

@@ -22,7 +22,7 @@ std::string validate(const HostGeometry& geometry, const Scene& scene);
 
 class HostGeometryPass {
  public:
-  HostGeometryPass(const Device::Impl& device, const GpuScene& resident);
+  HostGeometryPass(const gpu::Owner& owner, const GpuScene& resident);
 
   /// Stores valid `geometry` and makes room for it, while the device is idle. Throws Error if it does not fit the
   /// device, or if an object does not exist or is named twice.

@@ -36,10 +36,10 @@ std::string validate(const HostQueries& queries, uint32_t most) {
   return {};
 }
 
-HostQueriesPass::HostQueriesPass(const Device::Impl& device)
-    : device_(&device),
-      run_(device, {shaders::kPlan}),
-      words_(device, "host queries", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+HostQueriesPass::HostQueriesPass(const gpu::Owner& owner)
+    : device_(&owner.device()),
+      run_(owner, {shaders::kPlan}),
+      words_(owner, "host queries", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void HostQueriesPass::stage(const HostQueries& queries) {
   const VkDeviceSize span = gpu::roundedUp(spanOf(queries.stride, queries.count, sizeof(HostQuery)), 8);

@@ -17,7 +17,7 @@ std::string validate(const HostQueries& queries, uint32_t most);
 
 class HostQueriesPass {
  public:
-  explicit HostQueriesPass(const Device::Impl& device);
+  explicit HostQueriesPass(const gpu::Owner& owner);
 
   /// Stores `queries`, at least one, and makes room for them, while the device is idle. Throws if they do not fit the
   /// device.

@@ -33,13 +33,14 @@ SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
 struct Recorder::Impl {
   Impl(const Device::Impl& openDevice, const Scene& ownScene, std::shared_ptr<GpuScene> ownCopy, const Capacity& given)
       : device(openDevice),
+        owner(gpu::Owner::counted(openDevice)),
         scene(ownScene),
         capacity(completed(given, openDevice)),
         copy(std::move(ownCopy)),
-        geometry(openDevice, *copy),
-        pass(openDevice, *copy, roomFor(capacity, openDevice)),
-        gathers(openDevice, capacity.searches),
-        readback(openDevice, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
+        geometry(owner, *copy),
+        pass(owner, *copy, roomFor(capacity, openDevice)),
+        gathers(owner, capacity.searches),
+        readback(owner, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
     pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
     readback.reserve(kFirstResult + results * sizeof(Result));
@@ -48,11 +49,15 @@ struct Recorder::Impl {
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
   void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
-  void stage();
+  /// What both kinds of record() do before they record.
+  GpuScene::Staged stage(std::span<const Query> queries, const HostGeometry& hostGeometry);
+  GpuScene::Staged stage(const HostQueries& queries, const HostGeometry& hostGeometry);
+  void upload();
   void recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged);
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
 
   const Device::Impl& device;
+  const gpu::Owner owner;
   const Scene& scene;
   Capacity capacity;
   std::shared_ptr<GpuScene> copy;
@@ -105,12 +110,6 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-// Stages what both kinds of record() have planned, but for the search.
-void Recorder::Impl::stage() {
-  gathers.stage(recorded.gathered);
-  usedBuffers.reset();
-}
-
 // Records what either kind of record() has staged.
 void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged) {
   const bool areWritten = recorded.isWritten;
@@ -159,33 +158,57 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
   recorded.isComplete = true;
 }
 
+GpuScene::Staged Recorder::Impl::stage(std::span<const Query> queries, const HostGeometry& hostGeometry) {
+  validateAll(queries);
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  recorded.isComplete = false;  // if recording fails, read() has nothing to return
+  geometry.stage(hostGeometry, scene.impl());
+  recorded.plan(queries, scene.impl(), geometry, capacity.searches);
+  gathers.stage(recorded.gathered);
+  usedBuffers.reset();
+  return pass.stage(recorded.sensors, recorded.known, scene.impl(), geometry.overwritten());
+}
+
+GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeometry& hostGeometry) {
+  validateHost(queries, hostGeometry);
+  recorded.isComplete = false;
+  geometry.stage(hostGeometry, scene.impl());
+  recorded.planWritten(queries.count);
+  gathers.stage(recorded.gathered);
+  usedBuffers.reset();
+  GpuScene::Staged staged = pass.stageWritten(queries.count, scene.impl(), geometry.overwritten());
+  readback.reserve(firstSweep() + capacity.queries * sizeof(gpu::Sweep));
+  if (!hostQueries) hostQueries.emplace(owner);
+  if (queries.count != 0) hostQueries->stage(queries);
+  return staged;
+}
+
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  Impl& self = *impl_;
-  self.validateAll(queries);
-  if (std::string wrong = validate(geometry, self.scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-  self.recorded.isComplete = false;  // if recording fails, read() has nothing to return
-  self.geometry.stage(geometry, self.scene.impl());
-  self.recorded.plan(queries, self.scene.impl(), self.geometry, self.capacity.searches);
-  self.stage();
-  GpuScene::Staged staged =
-      self.pass.stage(self.recorded.sensors, self.recorded.known, self.scene.impl(), self.geometry.overwritten());
-  self.recordSearch(commands, std::move(staged));  // from here on nothing throws
+  impl_->recordSearch(commands, impl_->stage(queries, geometry));  // from here on nothing throws
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  Impl& self = *impl_;
-  self.validateHost(queries, geometry);
-  self.recorded.isComplete = false;
-  self.geometry.stage(geometry, self.scene.impl());
-  self.recorded.planWritten(queries.count);
-  self.stage();
-  GpuScene::Staged staged = self.pass.stageWritten(queries.count, self.scene.impl(), self.geometry.overwritten());
-  self.readback.reserve(self.firstSweep() + self.capacity.queries * sizeof(gpu::Sweep));
-  if (!self.hostQueries) self.hostQueries.emplace(self.device);
-  if (queries.count != 0) self.hostQueries->stage(queries);
-  self.recordSearch(commands, std::move(staged));
+  impl_->recordSearch(commands, impl_->stage(queries, geometry));
+}
+
+void Recorder::Impl::upload() {
+  if (device.host.queue == VK_NULL_HANDLE) return;
+  copy->sync(scene.impl());
+  copy->dropStaging();
+}
+
+void Recorder::prepare(std::span<const Query> queries, const HostGeometry& geometry) {
+  const FloatEnvironment floats;
+  impl_->upload();
+  impl_->stage(queries, geometry);
+}
+
+void Recorder::prepare(const HostQueries& queries, const HostGeometry& geometry) {
+  const FloatEnvironment floats;
+  impl_->upload();
+  impl_->stage(queries, geometry);
 }
 
 void Recorder::reset() {
@@ -236,6 +259,10 @@ Capacity Recorder::needed() const {
   needed.rounds =
       isUnfinished ? std::min(2 * self.capacity.rounds, gpu::kMostRounds) : std::max((rounds + 1) / 2 * 2, 2u);
   return needed;
+}
+
+uint64_t Recorder::memoryUse() const {
+  return impl_->owner.bytes() + memoryAlone(impl_->copy);
 }
 
 std::string Recorder::boundsViolation() const {

@@ -15,8 +15,8 @@ class Array {
 
  public:
   /// `usage`: in addition to STORAGE_BUFFER.
-  Array(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
-      : buffer_(device, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+  Array(const Owner& owner, const char* name, BufferDomain domain, VkBufferUsageFlags usage = 0)
+      : buffer_(owner, name, domain, usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
 
   /// Makes room for at least `count` elements; growing loses the contents. Returns whether it grew. The device must not
   /// be using it.

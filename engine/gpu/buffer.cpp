@@ -11,16 +11,6 @@
 
 namespace radar::gpu {
 
-uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryPropertyFlags needed,
-                    VkMemoryPropertyFlags wanted) {
-  for (VkMemoryPropertyFlags flags : {needed | wanted, needed}) {
-    for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
-      if ((allowed >> i & 1) != 0 && (device.memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
-    }
-  }
-  throw Error("no memory type has the properties " + std::to_string(needed));
-}
-
 namespace {
 
 constexpr VkDeviceSize kTexelBytes = 16;
@@ -45,24 +35,25 @@ uint64_t newIdentity() {
   return ++made;
 }
 
-Buffer::Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
-    : device_(&device), name_(name), domain_(domain), usage_(usage) {}
+Buffer::Buffer(const Owner& owner, const char* name, BufferDomain domain, VkBufferUsageFlags usage)
+    : owner_(owner), name_(name), domain_(domain), usage_(usage) {}
 
 bool Buffer::reserve(VkDeviceSize bytes) {
   if (bytes <= capacity_ && capacity_ != 0) return false;
-  VkDeviceSize most = device_->maxBufferBytes;
+  const Device::Impl& device = owner_.device();
+  VkDeviceSize most = device.maxBufferBytes;
   if ((usage_ & kAsTexels) != 0) {
     // Shaders index texels by an int.
-    const uint64_t texels = std::min<uint64_t>(device_->properties.limits.maxTexelBufferElements, INT32_MAX);
+    const uint64_t texels = std::min<uint64_t>(device.properties.limits.maxTexelBufferElements, INT32_MAX);
     if (bytes > texels * kTexelBytes) {
       throw LimitError(std::string(name_) + ": " + std::to_string((bytes + kTexelBytes - 1) / kTexelBytes) +
                        " texels, but the device's maxTexelBufferElements is " + std::to_string(texels));
     }
     most = std::min(most / kTexelBytes, texels) * kTexelBytes;
   }
-  if (bytes > device_->maxBufferBytes) {
+  if (bytes > device.maxBufferBytes) {
     throw LimitError(std::string(name_) + ": " + std::to_string(bytes) + " bytes, but the device's maxBufferSize is " +
-                     std::to_string(device_->maxBufferBytes));
+                     std::to_string(device.maxBufferBytes));
   }
   // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
   // seldom made and filled anew.
@@ -73,44 +64,33 @@ bool Buffer::reserve(VkDeviceSize bytes) {
   if ((usage_ & kAsTexels) != 0) wanted = roundedUp(wanted, 512) + 256;
   const VkDeviceSize size = std::min(wanted, most);
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage_};
-  DeviceMemory owned;  // outlives the buffer in it, old or new
+  Memory memory;  // outlives the buffer in it, old or new
   VkBuffer handle;
-  check(device_->vk.CreateBuffer(device_->device(), &info, device_->host.allocator, &handle), "vkCreateBuffer", name_,
-        size);
-  BufferHandle buffer(*device_, handle);
-  device_->setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
-  VkMemoryRequirements requirements;
-  device_->vk.GetBufferMemoryRequirements(device_->device(), handle, &requirements);
-  constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const bool onDevice = domain_ == BufferDomain::device;
-  const VkMemoryAllocateInfo allocate{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-      .allocationSize = requirements.size,
-      .memoryTypeIndex = memoryType(*device_, requirements.memoryTypeBits, onDevice ? 0 : kMapped,
-                                    onDevice                            ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
-                                    : domain_ == BufferDomain::readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
-                                                                        : 0)};
-  VkDeviceMemory memory;
-  check(device_->vk.AllocateMemory(device_->device(), &allocate, device_->host.allocator, &memory), "vkAllocateMemory",
-        name_, size);
-  owned = {*device_, memory};
-  check(device_->vk.BindBufferMemory(device_->device(), handle, memory, 0), "vkBindBufferMemory", name_, size);
-  void* mapped = nullptr;
-  if (!onDevice) {
-    check(device_->vk.MapMemory(device_->device(), memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory", name_, size);
+  check(device.vk.CreateBuffer(device.device(), &info, device.host.allocator, &handle), "vkCreateBuffer", name_, size);
+  BufferHandle buffer(device, handle);
+  device.setName(VK_OBJECT_TYPE_BUFFER, handle, name_);
+  MemoryRequest request{.name = name_};
+  device.vk.GetBufferMemoryRequirements(device.device(), handle, &request.requirements);
+  if (domain_ == BufferDomain::device) {
+    request.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  } else {
+    request.required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    if (domain_ == BufferDomain::readback) request.preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   }
+  memory = Memory(owner_, request);
+  check(device.vk.BindBufferMemory(device.device(), handle, memory.get(), memory.offset()), "vkBindBufferMemory", name_,
+        size);
   BufferView view;
-  if ((usage_ & kAsTexels) != 0) view = viewOf(*device_, handle, size, name_);
+  if ((usage_ & kAsTexels) != 0) view = viewOf(device, handle, size, name_);
   view_ = std::move(view);
   buffer_ = std::move(buffer);
-  memory_ = std::move(owned);
-  mapped_ = static_cast<std::byte*>(mapped);
+  memory_ = std::move(memory);
   capacity_ = size;
   identity_ = newIdentity();
   return true;
 }
 
-Upload::Upload(const Device::Impl& device) : device_(&device) {}
+Upload::Upload(const Owner& owner) : owner_(owner) {}
 
 void Upload::begin() {
   current_ = 0;
@@ -126,8 +106,8 @@ void Upload::reserve(VkDeviceSize bytes) {
   VkDeviceSize all = 0;
   for (const Buffer& block : blocks_) all += block.capacity();
   // As large as all others together, so that there are few.
-  Buffer block(*device_, "staging", BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  block.reserve(std::max(bytes, std::min(all, device_->maxBufferBytes)));
+  Buffer block(owner_, "staging", BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  block.reserve(std::max(bytes, std::min(all, owner_.device().maxBufferBytes)));
   blocks_.push_back(std::move(block));
 }
 

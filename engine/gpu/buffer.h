@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "gpu/device.h"
 #include "gpu/handle.h"
+#include "gpu/memory.h"
 
 namespace radar::gpu {
 
@@ -13,10 +13,6 @@ namespace radar::gpu {
 template <class T>
 VkDeviceSize bytesOf(const std::vector<T>& v) {
   return v.size() * sizeof(T);
-}
-
-constexpr VkDeviceSize roundedUp(VkDeviceSize n, VkDeviceSize step) {
-  return (n + step - 1) / step * step;
 }
 
 /// A number that nothing else has: unlike handles, which Vulkan may reuse.
@@ -30,7 +26,7 @@ inline constexpr VkBufferUsageFlags kAsTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BU
 
 class Buffer {
  public:
-  Buffer(const Device::Impl& device, const char* name, BufferDomain domain, VkBufferUsageFlags usage);
+  Buffer(const Owner& owner, const char* name, BufferDomain domain, VkBufferUsageFlags usage);
 
   /// Makes the buffer hold at least `bytes`, and at most half as many more; growing loses the contents. Even if `bytes`
   /// are 0, get() then is a buffer. Returns whether the handle changed. The device must not be using it. Throws Error,
@@ -45,25 +41,24 @@ class Buffer {
   /// A newIdentity() of the VkBuffer.
   uint64_t identity() const { return identity_; }
   /// Host address, unless resident on the device. Coherent.
-  std::byte* mapped() const { return mapped_; }
+  std::byte* mapped() const { return memory_.mapped(); }
 
  private:
-  const Device::Impl* device_;
+  Owner owner_;
   const char* name_;
   BufferDomain domain_;
   VkBufferUsageFlags usage_;
-  DeviceMemory memory_;
+  Memory memory_;
   BufferHandle buffer_;
   BufferView view_;
   VkDeviceSize capacity_ = 0;
   uint64_t identity_ = 0;
-  std::byte* mapped_ = nullptr;
 };
 
 /// Gathers copies of host data in staging buffers that it keeps, then records them as one upload.
 class Upload {
  public:
-  explicit Upload(const Device::Impl& device);
+  explicit Upload(const Owner& owner);
 
   /// Forgets what was gathered, and keeps the memory, which the device must not be using.
   void begin();
@@ -86,16 +81,12 @@ class Upload {
     uint32_t end;
   };
 
-  const Device::Impl* device_;
+  Owner owner_;
   std::vector<Buffer> blocks_;
   size_t current_ = 0;     ///< block for the next piece, if it has room
   VkDeviceSize used_ = 0;  ///< of the current block
   std::vector<VkBufferCopy> regions_;
   std::vector<Run> runs_;
 };
-
-/// A memory type with all `needed` properties, and if possible all `wanted` ones. Throws if there is none.
-uint32_t memoryType(const Device::Impl& device, uint32_t allowed, VkMemoryPropertyFlags needed,
-                    VkMemoryPropertyFlags wanted);
 
 }  // namespace radar::gpu

@@ -81,9 +81,9 @@ const Shader& depthShader(const Device::Impl& device) {
   return device.choosesLayers ? shaders::kDepth : shaders::kDepthOfOneLayer;
 }
 
-DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side,
-                       uint32_t layers)
-    : device_(&device), renderPass_(renderPass), side_(side), layers_(layers), identity_(newIdentity()) {
+DepthArray::DepthArray(const Owner& owner, const char* name, VkRenderPass renderPass, uint32_t side, uint32_t layers)
+    : device_(&owner.device()), renderPass_(renderPass), side_(side), layers_(layers), identity_(newIdentity()) {
+  const Device::Impl& device = owner;
   const std::string what = std::string(name) + ", " + std::to_string(side) + " x " + std::to_string(side) + " x " +
                            std::to_string(layers) + " of D32";
   const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -100,17 +100,11 @@ DepthArray::DepthArray(const Device::Impl& device, const char* name, VkRenderPas
   check(device.vk.CreateImage(device.device(), &info, device.host.allocator, &image), "vkCreateImage", what.c_str());
   image_ = {device, image};
   device.setName(VK_OBJECT_TYPE_IMAGE, image, name);
-  VkMemoryRequirements requirements;
-  device.vk.GetImageMemoryRequirements(device.device(), image, &requirements);
-  const VkMemoryAllocateInfo allocate{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-      .allocationSize = requirements.size,
-      .memoryTypeIndex = memoryType(device, requirements.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
-  VkDeviceMemory memory;
-  check(device.vk.AllocateMemory(device.device(), &allocate, device.host.allocator, &memory), "vkAllocateMemory",
+  MemoryRequest request{.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, .isImage = true, .name = what.c_str()};
+  device.vk.GetImageMemoryRequirements(device.device(), image, &request.requirements);
+  memory_ = Memory(owner, request);
+  check(device.vk.BindImageMemory(device.device(), image, memory_.get(), memory_.offset()), "vkBindImageMemory",
         what.c_str());
-  memory_ = {device, memory};
-  check(device.vk.BindImageMemory(device.device(), image, memory, 0), "vkBindImageMemory", what.c_str());
   view_ = layerView(device, image, 0, layers);
 }
 

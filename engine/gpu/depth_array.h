@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "gpu/device.h"
 #include "gpu/handle.h"
+#include "gpu/memory.h"
 #include "gpu/shader.h"
 
 namespace radar::gpu {
@@ -23,7 +23,7 @@ const Shader& depthShader(const Device::Impl& device);
 class DepthArray {
  public:
   /// `side` x `side` pixels of D32, `layers` layers.
-  DepthArray(const Device::Impl& device, const char* name, VkRenderPass renderPass, uint32_t side, uint32_t layers);
+  DepthArray(const Owner& owner, const char* name, VkRenderPass renderPass, uint32_t side, uint32_t layers);
 
   /// All layers, for sampling.
   VkImageView view() const { return view_.get(); }
@@ -51,7 +51,7 @@ class DepthArray {
   const Device::Impl* device_;
   VkRenderPass renderPass_;
   uint32_t side_, layers_;
-  DeviceMemory memory_;
+  Memory memory_;
   ImageHandle image_;
   ImageView view_;
   uint64_t identity_;

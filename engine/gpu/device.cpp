@@ -4,6 +4,7 @@
 
 #include "gpu/arithmetic.h"
 #include "gpu/check.h"
+#include "gpu/memory.h"
 #include "gpu/requirements.h"
 #include "math/float_environment.h"
 
@@ -19,7 +20,8 @@ std::string gpu::driverText(const gpu::Api& vk, VkPhysicalDevice device, const V
   return std::string(driver.driverName) + " " + driver.driverInfo;
 }
 
-Device::Impl::Impl(const HostDevice& given) : host(given), vk(given.getInstanceProcAddr) {
+Device::Impl::Impl(const HostDevice& given)
+    : host(given), vk(given.getInstanceProcAddr), allocator(std::make_unique<gpu::Allocator>(*this)) {
   vk.load(host.instance);
   vk.load(host.device);
   vk.GetPhysicalDeviceProperties(host.physicalDevice, &properties);
@@ -108,6 +110,9 @@ Device Device::adopt(const HostDevice& host) {
   const FloatEnvironment floats;
   const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
+  if (!host.memory.allocate != !host.memory.free) {
+    throw Error("HostDevice::memory: expected both functions or none, got one");
+  }
   auto impl = std::make_unique<Impl>(host);
   // Without a queue nothing can be checked; composed quotients are correct on every device whose doubles are.
   impl->doubles = host.doubles;
@@ -138,6 +143,9 @@ bool Device::supports(Mode mode) const {
 }
 const HostDevice& Device::handles() const {
   return impl_->host;
+}
+MemoryUse Device::memoryUse() const {
+  return impl_->allocator->use();
 }
 
 }  // namespace radar

@@ -14,6 +14,10 @@
 
 namespace radar {
 
+namespace gpu {
+class Allocator;
+}
+
 struct Device::Impl {
   Impl(const HostDevice& host);
   ~Impl();
@@ -36,6 +40,7 @@ struct Device::Impl {
   mutable std::atomic<bool> abandoned = false;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
+  std::unique_ptr<gpu::Allocator> allocator;  ///< gpu/memory.h
   std::string name, driver;
   std::vector<std::string> reasonsAgainstSampled;  ///< why mode sampled is not supported; empty if it is
   uint32_t maxLayers = 0;

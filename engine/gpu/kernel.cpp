@@ -132,6 +132,10 @@ class Kernels {
 
 }  // namespace
 
+void compile(const Device::Impl& device, const Program& program) {
+  device.shared<Kernels>().of(program);
+}
+
 KernelReport reportOf(const Device::Impl& device, const Program& program) {
   const auto start = std::chrono::steady_clock::now();
   const Kernel kernel(device, program);

@@ -127,6 +127,9 @@ class Passes {
   uint64_t recording_ = 1;
 };
 
+/// Makes the program's pipeline, unless that has been done.
+void compile(const Device::Impl& device, const Program& program);
+
 /// Makes the program's pipeline anew.
 KernelReport reportOf(const Device::Impl& device, const Program& program);
 

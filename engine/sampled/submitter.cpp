@@ -17,24 +17,23 @@ constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 }  // namespace
 
-SampledSubmitter::SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes,
-                                   bool timestamps)
-    : device_(&device),
+SampledSubmitter::SampledSubmitter(const gpu::Owner& owner, GpuScene& resident, uint64_t pictureBytes, bool timestamps)
+    : owner_(owner),
       pictureBytes_(pictureBytes),
       resident_(resident),
-      upload_(device),
-      submission_(device, timestamps),
-      run_(device, {gpu::depthShader(device), shaders::kReduce, shaders::kIdentify, shaders::kNominate}),
-      solver_(device, resident),
-      renderPass_(gpu::depthRenderPass(device)),
-      sampler_(gpu::texelSampler(device)),
-      views_(device, "views", BufferDomain::device, kUploaded),
-      draws_(device, "draws", BufferDomain::device, kUploaded),
-      items_(device, "items", BufferDomain::device, kUploaded),
-      candidates_(device, "candidates", BufferDomain::device),
-      ranks_(device, "ranks", BufferDomain::device),
-      answers_(device, "answers", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
-      readback_(device, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+      upload_(owner),
+      submission_(owner, timestamps),
+      run_(owner, {gpu::depthShader(owner), shaders::kReduce, shaders::kIdentify, shaders::kNominate}),
+      solver_(owner, resident),
+      renderPass_(gpu::depthRenderPass(owner)),
+      sampler_(gpu::texelSampler(owner)),
+      views_(owner, "views", BufferDomain::device, kUploaded),
+      draws_(owner, "draws", BufferDomain::device, kUploaded),
+      items_(owner, "items", BufferDomain::device, kUploaded),
+      candidates_(owner, "candidates", BufferDomain::device),
+      ranks_(owner, "ranks", BufferDomain::device),
+      answers_(owner, "answers", BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
+      readback_(owner, "readback", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& batch) {
   const auto found = pictures_.find(batch.resolution);
@@ -44,8 +43,8 @@ SampledSubmitter::Pictures& SampledSubmitter::picturesFor(const SampledBatch& ba
   uint64_t kept = bytes(batch.resolution, batch.layers);
   for (const auto& [side, pictures] : pictures_) kept += bytes(side, pictures.range.layers());
   if (kept > 2 * pictureBytes_) pictures_.clear();
-  gpu::DepthArray range(*device_, "R", renderPass_.get(), batch.resolution, batch.layers);
-  gpu::DepthArray mask(*device_, "M", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray range(owner_, "R", renderPass_.get(), batch.resolution, batch.layers);
+  gpu::DepthArray mask(owner_, "M", renderPass_.get(), batch.resolution, batch.layers);
   return pictures_.emplace(batch.resolution, Pictures{std::move(range), std::move(mask)}).first->second;
 }
 
@@ -110,7 +109,7 @@ void SampledSubmitter::record(const gpu::Commands& commands, const SampledBatch&
   const GpuScene::Buffers& scene = resident_.buffers();
   const VkBuffer vertices = scene.vertices.get();
   const VkDeviceSize zero = 0;
-  run_.bindForDraws(commands, gpu::depthShader(*device_), {{kSlotDraws, draws_}});
+  run_.bindForDraws(commands, gpu::depthShader(owner_), {{kSlotDraws, draws_}});
   commands->CmdBindVertexBuffers(commands, 0, 1, &vertices, &zero);
   commands->CmdBindIndexBuffer(commands, scene.indices.get(), 0, VK_INDEX_TYPE_UINT32);
   submission_.stage("range");

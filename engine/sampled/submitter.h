@@ -28,7 +28,7 @@ struct StoredScopes {
 class SampledSubmitter {
  public:
   /// `resident`: the scene's copy, shared by users of the device.
-  SampledSubmitter(const Device::Impl& device, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
+  SampledSubmitter(const gpu::Owner& owner, GpuScene& resident, uint64_t pictureBytes, bool timestamps);
 
   /// Submits one upload, one command buffer and one readback without waiting; call collect() next, with the same
   /// batch. `scopes`: also reads back the pictures of view 0. If this throws, the memory of all pictures is free.
@@ -54,7 +54,7 @@ class SampledSubmitter {
   void drawScopes(const gpu::Commands& commands, const SampledBatch& batch, const std::vector<DepthPass>& passes,
                   gpu::DepthArray& target) const;
 
-  const Device::Impl* device_;
+  gpu::Owner owner_;
   uint64_t pictureBytes_;
   GpuScene& resident_;
   gpu::Upload upload_;

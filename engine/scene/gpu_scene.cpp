@@ -63,19 +63,19 @@ Elements elementsOf(const Scene::Impl& scene) {
 
 }  // namespace
 
-GpuScene::Buffers::Buffers(const Device::Impl& device)
-    : vertices(device, "vertices", BufferDomain::device, kTexels | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
-      triangles(device, "triangles", BufferDomain::device, kTexels),
-      meshNodes(device, "mesh nodes", BufferDomain::device, kTexels),
-      meshes(device, "meshes", BufferDomain::device, kUploaded),
-      objects(device, "objects", BufferDomain::device, kUploaded),
-      placements(device, "placements", BufferDomain::device, kTexels),
-      objectNodes(device, "object nodes", BufferDomain::device, kTexels),
-      indices(device, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT) {}
+GpuScene::Buffers::Buffers(const gpu::Owner& owner)
+    : vertices(owner, "vertices", BufferDomain::device, kTexels | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
+      triangles(owner, "triangles", BufferDomain::device, kTexels),
+      meshNodes(owner, "mesh nodes", BufferDomain::device, kTexels),
+      meshes(owner, "meshes", BufferDomain::device, kUploaded),
+      objects(owner, "objects", BufferDomain::device, kUploaded),
+      placements(owner, "placements", BufferDomain::device, kTexels),
+      objectNodes(owner, "object nodes", BufferDomain::device, kTexels),
+      indices(owner, "indices", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_INDEX_BUFFER_BIT) {}
 
 GpuScene::GpuScene(const Device::Impl& device)
-    : device_(&device),
-      buffers_(std::make_shared<Buffers>(device)),
+    : owner_(gpu::Owner::counted(device)),
+      buffers_(std::make_shared<Buffers>(owner_)),
       farthest_(std::make_shared<const std::vector<Vector>>()) {}
 
 // Whether no buffer that searches use need grow.
@@ -105,7 +105,7 @@ GpuScene::Staged GpuScene::stage(const Scene::Impl& scene, Overwritten next, Upl
   if (seen_.scene != scene.identity) forget();
   checkWriteLimits(scene, next);
   if (buffers_.use_count() > 1 && !fits(scene)) {
-    buffers_ = std::make_shared<Buffers>(*device_);
+    buffers_ = std::make_shared<Buffers>(owner_);
     clear();
   }
   const ObjectTree& tree = scene.objectTree();
@@ -190,7 +190,7 @@ void GpuScene::placeMeshes(const Scene::Impl& scene, const Overwritten& next) {
 // Whether meshes that the host overwrites may end beyond what a storage buffer binds.
 bool GpuScene::exceedsWriteLimits(const Overwritten& next) const {
   if (next.meshes.empty()) return false;
-  const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
+  const uint64_t limit = owner_.device().properties.limits.maxStorageBufferRange;
   for (MeshId id = 0; id < places_.size(); ++id) {
     if ((records_[id].firstVertex + places_[id].vertices) * sizeof(gpu::Vertex) > limit ||
         (records_[id].firstNode + places_[id].nodes) * sizeof(gpu::MeshNode) > limit) {
@@ -204,14 +204,14 @@ bool GpuScene::exceedsWriteLimits(const Overwritten& next) const {
 void GpuScene::checkWriteLimits(const Scene::Impl& scene, const Overwritten& next) const {
   const Moved& moved = movedOf(next);
   if (!moved.objects.empty() || !moved.standing.empty())
-    checkLimit<gpu::Placement>(*device_, "placements", scene.objects.size());
+    checkLimit<gpu::Placement>(owner_, "placements", scene.objects.size());
   if (!moved.nodes.empty()) {
-    checkLimit<gpu::ObjectNode>(*device_, "object nodes", scene.objectTree().nodes().size());
+    checkLimit<gpu::ObjectNode>(owner_, "object nodes", scene.objectTree().nodes().size());
   }
   if (next.meshes.empty()) return;
   const Elements elements = elementsOf(scene);
-  checkLimit<gpu::Vertex>(*device_, "vertices", elements.vertices);
-  checkLimit<gpu::MeshNode>(*device_, "mesh nodes", elements.nodes);
+  checkLimit<gpu::Vertex>(owner_, "vertices", elements.vertices);
+  checkLimit<gpu::MeshNode>(owner_, "mesh nodes", elements.nodes);
 }
 
 void GpuScene::describe(MeshId id, const Mesh& mesh) {
@@ -256,7 +256,7 @@ void GpuScene::stageMeshes(const Scene::Impl& scene, Staged& staged, Upload& upl
   buffers_->meshes.reserve(0);
   if (seen_.meshes == scene.meshVersion && restored.empty() && !exceedsWriteLimits(next)) return;
   for (const MeshId id : restored) places_[id].uploaded = 0;
-  checkLimit<gpu::MeshRecord>(*device_, "meshes", scene.meshes.size());
+  checkLimit<gpu::MeshRecord>(owner_, "meshes", scene.meshes.size());
   placeMeshes(scene, next);
   buffers_->meshes.reserve(records_.size());
   std::vector<Vector> farthest;
@@ -277,7 +277,7 @@ void GpuScene::stageIndices(const Scene::Impl& scene, Staged& staged, Upload& up
   if (buffers_->indices.reserve(3 * buffers_->triangles.capacity())) {
     for (Place& place : places_) place.uploadedIndices = 0;
   }
-  const uint32_t most = device_->properties.limits.maxDrawIndexedIndexValue;
+  const uint32_t most = owner_.device().properties.limits.maxDrawIndexedIndexValue;
   for (MeshId id = 0; id < places_.size(); ++id) {
     const Mesh& mesh = scene.meshes[id];
     const gpu::MeshRecord& record = records_[id];
@@ -316,7 +316,7 @@ std::vector<ObjectId> GpuScene::changedObjects(const Scene::Impl& scene, const O
 }
 
 void GpuScene::stageObjects(const Scene::Impl& scene, const Overwritten& next, Upload& upload) {
-  checkLimit<gpu::ObjectRecord>(*device_, "objects", scene.objects.size());
+  checkLimit<gpu::ObjectRecord>(owner_, "objects", scene.objects.size());
   const bool grew = buffers_->objects.reserve(scene.objects.size());
   if (buffers_->placements.reserve(scene.objects.size()) || grew) seen_.poses = 0;
   const std::vector<ObjectId> changed = changedObjects(scene, next);
@@ -371,7 +371,7 @@ void GpuScene::stageTree(const ObjectTree& tree, const Overwritten& next, Upload
 }
 
 void GpuScene::sync(const Scene::Impl& scene) {
-  if (!sync_) sync_ = std::make_unique<Sync>(Sync{gpu::Upload(*device_), gpu::Submission(*device_, false)});
+  if (!sync_) sync_ = std::make_unique<Sync>(Sync{gpu::Upload(owner_), gpu::Submission(owner_, false)});
   sync_->upload.begin();
   Staged staged = stage(scene, {}, sync_->upload);
   if (sync_->upload.bytes() != 0) {

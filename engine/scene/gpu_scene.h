@@ -17,7 +17,7 @@ class GpuScene {
   explicit GpuScene(const Device::Impl& device);
 
   struct Buffers {
-    explicit Buffers(const Device::Impl& device);
+    explicit Buffers(const gpu::Owner& owner);
     gpu::Array<gpu::Vertex> vertices;
     gpu::Array<gpu::Triangle> triangles;  ///< in the order of the mesh's tree
     gpu::Array<gpu::MeshNode> meshNodes;
@@ -62,6 +62,8 @@ class GpuScene {
   void commit(Staged staged) noexcept;
   /// Uploads the changes and waits. The device must have a queue.
   void sync(const Scene::Impl& scene);
+  /// Frees the host memory that sync() has used, which is as large as what it uploaded.
+  void dropStaging() { sync_.reset(); }
   /// Marks all uploads as uncertain: everything is staged again.
   void forget();
 
@@ -73,6 +75,8 @@ class GpuScene {
   /// Mesh::farthest of each mesh, as of the last stage().
   using Farthest = std::shared_ptr<const std::vector<Vector>>;
   const Farthest& farthest() const { return farthest_; }
+  /// Bytes of its buffers on the device.
+  uint64_t memoryUse() const { return owner_.bytes(); }
 
  private:
   /// A mesh on the device. Its ranges in the buffers are kept as long as it has the same numbers of elements.
@@ -96,7 +100,7 @@ class GpuScene {
   void stageObjects(const Scene::Impl& scene, const Overwritten& next, gpu::Upload& upload);
   void stageTree(const ObjectTree& tree, const Overwritten& next, gpu::Upload& upload);
 
-  const Device::Impl* device_;
+  gpu::Owner owner_;
   std::shared_ptr<Buffers> buffers_;
   Arena vertices_, triangles_, nodes_;  ///< of the buffers
   std::vector<Place> places_;           ///< by mesh
@@ -111,5 +115,10 @@ class GpuScene {
   };
   std::unique_ptr<Sync> sync_;  ///< made when first needed, since there may be no queue
 };
+
+/// What a user of the copy adds to the memory that it takes: that of the copy if nobody shares it.
+inline uint64_t memoryAlone(const std::shared_ptr<GpuScene>& copy) {
+  return copy.use_count() == 1 ? copy->memoryUse() : 0;
+}
 
 }  // namespace radar

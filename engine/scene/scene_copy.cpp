@@ -7,5 +7,8 @@ SceneCopy::SceneCopy(const Device& device, const Scene& scene)
 SceneCopy::~SceneCopy() = default;
 SceneCopy::SceneCopy(SceneCopy&&) noexcept = default;
 SceneCopy& SceneCopy::operator=(SceneCopy&&) noexcept = default;
+uint64_t SceneCopy::memoryUse() const {
+  return impl_->copy->memoryUse();
+}
 
 }  // namespace radar

@@ -37,15 +37,16 @@ uint32_t cpuBatchOf(const SweeperOptions& options, const Device::Impl& device) {
 
 }  // namespace
 
-ContactRunner::ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+ContactRunner::ContactRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options,
                              GpuScene& resident, const SearchRoom& room, bool needsProof)
-    : device_(device),
+    : owner_(owner),
+      device_(owner),
       scene_(scene),
       options_(options),
       resident_(resident),
       room_(room),
-      mostSensors_(mostSensorsOf(device)) {
-  if (needsProof && !isOnCpu()) requireProof(device);
+      mostSensors_(mostSensorsOf(owner)) {
+  if (needsProof && !isOnCpu()) requireProof(owner);
 }
 
 bool ContactRunner::isOnCpu() const {
@@ -143,7 +144,7 @@ void ContactRunner::submit(Flight& flight) {
   if (planned.groups.empty()) return;
   collect(flight);
   const bool isSubmitted = attempt(flight, planned.groups, [&] {
-    if (!submitter_) submitter_.emplace(device_, resident_, options_.timestamps, room_);
+    if (!submitter_) submitter_.emplace(owner_, resident_, options_.timestamps, room_);
     try {
       submitter_->submit(planned.sensors, scene_.impl());
     } catch (const Error& error) {

@@ -11,7 +11,7 @@ namespace radar {
 class ContactRunner {
  public:
   /// `needsProof`: that of the device (known_answers.h), unless isOnCpu().
-  ContactRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
+  ContactRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options, GpuScene& resident,
                 const SearchRoom& room, bool needsProof);
 
   /// Whether all batches are answered on the CPU, so that the device needs no scene.
@@ -38,6 +38,7 @@ class ContactRunner {
   template <class Step>
   bool attempt(Flight& flight, std::span<const PlannedSearches::Group> groups, const Step& step);
 
+  const gpu::Owner owner_;
   const Device::Impl& device_;
   const Scene& scene_;
   const SweeperOptions options_;

@@ -9,14 +9,14 @@
 
 namespace radar {
 
-SampledRunner::SampledRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options,
+SampledRunner::SampledRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options,
                              GpuScene& resident)
-    : device_(device),
+    : device_(owner),
       scene_(scene),
       options_(options),
-      submitter_(device, resident, options.pictureBytes, options.timestamps) {
+      submitter_(owner, resident, options.pictureBytes, options.timestamps) {
   // Staging holds a batch's draws and items at once; a quarter of a GiB at most, less where a device asks for it.
-  bufferBytes_ = std::min<uint64_t>(device.properties.limits.maxStorageBufferRange, 256ull << 20);
+  bufferBytes_ = std::min<uint64_t>(device_.properties.limits.maxStorageBufferRange, 256ull << 20);
   maxItems_ = std::min<uint64_t>(bufferBytes_ / sizeof(gpu::Item), UINT32_MAX / gpu::kItemTriangles - 1);
 }
 

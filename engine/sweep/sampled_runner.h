@@ -9,7 +9,7 @@ namespace radar {
 
 class SampledRunner {
  public:
-  SampledRunner(const Device::Impl& device, const Scene& scene, const SweeperOptions& options, GpuScene& resident);
+  SampledRunner(const gpu::Owner& owner, const Scene& scene, const SweeperOptions& options, GpuScene& resident);
 
   /// Plans and submits the batch; on return the last submission may still be running.
   void begin(Flight& flight);

@@ -9,18 +9,19 @@ namespace radar {
 
 Sweeper::Impl::Impl(const Device::Impl& openDevice, const Scene& ownScene, const SweeperOptions& given,
                     std::shared_ptr<GpuScene> sceneCopy, const SearchRoom& room, bool needsProof)
-    : device(openDevice),
+    : owner(gpu::Owner::counted(openDevice)),
+      device(openDevice),
       scene(ownScene),
       options(given),
       copy(std::move(sceneCopy)),
-      contactRunner(device, scene, given, *copy, room, needsProof) {}
+      contactRunner(owner, scene, given, *copy, room, needsProof) {}
 
 SampledRunner& Sweeper::Impl::sampled() {
   if (!sampledRunner) {
     // Now, and not in its first submission: others may share the copy.
     copy->needIndices();
     copy->sync(scene.impl());
-    sampledRunner.emplace(device, scene, options, *copy);
+    sampledRunner.emplace(owner, scene, options, *copy);
   }
   return *sampledRunner;
 }
@@ -94,6 +95,10 @@ Sweeper::Sweeper(SceneCopy& copy, const SweeperOptions& options) {
 Sweeper::~Sweeper() = default;
 Sweeper::Sweeper(Sweeper&&) noexcept = default;
 Sweeper& Sweeper::operator=(Sweeper&&) noexcept = default;
+
+uint64_t Sweeper::memoryUse() const {
+  return impl_->owner.bytes() + memoryAlone(impl_->copy);
+}
 
 void Sweeper::sync() {
   const FloatEnvironment floats;

@@ -25,6 +25,7 @@ struct Sweeper::Impl {
   void validateAll(std::span<const Query> queries, Mode mode) const;
   SampledRunner& sampled();
 
+  const gpu::Owner owner;
   const Device::Impl& device;
   const Scene& scene;
   SweeperOptions options;

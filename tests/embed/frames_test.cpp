@@ -212,6 +212,49 @@ TEST_CASE("three recorders that share a scene's copy need its memory once") {
   CHECK(shared < bytesOf([&] { return Recorder(device, scene, kSmall); }) / 4);
 }
 
+TEST_CASE("after prepare() the first recording, in its place or with a shared copy, creates nothing on the device") {
+  const Device& device = test::watchedDevice();
+  uint32_t steps = 0;
+  prepare(device, Mode::contact, [&](uint32_t done, uint32_t all, const std::string& next) {
+    CHECK(done == steps++);
+    CHECK(next.empty() == (done == all));
+  });
+  CHECK(steps > 20);
+  const auto created = [] {
+    uint64_t calls = 0;
+    for (const char* name : {"vkAllocateMemory", "vkCreateBuffer", "vkCreateBufferView", "vkCreateShaderModule",
+                             "vkCreateComputePipelines", "vkCreateDescriptorPool", "vkAllocateDescriptorSets"}) {
+      calls += test::callsOf(name);
+    }
+    return calls;
+  };
+  const uint64_t before = created();
+  prepare(device, Mode::contact);
+  CHECK(created() == before);
+  test::MovedWorld world(3, 5, {1, 4, 0}, test::always, test::never, device);
+  const test::Written written(world.queries(16), device);
+  const std::vector<Query>& queries = written.same;
+  const HostGeometry geometry = world.geometry();
+  SceneCopy copy(device, world.scene);
+  constexpr Capacity kRoom{.queries = 16, .candidates = 1u << 14, .rounds = 32, .unresolvedPairs = 1u << 10};
+  Recorder own(device, world.scene, kRoom), first(copy, kRoom), second(copy, kRoom);
+  gpu::Submission submission(device.impl(), false);
+  own.prepare(queries, geometry);
+  first.prepare(queries, geometry);
+  second.prepare(written, geometry);
+  const uint64_t prepared = created();
+  own.record(submission.begin(), queries, geometry);
+  submission.submitAndWait();
+  first.record(submission.begin(), queries, geometry);
+  submission.submitAndWait();
+  CHECK(second.read().results.empty());
+  second.record(submission.begin(), written, geometry);
+  submission.submitAndWait();
+  CHECK(created() == prepared);
+  const std::vector<Result> expected = test::expectedOf(world.truth, queries);
+  for (Recorder* recorder : {&own, &first, &second}) checkSame(recorder->read().results, expected);
+}
+
 TEST_CASE("an engine without a queue records, submits nothing, and names the queue when it refuses what submits") {
   test::Host host;
   const Device hosts = host.own();

@@ -11,6 +11,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include "support/separate_allocations.h"
 #include "support/test_device.h"
 #include "support/watched_vulkan.h"
 
@@ -94,6 +95,13 @@ Host::Host(Mode mode, uint32_t index) {
                                 .pQueueCreateInfos = &queue};
   require(vkCreateDevice(handles.physicalDevice, &info, nullptr, &handles.device), "vkCreateDevice");
   vkGetDeviceQueue(handles.device, 0, 0, &handles.queue);
+  handles.memory = separateAllocations(handles);
+}
+
+HostDevice Host::withoutMemory() const {
+  HostDevice without = handles;
+  without.memory = {};
+  return without;
 }
 
 Host::~Host() {
@@ -105,7 +113,7 @@ Host::~Host() {
 }
 
 Device Host::own() const {
-  HostDevice unwatched = handles;
+  HostDevice unwatched = withoutMemory();
   unwatched.getInstanceProcAddr = vkGetInstanceProcAddr;
   return Device::adopt(unwatched);
 }

@@ -7,13 +7,15 @@ namespace radar::test {
 
 class Host {
  public:
-  /// Enables what `mode` requires and nothing else, on physical device `index`.
+  /// Enables what `mode` requires and nothing else, on physical device `index`. Gives separateAllocations().
   explicit Host(Mode mode = Mode::sampled, uint32_t index = 0);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
   /// Its own use of the device, which does not pass the loader that watches.
   Device own() const;
+  /// Without its allocator of memory: the engine's own is used.
+  HostDevice withoutMemory() const;
 
   HostDevice handles;
 

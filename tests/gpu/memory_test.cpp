@@ -4,8 +4,11 @@
 #include <limits>
 
 #include "gpu/buffer.h"
+#include "gpu/submission.h"
+#include "radar/recorder.h"
 #include "support/catch.h"
 #include "support/same_bits.h"
+#include "support/separate_allocations.h"
 #include "support/test_device.h"
 #include "support/world.h"
 #include "workloads/generate.h"
@@ -15,38 +18,80 @@ namespace {
 using namespace radar;
 using test::differenceOf;
 
-/// Makes calls of the device fail for lack of memory.
+const Device& hostsDevice();
+
+/// Makes calls of hostsDevice() fail for lack of memory.
 class ScarceMemory {
  public:
-  ScarceMemory() : device_(test::device().impl()) {
-    allocateMemory = device_.vk.AllocateMemory;
+  ScarceMemory() : device_(hostsDevice().impl()) {
     queueSubmit = device_.vk.QueueSubmit2;
-    most = std::numeric_limits<VkDeviceSize>::max();
-    failing = -1;
-    calls = 0;
-    device_.vk.AllocateMemory = [](VkDevice device, const VkMemoryAllocateInfo* info,
-                                   const VkAllocationCallbacks* allocator, VkDeviceMemory* memory) {
-      const bool fails = calls++ == failing || info->allocationSize > most;
-      return fails ? VK_ERROR_OUT_OF_DEVICE_MEMORY : allocateMemory(device, info, allocator, memory);
-    };
+    reset();
     device_.vk.QueueSubmit2 = [](VkQueue queue, uint32_t count, const VkSubmitInfo2* infos, VkFence fence) {
       return calls++ == failing ? VK_ERROR_OUT_OF_HOST_MEMORY : queueSubmit(queue, count, infos, fence);
     };
   }
   ~ScarceMemory() {
-    device_.vk.AllocateMemory = allocateMemory;
     device_.vk.QueueSubmit2 = queueSubmit;
+    reset();
   }
   ScarceMemory(const ScarceMemory&) = delete;
   ScarceMemory& operator=(const ScarceMemory&) = delete;
 
+  /// Larger allocations fail.
+  inline static VkDeviceSize most = std::numeric_limits<VkDeviceSize>::max();
+  /// The number of the call that fails, of both kinds together; and calls so far.
+  inline static int failing = -1, calls = 0;
+
+ private:
+  static void reset() {
+    most = std::numeric_limits<VkDeviceSize>::max();
+    failing = -1;
+    calls = 0;
+  }
+  inline static PFN_vkQueueSubmit2 queueSubmit;
+  Device::Impl& device_;
+};
+
+// The tests' device, as of a host that gives each buffer and image an allocation of its own.
+const Device& hostsDevice() {
+  return test::onceInRun([] {
+    HostDevice host = test::device().handles();
+    host.memory = test::separateAllocations(host);
+    host.memory.allocate = [give = host.memory.allocate](const MemoryRequest& request, MemoryPiece& piece) {
+      const bool fails =
+          ScarceMemory::calls++ == ScarceMemory::failing || request.requirements.size > ScarceMemory::most;
+      return fails ? VK_ERROR_OUT_OF_DEVICE_MEMORY : give(request, piece);
+    };
+    return Device::adopt(host);
+  });
+}
+
+/// A device of its own, whose blocks of memory can fail.
+class OwnMemory {
+ public:
+  OwnMemory() : device(Device::adopt(test::device().handles())) {
+    allocateMemory = device.impl().vk.AllocateMemory;
+    most = std::numeric_limits<VkDeviceSize>::max();
+    failing = -1;
+    calls = 0;
+    device.impl().vk.AllocateMemory = [](VkDevice owner, const VkMemoryAllocateInfo* info,
+                                         const VkAllocationCallbacks* allocator, VkDeviceMemory* memory) {
+      const bool fails = calls++ == failing || info->allocationSize > most;
+      return fails ? VK_ERROR_OUT_OF_DEVICE_MEMORY : allocateMemory(owner, info, allocator, memory);
+    };
+  }
+  gpu::Buffer buffer(VkDeviceSize bytes) const {
+    gpu::Buffer made(device.impl(), "mapped", gpu::BufferDomain::upload, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    made.reserve(bytes);
+    return made;
+  }
+  Device device;
+
   inline static VkDeviceSize most;   ///< larger allocations fail
-  inline static int failing, calls;  ///< the number of the call that fails, of both kinds together; and calls so far
+  inline static int failing, calls;  ///< the number of the allocation that fails, and allocations so far
 
  private:
   inline static PFN_vkAllocateMemory allocateMemory;
-  inline static PFN_vkQueueSubmit2 queueSubmit;
-  Device::Impl& device_;
 };
 
 constexpr SweeperOptions kOnDevice{.cpuBatch = 0};
@@ -56,7 +101,7 @@ struct Teapots : test::Case {
   Teapots(uint32_t sensors, Mode asked)
       : test::Case(test::caseOf(tools::makeWorkload(tools::Table1{.boxes = 10'000, .sensors = sensors}), 128)),
         mode(asked) {
-    answers = Sweeper(test::device(), scene, kOnDevice).run(queries, mode).results;
+    answers = Sweeper(hostsDevice(), scene, kOnDevice).run(queries, mode).results;
   }
   Mode mode;
   std::vector<Result> answers;
@@ -68,7 +113,7 @@ TEST_CASE("a Sweeper whose first batch finds no memory on the device says so in 
   const Teapots teapots(24, Mode::sampled);
   const ScarceMemory scarce;
   ScarceMemory::most = 0;
-  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
+  Sweeper sweeper(hostsDevice(), teapots.scene, kOnDevice);
   const Answers answers = sweeper.run(teapots.queries, teapots.mode);
   CHECK_FALSE(answers.reasons.empty());
   for (const auto& [i, reason] : answers.reasons) CHECK(answers.results[i].status == Status::invalid);
@@ -76,7 +121,7 @@ TEST_CASE("a Sweeper whose first batch finds no memory on the device says so in 
 
 TEST_CASE("queries of mode contact that do not fit the device's memory are answered on the CPU, later ones there") {
   const Teapots teapots(64, Mode::contact);
-  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
+  Sweeper sweeper(hostsDevice(), teapots.scene, kOnDevice);
   {
     const ScarceMemory scarce;
     ScarceMemory::most = 1u << 16;
@@ -95,9 +140,9 @@ TEST_CASE("queries of mode contact that do not fit the device's memory are answe
 TEST_CASE("lists of hits do not change if the device runs out of memory") {
   Teapots teapots(64, Mode::contact);
   for (size_t i = 0; i < teapots.queries.size(); i += 3) teapots.queries[i].hits = 4;
-  Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
+  Sweeper sweeper(hostsDevice(), teapots.scene, kOnDevice);
   const Answers expected = sweeper.run(teapots.queries, teapots.mode);
-  Sweeper poor(test::device(), teapots.scene, kOnDevice);
+  Sweeper poor(hostsDevice(), teapots.scene, kOnDevice);
   const ScarceMemory scarce;
   ScarceMemory::most = 1u << 16;
   const Answers found = poor.run(teapots.queries);
@@ -106,7 +151,7 @@ TEST_CASE("lists of hits do not change if the device runs out of memory") {
 
 TEST_CASE("a batch of mode sampled whose pictures do not fit the device's memory is split") {
   const Teapots teapots(64, Mode::sampled);
-  Sweeper sweeper(test::device(), teapots.scene);
+  Sweeper sweeper(hostsDevice(), teapots.scene);
   sweeper.run(std::span(teapots.queries).first(1), teapots.mode);  // uploads the scene
   const ScarceMemory scarce;
   ScarceMemory::most = 20 * 128 * 128 * sizeof(float);
@@ -122,7 +167,7 @@ TEST_CASE("a query of mode sampled whose own picture does not fit the device's m
   REQUIRE(drawn != teapots.answers.end());
   const auto large = static_cast<size_t>(drawn - teapots.answers.begin());
   teapots.queries[large].resolution = 512;
-  Sweeper sweeper(test::device(), teapots.scene);
+  Sweeper sweeper(hostsDevice(), teapots.scene);
   sweeper.run(std::span(teapots.queries).first(1), teapots.mode);
   const ScarceMemory scarce;
   ScarceMemory::most = 26 * 128 * 128 * sizeof(float) / 2;
@@ -145,7 +190,7 @@ TEST_CASE("whichever allocation or submission fails for lack of memory, every qu
   int failed = 0;
   for (int failing = 0;; ++failing) {
     CAPTURE(failing);
-    Sweeper sweeper(test::device(), teapots.scene, kOnDevice);
+    Sweeper sweeper(hostsDevice(), teapots.scene, kOnDevice);
     sweeper.run(first, teapots.mode);  // makes the mode ready
     const ScarceMemory scarce;
     ScarceMemory::failing = failing;
@@ -158,6 +203,144 @@ TEST_CASE("whichever allocation or submission fails for lack of memory, every qu
   }
   CHECK(failed > 5);
   CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("buffers take few allocations, of which each has its own bytes, and give them back") {
+  const OwnMemory memory;
+  const MemoryUse before = memory.device.memoryUse();
+  CHECK(before.used == 0);
+  tools::Random random(11);
+  std::vector<gpu::Buffer> buffers;
+  const auto holds = [](const gpu::Buffer& buffer) {
+    const auto* words = reinterpret_cast<const uint64_t*>(buffer.mapped());
+    return std::all_of(words, words + buffer.capacity() / 8, [&](uint64_t x) { return x == buffer.identity(); });
+  };
+  int made = 0;
+  for (int step = 0; step < 2000; ++step) {
+    if (!buffers.empty() && random.below(5) < 2) {
+      const size_t which = random.below(static_cast<uint32_t>(buffers.size()));
+      REQUIRE(holds(buffers[which]));
+      std::swap(buffers[which], buffers.back());
+      buffers.pop_back();
+    } else {
+      buffers.push_back(memory.buffer(1 + (1u << random.below(step % 100 == 0 ? 22 : 16))));
+      const gpu::Buffer& buffer = buffers.back();
+      std::fill_n(reinterpret_cast<uint64_t*>(buffer.mapped()), buffer.capacity() / 8, buffer.identity());
+      ++made;
+    }
+  }
+  CHECK(std::ranges::all_of(buffers, holds));
+  VkDeviceSize used = 0;
+  for (const gpu::Buffer& buffer : buffers) used += buffer.capacity();
+  const MemoryUse now = memory.device.memoryUse();
+  CHECK(now.used == used);
+  CHECK(now.allocated <= 3 * now.used);
+  CHECK(20 * OwnMemory::calls < made);
+  buffers.clear();
+  CHECK(memory.device.memoryUse().used == 0);
+  CHECK(memory.device.memoryUse().allocations == 1);
+}
+
+TEST_CASE("a buffer may have memory of its own where a block finds none, and else says what it needed") {
+  const OwnMemory memory;
+  std::vector<gpu::Buffer> buffers;
+  for (int i = 0; i < 3; ++i) buffers.push_back(memory.buffer(400'000));  // the first block is full
+  OwnMemory::most = 500'000;
+  for (int i = 0; i < 3; ++i) buffers.push_back(memory.buffer(400'000));
+  CHECK(buffers.back().mapped() != nullptr);
+  CHECK_THROWS_WITH(memory.buffer(600'000),
+                    test::StartsWith("vkAllocateMemory (mapped, ") && test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+}
+
+TEST_CASE("whichever block finds no memory, every query has its answer") {
+  const Teapots teapots(20, GENERATE(Mode::contact, Mode::sampled));
+  bool failed = true;
+  for (int failing = 0; failed; ++failing) {
+    CAPTURE(failing);
+    const OwnMemory memory;
+    Sweeper(memory.device, teapots.scene, kOnDevice).run(std::span(teapots.queries).first(2), teapots.mode);
+    OwnMemory::calls = 0;
+    OwnMemory::failing = failing;
+    Sweeper sweeper(memory.device, teapots.scene, kOnDevice);
+    const Answers answers = sweeper.run(teapots.queries, teapots.mode);
+    CHECK(differenceOf(answers.results, teapots.answers) == "");
+    CHECK(answers.reasons.empty());
+    failed = OwnMemory::calls > failing;
+    CHECK((failed || failing > 0));
+  }
+  CHECK(test::takeValidationMessages().empty());
+}
+
+TEST_CASE("a copy of a scene, recorders and sweepers say how much memory they hold, which is all that is held") {
+  const Teapots teapots(20, Mode::contact);
+  const OwnMemory memory;
+  Sweeper(memory.device, teapots.scene, kOnDevice).run(teapots.queries);
+  Recorder(memory.device, teapots.scene);  // both have the device prove itself
+  OwnMemory::calls = 0;
+  SceneCopy copy(memory.device, teapots.scene);
+  std::vector<Recorder> recorders;
+  recorders.emplace_back(copy);
+  CHECK(copy.memoryUse() == 0);
+  CHECK(recorders[0].memoryUse() == memory.device.memoryUse().used);
+  recorders.emplace_back(memory.device, teapots.scene, Capacity{.queries = 500});
+  gpu::Submission submission(memory.device.impl(), false);
+  for (Recorder& recorder : recorders) {
+    recorder.record(submission.begin(), teapots.queries);
+    submission.submitAndWait();
+  }
+  CHECK(copy.memoryUse() > 0);
+  CHECK(OwnMemory::calls <= 12);
+  Sweeper sweeper(copy, kOnDevice);
+  sweeper.run(teapots.queries);
+  const uint64_t inContact = sweeper.memoryUse();
+  sweeper.run(teapots.queries, Mode::sampled);
+  CHECK(sweeper.memoryUse() > inContact);
+  const uint64_t all = copy.memoryUse() + recorders[0].memoryUse() + recorders[1].memoryUse() + sweeper.memoryUse();
+  CHECK(memory.device.memoryUse().used == all);
+}
+
+TEST_CASE("a host's allocator gives all memory, takes it back, and is told what it did wrong") {
+  const HostDevice plain = test::device().handles();
+  HostDevice host = plain;
+  host.memory = test::separateAllocations(plain);
+  const HostMemory given = host.memory;
+  int pieces = 0;
+  host.memory = {.allocate =
+                     [&](const MemoryRequest& request, MemoryPiece& piece) {
+                       ++pieces;
+                       return given.allocate(request, piece);
+                     },
+                 .free =
+                     [&](const MemoryPiece& piece) {
+                       --pieces;
+                       given.free(piece);
+                     }};
+  const Teapots teapots(20, Mode::sampled);
+  {
+    const Device device = Device::adopt(host);
+    Sweeper sweeper(device, teapots.scene, kOnDevice);
+    CHECK(differenceOf(sweeper.run(teapots.queries, teapots.mode).results, teapots.answers) == "");
+    CHECK(pieces > 20);
+    CHECK(device.memoryUse().allocations == static_cast<uint32_t>(pieces));
+  }
+  CHECK(pieces == 0);
+  const auto wrongly = [&](const auto& change) {
+    host.memory.allocate = [&](const MemoryRequest& request, MemoryPiece& piece) {
+      const VkResult result = given.allocate(request, piece);
+      change(piece);
+      return result;
+    };
+    host.memory.free = given.free;
+    CHECK_THROWS_WITH(Device::adopt(host), test::StartsWith("HostMemory::allocate (") && test::Contains("expected"));
+  };
+  wrongly([&](MemoryPiece& piece) {
+    given.free(piece);
+    piece.memory = VK_NULL_HANDLE;
+  });
+  wrongly([](MemoryPiece& piece) { piece.offset = 3; });
+  wrongly([](MemoryPiece& piece) { piece.mapped = nullptr; });
+  host.memory.free = nullptr;
+  CHECK_THROWS_WITH(Device::adopt(host), "HostDevice::memory: expected both functions or none, got one");
 }
 
 TEST_CASE("a buffer takes at most a quarter more memory than asked for, or half if it grows a little, in few steps") {

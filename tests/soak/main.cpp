@@ -44,7 +44,7 @@ struct Devices {
     for (const auto& host : hosts.pooled) pooled.push_back(adopt(*host));
   }
   Device adopt(const test::Host& host) const {
-    HostDevice handles = host.handles;
+    HostDevice handles = host.withoutMemory();
     handles.doubles = handles.doubles && doubles;
     return Device::adopt(handles);
   }

@@ -2,7 +2,7 @@
 add_executable(radar_soak
   embed/host.cpp embed/host_world.cpp faults/host_memory.cpp fuzz/check_answers.cpp fuzz/check_recorded.cpp
   fuzz/scene_calls.cpp soak/answerers.cpp soak/batch.cpp soak/hard_world.cpp soak/main.cpp soak/memory.cpp
-  soak/moved_answerers.cpp soak/wild_world.cpp support/scene_model.cpp support/test_device.cpp
+  soak/moved_answerers.cpp soak/wild_world.cpp support/scene_model.cpp support/separate_allocations.cpp support/test_device.cpp
   support/watched_vulkan.cpp)
 target_include_directories(radar_soak PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
 target_link_libraries(radar_soak PRIVATE CyberRadar::radar radar_oracle radar_sweep radar_gpu radar_shaders

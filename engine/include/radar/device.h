@@ -41,6 +41,38 @@ RADAR_API std::vector<DeviceReport> listDevices();
 /// the device were lost. Nothing on that device may then be destroyed, since its driver goes on.
 using OnCompiling = std::function<bool(const std::string& shader, uint32_t seconds)>;
 
+/// Memory that the engine needs for one buffer or image.
+struct MemoryRequest {
+  VkMemoryRequirements requirements{};
+  VkMemoryPropertyFlags required = 0;   ///< VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT: also MemoryPiece::mapped
+  VkMemoryPropertyFlags preferred = 0;  ///< in addition, if a memory type has them
+  bool isImage = false;                 ///< with optimal tiling; else a buffer
+  const char* name = "";                ///< of the buffer or image
+};
+
+/// A piece of device memory that nothing else uses until it is freed.
+struct MemoryPiece {
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VkDeviceSize offset = 0;  ///< bytes, a multiple of the alignment required
+  void* mapped = nullptr;   ///< host address of `offset`
+  void* handle = nullptr;   ///< the allocator's own, such as a VmaAllocation
+};
+
+/// A host's allocator of device memory, such as the Vulkan Memory Allocator: vmaAllocateMemory() and vmaFreeMemory().
+/// The engine calls one of them at a time, on any thread that uses the Device; they call nothing of the engine, and
+/// `free` does not throw.
+struct HostMemory {
+  std::function<VkResult(const MemoryRequest&, MemoryPiece&)> allocate{};
+  std::function<void(const MemoryPiece&)> free{};
+};
+
+/// Device memory that the engine holds.
+struct MemoryUse {
+  uint64_t used = 0;         ///< by buffers and images, bytes
+  uint64_t allocated = 0;    ///< from the driver or the host, bytes
+  uint32_t allocations = 0;  ///< calls of vkAllocateMemory, or pieces of the host's, that hold it
+};
+
 /// Vulkan handles that the host owns. All outlive the Device made from them. `device` has the features of
 /// requirements() enabled. `queue` belongs to family `queueFamily`, which supports compute and, for mode sampled,
 /// graphics.
@@ -64,6 +96,9 @@ struct HostDevice {
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
   const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's
   VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline; optional
+  /// Gives all device memory. Without it, the engine allocates blocks of 1 to 64 MiB, of which its buffers take pieces,
+  /// and what is larger by itself; it frees those that nothing uses, but for one block of each memory type.
+  HostMemory memory{};
   /// Called around each vkQueueSubmit2, on the submitting thread. Set both if the host or another Device uses the queue
   /// on other threads, else none: Sweepers of one Device take turns.
   std::function<void()> lockQueue{}, unlockQueue{};
@@ -130,6 +165,8 @@ class RADAR_API Device {
   /// HostDevice::doubles, untested.
   bool doubles() const;
   const HostDevice& handles() const;
+  /// By all that was made with this Device.
+  MemoryUse memoryUse() const;
 
   struct Impl;
   Impl& impl() const { return *impl_; }
@@ -138,6 +175,14 @@ class RADAR_API Device {
   explicit Device(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Called before each of `all` steps, of which `done` are; `next` says what follows, and is empty after the last.
+using OnProgress = std::function<void(uint32_t done, uint32_t all, const std::string& next)>;
+
+/// Does now what the first Recorder or Sweeper of a device otherwise waits for: compiles every kernel that `mode` runs,
+/// those of recordings included, and, if there is a queue, asks the known queries (checkAnswers). Throws as they do, or
+/// if the device does not support the mode.
+RADAR_API void prepare(const Device& device, Mode mode = Mode::contact, const OnProgress& onProgress = {});
 
 /// A kernel as a device's compiler made it.
 struct KernelReport {

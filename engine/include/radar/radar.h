@@ -100,6 +100,9 @@ class RADAR_API Sweeper {
   /// the device, or it does not support the mode.
   Scopes scopes(const Query& query);
 
+  /// Bytes of its buffers and images on the device, and of its copy of the scene, unless others share that.
+  uint64_t memoryUse() const;
+
   struct Impl;
 
  private:

@@ -108,6 +108,11 @@ class RADAR_API Recorder {
   /// may be more than Capacity::queries, an object of the scene has a motion, `geometry` breaks its contract, or
   /// something does not fit the device.
   void record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry = {});
+  /// Does before the first frame what record() with these arguments would do: makes room, so that record() then creates
+  /// nothing on the device, unless the scene changes, and, if there is a queue, uploads the scene and waits. Call it
+  /// when record() may be called; nothing is recorded. prepare() of a Device compiles.
+  void prepare(std::span<const Query> queries, const HostGeometry& geometry = {});
+  void prepare(const HostQueries& queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.
   void reset();
 
@@ -130,6 +135,8 @@ class RADAR_API Recorder {
   /// If Flag::bounds is set, describes something that has left its bounds; else empty. Call it when read() may be
   /// called.
   std::string boundsViolation() const;
+  /// Bytes of its buffers on the device, and of its copy of the scene, unless others share that.
+  uint64_t memoryUse() const;
 
   struct Impl;
   /// For the queries by which a device proves itself.

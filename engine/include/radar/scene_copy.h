@@ -19,6 +19,8 @@ class RADAR_API SceneCopy {
   ~SceneCopy();
   SceneCopy(SceneCopy&&) noexcept;
   SceneCopy& operator=(SceneCopy&&) noexcept;
+  /// Bytes of its buffers on the device.
+  uint64_t memoryUse() const;
 
   struct Impl;
 

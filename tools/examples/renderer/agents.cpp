@@ -25,8 +25,9 @@ std::vector<T> contentsOf(const Buffer& buffer) {
 
 }  // namespace
 
-Agents::Agents(const Gpu& gpu, World& world)
+Agents::Agents(const Gpu& gpu, World& world, const radar::OnProgress& onProgress)
     : gpu_(gpu), world_(world), device_(radar::Device::adopt(gpu.handles())), copy_(device_, world.scene) {
+  radar::prepare(device_, radar::Mode::contact, onProgress);
   push.agents = static_cast<uint32_t>(world.agents.size());
   push.walkers = world.walkers;
   push.walkerVertices = static_cast<uint32_t>(world.models[kWalker].mesh.vertices.size());
@@ -69,6 +70,8 @@ void Agents::makeBuffers() {
       deformed_.push_back({next == 0 ? world_.bodies[i] : world_.nextBodies[i], positions});
     }
   }
+  places_ = {.transforms = buffers_[kTransforms].handle, .objects = moved_};
+  queries_ = {.buffer = buffers_[kQueries].handle, .count = push.agents, .countBuffer = buffers_[kGridCells].handle};
 }
 
 void Agents::makeLayout() {
@@ -94,6 +97,7 @@ void Agents::makeSlot(Slot& slot) {
   slot.recorder.emplace(copy_, radar::Capacity{.queries = push.agents,
                                                .candidates = std::max(1u << 14, 64 * push.agents),
                                                .unresolvedPairs = 4 * push.agents});
+  slot.recorder->prepare(queries_, geometry());
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindings};
   const VkDescriptorPoolCreateInfo setsInfo{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = 1, .pPoolSizes = &size};
@@ -146,10 +150,7 @@ void Agents::search(VkCommandBuffer commands, uint32_t slot) {
 #ifndef RADAR_EXAMPLE_LEAVE_OUT_BARRIER  // a test leaves it out, and expects synchronization validation to notice
   barrier(commands, kComputed, kCopyRead);
 #endif
-  const radar::MovedObjects moved{.transforms = buffers_[kTransforms].handle, .objects = moved_};
-  const radar::HostQueries queries{
-      .buffer = buffers_[kQueries].handle, .count = push.agents, .countBuffer = buffers_[kGridCells].handle};
-  slots_[slot].recorder->record(commands, queries, {.meshes = deformed_, .objects = {&moved, 1}});
+  slots_[slot].recorder->record(commands, queries_, geometry());
 }
 
 void Agents::move(VkCommandBuffer commands, uint32_t slot) {

@@ -16,7 +16,7 @@ inline constexpr uint32_t kFramesInFlight = 2;
 /// `slot`, in all calls: which of the frames in flight is recorded; its last one has executed and been waited for.
 class Agents {
  public:
-  Agents(const Gpu& gpu, World& world);
+  Agents(const Gpu& gpu, World& world, const radar::OnProgress& onProgress);
 
   /// A step is these three, one after another. The agents claim room, and those that may move write their queries.
   void ask(VkCommandBuffer commands, uint32_t slot);
@@ -34,6 +34,8 @@ class Agents {
   /// Counts agents that touch or cross anything. The scene learns where they have gone, which keeps the search fast.
   Check check(uint32_t slot);
 
+  /// What the engine holds on the device.
+  radar::MemoryUse memoryUse() const { return device_.memoryUse(); }
   VkPipelineLayout layout() const { return layout_; }
   void bind(VkCommandBuffer commands, uint32_t slot, VkPipelineBindPoint point, VkPipeline pipeline) const;
 
@@ -50,6 +52,7 @@ class Agents {
   void makeBuffers();
   void makeLayout();
   void makeSlot(Slot& slot);
+  radar::HostGeometry geometry() const { return {.meshes = deformed_, .objects = {&places_, 1}}; }
   void dispatch(VkCommandBuffer commands, uint32_t slot, VkPipeline pipeline, uint32_t invocations) const;
 
   const Gpu& gpu_;
@@ -62,8 +65,11 @@ class Agents {
   VkPipelineLayout layout_;
   VkPipeline skin_, claim_, ask_, move_;
   std::array<Slot, kFramesInFlight> slots_;
-  std::vector<radar::ObjectId> moved_;         ///< by the device: all agents
-  std::vector<radar::DeformedMesh> deformed_;  ///< likewise: two meshes of each walker
+  // What the device writes, and the engine reads: where all agents are, two meshes of each walker, and the queries.
+  std::vector<radar::ObjectId> moved_;
+  radar::MovedObjects places_;
+  std::vector<radar::DeformedMesh> deformed_;
+  radar::HostQueries queries_;
 };
 
 }  // namespace example

@@ -1,6 +1,5 @@
 #include "gpu.h"
 
-#include <atomic>
 #include <cstring>
 
 #include "radar/error.h"
@@ -8,27 +7,6 @@
 namespace example {
 
 namespace {
-
-// The engine looks all functions up through the host. This host counts what it allocates.
-std::atomic<uint32_t> allocations;
-PFN_vkAllocateMemory allocateMemory;
-PFN_vkGetDeviceProcAddr getDeviceProcAddr;
-
-VKAPI_ATTR VkResult VKAPI_CALL countedAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info,
-                                                     const VkAllocationCallbacks* allocator, VkDeviceMemory* memory) {
-  ++allocations;
-  return allocateMemory(device, info, allocator, memory);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) {
-  if (std::strcmp(name, "vkAllocateMemory") == 0) return reinterpret_cast<PFN_vkVoidFunction>(countedAllocateMemory);
-  return getDeviceProcAddr(device, name);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
-  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return reinterpret_cast<PFN_vkVoidFunction>(deviceFunction);
-  return vkGetInstanceProcAddr(instance, name);
-}
 
 VkShaderModule makeModule(const Gpu& gpu, Lifetime& lifetime, Code code) {
   const VkShaderModuleCreateInfo info{
@@ -61,10 +39,6 @@ void require(VkResult result, const char* call) {
   if (result < 0) throw radar::Error(std::string(call) + " failed", result);
 }
 
-uint32_t engineAllocations() {
-  return allocations;
-}
-
 Gpu::Gpu(std::span<const char* const> extensions) {
   const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo instanceInfo{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
@@ -95,8 +69,6 @@ Gpu::Gpu(std::span<const char* const> extensions) {
   require(vkCreateDevice(physical, &info, nullptr, &device), "vkCreateDevice");
   lifetime_.add([this] { vkDestroyDevice(device, nullptr); });
   vkGetDeviceQueue(device, family, 0, &queue);
-  getDeviceProcAddr = vkGetDeviceProcAddr;
-  allocateMemory = reinterpret_cast<PFN_vkAllocateMemory>(vkGetDeviceProcAddr(device, "vkAllocateMemory"));
 }
 
 /// Takes the first device that both the engine and the renderer can use.
@@ -145,7 +117,7 @@ radar::HostDevice Gpu::handles() const {
           .queueFamily = family,
           .queue = queue,
           .doubles = doubles_,
-          .getInstanceProcAddr = instanceFunction};
+          .getInstanceProcAddr = vkGetInstanceProcAddr};
 }
 
 uint32_t Gpu::memoryType(uint32_t allowed, VkMemoryPropertyFlags wanted) const {

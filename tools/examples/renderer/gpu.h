@@ -59,9 +59,6 @@ class Gpu {
   bool doubles_ = false;
 };
 
-/// Device memory that the engine has allocated through handles(), calls of vkAllocateMemory so far.
-uint32_t engineAllocations();
-
 struct Buffer {
   VkBuffer handle = VK_NULL_HANDLE;
   VkDeviceSize size = 0;

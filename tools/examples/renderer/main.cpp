@@ -121,14 +121,18 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-void print(const Report& report, const Gpu& gpu, const World& world) {
+void print(const Renderer& renderer, const Gpu& gpu, const World& world) {
+  const Report& report = renderer.report();
   std::printf("%zu agents, %u of them walkers, on %s; medians of %zu frames\n", world.agents.size(), world.walkers,
               gpu.name.c_str(), report.whole.size());
   for (size_t i = 0; i < std::size(Report::kStages); ++i)
-    std::printf("  %-14s %9.2f ms\n", Report::kStages[i], median(report.milliseconds[i]));
-  std::printf("  %-14s %9.2f ms, the first frame %.2f ms\n", "all", median(report.whole),
+    std::printf("  %-14s %9.2f ms, first %9.2f ms\n", Report::kStages[i], median(report.milliseconds[i]),
+                report.milliseconds[i].empty() ? 0 : report.milliseconds[i].front());
+  std::printf("  %-14s %9.2f ms, first %9.2f ms\n", "all", median(report.whole),
               report.whole.empty() ? 0 : report.whole.front());
-  std::printf("device allocations of the engine: %u\n", engineAllocations());
+  const radar::MemoryUse memory = renderer.engineMemory();
+  std::printf("memory of the engine: %.1f MB in %u allocations\n", 1e-6 * static_cast<double>(memory.allocated),
+              memory.allocations);
   std::printf("queries: %u, without an answer: %u\n", report.answered, report.refused);
   std::printf("checks by the CPU: %u, crossings: %u\n", report.checks, report.crossings);
 }
@@ -146,7 +150,7 @@ void runHeadless(const Options& options) {
   const VkDeviceSize bytes = VkDeviceSize{4} * options.size.width * options.size.height;
   for (Buffer& picture : pictures)
     picture = makeBuffer(gpu, lifetime, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, Where::host);
-  Renderer renderer(gpu, world, options.size);
+  Renderer renderer(gpu, world, options.size, {});
   Boom boom(world);
   for (uint32_t frame = 0; frame < options.frames; ++frame) {
     const Camera camera = boom.look(0.6 + 0.002 * frame, 0.5, distanceOf(world), options.size);
@@ -174,7 +178,7 @@ void runHeadless(const Options& options) {
   }
   renderer.finish();
   film.close();
-  print(renderer.report(), gpu, world);
+  print(renderer, gpu, world);
 }
 
 void runWindow(const Options& options) {
@@ -184,7 +188,9 @@ void runWindow(const Options& options) {
   const std::vector<const char*> extensions = window.instanceExtensions();
   const Gpu gpu(extensions);
   Swapchain swapchain(gpu, window);
-  Renderer renderer(gpu, world, swapchain.size());
+  Renderer renderer(gpu, world, swapchain.size(), [&](uint32_t done, uint32_t all, const std::string& next) {
+    window.setTitle("Cyber Radar: " + std::to_string(done) + " of " + std::to_string(all) + ", " + next);
+  });
   Boom boom(world);
   while (window.poll() && (options.frames == 0 || renderer.frames() < options.frames)) {
     std::optional<Output> output = swapchain.acquire();
@@ -205,7 +211,7 @@ void runWindow(const Options& options) {
     }
   }
   renderer.finish();
-  print(renderer.report(), gpu, world);
+  print(renderer, gpu, world);
 }
 
 }  // namespace

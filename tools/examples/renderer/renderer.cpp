@@ -42,7 +42,8 @@ Camera lookAt(const vec3& eye, const vec3& target, float aspect) {
   return camera;
 }
 
-Renderer::Renderer(const Gpu& gpu, World& world, VkExtent2D size) : gpu_(gpu), world_(world), agents_(gpu, world) {
+Renderer::Renderer(const Gpu& gpu, World& world, VkExtent2D size, const radar::OnProgress& onProgress)
+    : gpu_(gpu), world_(world), agents_(gpu, world, onProgress) {
   std::vector<uint32_t> indices;
   for (const Model& model : world.models)
     indices.insert(indices.end(), model.mesh.indices.begin(), model.mesh.indices.end());
@@ -52,6 +53,11 @@ Renderer::Renderer(const Gpu& gpu, World& world, VkExtent2D size) : gpu_(gpu), w
   line_ = makeGraphics(gpu, lifetime_, layout, k_line_vert, k_line_frag, VK_PRIMITIVE_TOPOLOGY_LINE_LIST);
   for (Slot& slot : slots_) makeSlot(slot);
   resize(size);
+  // Some drivers compile shaders when they first run.
+  frame(lookAt({40, 40, 40}, {0, 0, 0}, 1), true, Lines::normals, {});
+  finish();
+  frames_ = 0;
+  report_ = {};
 }
 
 Renderer::~Renderer() {

@@ -40,7 +40,8 @@ struct Report {
 
 class Renderer {
  public:
-  Renderer(const Gpu& gpu, World& world, VkExtent2D size);
+  /// Draws a frame that nobody sees, too.
+  Renderer(const Gpu& gpu, World& world, VkExtent2D size, const radar::OnProgress& onProgress);
   ~Renderer();
   /// Waits until the device is done, and makes the images anew.
   void resize(VkExtent2D size);
@@ -50,6 +51,7 @@ class Renderer {
   void finish();
   VkExtent2D size() const { return size_; }
   const Report& report() const { return report_; }
+  radar::MemoryUse engineMemory() const { return agents_.memoryUse(); }
   uint32_t frames() const { return frames_; }
 
  private:

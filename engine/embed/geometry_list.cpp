@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "embed/host_format.h"
+#include "gpu/kernel.h"
 #include "math/rounding.h"
 
 namespace radar {
@@ -11,33 +12,42 @@ namespace {
 
 void addDeformed(DeformedList& list, const DeformedMesh& deformed, uint32_t firstByte, const Mesh& mesh) {
   const bool areListed = !mesh.hostVertices.empty();
-  list.meshes.push_back({.mesh = deformed.mesh,
-                         .vertices = mesh.vertexCount(),
-                         .triangles = mesh.triangleCount(),
-                         .firstByte = firstByte,
-                         .stride = static_cast<uint32_t>(deformed.positions.stride),
-                         .component = HostFormat(deformed.positions.format).component(),
-                         .firstHostVertex = mesh.firstHostVertex,
-                         .numbers = areListed ? static_cast<uint32_t>(list.vertexNumbers.size()) : kNone,
-                         .isBounded = mesh.deforms});
+  gpu::Deformed added{.mesh = deformed.mesh,
+                      .vertices = mesh.vertexCount(),
+                      .triangles = mesh.triangleCount(),
+                      .firstByte = firstByte,
+                      .stride = static_cast<uint32_t>(deformed.positions.stride),
+                      .format = HostFormat(deformed.positions.format).component(),
+                      .numbers = areListed ? static_cast<uint32_t>(list.vertexNumbers.size()) : gpu::kNobody,
+                      .extent = gpu::kNobody};
+  std::ranges::copy(list.groups, added.firstGroup);
+  list.groups[gpu::kByDeform] += gpu::groupsFor(added.vertices, gpu::kHostGroup);
   for (const uint32_t vertex : mesh.hostVertices) list.vertexNumbers.push_back(vertex - mesh.firstHostVertex);
-  if (!mesh.deforms) list.unbounded.push_back(deformed.mesh);
+  if (!mesh.deforms) {
+    added.extent = static_cast<uint32_t>(list.unbounded.size());
+    list.groups[gpu::kByBound] += gpu::groupsFor(added.triangles, gpu::kHostGroup * gpu::kBoundRun);
+    list.unbounded.push_back(deformed.mesh);
+  }
+  list.firstHostVertices.push_back(mesh.firstHostVertex);
+  list.meshes.push_back(added);
 }
 
-// Adds the nodes of a mesh by depth, because a node is refitted after its children.
-void addLevels(DeformedList& list, MeshId mesh, const MeshTree& tree) {
-  std::vector<std::vector<uint32_t>> byDepth(tree.depth);
-  std::vector<uint32_t> depths(tree.nodes.size());
-  for (uint32_t n = 0; n < depths.size(); ++n) {  // parents before children
-    byDepth[depths[n]].push_back(n);
-    const uint32_t link = tree.nodes[n].link;
-    if ((link & gpu::kLinkLeaf) == 0) depths[link] = depths[link + 1] = depths[n] + 1;
+// Lists the nodes of all meshes by depth, because a node is refitted after its children.
+void addRefitNodes(DeformedList& list, const Scene::Impl& scene) {
+  std::vector<std::vector<gpu::RefitNode>> byDepth;
+  for (const gpu::Deformed& deformed : list.meshes) {
+    const MeshTree& tree = scene.meshes[deformed.mesh].tree;
+    byDepth.resize(std::max<size_t>(byDepth.size(), tree.depth));
+    std::vector<uint32_t> depths(tree.nodes.size());
+    for (uint32_t n = 0; n < depths.size(); ++n) {  // parents before children
+      byDepth[depths[n]].push_back({deformed.mesh, n});
+      const uint32_t link = tree.nodes[n].link;
+      if ((link & gpu::kLinkLeaf) == 0) depths[link] = depths[link + 1] = depths[n] + 1;
+    }
   }
-  list.levels.resize(std::max(list.levels.size(), byDepth.size()));
-  for (size_t depth = 0; depth < byDepth.size(); ++depth) {
-    list.levels[depth].push_back(
-        {mesh, static_cast<uint32_t>(list.refitNodes.size()), static_cast<uint32_t>(byDepth[depth].size())});
-    list.refitNodes.insert(list.refitNodes.end(), byDepth[depth].begin(), byDepth[depth].end());
+  for (const std::vector<gpu::RefitNode>& nodes : byDepth) {
+    list.refitNodes.insert(list.refitNodes.end(), nodes.begin(), nodes.end());
+    list.refitEnds.push_back(static_cast<uint32_t>(list.refitNodes.size()));
   }
 }
 
@@ -148,8 +158,8 @@ void update(DeformedList& list, const HostGeometry& geometry, std::span<const ui
   for (size_t i = 0; i < geometry.meshes.size(); ++i) {
     const DeformedMesh& deformed = geometry.meshes[i];
     addDeformed(next, deformed, firstBytes[i], scene.meshes[deformed.mesh]);
-    addLevels(next, deformed.mesh, scene.meshes[deformed.mesh].tree);
   }
+  addRefitNodes(next, scene);
   list = std::move(next);
 }
 

@@ -2,6 +2,7 @@
 // same.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,26 +15,14 @@ namespace radar {
 
 /// Meshes that a host deforms.
 struct DeformedList {
-  struct Deformed {
-    MeshId mesh;
-    uint32_t vertices, triangles;
-    uint32_t firstByte, stride, component;  ///< of the positions, in the copied words
-    uint32_t firstHostVertex;
-    uint32_t numbers;  ///< where `vertexNumbers` has those of its vertices, less the first's; kNone: consecutive
-    bool isBounded;
-  };
-  /// Nodes of a mesh at one depth, refitted together.
-  struct Level {
-    MeshId mesh;
-    uint32_t first, count;  ///< in `refitNodes`
-  };
-
   std::vector<uint64_t> key{};  ///< all that the rest depends on
-  std::vector<Deformed> meshes{};
-  std::vector<uint32_t> vertexNumbers{};
-  std::vector<MeshId> unbounded{};  ///< those without bounds
-  std::vector<uint32_t> refitNodes{};
-  std::vector<std::vector<Level>> levels{};  ///< over all meshes; the deepest last
+  std::vector<gpu::Deformed> meshes{};
+  std::vector<uint32_t> firstHostVertices{};  ///< of each of them
+  std::vector<uint32_t> vertexNumbers{};      ///< less the first's
+  std::vector<MeshId> unbounded{};            ///< those without bounds
+  std::array<uint32_t, 2> groups{};           ///< workgroups of deform.comp and bound.comp
+  std::vector<gpu::RefitNode> refitNodes{};
+  std::vector<uint32_t> refitEnds{};  ///< where each depth ends in `refitNodes`
   bool isUploaded = false;
 };
 

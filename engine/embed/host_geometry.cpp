@@ -57,10 +57,11 @@ HostGeometryPass::HostGeometryPass(const gpu::Owner& owner, const GpuScene& resi
                    shaders::kFit, shaders::kInvalidate}),
       upload_(owner),
       words_(owner, "host words", BufferDomain::device, kUploaded),
-      refitNodes_(owner, "nodes to refit", BufferDomain::device, kUploaded),
       numbers_(owner, "host vertex numbers", BufferDomain::device, kUploaded),
       unboundedMeshes_(owner, "unbounded meshes", BufferDomain::device, kUploaded),
       fitNodes_(owner, "nodes to fit", BufferDomain::device, kUploaded),
+      deformedMeshes_(owner, "deformed meshes", BufferDomain::device, kUploaded),
+      refitNodes_(owner, "nodes to refit", BufferDomain::device, kUploaded),
       movedObjects_(owner, "moved objects", BufferDomain::device, kUploaded),
       extents_(owner, "extents", BufferDomain::device, kUploaded | VK_BUFFER_USAGE_TRANSFER_SRC_BIT),
       readback_(owner, "recorded extents", BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT),
@@ -119,11 +120,13 @@ void HostGeometryPass::stage(const HostGeometry& geometry, const Scene::Impl& sc
 }
 
 void HostGeometryPass::stageDeformed() {
+  deformedMeshes_.reserve(deformed_.meshes.size());
   refitNodes_.reserve(deformed_.refitNodes.size());
   numbers_.reserve(deformed_.vertexNumbers.size());
   unboundedMeshes_.reserve(deformed_.unbounded.size());
   extents_.reserve(deformed_.unbounded.size());
   readback_.reserve(deformed_.unbounded.size());
+  upload_.add(deformed_.meshes.data(), gpu::bytesOf(deformed_.meshes), deformedMeshes_);
   upload_.add(deformed_.refitNodes.data(), gpu::bytesOf(deformed_.refitNodes), refitNodes_);
   upload_.add(deformed_.vertexNumbers.data(), gpu::bytesOf(deformed_.vertexNumbers), numbers_);
   upload_.add(deformed_.unbounded.data(), gpu::bytesOf(deformed_.unbounded), unboundedMeshes_);
@@ -138,7 +141,7 @@ void HostGeometryPass::stageMoved() {
 
 GpuScene::Overwritten HostGeometryPass::overwritten() const {
   GpuScene::Overwritten overwritten{.meshes = {}, .moved = moved_.overwritten};
-  for (const DeformedList::Deformed& deformed : deformed_.meshes) overwritten.meshes.push_back(deformed.mesh);
+  for (const gpu::Deformed& deformed : deformed_.meshes) overwritten.meshes.push_back(deformed.mesh);
   return overwritten;
 }
 
@@ -153,30 +156,22 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
   const auto unbounded = static_cast<uint32_t>(deformed_.unbounded.size());
   if (unbounded != 0) commands->CmdFillBuffer(commands, extents_.get(), 0, VK_WHOLE_SIZE, kNobody);
   transferToComputeReadWrite(commands);
-  for (const DeformedList::Deformed& d : deformed_.meshes) {
-    run_(commands, shaders::kDeform, groupsFor(d.vertices, kHostGroup),
-         DeformPush{.count = d.vertices,
-                    .mesh = d.mesh,
-                    .firstByte = d.firstByte,
-                    .stride = d.stride,
-                    .format = d.component,
-                    .numbers = d.numbers,
-                    .isBounded = d.isBounded ? 1u : 0u},
-         {{kSlotVertices, to.vertices},
-          {kSlotMeshes, to.meshes},
-          {kSlotBoundsViolation, violation_},
-          {kSlotVertexNumbers, numbers_},
-          {kSlotWords, words_}});
-  }
+  const auto meshes = static_cast<uint32_t>(deformed_.meshes.size());
+  run_(commands, shaders::kDeform, deformed_.groups[kByDeform], DeformedPush{meshes, deformed_.groups[kByDeform]},
+       {{kSlotVertices, to.vertices},
+        {kSlotMeshes, to.meshes},
+        {kSlotBoundsViolation, violation_},
+        {kSlotVertexNumbers, numbers_},
+        {kSlotWords, words_},
+        {kSlotDeformed, deformedMeshes_}});
   if (unbounded != 0) {
     computeWriteToComputeReadWrite(commands);
-    uint32_t extent = 0;
-    for (const DeformedList::Deformed& d : deformed_.meshes) {
-      if (d.isBounded) continue;
-      run_(commands, shaders::kBound, groupsFor(d.triangles, kHostGroup * kBoundRun),
-           BoundPush{resident_.record(d.mesh).firstTriangle, d.triangles, extent++},
-           {{kSlotVertices, to.vertices}, {kSlotTriangles, to.triangles}, {kSlotExtents, extents_}});
-    }
+    run_(commands, shaders::kBound, deformed_.groups[kByBound], DeformedPush{meshes, deformed_.groups[kByBound]},
+         {{kSlotVertices, to.vertices},
+          {kSlotTriangles, to.triangles},
+          {kSlotMeshes, to.meshes},
+          {kSlotExtents, extents_},
+          {kSlotDeformed, deformedMeshes_}});
     computeWriteToComputeReadWrite(commands);
     run_(commands, shaders::kNormalise, groupsFor(unbounded, kHostGroup), NormalisePush{unbounded},
          {{kSlotMeshes, to.meshes}, {kSlotUnbounded, unboundedMeshes_}, {kSlotExtents, extents_}});
@@ -195,24 +190,26 @@ void HostGeometryPass::record(const gpu::Commands& commands, const Scene::Impl& 
           {kSlotWords, words_}});
   }
   computeWriteToComputeReadWrite(commands);
-  for (size_t depth = deformed_.levels.size(); depth-- > 0;) {
-    for (const DeformedList::Level& level : deformed_.levels[depth]) {
-      run_(commands, shaders::kRefit, groupsFor(level.count, kHostGroup),
-           RefitPush{level.first, level.count, level.mesh},
-           {{kSlotVertices, to.vertices},
-            {kSlotTriangles, to.triangles},
-            {kSlotMeshes, to.meshes},
-            {kSlotMeshNodes, to.meshNodes},
-            {kSlotRefitNodes, refitNodes_}});
+  // Depth by depth, the deepest first.
+  const auto forEachDepth = [&](std::span<const uint32_t> ends, const auto& run) {
+    for (size_t depth = ends.size(); depth-- > 0;) {
+      const uint32_t first = depth == 0 ? 0 : ends[depth - 1], count = ends[depth] - first;
+      run(groupsFor(count, kHostGroup), first, count);
+      computeWriteToComputeReadWrite(commands);
     }
-    computeWriteToComputeReadWrite(commands);
-  }
-  for (size_t depth = moved_.fitEnds.size(); depth-- > 0;) {
-    const uint32_t first = depth == 0 ? 0 : moved_.fitEnds[depth - 1], count = moved_.fitEnds[depth] - first;
-    run_(commands, shaders::kFit, groupsFor(count, kHostGroup), FitPush{first, count},
+  };
+  forEachDepth(deformed_.refitEnds, [&](uint32_t groups, uint32_t first, uint32_t count) {
+    run_(commands, shaders::kRefit, groups, RefitPush{first, count},
+         {{kSlotVertices, to.vertices},
+          {kSlotTriangles, to.triangles},
+          {kSlotMeshes, to.meshes},
+          {kSlotMeshNodes, to.meshNodes},
+          {kSlotRefitNodes, refitNodes_}});
+  });
+  forEachDepth(moved_.fitEnds, [&](uint32_t groups, uint32_t first, uint32_t count) {
+    run_(commands, shaders::kFit, groups, FitPush{first, count},
          {{kSlotObjectNodes, to.objectNodes}, {kSlotFitNodes, fitNodes_}});
-    computeWriteToComputeReadWrite(commands);
-  }
+  });
 }
 
 void HostGeometryPass::recordInvalidate(const gpu::Commands& commands, const gpu::Array<Result>& results,
@@ -244,12 +241,16 @@ std::map<MeshId, Box> HostGeometryPass::unboundedBoxes() const {
 std::string HostGeometryPass::boundsViolation() const {
   if (empty()) return {};
   const gpu::BoundsViolation& violation = *violation_.mapped();
-  for (const DeformedList::Deformed& deformed : deformed_.meshes) {
+  for (size_t i = 0; i < deformed_.meshes.size(); ++i) {
+    const gpu::Deformed& deformed = deformed_.meshes[i];
     if (violation.mesh != deformed.mesh) continue;
-    const uint32_t number =
-        deformed.numbers == kNone ? violation.vertex : deformed_.vertexNumbers[deformed.numbers + violation.vertex];
-    return "mesh " + std::to_string(violation.mesh) + ": vertex " + std::to_string(deformed.firstHostVertex + number) +
-           (deformed.isBounded ? " is outside its bounds or not finite" : " is not finite, or exceeds 2^120");
+    const uint32_t number = deformed.numbers == gpu::kNobody
+                                ? violation.vertex
+                                : deformed_.vertexNumbers[deformed.numbers + violation.vertex];
+    return "mesh " + std::to_string(violation.mesh) + ": vertex " +
+           std::to_string(deformed_.firstHostVertices[i] + number) +
+           (deformed.extent == gpu::kNobody ? " is outside its bounds or not finite"
+                                            : " is not finite, or exceeds 2^120");
   }
   if (violation.object == kNone) return {};
   return "object " + std::to_string(violation.object) +

@@ -1,4 +1,4 @@
-// Copies the vertices of a mesh that a host deforms from the host's buffer; one invocation per vertex.
+// Copies the vertices of meshes that a host deforms from the host's buffers; one invocation per vertex.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -17,9 +17,10 @@ layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshReco
 layout(scalar, binding = kSlotBoundsViolation) restrict buffer BoundsViolations { BoundsViolation violation; };
 layout(scalar, binding = kSlotVertexNumbers) readonly restrict buffer VertexNumbers { uint vertexNumbers[]; };
 #include "byte_load.glsl"
+#include "deformed.glsl"
 #include "shared/workgroup.glsl"
 
-layout(push_constant) uniform PushConstants { DeformPush push; };
+layout(push_constant) uniform PushConstants { DeformedPush push; };
 
 // Bits of the float nearest to c / (2^bits - 1), for 0 < c < 2^bits. The quotient's binary digits repeat those of c.
 uint quotientBits(uint c, int bits) {
@@ -41,28 +42,32 @@ uint bitsOfHalf(uint h) {
   return fraction == 0 ? sign : sign | (floatBitsToUint(float(fraction)) - (24u << 23));
 }
 
-uint component(uint at, uint k) {
-  if (push.format == kFloat32) return loadWord(at + 4 * k);
+uint component(uint format, uint at, uint k) {
+  if (format == kFloat32) return loadWord(at + 4 * k);
   const uint c = loadWord(at + 2 * k) & 0xffffu;
-  if (push.format == kFloat16) return bitsOfHalf(c);
-  if (push.format == kUnorm16) return bitsOfNorm(c, 16);
+  if (format == kFloat16) return bitsOfHalf(c);
+  if (format == kUnorm16) return bitsOfNorm(c, 16);
   const bool negative = c > 0x7fffu;
   const uint magnitude = min(negative ? 0x10000u - c : c, 0x7fffu);
   return bitsOfNorm(magnitude, 15) | (negative ? 0x80000000u : 0u);
 }
 
 void main() {
-  const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;
-  if (i >= push.count) return;
-  const uint number = push.numbers == kNobody ? i : vertexNumbers[push.numbers + i];
-  const uint at = push.firstByte + number * push.stride;
-  const uvec3 bits = uvec3(component(at, 0), component(at, 1), component(at, 2));
-  const MeshRecord mesh = meshes[push.mesh];
+  const uint group = workgroupIndex();
+  if (group >= push.groups) return;
+  const Deformed own = deformed[deformedOf(group, kByDeform, push.meshes)];
+  const uint i = (group - own.firstGroup[kByDeform]) * kHostGroup + gl_LocalInvocationID.x;
+  if (i >= own.vertices) return;
+  const uint number = own.numbers == kNobody ? i : vertexNumbers[own.numbers + i];
+  const uint at = own.firstByte + number * own.stride;
+  const uvec3 bits =
+      uvec3(component(own.format, at, 0), component(own.format, at, 1), component(own.format, at, 2));
+  const MeshRecord mesh = meshes[own.mesh];
   const vec3 local = uintBitsToFloat(bits) - mesh.origin;
   // Bounds are at most 2^120; differences of coordinates from 2^121 on might overflow.
   const bool outside = any(greaterThanEqual(bits >> 23 & 0xffu, uvec3(0xf8u))) ||
-                      push.isBounded != 0 && (any(greaterThan(local, mesh.hi)) || any(greaterThan(mesh.lo, local)));
-  if (outside && atomicCompSwap(violation.mesh, kNobody, push.mesh) == kNobody) atomicExchange(violation.vertex, i);
+                      own.extent == kNobody && (any(greaterThan(local, mesh.hi)) || any(greaterThan(mesh.lo, local)));
+  if (outside && atomicCompSwap(violation.mesh, kNobody, own.mesh) == kNobody) atomicExchange(violation.vertex, i);
   // The recording is invalid now, but the search must still terminate, so any position that is in range is written.
   vertices[mesh.firstVertex + i].position = outside ? floatBitsToUint(mesh.origin + mesh.lo) : bits;
 }

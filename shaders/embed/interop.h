@@ -46,6 +46,27 @@ struct Moved {
   Point halfExtent;  // of its bounds about the anchor; without bounds, the most of its coordinates
 };
 
+// A mesh that a host deforms. Workgroups of deform.comp and bound.comp, which have these numbers, take one mesh each.
+INTEROP_CONST kByDeform = 0;
+INTEROP_CONST kByBound = 1;
+struct Deformed {
+  uint firstGroup[2];  // its first workgroup of each; of meshes with bounds, bound.comp takes none
+  uint mesh;
+  uint vertices;
+  uint triangles;
+  uint firstByte;  // of the first position, in the copied words
+  uint stride;     // bytes from one position to the next
+  uint format;     // kFloat32 ...
+  uint numbers;    // where the list of positions' numbers has the first vertex's; kNobody: they are consecutive
+  uint extent;     // index of its Extent; kNobody: it has declared bounds
+};
+
+// A node of a deformed mesh.
+struct RefitNode {
+  uint mesh;
+  uint node;  // of the mesh
+};
+
 // A query that several searches answer together, each past one object.
 struct Gathered {
   uint query;   // index of the query's answer
@@ -55,19 +76,9 @@ struct Gathered {
   uint listed;  // entries
 };
 
-struct DeformPush {
-  uint count;      // vertices
-  uint mesh;
-  uint firstByte;  // of the first position, in the copied words
-  uint stride;     // bytes from one position to the next
-  uint format;     // kFloat32 ...
-  uint numbers;    // where the list of positions' numbers has the first vertex's; kNobody: they are consecutive
-  uint isBounded;  // the mesh has declared bounds
-};
-struct BoundPush {
-  uint firstTriangle;
-  uint count;   // triangles
-  uint extent;  // index of the mesh's
+struct DeformedPush {
+  uint meshes;
+  uint groups;
 };
 struct NormalisePush {
   uint count;  // meshes
@@ -75,7 +86,6 @@ struct NormalisePush {
 struct RefitPush {
   uint first;  // in the list of nodes to refit
   uint count;
-  uint mesh;
 };
 struct FitPush {
   uint first;  // in the list of nodes to fit
@@ -119,7 +129,8 @@ INTEROP_CONST kBoundRun = 16;
 INTEROP_SLOT(kSlotWords, 19, uint);  // words copied from the host's buffers
 INTEROP_SLOT(kSlotMoved, 24, Moved);
 INTEROP_SLOT(kSlotBoundsViolation, 25, BoundsViolation);
-INTEROP_SLOT(kSlotRefitNodes, 26, uint);  // nodes of deformed meshes, deepest first
+INTEROP_SLOT(kSlotDeformed, 31, Deformed);
+INTEROP_SLOT(kSlotRefitNodes, 26, RefitNode);  // roots first
 INTEROP_SLOT(kSlotGathered, 27, Gathered);
 INTEROP_SLOT(kSlotOrder, 29, uint);  // of searches
 INTEROP_SLOT(kSlotFitNodes, 28, uint);  // inner nodes of the tree over objects, parents first

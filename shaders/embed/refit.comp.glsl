@@ -1,4 +1,4 @@
-// Recomputes the boxes and slabs of a deformed mesh's nodes, one depth per dispatch, deepest first; one invocation per node.
+// Recomputes the boxes and slabs of deformed meshes' nodes, one depth per dispatch, deepest first; one invocation per node.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -13,7 +13,7 @@ layout(local_size_x = kHostGroup) in;
 
 layout(scalar, binding = kSlotMeshes) readonly restrict buffer Meshes { MeshRecord meshes[]; };
 layout(scalar, binding = kSlotMeshNodes) restrict buffer Nodes { MeshNode nodes[]; };
-layout(scalar, binding = kSlotRefitNodes) readonly restrict buffer RefitNodes { uint refitNodes[]; };
+layout(scalar, binding = kSlotRefitNodes) readonly restrict buffer RefitNodes { RefitNode refitNodes[]; };
 
 layout(push_constant) uniform PushConstants { RefitPush push; };
 
@@ -40,8 +40,7 @@ vec3 unitOrZero(vec3 v) {
   return squared > 1e-30 && squared < 1e30 ? v * inversesqrt(squared) : vec3(0.0);
 }
 
-void refitLeaf(uint n, uint link) {
-  const MeshRecord mesh = meshes[push.mesh];
+void refitLeaf(MeshRecord mesh, uint n, uint link) {
   const uint triangles = (link & kLinkPair) != 0 ? 2 : 1;
   vec3 q[6];
   vec3 sum = vec3(0.0);
@@ -83,10 +82,12 @@ void refitParent(uint n, uint link) {
 void main() {
   const uint i = workgroupIndex() * kHostGroup + gl_LocalInvocationID.x;
   if (i >= push.count) return;
-  const uint n = meshes[push.mesh].firstNode + refitNodes[push.first + i];
+  const RefitNode own = refitNodes[push.first + i];
+  const MeshRecord mesh = meshes[own.mesh];
+  const uint n = mesh.firstNode + own.node;
   const uint link = nodes[n].link;
   if ((link & kLinkLeaf) != 0) {
-    refitLeaf(n, link);
+    refitLeaf(mesh, n, link);
   } else {
     refitParent(n, link);
   }

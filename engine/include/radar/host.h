@@ -65,8 +65,8 @@ inline constexpr TransformLayout kColumnMajor{4, 16};  ///< a 4x4 matrix by colu
 /// objects to them. An object with Scene::setBounds stays within those: its mesh's box, in float arithmetic, exceeds
 /// them by at most a millionth of their largest coordinate.
 ///
-/// A shader that adds an answer to a place rounds the sum, by which the object may touch what it was free of. The sum is
-/// exact if both are multiples of one power of two and at most 2^24 times as large.
+/// A shader that adds an answer to a place rounds the sum, so that the object may touch what it was free of. The sum is
+/// exact if both are multiples of one power of two, of which it is at most 2^24 times.
 struct MovedObjects {
   VkBuffer transforms = VK_NULL_HANDLE;
   VkDeviceSize first = 0;    ///< offset of the first transform, bytes

@@ -110,7 +110,8 @@ class RADAR_API Recorder {
   void record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry = {});
   /// Does before the first frame what record() with these arguments would do: makes room, so that record() then creates
   /// nothing on the device, unless the scene changes, and, if there is a queue, uploads the scene and waits. Call it
-  /// when record() may be called; nothing is recorded. prepare() of a Device compiles.
+  /// when record() may be called; nothing is recorded. Throws as record() does. For compiling, see prepare() of a
+  /// Device.
   void prepare(std::span<const Query> queries, const HostGeometry& geometry = {});
   void prepare(const HostQueries& queries, const HostGeometry& geometry = {});
   /// Declares that the last recording has not executed and will not.

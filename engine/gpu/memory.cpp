@@ -13,7 +13,7 @@ namespace {
 // A block is as large as all others of its memory type together, within these bounds: small users take little, large
 // ones few blocks. Pieces of more than half a block are blocks of their own, as are images, which have other
 // alignments.
-constexpr VkDeviceSize kLeastBlock = 1u << 20, kMostBlock = 1u << 26;
+constexpr VkDeviceSize kLeastBlock = 1u << 20, kMostBlock = 1u << 24;
 // Pieces begin at multiples of it, and so does what is free.
 constexpr VkDeviceSize kGrain = 256;
 

@@ -96,7 +96,7 @@ struct HostDevice {
   PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
   const VkAllocationCallbacks* allocator = nullptr;  ///< for the engine's objects, not the loader's
   VkPipelineCache pipelineCache = VK_NULL_HANDLE;    ///< for every pipeline; optional
-  /// Gives all device memory. Without it, the engine allocates blocks of 1 to 64 MiB, of which its buffers take pieces,
+  /// Gives all device memory. Without it, the engine allocates blocks of 1 to 16 MiB, of which its buffers take pieces,
   /// and what is larger by itself; it frees those that nothing uses, but for one block of each memory type.
   HostMemory memory{};
   /// Called around each vkQueueSubmit2, on the submitting thread. Set both if the host or another Device uses the queue

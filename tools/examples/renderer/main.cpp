@@ -131,7 +131,8 @@ void print(const Renderer& renderer, const Gpu& gpu, const World& world) {
   std::printf("  %-14s %9.2f ms, first %9.2f ms\n", "all", median(report.whole),
               report.whole.empty() ? 0 : report.whole.front());
   const radar::MemoryUse memory = renderer.engineMemory();
-  std::printf("memory of the engine: %.1f MB in %u allocations\n", 1e-6 * static_cast<double>(memory.allocated),
+  std::printf("memory of the engine: %.1f MB used of %.1f MB in %u allocations\n",
+              1e-6 * static_cast<double>(memory.used), 1e-6 * static_cast<double>(memory.allocated),
               memory.allocations);
   std::printf("queries: %u, without an answer: %u\n", report.answered, report.refused);
   std::printf("checks by the CPU: %u, crossings: %u\n", report.checks, report.crossings);

@@ -274,8 +274,7 @@ TEST_CASE("whichever block finds no memory, every query has its answer") {
 TEST_CASE("a copy of a scene, recorders and sweepers say how much memory they hold, which is all that is held") {
   const Teapots teapots(20, Mode::contact);
   const OwnMemory memory;
-  Sweeper(memory.device, teapots.scene, kOnDevice).run(teapots.queries);
-  Recorder(memory.device, teapots.scene);  // both have the device prove itself
+  prepare(memory.device);
   OwnMemory::calls = 0;
   SceneCopy copy(memory.device, teapots.scene);
   std::vector<Recorder> recorders;

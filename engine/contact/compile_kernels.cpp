@@ -15,6 +15,10 @@ bool isIn(const char* folder, const gpu::Shader& shader) {
   return std::string_view(shader.name).starts_with(folder);
 }
 
+bool runsOn(const Device::Impl& device, const gpu::Shader& shader) {
+  return device.doubles || !shader.spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader.spirv);
+}
+
 }  // namespace
 
 std::string nameOf(const gpu::Program& program) {
@@ -30,12 +34,11 @@ std::vector<gpu::Program> programsOf(const Device::Impl& device, Mode mode) {
   // The others are never specialized.
   for (const gpu::Shader* shader : shaders::kAll) {
     const bool isListed = std::ranges::any_of(programs, [&](const gpu::Program& own) { return own.shader == shader; });
-    const bool runs = device.doubles || !shader->spirvWithoutDoubles.empty() || !gpu::hasDoubles(shader->spirv);
     const bool isUsed = isIn("sampled/", *shader)
                             ? mode == Mode::sampled &&
                                   (shader->stage == VK_SHADER_STAGE_COMPUTE_BIT || shader == &gpu::depthShader(device))
                             : !isIn("arithmetic/", *shader);
-    if (!isListed && runs && isUsed) programs.push_back(*shader);
+    if (!isListed && isUsed && runsOn(device, *shader)) programs.push_back(*shader);
   }
   return programs;
 }
@@ -46,8 +49,7 @@ std::vector<KernelReport> compileKernels(uint32_t index) {
   const bool isSampled = device->reasonsAgainstSampled.empty();
   std::vector<gpu::Program> programs = programsOf(*device, isSampled ? Mode::sampled : Mode::contact);
   for (const gpu::Shader* shader : shaders::kAll) {
-    if (isIn("arithmetic/", *shader) && (device->doubles || !gpu::hasDoubles(shader->spirv)))
-      programs.push_back(*shader);
+    if (isIn("arithmetic/", *shader) && runsOn(*device, *shader)) programs.push_back(*shader);
   }
   std::vector<KernelReport> reports;
   for (const gpu::Program& program : programs) {

@@ -52,6 +52,7 @@ struct Recorder::Impl {
   /// What both kinds of record() do before they record.
   GpuScene::Staged stage(std::span<const Query> queries, const HostGeometry& hostGeometry);
   GpuScene::Staged stage(const HostQueries& queries, const HostGeometry& hostGeometry);
+  void begin(const HostGeometry& hostGeometry);
   void upload();
   void recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged);
   VkDeviceSize firstSweep() const { return kFirstResult + capacity.queries * sizeof(Result); }
@@ -158,24 +159,26 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
   recorded.isComplete = true;
 }
 
+void Recorder::Impl::begin(const HostGeometry& hostGeometry) {
+  recorded.isComplete = false;  // if recording fails, read() has nothing to return
+  usedBuffers.reset();
+  geometry.stage(hostGeometry, scene.impl());
+}
+
 GpuScene::Staged Recorder::Impl::stage(std::span<const Query> queries, const HostGeometry& hostGeometry) {
   validateAll(queries);
   if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
-  recorded.isComplete = false;  // if recording fails, read() has nothing to return
-  geometry.stage(hostGeometry, scene.impl());
+  begin(hostGeometry);
   recorded.plan(queries, scene.impl(), geometry, capacity.searches);
   gathers.stage(recorded.gathered);
-  usedBuffers.reset();
   return pass.stage(recorded.sensors, recorded.known, scene.impl(), geometry.overwritten());
 }
 
 GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeometry& hostGeometry) {
   validateHost(queries, hostGeometry);
-  recorded.isComplete = false;
-  geometry.stage(hostGeometry, scene.impl());
+  begin(hostGeometry);
   recorded.planWritten(queries.count);
   gathers.stage(recorded.gathered);
-  usedBuffers.reset();
   GpuScene::Staged staged = pass.stageWritten(queries.count, scene.impl(), geometry.overwritten());
   readback.reserve(firstSweep() + capacity.queries * sizeof(gpu::Sweep));
   if (!hostQueries) hostQueries.emplace(owner);

@@ -1,6 +1,7 @@
 // Makes of stated searches what the search reads, one invocation per search: scales them, and places their sensors with room for
 // every rounding (docs/method.md, "Placement on the device"). Only the device knows where a host has put vertices and objects.
 #version 460
+#extension GL_EXT_null_initializer : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
@@ -63,7 +64,7 @@ float scaledDistance(float mantissa, int exponent) {
   return exponent < kLeastExponent ? -1.0 : exponent > 42 ? kMostDistance : min(mantissa * twoTo(exponent), kMostDistance);
 }
 
-// Returns SearchState::flags. `hi`: SearchState::hi.
+// Returns SearchState::flags; if they are 0, writes the sensor. `hi`: SearchState::hi.
 uint encode(uint i, StatedSearch s, out uint hi) {
   hi = 0;
   const MeshRecord mesh = meshes[s.mesh];
@@ -124,6 +125,11 @@ void main() {
   const StatedSearch s = stated[i];
   uint hi = 0, flags = s.flags;
   if (flags == 0) flags = encode(i, s, hi);
+  if (flags != 0) {
+    // Lanes without a search read the first sensor, whatever it is.
+    const Sensor none = {};
+    sensors[i] = none;
+  }
   states[i] = SearchState(hi, flags, kNobody);
   if (flags == 0 && s.start != kNobody) {
     tasks[atomicAdd(counts.rounds[0].tasks, 1)] = SearchTask(i, kNobody, kNobody, s.start, 0.0);

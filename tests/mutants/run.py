@@ -39,7 +39,7 @@ def killers(mutant, build):
     """The tests that fail; "the compiler" if the mutant does not build."""
     if run("cmake", "--build", build, "--target", *mutant["build"].split()).returncode != 0:
         return ["the compiler"]
-    output = run("ctest", "--test-dir", build, "-j", "2", "--timeout", "600", "--stop-on-failure", "-R", mutant["tests"]).stdout
+    output = run("ctest", "--test-dir", build, "-C", "GpuAssisted", "-j", "2", "--timeout", "600", "--stop-on-failure", "-R", mutant["tests"]).stdout
     if "No tests were found" in output:
         sys.exit(f'{mutant["name"]}: no test matches {mutant["tests"]!r}')
     return re.findall(r"^\s*\d+ - (.*) \((?:Failed|Timeout|SEGFAULT|Subprocess aborted|ILLEGAL|NUMERICAL)", output, re.M)

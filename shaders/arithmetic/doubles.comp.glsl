@@ -22,10 +22,10 @@ double reported(uint operation, double result) {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   const double x = trials[i].x, y = trials[i].y;
-  precise double total = x + y, multiplied = x * y, ratio = x / y;
+  const double total = x + y, multiplied = x * y, ratio = x / y;
   const dvec3 p = widened(floatBitsToUint(trials[i].p));
   const dvec4 row = dvec4(trials[i].row[0], trials[i].row[1], trials[i].row[2], trials[i].row[3]);
-  precise double placed = ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
+  const double placed = ((row.x * p.x + row.y * p.y) + row.z * p.z) + row.w;
   uint order = (x < y ? 1 : 0) | (min(x, y) == x ? 2 : 0) | (max(x, y) == x ? 4 : 0);
   if (kFalsified == kDoubleOrder) order ^= 1;
   float ofDouble = float(x);

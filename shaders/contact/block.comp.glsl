@@ -22,7 +22,7 @@ struct BoundedVector {
 #include "slack.glsl"
 
 Bounded minus(Bounded p, Bounded q) {
-  precise double value = p.value - q.value;
+  const double value = p.value - q.value;
   return Bounded(value, (p.error + q.error + kHalfUlp * abs(value)) * kMore);
 }
 Bounded negative(Bounded p) { return Bounded(-p.value, p.error); }
@@ -30,7 +30,7 @@ Bounded negative(Bounded p) { return Bounded(-p.value, p.error); }
 BoundedVector exactly(dvec3 v) { return BoundedVector(v, dvec3(0.0LF)); }
 // The difference of exact vectors.
 BoundedVector difference(dvec3 p, dvec3 q) {
-  precise dvec3 value = p - q;
+  const dvec3 value = p - q;
   return BoundedVector(value, kHalfUlp * kMore * abs(value));
 }
 
@@ -43,14 +43,14 @@ Bounded inner(BoundedVector p, BoundedVector q) {
   const double error = (productError(p.value.x, p.error.x, q.value.x, q.error.x) +
                         productError(p.value.y, p.error.y, q.value.y, q.error.y)) +
                        productError(p.value.z, p.error.z, q.value.z, q.error.z);
-  precise double sum = (p.value.x * q.value.x + p.value.y * q.value.y) + p.value.z * q.value.z;
+  const double sum = (p.value.x * q.value.x + p.value.y * q.value.y) + p.value.z * q.value.z;
   return Bounded(sum, error * kMore);
 }
 
 Bounded crossComponent(double p0, double errorP0, double p1, double errorP1, double q0, double errorQ0, double q1,
                        double errorQ1) {
   const double error = productError(p0, errorP0, q1, errorQ1) + productError(p1, errorP1, q0, errorQ0);
-  precise double value = p0 * q1 - p1 * q0;
+  const double value = p0 * q1 - p1 * q0;
   return Bounded(value, error * kMore);
 }
 

@@ -115,8 +115,8 @@ EventDetails describeEvent(uint feature, Event e, dvec3 direction) {
   details.known = sure > 0.0LF && error < 2.0e-19LF * size;
 
   // The contact point: along the motion from the moving vertex, at the resting vertex, or on the resting edge.
-  precise dvec3 edge = e.y1 - e.y0;
-  precise dvec3 point = isEdges ? e.y0 + share * edge : e.from + details.s * direction;
+  const dvec3 edge = e.y1 - e.y0;
+  const dvec3 point = isEdges ? e.y0 + share * edge : e.from + details.s * direction;
   details.point = feature < 3 || isEdges ? point : e.to;
   return details;
 }
@@ -133,11 +133,10 @@ FineVector scaled(FineVector v, double by) {
 
 // Returns false if only the CPU finds it.
 bool normalOf(Event e, double turn, out dvec3 normal) {
-  // Apart from x and y: glslang does not end if a precise struct is made of itself.
-  const FineVector ofA = difference(e.x1, e.x0), ofB = difference(e.y1, e.y0);
-  const int sizeX = exponentOf(mostOf(ofA.x.high, ofA.y.high, ofA.z.high)),
-            sizeY = exponentOf(mostOf(ofB.x.high, ofB.y.high, ofB.z.high));
-  FineVector x = scaled(ofA, powerOfTwo(clamp(-sizeX, -1000, 1000))), y = scaled(ofB, powerOfTwo(clamp(-sizeY, -1000, 1000)));
+  FineVector x = difference(e.x1, e.x0), y = difference(e.y1, e.y0);
+  const int sizeX = exponentOf(mostOf(x.x.high, x.y.high, x.z.high)), sizeY = exponentOf(mostOf(y.x.high, y.y.high, y.z.high));
+  x = scaled(x, powerOfTwo(clamp(-sizeX, -1000, 1000)));
+  y = scaled(y, powerOfTwo(clamp(-sizeY, -1000, 1000)));
   dvec3 n = dvec3(0.0LF);
   double products = 0.0LF;
   [[dont_unroll]] for (uint i = 0; i < 3; ++i) {
@@ -150,7 +149,7 @@ bool normalOf(Event e, double turn, out dvec3 normal) {
   const bool isPrecise = products < 1099511627776.0LF * mostOf(n.x, n.y, n.z);  // 2^40
   const int size = exponentOf(mostOf(n.x, n.y, n.z));
   n *= powerOfTwo(clamp(-size, -1000, 1000));
-  precise double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
+  const double square = (n.x * n.x + n.y * n.y) + n.z * n.z;
   const double root = rootOf(square);
   normal = dvec3(soundQuotient(turn * n.x, root), soundQuotient(turn * n.y, root), soundQuotient(turn * n.z, root));
   return isPrecise && max(max(abs(sizeX), abs(sizeY)), abs(size)) < 1000;
@@ -165,11 +164,11 @@ bool setHit(RefinedPair c, inout RadarResult r) {
   const dvec3 direction = dvec3(sweeps[s].direction[0], sweeps[s].direction[1], sweeps[s].direction[2]);
   const Event e = eventOf(feature, a, b);
   const EventDetails details = describeEvent(feature, e, direction);
-  precise double t = details.s * sweeps[s].perParameter;
-  precise double slack = kRounded * t;
+  const double t = details.s * sweeps[s].perParameter;
+  const double slack = kRounded * t;
   const double distance = sweeps[s].distance;
   const double first = min(t, distance);
-  precise double below = t - slack, above = t + slack;
+  const double below = t - slack, above = t + slack;
   // The pair's only contact then is inside both features: others certainly begin later.
   r.featureA = feature < 3 ? RADAR_FEATURE_vertex : feature < kFeatureEdges ? RADAR_FEATURE_face : RADAR_FEATURE_edge;
   r.featureB = feature < 3 ? RADAR_FEATURE_face : feature < kFeatureEdges ? RADAR_FEATURE_vertex : RADAR_FEATURE_edge;
@@ -179,7 +178,7 @@ bool setHit(RefinedPair c, inout RadarResult r) {
   r.fraction = bitsOf(soundQuotient(first, distance));
   dvec3 normal;
   const bool unit = normalOf(e, details.turn, normal);
-  precise dvec3 point = details.point + t * dvec3(sweeps[s].drift[0], sweeps[s].drift[1], sweeps[s].drift[2]);
+  const dvec3 point = details.point + t * dvec3(sweeps[s].drift[0], sweeps[s].drift[1], sweeps[s].drift[2]);
   r.point = bitsOf(point);
   r.normal = bitsOf(normal);
   return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;

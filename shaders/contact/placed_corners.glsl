@@ -8,10 +8,7 @@ void cornersInOrder(PreciseRows pose, uint slot, out dvec3 p[3]) {
   const uvec4 corner = triangleAt(slot);
   for (uint i = 0; i < 3; ++i) {
     const dvec3 q = widened(vertexBitsAt(corner[i]));
-    for (int k = 0; k < 3; ++k) {
-      precise double sum = ((pose[k].x * q.x + pose[k].y * q.y) + pose[k].z * q.z) + pose[k].w;
-      p[i][k] = sum;
-    }
+    for (int k = 0; k < 3; ++k) p[i][k] = ((pose[k].x * q.x + pose[k].y * q.y) + pose[k].z * q.z) + pose[k].w;
   }
 }
 

@@ -5,10 +5,7 @@
 
 // The square root of 1 <= x < 16, by sums, products and quotients only, which have the same bits on the CPU.
 double rootOf(double x) {
-  precise double root = 0.5LF * (1.0LF + x);
-  [[dont_unroll]] for (uint i = 0; i < 7; ++i) {
-    precise double next = 0.5LF * (root + quotient(x, root));
-    root = next;
-  }
+  double root = 0.5LF * (1.0LF + x);
+  [[dont_unroll]] for (uint i = 0; i < 7; ++i) root = 0.5LF * (root + quotient(x, root));
   return root;
 }

@@ -18,10 +18,12 @@ struct PairFrame {
 // One row of B's anchor minus A's, in the world. Products of the matrices' leading 16 bits and the anchors' 8 are exact.
 float rowApart(vec4 coarseA, vec4 fineA, vec3 anchorA, vec4 coarseB, vec4 fineB, vec3 anchorB) {
   float high = coarseB.w, low = 0.0;
-  addExactly(high, low, -coarseA.w);
+  precise float fromA = -coarseA.w;
+  addExactly(high, low, fromA);
   for (int k = 0; k < 3; ++k) {
-    addExactly(high, low, coarseB[k] * anchorB[k]);
-    addExactly(high, low, -coarseA[k] * anchorA[k]);
+    precise float ofB = coarseB[k] * anchorB[k], ofA = -coarseA[k] * anchorA[k];
+    addExactly(high, low, ofB);
+    addExactly(high, low, ofA);
   }
   precise float sum = high + (low + ((fineB.w - fineA.w) + (dot(fineB.xyz, anchorB) - dot(fineA.xyz, anchorA))));
   return sum;

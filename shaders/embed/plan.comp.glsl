@@ -54,9 +54,9 @@ bool isValid(HostQuery q) {
 double lengthOf(dvec3 d) {
   const DoubleDouble square = plus(plus(product(d.x, d.x), product(d.y, d.y)), product(d.z, d.z));
   const double root = rootOf(square.high);
-  precise double rest = quotient(minus(square, product(root, root)).high, 2.0LF * root);
-  precise double error = 9.094947017729282e-13LF * abs(rest) + 8.077935669463161e-28LF * root;  // 2^-40, 2^-90
-  precise double below = root + (rest - error), above = root + (rest + error);
+  const double rest = quotient(minus(square, product(root, root)).high, 2.0LF * root);
+  const double error = 9.094947017729282e-13LF * abs(rest) + 8.077935669463161e-28LF * root;  // 2^-40, 2^-90
+  const double below = root + (rest - error), above = root + (rest + error);
   return below == above ? below : 0.0LF;
 }
 #endif

@@ -21,27 +21,24 @@ double correctedQuotient(double x, double y) {
   const double q = packDouble2x32(uvec2(yBits.x, (yBits.y & 0xfffffu) | 0x3ff00000u));
   // The inverse to 2^-21, the precision of float division on every device. Each of two steps doubles the number of bits.
   const double guess = double(1.0 / float(q));
-  precise double better = guess + guess * (1.0LF - q * guess);
-  precise double inverse = better + better * (1.0LF - q * better);
-  precise double near = p * inverse;
+  const double better = guess + guess * (1.0LF - q * guess);
+  const double inverse = better + better * (1.0LF - q * better);
+  const double near = p * inverse;
   // Dekker's product gives the remainder exactly: first to bring the error below an ulp, then to round.
   double ratio = near, rest = 0.0LF;
   for (uint i = 0; i < 2; ++i) {
-    precise double split = 134217729.0LF * ratio, splitQ = 134217729.0LF * q;  // 2^27 + 1
-    precise double high = split - (split - ratio), highQ = splitQ - (splitQ - q);
-    precise double low = ratio - high, lowQ = q - highQ;
-    precise double product = ratio * q;
-    precise double lost = ((high * highQ - product) + high * lowQ + low * highQ) + low * lowQ;
-    precise double left = (p - product) - lost;
+    const double split = 134217729.0LF * ratio, splitQ = 134217729.0LF * q;  // 2^27 + 1
+    const double high = split - (split - ratio), highQ = splitQ - (splitQ - q);
+    const double low = ratio - high, lowQ = q - highQ;
+    const double product = ratio * q;
+    const double lost = ((high * highQ - product) + high * lowQ + low * highQ) + low * lowQ;
+    const double left = (p - product) - lost;
     rest = left;
-    if (i == 0) {
-      precise double closer = ratio + rest * inverse;
-      ratio = closer;
-    }
+    if (i == 0) ratio = ratio + rest * inverse;
   }
   // An ulp of the quotient, times q. A quotient is never half-way between two doubles, so there are no ties.
   const uvec2 bits = unpackDouble2x32(ratio);
-  precise double ulp = packDouble2x32(uvec2(0, (bits.y & 0x7ff00000u) - (52u << 20))) * q;
+  const double ulp = packDouble2x32(uvec2(0, (bits.y & 0x7ff00000u) - (52u << 20))) * q;
   const int step = 2.0LF * rest > ulp ? 1 : 2.0LF * rest < -ulp ? -1 : 0;
   const uint low = bits.x + uint(step);
   const uint carry = step > 0 && low == 0 ? 1u : step < 0 && bits.x == 0 ? uint(-1) : 0u;
@@ -54,8 +51,7 @@ double correctedQuotient(double x, double y) {
 double quotient(double x, double y) {
   if (!divides(x, y)) return 0.0LF;
   if (!kDivisionIsRounded) return correctedQuotient(x, y);
-  precise double ratio = x / y;
-  return ratio;
+  return x / y;
 }
 
 #endif

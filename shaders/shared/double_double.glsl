@@ -10,25 +10,25 @@ struct DoubleDouble {
 
 // Requires |p| >= |q| or p = 0.
 DoubleDouble quickSum(double p, double q) {
-  precise double s = p + q;
-  precise double low = q - (s - p);
+  const double s = p + q;
+  const double low = q - (s - p);
   return DoubleDouble(s, low);
 }
 
 DoubleDouble sum(double p, double q) {
-  precise double s = p + q;
-  precise double qPart = s - p;
-  precise double low = (p - (s - qPart)) + (q - qPart);
+  const double s = p + q;
+  const double qPart = s - p;
+  const double low = (p - (s - qPart)) + (q - qPart);
   return DoubleDouble(s, low);
 }
 
 DoubleDouble product(double p, double q) {
   const double kSplit = 134217729.0LF;  // 2^27 + 1
-  precise double pc = kSplit * p, qc = kSplit * q;
-  precise double p1 = pc - (pc - p), q1 = qc - (qc - q);
-  precise double p2 = p - p1, q2 = q - q1;
-  precise double r = p * q;
-  precise double low = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
+  const double pc = kSplit * p, qc = kSplit * q;
+  const double p1 = pc - (pc - p), q1 = qc - (qc - q);
+  const double p2 = p - p1, q2 = q - q1;
+  const double r = p * q;
+  const double low = ((p1 * q1 - r) + p1 * q2 + p2 * q1) + p2 * q2;
   return DoubleDouble(r, low);
 }
 
@@ -36,9 +36,9 @@ DoubleDouble negated(DoubleDouble p) { return DoubleDouble(-p.high, -p.low); }
 
 DoubleDouble plus(DoubleDouble p, DoubleDouble q) {
   const DoubleDouble s = sum(p.high, q.high), t = sum(p.low, q.low);
-  precise double below = s.low + t.high;
+  const double below = s.low + t.high;
   const DoubleDouble v = quickSum(s.high, below);
-  precise double rest = t.low + v.low;
+  const double rest = t.low + v.low;
   return quickSum(v.high, rest);
 }
 
@@ -46,7 +46,7 @@ DoubleDouble minus(DoubleDouble p, DoubleDouble q) { return plus(p, negated(q));
 
 DoubleDouble times(DoubleDouble p, DoubleDouble q) {
   const DoubleDouble r = product(p.high, q.high);
-  precise double low = r.low + (p.high * q.low + p.low * q.high);
+  const double low = r.low + (p.high * q.low + p.low * q.high);
   return quickSum(r.high, low);
 }
 

@@ -2,6 +2,7 @@
 // transform.glsl.
 #include "two_floats.glsl"
 #ifndef RADAR_NO_DOUBLES
+#include "inner.glsl"
 #include "widen.glsl"
 #endif
 
@@ -51,7 +52,7 @@ Position positionOf(Transform t, vec3 origin) {
     p.error[row] = origin == vec3(0.0) ? 0.0 : 1.9e-12 * (sum + abs(m.w)) + 4e-37;  // 2^-39
 #else
     const dvec4 exact = dvec4(m) + dvec4(t.low[row]);
-    const double at = dot(exact.xyz, dvec3(origin)) + exact.w;
+    const double at = inner(exact.xyz, dvec3(origin)) + exact.w;
     split(at, p.high[row], p.low[row]);
     p.error[row] = 5.7e-14 * (sum + abs(m.w));  // 2^-44
 #endif

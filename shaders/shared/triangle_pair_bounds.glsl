@@ -115,6 +115,7 @@ float neverOf(float error) { return 3.0e38; }
 
 #ifndef RADAR_NO_DOUBLES
 #include "divide.glsl"
+#include "inner.glsl"
 // u = 2^-53. A triple product of differences of doubles errs by less than 10 u times the sum of its absolute products.
 const double kTripleError = 10.0LF * 1.1102230246251565e-16LF;
 // Below this, products may have lost bits to underflow.
@@ -129,10 +130,10 @@ int signOf(Bounded x) { return x.value > x.error ? 1 : (x.value < -x.error ? -1 
 
 // x . (y cross z)
 Bounded planeOf(dvec3 x, dvec3 y, dvec3 z, dvec3 direction) {
-  precise double a0 = y.y * z.z, a1 = y.z * z.y;
-  precise double b0 = y.z * z.x, b1 = y.x * z.z;
-  precise double c0 = y.x * z.y, c1 = y.y * z.x;
-  precise double value = (x.x * (a0 - a1) + x.y * (b0 - b1)) + x.z * (c0 - c1);
+  const double a0 = y.y * z.z, a1 = y.z * z.y;
+  const double b0 = y.z * z.x, b1 = y.x * z.z;
+  const double c0 = y.x * z.y, c1 = y.y * z.x;
+  const double value = (x.x * (a0 - a1) + x.y * (b0 - b1)) + x.z * (c0 - c1);
   const double magnitude = abs(x.x) * (abs(a0) + abs(a1)) + abs(x.y) * (abs(b0) + abs(b1)) +
                            abs(x.z) * (abs(c0) + abs(c1));
   return Bounded(value, kTripleError * magnitude + kTiny);
@@ -153,10 +154,10 @@ Bounded quotientOf(Bounded above, Bounded below, out bool known) {
   return Bounded(value, error);
 }
 
-double depthOf(dvec3 x, dvec3 direction) { return dot(direction, x); }
-double reachOf(dvec3 x, dvec3 direction) { return dot(abs(direction), abs(x)); }
+double depthOf(dvec3 x, dvec3 direction) { return inner(direction, x); }
+double reachOf(dvec3 x, dvec3 direction) { return inner(abs(direction), abs(x)); }
 double depthSlack(double reach, dvec3 direction) { return 3.552713678800501e-15LF * reach; }
-double squaredOf(dvec3 direction) { return dot(direction, direction); }
+double squaredOf(dvec3 direction) { return inner(direction, direction); }
 // Far above every contact; its products with lengths and scales do not overflow.
 const double kNever = 1.0e200LF;
 double neverOf(dvec3 direction) { return kNever; }

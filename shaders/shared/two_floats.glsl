@@ -18,10 +18,11 @@ void addExactly(inout float high, inout float low, float q) {
 void addProduct(inout float high, inout float low, float p, float q) {
   const float p1 = uintBitsToFloat(floatBitsToUint(p) & 0xfffff000u), q1 = uintBitsToFloat(floatBitsToUint(q) & 0xfffff000u);
   precise float p2 = p - p1, q2 = q - q1;
-  addExactly(high, low, p1 * q1);
-  addExactly(high, low, p1 * q2);
-  addExactly(high, low, p2 * q1);
-  addExactly(high, low, p2 * q2);
+  precise float leading = p1 * q1, first = p1 * q2, second = p2 * q1, last = p2 * q2;
+  addExactly(high, low, leading);
+  addExactly(high, low, first);
+  addExactly(high, low, second);
+  addExactly(high, low, last);
 }
 
 // The difference of two such numbers.

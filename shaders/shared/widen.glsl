@@ -1,5 +1,5 @@
 // Converts floats to doubles by their bits: a device's own conversion may flush subnormal floats to 0, and optimisers take
-// double(float(x)) for x, even where `precise` forbids other algebra.
+// double(float(x)) for x, even where NoContraction forbids other algebra.
 #ifndef RADAR_WIDEN_GLSL
 #define RADAR_WIDEN_GLSL
 #include "double_bits.glsl"
@@ -14,7 +14,7 @@ dvec3 widened(uvec3 floats) {
 // x as the sum of two floats, within 2^-46 of itself, whatever the rounding direction.
 void split(double x, out float high, out float low) {
   high = float(x);
-  precise double rest = x - widened(high);
+  const double rest = x - widened(high);
   low = float(rest);
 }
 

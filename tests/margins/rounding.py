@@ -14,7 +14,7 @@ FLUSHED: the result may be flushed to 0, and so may it be in one of its uses but
 normal range. That is charged once, where a number is made; a sum of numbers that are not negative loses only terms that
 have been charged, because a sum below the normal range has no other terms. A sum is rounded only where it is used for
 something else than a sum, or has a name, in the least favourable order: each of n terms passes n - 1 additions. Only
-what is `precise` has the order that is written, and what the CPU computes. A contraction to a fused multiply-add omits
+what is `precise` has the order that is written, and doubles (shaders/uncontracted.cmake), and what the CPU computes. A contraction to a fused multiply-add omits
 roundings, so it has these bounds, too.
 """
 from dataclasses import dataclass, replace
@@ -48,7 +48,7 @@ DEVICE_FLOATS = Arithmetic(
 )
 # Doubles on a device. One that does not round sums and products to nearest is not used for them (gpu/arithmetic.cpp).
 _NEAREST = Fraction(2) ** -53
-DEVICE_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1022, True)
+DEVICE_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1022, True, True)
 # The CPU: to nearest, with subnormal numbers.
 CPU_DOUBLES = Arithmetic(_NEAREST, _NEAREST, Fraction(2) ** -1074, False, True)
 CPU_FLOATS = Arithmetic(Fraction(2) ** -24, Fraction(2) ** -24, Fraction(2) ** -149, False, True)

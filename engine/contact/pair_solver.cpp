@@ -14,8 +14,8 @@ namespace {
 constexpr VkBufferUsageFlags kReadBack = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 // Those that need doubles.
-const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kProve,
-                                                      shaders::kBlock, shaders::kDescribe};
+const std::initializer_list<gpu::Program> kPrecise = {shaders::kCertify, shaders::kRefine, shaders::kSeparate,
+                                                      shaders::kProve,   shaders::kBlock,  shaders::kDescribe};
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uin
 void PairSolver::begin(uint32_t sensors, gpu::Upload& upload) {
   sensorCount_ = sensors;
   gpu::SearchCounts counts{};
-  counts.refineGroups[2] = counts.blockGroups[2] = 1;
+  counts.refineGroups[2] = counts.openGroups[2] = 1;
   lists_.counts.reserve(1);
   upload.add(&counts, sizeof(counts), lists_.counts);
   run_.begin();
@@ -69,11 +69,15 @@ void PairSolver::record(const gpu::Commands& commands, const OpenStage& stage, c
   using namespace gpu;  // the slots
   const GpuScene::Buffers& scene = scene_.buffers();
   if (device_->doubles) {
-    for (const Shader* shader : {&shaders::kCertify, &shaders::kRefine}) {
-      const bool refines = shader == &shaders::kRefine;
-      if (!refines && !areCertified) continue;
-      if (refines) computeWriteToIndirect(commands);
-      run_(commands, *shader, refines ? Groups{lists_.counts, offsetof(SearchCounts, refineGroups)} : pairs,
+    const Groups left{lists_.counts, offsetof(SearchCounts, refineGroups)};
+    const Groups open{lists_.counts, offsetof(SearchCounts, openGroups)};
+    const std::pair<const Shader&, const Groups&> steps[] = {
+        {shaders::kCertify, pairs}, {shaders::kRefine, left}, {shaders::kSeparate, open}};
+    for (const auto& [shader, groups] : steps) {
+      const bool certifies = &shader == &shaders::kCertify;
+      if (certifies && !areCertified) continue;
+      if (!certifies) computeWriteToIndirect(commands);
+      run_(commands, shader, groups,
            {{kSlotStates, lists_.states},
             {kSlotCounts, lists_.counts},
             {kSlotRefinedPairs, lists_.refinedPairs},
@@ -85,7 +89,7 @@ void PairSolver::record(const gpu::Commands& commands, const OpenStage& stage, c
     for (const Shader* shader : {&shaders::kProve, &shaders::kBlock}) {
       if (!ignoresLeaving) break;
       computeWriteToIndirect(commands);
-      run_(commands, *shader, {lists_.counts, offsetof(SearchCounts, blockGroups)},
+      run_(commands, *shader, open,
            {{kSlotStates, lists_.states},
             {kSlotCounts, lists_.counts},
             {kSlotRefinedPairs, lists_.refinedPairs},

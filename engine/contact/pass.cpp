@@ -147,7 +147,7 @@ GpuScene::Staged ContactPass::stageWritten(uint32_t searches, const Scene::Impl&
 void ContactPass::stageMore(const gpu::SearchCounts& before) {
   gpu::SearchCounts counts = before;
   counts.refinedPairs = counts.leftPairs = counts.openPairs = counts.unresolved = 0;
-  for (uint32_t* const groups : {counts.refineGroups, counts.blockGroups}) groups[0] = groups[1] = 0;
+  for (uint32_t* const groups : {counts.refineGroups, counts.openGroups}) groups[0] = groups[1] = 0;
   const uint32_t tasks = tasksLeft(before);
   std::fill(std::begin(counts.rounds), std::end(counts.rounds), gpu::SearchRound{});
   counts.rounds[0].tasks = tasks;

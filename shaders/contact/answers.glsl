@@ -123,6 +123,9 @@ RadarResult undecided(bool met, uvec2 low, float lowOfStep) {
   if (perUnit != 0.0) low = doubleBits(floatBitsToUint(max(lowOfStep * perUnit, 0.0)));
   const uvec2 distance = bitsOf(sweeps[s].distance);
   r.lo = isAbove(low, distance) ? distance : low;
+  // Whoever takes t for free way is right.
+  r.t = r.lo;
+  r.fraction = kNoNumber;
   return r;
 }
 
@@ -150,19 +153,22 @@ struct PairSummary {
   double limit;          // a pair that begins beyond this is not first
   double low;            // no contact before this
   uint possible;         // number of pairs that may be first
-  uvec4 least, pierced;  // least name and its refined pair: of those that may be first; of those that also certainly meet at
-                         // the start
+  // Least name and its refined pair: of those that may be first; of those that also certainly meet; that certainly meet at the
+  // start.
+  uvec4 least, meets, pierced;
+  double end;            // those that certainly meet do so by this
 };
 
 PairSummary summarise(double hi) {
   const uint first = heads[s];
   const double length = sweeps[s].directionLength;
-  PairSummary pairs = PairSummary(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody));
+  PairSummary pairs = PairSummary(0, hi, kNever, 0, uvec4(kNobody), uvec4(kNobody), uvec4(kNobody), kNever);
   for (uint i = first; i != kNobody && pairs.count < kMostListed; i = refinedPairs[i].next) {
     const RefinedPair c = refinedPairs[i];
-    if ((c.flags & kPairMeets) != 0) pairs.limit = min(pairs.limit, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
+    if ((c.flags & kPairMeets) != 0) pairs.end = min(pairs.end, max(c.at + c.error, 0.0LF) * length * (1.0LF + kRounded));
     ++pairs.count;
   }
+  pairs.limit = min(pairs.limit, pairs.end);
   for (uint i = first, k = 0; k < pairs.count; i = refinedPairs[i].next, ++k) {
     const RefinedPair c = refinedPairs[i];
     if (c.low > pairs.limit) continue;
@@ -170,18 +176,33 @@ PairSummary summarise(double hi) {
     ++pairs.possible;
     const uvec3 name = nameOf(c);
     if (isLess(name, pairs.least.xyz)) pairs.least = uvec4(name, i);
+    if ((c.flags & kPairMeets) != 0 && isLess(name, pairs.meets.xyz)) pairs.meets = uvec4(name, i);
     if ((c.flags & kPairPierces) != 0 && isLess(name, pairs.pierced.xyz)) pairs.pierced = uvec4(name, i);
   }
   return pairs;
 }
 
-// Lists the pairs that may be first.
+// Lists the pairs that may be first. If one of them certainly meets before the end, the answer is a hit, with a bracket.
 RadarResult leaveThese(PairSummary pairs, bool met) {
   uint at = reserveUnresolved(pairs.possible);
   for (uint i = heads[s]; i != kNobody && at != kNobody; i = refinedPairs[i].next) {
     if (refinedPairs[i].low <= pairs.limit) writeUnresolved(at++, refinedPairs[i]);
   }
-  return undecided(met, bitsOf(pairs.low), float(min(pairs.low * double(sweeps[s].scale), 1e30LF)));
+  const double distance = sweeps[s].distance, perLength = quotient(sweeps[s].perParameter, sweeps[s].directionLength);
+  const double below = pairs.low * perLength * (1.0LF - kRounded), above = pairs.end * perLength * (1.0LF + kRounded);
+  if (pairs.meets.w == kNobody || below <= 0.0LF || above * (1.0LF + kRounded) >= distance || sweeps[s].anyHit != 0) {
+    return undecided(met, bitsOf(pairs.low), float(min(pairs.low * double(sweeps[s].scale), 1e30LF)));
+  }
+  RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
+  r.flags = RADAR_FLAG_unresolved;
+  r.detected = RADAR_DETECTED_yes;
+  r.object = pairs.meets.x;
+  r.triB = pairs.meets.y;
+  r.triA = pairs.meets.z;
+  r.t = r.lo = bitsOf(below);
+  r.hi = bitsOf(above);
+  r.fraction = bitsOf(quotient(below, distance));
+  return r;
 }
 
 #include "placed_corners.glsl"

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "refined_pair.glsl"
+#include "turned_corners.glsl"
 
 // ---- numbers with error bounds -----------------------------------------------------------------------------------------
 
@@ -72,25 +73,9 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 
 // ---- pairs -------------------------------------------------------------------------------------------------------------
 
-// The pair: its corners, the direction, the slack. Loops turn corners in place, and compute all else anew where they need it:
-// there is no room in registers for more, nor for corners that an index selects.
-dvec3 a0, a1, a2, b0, b1, b2;
+// The pair, beside its corners.
 BoundedVector direction;
 Bounded slack;
-
-// The next corner becomes the first.
-void cycleA() {
-  const dvec3 first = a0;
-  a0 = a1;
-  a1 = a2;
-  a2 = first;
-}
-void cycleB() {
-  const dvec3 first = b0;
-  b0 = b1;
-  b1 = b2;
-  b2 = first;
-}
 
 BoundedVector selected(bool first, BoundedVector p, BoundedVector q) {
   return BoundedVector(first ? p.value : q.value, first ? p.error : q.error);
@@ -222,18 +207,13 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
-  if ((c.flags & kPairBlocks) != 0) return;
+  if (sweeps[c.sensor].ignoreLeaving == 0 || (c.flags & kPairBlocks) != 0) return;
   const float hi = uintBitsToFloat(states[c.sensor].hi);
   if (c.first > hi) return;
   dvec3 a[3], b[3];
   cornersInOrder(sweeps[c.sensor].pose, c.slotA, a);
   cornersInOrder(objects[c.object].pose, c.slotB, b);
-  a0 = a[0];
-  a1 = a[1];
-  a2 = a[2];
-  b0 = b[0];
-  b1 = b[1];
-  b2 = b[2];
+  setCorners(a, b);
   const double way[3] = sweeps[c.sensor].direction;
   direction = exactly(dvec3(way[0], way[1], way[2]) * (isAtRest(sweeps[c.sensor]) ? 0.0LF : 1.0LF));
   slack = slackOf(sweeps[c.sensor], c);

@@ -123,14 +123,15 @@ struct RefinedPair {
   uint object;
   uint slotA;
   uint slotB;
-  uint flags;    // kPair*, and the feature that attains `at` in the low bits
+  uint flags;    // kPair*, the feature that attains `at` in the low bits, and from bit kPairCorners on Impact::corners
   uint next;
   float first;   // `low`, scaled, rounded down
-  uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block
+  uint open;     // no property of this pair, but an entry of a list: an index of a pair that may not block, or not meet as it seems
   uint left;     // likewise of one that certify.comp leaves; at last, of a sensor's first pair: that which describe.comp
                  // describes, or kNobody
   uint feature;  // of a CandidatePair
 };
+INTEROP_CONST kPairCorners = 16;
 INTEROP_CONST kPairBlocks = 0x1000;  // certainly; set only where a query ignores what does not
 INTEROP_CONST kPairParted = 0x800;   // certainly does not meet at or after the start
 INTEROP_CONST kPairPierces = 0x400;  // certainly meets at the start
@@ -177,11 +178,11 @@ INTEROP_CONST kWorks = 5;
 struct SearchCounts {
   uint filterGroups[3];  // VkDispatchIndirectCommand for all candidates
   uint refineGroups[3];  // the same for the pairs that certify.comp leaves
-  uint blockGroups[3];   // and for those that may not block
+  uint openGroups[3];    // and for open pairs
   uint candidates;       // found; stored up to the capacity, and above it no exact count
   uint refinedPairs;
   uint leftPairs;        // that certify.comp leaves
-  uint openPairs;        // that may not block
+  uint openPairs;        // of RefinedPair::open
   uint unresolved;       // found; stored up to the capacity
   uint broken;           // kBroken*: no answer counts
   uint trianglePairs;    // tested; low word

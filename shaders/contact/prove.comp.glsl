@@ -49,6 +49,7 @@ void main() {
   if (place >= counts.openPairs) return;
   const uint i = refinedPairs[place].open;
   const RefinedPair c = refinedPairs[i];
+  if (sweeps[c.sensor].ignoreLeaving == 0) return;
   const double last = c.at + c.error;
   if ((c.flags & kPairMeets) == 0 || c.at <= c.error || !wouldLowerHi(c.sensor, sweeps[c.sensor], last)) return;
   dvec3 a[3], b[3];

@@ -4,13 +4,13 @@
 #include "refined_pair.glsl"
 #include "shared/triangle_pair_bounds.glsl"
 
-// Leaves it to prove.comp and block.comp whether a pair blocks.
+// Leaves it to prove.comp and block.comp whether a pair blocks, or to separate.comp when it meets.
 void leaveOpen(uint pair) {
   const uint place = atomicAdd(counts.openPairs, 1), group = place / kContactGroup;
   refinedPairs[place].open = pair;
   if (place % kContactGroup != 0) return;
-  atomicMax(counts.blockGroups[0], min(group + 1, kMostWorkgroups));
-  atomicMax(counts.blockGroups[1], group / kMostWorkgroups + 1);
+  atomicMax(counts.openGroups[0], min(group + 1, kMostWorkgroups));
+  atomicMax(counts.openGroups[1], group / kMostWorkgroups + 1);
 }
 
 void main() {
@@ -34,11 +34,11 @@ void main() {
   refinedPairs[i].at = m.at;
   refinedPairs[i].error = m.error;
   refinedPairs[i].flags = (m.ahead ? kPairMeets : 0) | (m.ahead && last < 0.0LF ? kPairPierces : 0) |
-                        (sharp ? kPairSharp : 0) | (m.isOver ? kPairParted : 0) | (m.feature & 0xffu);
+                        (sharp ? kPairSharp : 0) | (m.isOver ? kPairParted : 0) | m.corners << kPairCorners | (m.feature & 0xffu);
   // A pair that may not meet may yet be pressed together, and then counts from the start (block.comp).
   float first = refinedPairs[i].first;
   if (m.ahead || !ignoresLeaving) first = max(first, scaledDown(low, sweep));
   refinedPairs[i].first = first;
   if (m.ahead && !ignoresLeaving) lowerHi(sensor, sweep, last);
-  if (ignoresLeaving && first <= uintBitsToFloat(states[sensor].hi)) leaveOpen(i);
+  if ((ignoresLeaving || !sharp) && first <= uintBitsToFloat(states[sensor].hi)) leaveOpen(i);
 }

@@ -11,6 +11,7 @@ struct IMPACT {
   uint feature;
   REAL others;   // lower end of all other features that may count and have a parameter
   REAL unknown;  // lower end of the features without a parameter: parallel edges, a face edge-on
+  uint corners;  // that may be over the other's face: bits 0 to 2 of a, 3 to 5 of b
 };
 
 // The earliest upper end of a certain feature; below 0: the pair certainly meets before the start, too.
@@ -64,7 +65,7 @@ IMPACT impactOf(REAL3 a[3], REAL3 b[3], ALONG along) {
   const Features features = featuresOf(ofA, ofB, faceA, faceB);
 
   const REAL never = neverOf(along);
-  IMPACT m = IMPACT(false, true, never, REAL(0), kNobody, never, never);
+  IMPACT m = IMPACT(false, true, never, REAL(0), kNobody, never, never, features.possible & 63);
   for (uint rest = features.possible; rest != 0; rest &= rest - 1) {
     const uint feature = uint(findLSB(rest));
     const bool cornerA = feature < 3, edges = feature >= kFeatureEdges, cornerB = !cornerA && !edges;

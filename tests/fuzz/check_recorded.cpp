@@ -38,12 +38,18 @@ void checkAnswer(const Query& query, const Result& found, const Result& exact, O
   outcomes.candidates += (found.flags & Flag::candidates) != 0;
   outcomes.rounds += (found.flags & Flag::rounds) != 0;
   require((found.flags & ~(kTooSmall | Flag::range)) == 0, "another flag: " + inWords(query, found));
-  require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
   if (found.flags != Flag::unresolved) {
+    require(found.object == kNone && !std::isfinite(found.t) && !std::isfinite(found.hi), "no answer, but a contact");
     return require(found.status == Status::invalid && std::isnan(found.lo), "a flag, but not invalid");
   }
   const double end = query.motion ? 1 : query.distance;
-  require(found.status == Status::undecided, "open, but not undecided");
+  require(found.t == found.lo, "open, but t is not lo");
+  if (found.status == Status::hit) {
+    return require(exact.status == Status::hit && found.lo <= exact.hi && exact.lo <= found.hi,
+                   "open, but not in its bracket");
+  }
+  require(found.status == Status::undecided && found.object == kNone && !std::isfinite(found.hi),
+          "open, but a contact");
   require(found.lo <= (exact.status == Status::clear || query.anyHit ? end : exact.hi), "contact before lo");
 }
 

@@ -14,6 +14,7 @@ namespace radar {
 
 /// An answer. Layout version 4: 128 bytes, natural alignment. Absent ids are kNone. Where no contact within D is
 /// certain, t, hi and fraction are +infinity, and if the answer is clear, lo is, too: distances of any answers compare.
+/// Of answers that a Recorder leaves open (Flag::unresolved), t is lo.
 /// Other absent numbers, and all of an invalid answer, are NaN.
 ///
 /// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; ids, features, point and

@@ -57,8 +57,10 @@ class RADAR_API Recorder {
   /// recording state, outside a render pass. Reads `scene`, `queries` and `geometry` now and not later; the host's
   /// buffers that `geometry` names are read when the commands execute. The answer to query i starts at byte i *
   /// sizeof(Result) of results() and has the bits of Sweeper::run. If pairs are too close for the device, the answer
-  /// has Flag::unresolved instead: its status is undecided, `hi` is infinite, and there is no contact before `lo`. The
-  /// point of an overlap is absent (NaN) in results(): read() finds it.
+  /// has Flag::unresolved, and `t` is `lo`, before which there is no contact. If some contact is certain, the status is
+  /// hit: t* lies in [lo, hi], and object and triangles are the least of those that certainly touch by hi, though
+  /// read() may name others. Else it is undecided, `hi` is infinite and `fraction` is absent. Point and normal are
+  /// absent (NaN), as is the point of an overlap: read() finds them.
   /// Queries with numbers that floats cannot hold become Status::invalid with Flag::range:
   /// - coordinates beyond 2^80 (an object's, or its bounds': all queries) or more than 10^22 times the sensor's size;
   /// - sizes below 2^-80; sizes of sensor and object that differ by a factor of more than 10^12, also along an axis

@@ -140,7 +140,11 @@ class Builder {
     }
     const double length = std::hypot(sum[0], sum[1], sum[2]);
     if (!(length > 0)) return;  // a slab whose normal, middle and half extent are 0 holds every vertex
-    for (int k = 0; k < 3; ++k) node.normal[k] = static_cast<float>(sum[k] / length);
+    for (int k = 0; k < 3; ++k) {
+      // A device may flush a subnormal number in one use, but not in another.
+      const auto component = static_cast<float>(sum[k] / length);
+      node.normal[k] = std::abs(component) < std::numeric_limits<float>::min() ? 0 : component;
+    }
     double least = std::numeric_limits<double>::max(), most = -least;
     for (uint32_t place = from.first; place < from.first + from.count; ++place) {
       for (int i = 0; i < 3; ++i) {

@@ -12,8 +12,9 @@ namespace {
 
 // Entries of an inverse matrix, and their residuals, are out of range from here on.
 constexpr double kMostInverse = 0x1p100;
-// Bound on the total error of a placement's floats that a device flushes to 0.
-constexpr double kFlushed = 1e-37;
+// Bounds on what a device flushes to 0, as in placement.glsl: in all, and of vertices, before and after they are
+// normalised.
+constexpr double kFlushed = 4e-36, kFlushedVertex = 1e-37;
 
 // The leading 16 bits, so that the shader's products with 8-bit numbers are exact.
 float leadingBits(double x) {
@@ -70,13 +71,14 @@ gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh) {
   }
   for (int row = 0; row < 3; ++row) {
     const double* r = &worldFromMesh.m[4 * row];
-    double position = r[3], sum = std::abs(r[3]);
+    double position = r[3], sum = std::abs(r[3]), entries = 0;
     for (int k = 0; k < 3; ++k) {
       matrix[3 * row + k] = r[k] * mesh.unit;
       position += r[k] * mesh.origin[k];
       sum += std::abs(r[k]) * (std::abs(mesh.origin[k]) + mesh.reach[k]);
       size += std::abs(r[k]) * mesh.reach[k];
       most = std::max(most, std::abs(matrix[3 * row + k]));
+      entries += std::abs(r[k]) + std::abs(matrix[3 * row + k]);
       out.coarse[4 * row + k] = leadingBits(matrix[3 * row + k]);
       out.fine[4 * row + k] = static_cast<float>(matrix[3 * row + k] - out.coarse[4 * row + k]);
     }
@@ -84,7 +86,7 @@ gpu::Placement placementOf(const Mesh& mesh, const Transform& worldFromMesh) {
     out.coarse[4 * row + 3] = static_cast<float>(position);
     out.fine[4 * row + 3] = static_cast<float>(position - out.coarse[4 * row + 3]);
     // Covers the rounding of placing, of the position's two parts and of the shader's sums of them, also of fine parts.
-    out.error = std::max(out.error, roundUp(0x1p-44 * sum));
+    out.error = std::max(out.error, roundUp(0x1p-44 * sum + kFlushedVertex * entries));
   }
   out.size = roundUp(size);
   out.error = roundUp(double(out.error) + 0x1p-35 * size + kFlushed);

@@ -101,7 +101,7 @@ uint encode(uint i, StatedSearch s, out uint hi) {
   sensor.tolerance = tolerance * sensor.scale;
   sensor.centre = box.centre;
   // 2^-44 of what is placed far away.
-  const vec3 halfExtent = 1.000001 * (box.halfExtent + s.slack) + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + 1e-37;
+  const vec3 halfExtent = 1.000001 * (box.halfExtent + s.slack) + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + box.flushed;
   // 2^-37 of the way, for the velocity that sensorBoxOf (nodes.glsl) raises.
   const float way = farthest + s.clearance;
   sensor.halfExtent = 1.000001 * (halfExtent + s.clearance + 7.3e-12 * way) + s.directionError * way;

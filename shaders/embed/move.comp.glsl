@@ -29,12 +29,10 @@ PlacedBox boxOf(Transform t, Moved moved, MeshRecord mesh, Position position) {
 }
 
 // The leaf's box has room for the rounding of its ends, too, from which fit.comp computes those above.
-void fitLeaf(uint leaf, PlacedBox box, Transform t, Position position) {
-  vec3 halfExtent = box.halfExtent + 5.7e-14 * (abs(position.high) + abs(push.anchor));  // 2^-44
-  // Coordinates of the mesh that flush to 0.
-  for (int row = 0; row < 3; ++row) halfExtent[row] += dot(abs(uintBitsToFloat(t.bits[row].xyz)), vec3(2.4e-38));
+void fitLeaf(uint leaf, PlacedBox box, Position position) {
+  const vec3 halfExtent = box.halfExtent + 5.7e-14 * (abs(position.high) + abs(push.anchor)) + box.flushed;  // 2^-44
   nodes[leaf].centre = box.centre;
-  nodes[leaf].halfExtent = 1.000001 * halfExtent + 3e-7 * abs(box.centre) + 1e-37;
+  nodes[leaf].halfExtent = 1.000001 * halfExtent + 3e-7 * abs(box.centre);
 }
 
 void main() {
@@ -67,5 +65,5 @@ void main() {
   placement.mask = moved.mask;
   placement.mesh = moved.mesh;
   placements[moved.object] = placement;
-  if (moved.leaf != kNobody) fitLeaf(moved.leaf, box, t, position);
+  if (moved.leaf != kNobody) fitLeaf(moved.leaf, box, position);
 }

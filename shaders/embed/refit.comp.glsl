@@ -35,9 +35,11 @@ void setSlab(uint n, vec3 normal, Range range) {
   nodes[n].slabHalf = hasNormal ? 0.5 * (range.most - range.least) * 1.000001 + kSlabError : 0.0;
 }
 
+// No component is subnormal, so that no use of it may differ from another.
 vec3 unitOrZero(vec3 v) {
   const float squared = dot(v, v);
-  return squared > 1e-30 && squared < 1e30 ? v * inversesqrt(squared) : vec3(0.0);
+  const vec3 unit = squared > 1e-30 && squared < 1e30 ? v * inversesqrt(squared) : vec3(0.0);
+  return mix(vec3(0.0), unit, greaterThan(abs(unit), vec3(1.2e-38)));
 }
 
 void refitLeaf(MeshRecord mesh, uint n, uint link) {

@@ -30,7 +30,7 @@ bool fitsFloats(Transform t, MeshRecord mesh) {
   return fits;
 }
 
-// The mesh's origin in the world is high + low, within `error`.
+// The mesh's origin in the world is high + low, within `error` and what flushes to 0, below 4e-36.
 struct Position {
   vec3 high, low, error;
 };
@@ -49,7 +49,7 @@ Position positionOf(Transform t, vec3 origin) {
     p.high[row] = p.low[row] = 0.0;
     addExactly(p.high[row], p.low[row], high);
     addExactly(p.high[row], p.low[row], low);
-    p.error[row] = origin == vec3(0.0) ? 0.0 : 1.9e-12 * (sum + abs(m.w)) + 4e-37;  // 2^-39
+    p.error[row] = origin == vec3(0.0) ? 0.0 : 1.9e-12 * (sum + abs(m.w));  // 2^-39
 #else
     const dvec4 exact = dvec4(m) + dvec4(t.low[row]);
     const double at = inner(exact.xyz, dvec3(origin)) + exact.w;
@@ -60,25 +60,27 @@ Position positionOf(Transform t, vec3 origin) {
   return p;
 }
 
-// The box of a placed mesh about an anchor, with room for rounding.
+// The box of a placed mesh about an anchor, with room for rounding, and for entries of the transform that flush to 0; what
+// else may flush to 0, coordinates of the mesh and results, takes less than `flushed`.
 struct PlacedBox {
-  vec3 centre, halfExtent;
+  vec3 centre, halfExtent, flushed;
   bool isFinite;
 };
 
 // The anchor is the sum of two floats.
 PlacedBox boxOf(Transform t, MeshRecord mesh, Position position, vec3 anchor, vec3 anchorLow) {
   precise vec3 middle = 0.5 * mesh.lo + 0.5 * mesh.hi, halfExtent = max(mesh.hi - middle, middle - mesh.lo);
-  const vec3 flushed = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
-  vec3 at, sum, reach;
+  const vec3 ofEntries = vec3(t.flushes) * sum3(coordinatesOf(mesh, 1.2e-38));
+  vec3 at, sum, reach, flushed;
   for (int row = 0; row < 3; ++row) {
     const vec3 m = uintBitsToFloat(t.bits[row].xyz);
     const float offset = differenceInParts(position.high[row], position.low[row], anchor[row], anchorLow[row]);
     at[row] = dot(m, middle) + offset;
     sum[row] = dot(abs(m), abs(middle)) + abs(offset) + position.error[row] / kUnit / 20.0;
     reach[row] = dot(abs(m), halfExtent);
+    flushed[row] = dot(abs(m), vec3(1e-37)) + 1e-36;
   }
-  return PlacedBox(at, reach + (20.0 * kUnit * (sum + reach) + flushed), all(lessThanEqual(sum + reach, vec3(1e37))));
+  return PlacedBox(at, reach + (20.0 * kUnit * (sum + reach) + ofEntries), flushed, all(lessThanEqual(sum + reach, vec3(1e37))));
 }
 
 // Approximate rows of the inverse of a matrix whose largest entry is 1 to 2. Any rows are valid, since the caller bounds
@@ -118,8 +120,11 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   const vec3 m[3] = vec3[3](uintBitsToFloat(t.bits[0].xyz) * unit, uintBitsToFloat(t.bits[1].xyz) * unit,
                             uintBitsToFloat(t.bits[2].xyz) * unit);
   const vec3 scaled[3] = vec3[3](m[0] * perLarge, m[1] * perLarge, m[2] * perLarge);
-  const vec3 reach = max(abs(mesh.lo), abs(mesh.hi)) * mesh.perUnit;
-  const float flushed = 1.2e-38 * (unit * sum3(reach)) + sum3(1.2e-38 * abs(mesh.origin));
+  // None of what follows rests on the sign or the size of a number that a device may flush to 0.
+  const vec3 reach = max(abs(mesh.lo), abs(mesh.hi)) * mesh.perUnit + 1.2e-38;
+  // Of entries of the transform, per row; of vertices, before and after they are normalised, per unit of the matrix.
+  const float flushed = 1.2e-38 * (unit * sum3(reach)) + sum3(1.2e-38 * abs(mesh.origin)),
+              ofVertices = 1e-37 + 1e-37 * mesh.perUnit;
   vec3 n[3];
   inverseRows(scaled[0], scaled[1], scaled[2], 1e18 * min(1e12 * large, 1.0), n);
   float size = 0.0, error = 0.0;
@@ -133,16 +138,17 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
       const vec3 column = vec3(scaled[0][j], scaled[1][j], scaled[2][j]);
       off += (abs(dot(n[row], column) - (j == row ? 1.0 : 0.0)) + 10.0 * kUnit * (dot(abs(n[row]), abs(column)) + 1.0)) * reach[j];
     }
-    p.inverse[row] = vec4(n[row] * perLarge, 1.00001 * off);
-    size += dot(abs(m[row]), reach);
-    error = max(error, position.error[row] + 5.7e-14 * abs(position.high[row]) + (t.flushes[row] ? flushed : 0.0));
+    p.inverse[row] = vec4(n[row] * perLarge, 1.00001 * off + 1e-37);
+    const float ofRow = t.flushes[row] ? flushed : 0.0;
+    size += dot(abs(m[row]), reach) + ofRow;
+    error = max(error, position.error[row] + 5.7e-14 * abs(position.high[row]) + ofVertices * sum3(abs(m[row])) + ofRow);
   }
   p.reach = reach;
   p.root = mesh.firstNode;
   p.origin = mesh.origin;
-  // 2^-35 of the size, and 2e-37 for numbers that flush to 0.
-  p.error = 1.00001 * (error + 3.1e-11 * size) + 2e-37;
-  p.size = 1.00001 * size + 1e-37;
+  // 2^-35 of the size, and 4e-36 for numbers that flush to 0.
+  p.error = 1.00001 * (error + 3.1e-11 * size) + 4e-36;
+  p.size = 1.00001 * size + 4e-36;
   p.perUnit = inRange && size <= 1.2e24 ? mesh.perUnit : 0.0;
   return p;
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostInverse = 0x1p100;
 // Bounds on what a device flushes to 0, as in placement.glsl: in all, and of vertices, before and after they are
 // normalised.
-constexpr double kFlushed = 4e-36, kFlushedVertex = 1e-37;
+constexpr double kFlushed = 4e-36, kFlushedVertex = 3e-37;
 
 // The leading 16 bits, so that the shader's products with 8-bit numbers are exact.
 float leadingBits(double x) {

@@ -67,9 +67,9 @@ MeshPair meshPairOf(uint sensor, uint object) {
   const vec3 spanB = reachB + sizeB * (abs3(matrixA) * reachA + abs(apart)),
              spanA = reachA + sizeA * (abs3(matrixB) * reachB + abs(apart));
   p.slackA = vec3(nb0.w, nb1.w, nb2.w) + sumB * error + sizeB * positionError + 64.0 * kUnit * spanB +
-             16.0 * kUnit * p.farthest * sumB + 1e-12;
+             16.0 * kUnit * p.farthest * sumB + 1e-11;
   p.slackB = vec3(na0.w, na1.w, na2.w) + sumA * error + sizeA * positionError + 64.0 * kUnit * spanA +
-             16.0 * kUnit * p.farthest * sumA + 1e-12;
+             16.0 * kUnit * p.farthest * sumA + 1e-11;
   // The slack is included, so that quotients by a velocity stay below 1e12 times `farthest`.
   const vec3 leastA = 9.5367432e-7 / p.farthest * max(reachB + abs3(p.fromA) * reachA + p.slackA, vec3(9.5367432e-7)),
              leastB = 9.5367432e-7 / p.farthest * max(reachA + abs3(p.fromB) * reachB + p.slackB, vec3(9.5367432e-7));

@@ -124,7 +124,7 @@ Placement placementOf(MeshRecord mesh, Transform t, Position position) {
   const vec3 reach = max(abs(mesh.lo), abs(mesh.hi)) * mesh.perUnit + 1.2e-38;
   // Of entries of the transform, per row; of vertices, before and after they are normalised, per unit of the matrix.
   const float flushed = 1.2e-38 * (unit * sum3(reach)) + sum3(1.2e-38 * abs(mesh.origin)),
-              ofVertices = 1e-37 + 1e-37 * mesh.perUnit;
+              ofVertices = 3e-37 + 3e-37 * mesh.perUnit;
   vec3 n[3];
   inverseRows(scaled[0], scaled[1], scaled[2], 1e18 * min(1e12 * large, 1.0), n);
   float size = 0.0, error = 0.0;

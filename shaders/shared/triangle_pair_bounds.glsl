@@ -89,7 +89,7 @@ BoundedFloat quotientOf(BoundedFloat above, BoundedFloat below, out bool known) 
   const bool nonzero = divisor > 0.5 * abs(below.value);
   const float value = above.value / (nonzero ? below.value : 1.0);
   const float error = (above.error + abs(value) * below.error) / (nonzero ? divisor : 1.0) * 1.0001 +
-                      8.0 * kUlp * abs(value) + kFlushed;
+                      8.0 * kUlp * abs(value) + 4.0 * kFlushed;
   known = nonzero && abs(value) < 1e30 && error < 1e30;
   return BoundedFloat(value, error);
 }

@@ -1,18 +1,20 @@
-"""The margins of the tests of pairs of nodes, and of boxes of objects, in floats.
-
-Flushing is left out here: 1e-18 is for that, and what is too large or too small is refused (by hand).
-"""
+"""The margins of the tests of pairs of nodes, and of boxes of objects, in floats."""
+import math
+import re
+from dataclasses import replace
 from fractions import Fraction
 
 from claims import Claim, Inequality, Shared, at_most
 from evaluator import UNKNOWN, Evaluator, Matrix, Vector
-from polynomial import Polynomial, summed, total
-from rounding import ZERO, Number, exactly, plain, symbol
+from polynomial import Polynomial, divided, summed, total
+from reader import Sources
+from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, Rounding, exactly, given, plain, symbol
 from sizes import WITHIN, matrix, mean_error, positive, symbols, together, vector, within
-from triangle_claims import COMPONENT, FLOATS, HOST, IN_PARTS, UNIT
+from triangle_claims import COMPONENT, HOST, IN_PARTS, UNIT
 
+PLACED = ["shaders/shared/placement.glsl"]
 FILES = ["shaders/shared/two_floats.glsl", "shaders/contact/nodes.glsl", "shaders/contact/node_pair.glsl"]
-DIVISION = FLOATS.division
+DIVISION = DEVICE_FLOATS.division
 # The sum of |n_j| is rounded twice, but to no less than the greatest |n_j|. If the others are less than 2^-12 of that,
 # |n| is within a quarter of an ulp of it; else the sum is above |n| by more. So this times the sum is no less than |n|,
 # as computed.
@@ -22,6 +24,49 @@ NORM = (1 - UNIT) ** 2 * (1 + UNIT / 4)
 OF_MOTION = Fraction(1, 400)
 ABOUT = 1 + Fraction(1, 1 << 18)
 ONES = Vector([exactly(1)] * 3)
+# At most, in the sensor's unit of length (docs/method.md, section 6): by the first letters of symbols. 1/f is at most 2^20,
+# since `farthest` is raised to its inverse; so are velocities, in the ratio to it.
+_MOST = {"n": 10**12, "m": 10**12, "apart": 10**12, "high": 10**13, "low": 10**13, "size": 10**12, "e": 10**9, "c": 10**9,
+         "f": 10**12, "D": 1 << 42, "1/f": 1 << 20, "w": 10**24, "r": 10**25, "a": 10**25, "way": 10**25, "held": 10**25,
+         "raised": 10**25, "gap": 10**25, "extent": 10**25, "middle": 10**25, "v": 10**13, "least": 10**25, "reach": 2,
+         "centre": 2, "half": 2, "own_middle": 8, "own_slab": 8, "mu": 8, "h": 8, "g": 2, "o": 2, "d": 2,
+         "flushed": DEVICE_FLOATS.flushed}
+DIRECTION = Number(COMPONENT.size, COMPONENT.error + FLUSHED)
+# Of a row of an inverse, what flushes to 0 when it is scaled: below 2^-126 in the world, where matrices are at most 2^80,
+# times a reach of 2, for three columns.
+_OF_ROW = Polynomial.constant(DEVICE_FLOATS.flushed * (1 << 80) * 6)
+# A placement's error has this per entry of its matrix, in FLUSHED, for vertices; of which they may take 2.
+VERTEX = [Sources.of(*HOST).number("kFlushedVertex", "3e-37"), Sources.of(*PLACED).number("placementOf", "3e-37 + 3e-37 *")]
+OF_VERTICES = min(VERTEX) / DEVICE_FLOATS.flushed
+
+
+def flushing(balance):
+    """A step: what flushing takes, as numbers. But the residual pays for its own share; and where an entry m of a matrix is
+    multiplied by one of an inverse, n, the placement's error does, by its room for vertices that flush."""
+
+    def most(symbols):
+        return math.prod(_MOST[re.match("1/f$|[a-z_]+", s)[0]] for s in symbols)
+
+    def as_number(monomial, c):
+        left = divided(monomial, ("flushed",))
+        if left is None:
+            return monomial, c
+        residual = [s for s in left if s.startswith("residual")]
+        inverse = [s for s in left if re.match("n[AB]", s)]
+        entry = [s for s in left if re.match("m[AB]", s)]
+        if residual:
+            kept, rest, share = residual[:1], residual[:1], 1
+        elif inverse and entry:
+            kept, rest = [inverse[0], "e" + entry[0][1]], [inverse[0], entry[0]]
+            share = 1 / OF_VERTICES / DEVICE_FLOATS.flushed
+        else:
+            kept, rest, share = [], [], 1
+        of_normal = [s for s in left if re.match("g[012]", s)] if kept else []
+        others = divided(left, (*rest, *of_normal))
+        flushed = DEVICE_FLOATS.flushed * share
+        return tuple(sorted(kept + of_normal)), min(c, 0) * flushed * most(others)
+
+    return Polynomial(as_number(m, c) for m, c in balance.terms.items())
 
 
 def inverse_of_about_1(x):
@@ -51,7 +96,7 @@ class Pair:
             "awayFromZero": lambda v, least: Vector(Number(x.size + y.size) for x, y in zip(v, least)),
         }
         conditions = {"contracts": contracts, "assumptions": {"p.inRange": True}}
-        evaluator = Evaluator(self.sources, FLOATS, names=self._names(), **conditions)
+        evaluator = Evaluator(self.sources, DEVICE_FLOATS, names=self._names(), **conditions)
         self.values = evaluator.call("meshPairOf", UNKNOWN, UNKNOWN)
         self.matrix, self.least = self.values[f"from{self.other}"], evaluator.variables[f"least{self.other}"]
         (self.velocity,) = evaluator.values[f"p.velocity{self.other}"]
@@ -75,23 +120,23 @@ class Pair:
 
         errors = positive(f"e{letter}"), positive(f"size{letter}")
         table = {
-            texel("kTexelReach"): Vector(vector(f"reach{letter}", nonnegative=True) + [UNKNOWN]),
+            texel("kTexelReach"): Vector(vector(f"reach{letter}", make=given, nonnegative=True) + [UNKNOWN]),
             texel("kTexelOrigin"): row(exactly(1)),
             texel("kTexelError"): Vector([*errors, UNKNOWN, UNKNOWN]),
-            texel("kTexelDirection"): Vector([COMPONENT] * 3 + [exactly(1)]),
+            texel("kTexelDirection"): Vector([DIRECTION] * 3 + [exactly(1)]),
             texel("kTexelCentre"): row(positive("D")),
             texel("kTexelMask"): row(exactly(1)),
         }
         for k in range(3):
             table[k] = row(position(f"h{k}"))
             table[texel("kTexelFine", k)] = row(position(f"l{k}"))
-            table[texel("kTexelInverse", k)] = row(positive(f"residual{letter}{k}"))
+            table[texel("kTexelInverse", k)] = row(given(f"residual{letter}{k}", nonnegative=True))
         return lambda index, number: table[number]
 
     def _names(self):
         own, other = self.own, self.other
         names = {
-            "apart": "apart",
+            "apart": self._apart,
             "high": vector("high"),
             "low": vector("low"),
             "p.farthest": positive("f", divides=True),
@@ -102,17 +147,25 @@ class Pair:
             f"abs(way{other} - p.velocity{other})": "raised",
         }
         for letter in "AB":
-            names[f"matrix{letter}"] = matrix(f"m{letter}", IN_PARTS)
-            names[f"inverse{letter}"] = matrix(f"n{letter}", 0)
+            names[f"matrix{letter}"] = matrix(f"m{letter}", IN_PARTS, given)
+            names[f"inverse{letter}"] = matrix(f"n{letter}", 0, given)
         return names
+
+    @staticmethod
+    def _apart(value):
+        """The difference of the positions, named. Before it is scaled, flushing takes what the placements' errors are for."""
+        named = (Rounding(DEVICE_FLOATS).named(x, f"apart{k}") for k, x in enumerate(value))
+        return Vector(replace(x, error=x.error.without("flushed") + FLUSHED) for x in named)
 
     def row(self, k):
         return summed("n{own}{k}{j}", own=self.own, k=k)
 
     def needs(self, k):
-        """What a slack along axis k must hold: the residual, half of the placements' errors, the clearance."""
-        errors = (symbol("eA") + symbol("eB")) * Fraction(1, 2)
-        return symbol(f"residual{self.own}{k}") * self.residual + self.row(k) * (errors + symbol("c") * NORM)
+        """What a slack along axis k must hold: the residual, half of the placements' errors and what flushing takes from
+        vertices, the clearance."""
+        errors = (symbol("eA") + symbol("eB")) * (Fraction(1, 2) + 2 / OF_VERTICES)
+        rows = self.row(k) * (errors + symbol("c") * NORM)
+        return symbol(f"residual{self.own}{k}") * self.residual + rows + _OF_ROW
 
     def rules(self, k):
         """What bounds the names of intermediate results, along axis k."""
@@ -135,8 +188,8 @@ class Pair:
 
 
 def node(letter, **more):
-    half = vector(f"half{letter}", nonnegative=True)
-    box = {"centre": vector(f"centre{letter}"), "halfExtent": half, "link": UNKNOWN}
+    half = vector(f"half{letter}", make=given, nonnegative=True)
+    box = {"centre": vector(f"centre{letter}", make=given), "halfExtent": half, "link": UNKNOWN}
     return {"type": "Node", "normal": UNKNOWN, "middle": UNKNOWN, "slab": UNKNOWN} | box | more
 
 
@@ -172,7 +225,7 @@ def along_axes(sources):
         # Middle and reach are products with the speed.
         names = {f"gap{other}": vector("gap"), f"middle{other}": vector("middle"), f"reach{other}": vector("extent")}
         conditions = {"contracts": {"addNormalSlab": UNKNOWN}, "assumptions": {"meets": True}}
-        evaluator = Evaluator(pair.sources, FLOATS, names=names, **conditions)
+        evaluator = Evaluator(pair.sources, DEVICE_FLOATS, names=names, **conditions)
         evaluator.call("approachOf", values, node("A"), node("B"), UNKNOWN)
         kept = [evaluator.values[name][0] for name in names]
         ends = evaluator.variables["enter"], evaluator.variables["leave"]
@@ -196,6 +249,7 @@ def along_axis(pair, k, gap, middle, reach, ends):
         pair.clearance_paid(start, {k: ()}),
         *within("A", symbols("reachA")),
         *within("B", symbols("reachB")),
+        flushing,
     ]
     return Inequality(f"axis {k} of {own}", reach.least, need, steps)
 
@@ -209,6 +263,12 @@ def along_normals(sources):
     along axes.
     """
     return [along_normal(Pair(sources, own), negative) for own in "AB" for negative in (False, True)]
+
+
+def along_unit(balance, normal):
+    """What a balance lacks as a number, times a unit vector's components, which are 1 or more together."""
+    number = balance.coefficient(())
+    return balance - number + total(normal) * min(number, 0) * Fraction(101, 100)
 
 
 def along_normal(pair, negative):
@@ -225,9 +285,9 @@ def along_normal(pair, negative):
         # Its error is charged below.
         "inverse": plain("1/held"),
     }
-    evaluator = Evaluator(pair.sources, FLOATS, names=names, assumptions={"way < 0.0": negative})
-    own_node = node(own, normal=vector("g"), middle=plain("own_middle"), slab=positive("own_slab"))
-    other_node = node(other, normal=vector("o"), middle=plain("mu"), slab=positive("h"))
+    evaluator = Evaluator(pair.sources, DEVICE_FLOATS, names=names, assumptions={"way < 0.0": negative})
+    own_node = node(own, normal=vector("g"), middle=given("own_middle"), slab=given("own_slab", nonnegative=True))
+    other_node = node(other, normal=vector("o"), middle=given("mu"), slab=given("h", nonnegative=True))
     velocity = Vector(plain(f"v{k}", v.error) for k, v in enumerate(pair.velocity))
     offset, slack = pair.values[f"offset{other}"], pair.values[f"slack{other}"]
     numbers = positive("least"), positive("f")
@@ -259,6 +319,8 @@ def along_normal(pair, negative):
         together("own_middle", "own_slab", reaches),
         [rule for k in range(3) for rule in pair.rules(k)] + at_most(along),
         *within(other, symbols(f"reach{other}")),
+        flushing,
+        lambda balance: along_unit(balance, g),
     ]
     return Inequality(f"normal of {own}" + (", away" if negative else ""), kept["reach"].least, need, steps)
 
@@ -269,31 +331,36 @@ def boxes_of_objects(sources):
 
     |gap - s d| <= halves. The direction d is rounded to nearest; its inverse is off by a division's rounding. Both are
     relative to s d, which is at most gap + reach. The boxes hold what rounding them, and raising d, takes
-    (contact/encode.comp.glsl; by hand).
+    (contact/encode.comp.glsl; by hand), and have `flushed` to spare (boxOf), of which this may take half.
     """
     half, inverse = vector("half", nonnegative=True), vector("1/d")
-    box = {"type": "SensorBox", "centre": vector("centre"), "halfExtent": half, "inverseDirection": inverse}
+    centre, room = vector("centre", make=given), sources.elsewhere(*PLACED).number("boxOf", "1e-36")
+    sources = sources.elsewhere(*FILES)
+    box = {"type": "SensorBox", "centre": centre, "halfExtent": half, "inverseDirection": inverse}
     names = {"gap": "gap", "at": vector("at"), "reach": vector("extent")}
-    evaluator = Evaluator(sources, FLOATS, names=names)
-    middle, size = (Vector(v + [UNKNOWN]) for v in (vector("middle"), vector("size", nonnegative=True)))
+    evaluator = Evaluator(sources, DEVICE_FLOATS, names=names)
+    middle = Vector(vector("middle", make=given) + [UNKNOWN])
+    size = Vector(vector("size", make=given, nonnegative=True) + [UNKNOWN])
     ends = evaluator.call("meetsBox", box, middle, size)
     for k in range(3):
         at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
         relative = (COMPONENT.error + DIVISION) * (1 + 4 * UNIT)
-        need = symbol(f"size{k}") + symbol(f"half{k}") + at.error + (symbol(f"gap{k}") + reach.size) * relative
+        need = symbol(f"size{k}") + symbol(f"half{k}") - room * Fraction(1, 2) + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")
         rules = at_most({f"at{k}": at.size, f"extent{k}": reach.size})
-        yield Inequality(f"axis {k} of the world", reach.least, need, [rules])
+        yield Inequality(f"axis {k} of the world", reach.least, need, [rules, flushing])
 
 
 def claims():
     spans = ["64.0 * kUnit * spanB", "64.0 * kUnit * spanA"]
     motion = ["16.0 * kUnit * p.farthest * sumB", "16.0 * kUnit * p.farthest * sumA"]
     rest = ["4.0 * kUnit * by", "1.00001 * min"]
+    flushed = ["sumB + 1e-11", "sumA + 1e-11"]
     return [
         Claim("axes of boxes", "meshPairOf", spans + motion + rest, FILES, along_axes),
         Claim("axes of boxes", "setInverse", ["1.00001 * (off"], HOST, along_axes),
-        Claim("axes of normals", "meshPairOf", spans + motion, FILES, along_normals),
+        Claim("axes of normals", "meshPairOf", spans + motion + flushed, FILES, along_normals),
         Claim("axes of normals", "addNormalSlab", ["64.0 * kUnit * added"], FILES, along_normals),
         Claim("boxes of objects", "meetsBox", ["1.00001 + 1e-6", "1e-6 * abs"], FILES, boxes_of_objects),
+        Claim("boxes of objects", "boxOf", ["1e-36"], PLACED, boxes_of_objects),
     ]

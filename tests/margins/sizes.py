@@ -15,14 +15,14 @@ def positive(name, **more):
     return plain(name, nonnegative=True, **more)
 
 
-def vector(name, relative=0, **more):
+def vector(name, relative=0, make=plain, **more):
     """Numbers with symbols `name` and 0 to 2, whose errors are relative to themselves."""
-    return Vector(plain(f"{name}{k}", symbol(f"{name}{k}") * relative, **more) for k in range(3))
+    return Vector(make(f"{name}{k}", symbol(f"{name}{k}") * relative, **more) for k in range(3))
 
 
-def matrix(name, relative):
+def matrix(name, relative, make=plain):
     """A matrix of such numbers, with symbols `name` and their row and column."""
-    return Matrix(map(Vector, zip(*(vector(f"{name}{i}", relative) for i in range(3)))))
+    return Matrix(map(Vector, zip(*(vector(f"{name}{i}", relative, make) for i in range(3)))))
 
 
 def mean_error(one, other):

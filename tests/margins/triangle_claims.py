@@ -30,6 +30,8 @@ E = symbol("E")
 # triangle_pair.glsl adds 1e-30 to each corner's error, and E is twice the sum of two.
 LEAST_E = Fraction(39, 10**31)
 _FLUSHED = Polynomial.constant(DEVICE_FLOATS.flushed)
+# As many FLUSHED has planeOf to spare, for quotientOf.
+SPARE = 3
 # What flushing takes is a number, which the margins' constants pay for, or a share of E; E itself is at most 2^-40 +
 # 2^80 E^3.
 FLUSHING = [
@@ -59,8 +61,11 @@ def quotient(sources, arithmetic, bounded, **conditions):
     above / below.
 
     That is algebra (docs/exact.md); here is that the rounded margin is no less. The divisor as computed is named d.
-    Flushing is left out. In floats, it may take one FLUSHED from a + |value| b: planeOf has it to spare.
+
+    Where numbers flush, above and the quotient may. So value is off by a FLUSHED / |below| more, of which |below| is at
+    least d, and this times b at most half a FLUSHED, since b is less than |below| / 2: planeOf has these to spare.
     """
+    lost = FLUSHED if arithmetic.flushed and bounded == "BoundedFloat" else ZERO
     names = {"divisor": plain("d", nonnegative=True, divides=True), "value": plain("v")}
     above = {"type": bounded, "value": plain("n"), "error": plain("a", nonnegative=True)}
     below = {"type": bounded, "value": plain("t", divides=True), "error": plain("b", nonnegative=True)}
@@ -68,8 +73,12 @@ def quotient(sources, arithmetic, bounded, **conditions):
     a, b, v, inverse = map(symbol, ("a", "b", "v", "1/d"))
     # |above / below| as it is, from the value as computed; 1 / (|below| - b) from its rounded inverse.
     unit, division = arithmetic.unit, arithmetic.division
-    need = (a + v * b * (1 / (1 - division))) * inverse * (1 + unit) + v * (division / (1 - division))
-    yield Inequality("error of the quotient", quotient["error"].least.without("flushed"), need)
+    above = a + lost * (Fraction(3, 2) - SPARE)
+    need = (above + (v + lost) * b * (1 / (1 - division))) * inverse * (1 + unit)
+    need += (v + lost) * (division / (1 - division)) + lost
+    margin = quotient["error"].least if lost.terms else quotient["error"].least.without("flushed")
+    below = Rule(("1/d", "b", "flushed"), FLUSHED)
+    yield Inequality("error of the quotient", margin, need, [[below], [Rule(("flushed",), _FLUSHED)]])
 
 
 def quotient_of(sources):
@@ -256,14 +265,14 @@ def positions(sources):
 
 EDGE = ["6.0 * kUlp", "1.0001 * (error", "4.0 * kFlushed"]
 PLANE = ["12.0 * kUlp", "1.0001 * given", "6.0 + 6.0 * g", "6.0 * g"]
+QUOTIENT = ["8.0 * kUlp", "1.0001 + 8.0", "4.0 * kFlushed"]
 APART = ["12.0 * kUlp", "1.0001 * error", *PLANE[2:], "16.0 * kUlp", "2.0001 * error", "1.00001 * limit"]
 
 
 def claims():
     edges = difference("x"), difference("y"), positive("E")
     face_of = holds(DEVICE_FLOATS, "faceOf", *edges, steps=[FLUSHING])
-    # Two FLUSHED are to spare, of which quotientOf may lose one.
-    plane_of = holds(DEVICE_FLOATS, "planeOf", difference("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * 2)
+    plane_of = holds(DEVICE_FLOATS, "planeOf", difference("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * SPARE)
     errors = ["1.75 * scale * sensorTexel", "1.75 * scale * objectTexel"]
     return [
         Claim("position in two parts", "placementOf", ["0x1p-44 * sum", "0x1p-35 * size"], HOST, positions),
@@ -273,7 +282,7 @@ def claims():
         Claim("boxes of a pair", "differenceError", ["2.0 * (a.error"], FILES, boxes),
         Claim("z of x cross y", "faceOf", ["6.0 * kUlp", "1.0001 * given", "4.0 * kFlushed"], FILES, face_of),
         Claim("gap . (x cross y)", "planeOf", PLANE, FILES, plane_of),
-        Claim("quotient of bounded numbers", "quotientOf", ["8.0 * kUlp", "1.0001 + 8.0"], FILES, quotient_of),
+        Claim("quotient of bounded numbers", "quotientOf", QUOTIENT, FILES, quotient_of),
         Claim("side of an edge", "edgeSeparates", EDGE, FILES, edge_separates),
         Claim("side of a plane", "planeKeepsApart", APART, FILES, plane_keeps_apart),
     ]

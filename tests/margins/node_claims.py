@@ -7,12 +7,10 @@ from fractions import Fraction
 from claims import Claim, Inequality, Shared, at_most
 from evaluator import UNKNOWN, Evaluator, Matrix, Vector
 from polynomial import Polynomial, divided, summed, total
-from reader import Sources
 from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, Rounding, exactly, given, plain, symbol
 from sizes import WITHIN, matrix, mean_error, positive, symbols, together, vector, within
-from triangle_claims import COMPONENT, HOST, IN_PARTS, UNIT
+from triangle_claims import DIRECTION, HOST, IN_PARTS, OF_VERTICES, PLACED, UNIT
 
-PLACED = ["shaders/shared/placement.glsl"]
 FILES = ["shaders/shared/two_floats.glsl", "shaders/contact/nodes.glsl", "shaders/contact/node_pair.glsl"]
 DIVISION = DEVICE_FLOATS.division
 # The sum of |n_j| is rounded twice, but to no less than the greatest |n_j|. If the others are less than 2^-12 of that,
@@ -31,13 +29,9 @@ _MOST = {"n": 10**12, "m": 10**12, "apart": 10**12, "high": 10**13, "low": 10**1
          "raised": 10**25, "gap": 10**25, "extent": 10**25, "middle": 10**25, "v": 10**13, "least": 10**25, "reach": 2,
          "centre": 2, "half": 2, "own_middle": 8, "own_slab": 8, "mu": 8, "h": 8, "g": 2, "o": 2, "d": 2,
          "flushed": DEVICE_FLOATS.flushed}
-DIRECTION = Number(COMPONENT.size, COMPONENT.error + FLUSHED)
 # Of a row of an inverse, what flushes to 0 when it is scaled: below 2^-126 in the world, where matrices are at most 2^80,
 # times a reach of 2, for three columns.
 _OF_ROW = Polynomial.constant(DEVICE_FLOATS.flushed * (1 << 80) * 6)
-# A placement's error has this per entry of its matrix, in FLUSHED, for vertices; of which they may take 2.
-VERTEX = [Sources.of(*HOST).number("kFlushedVertex", "3e-37"), Sources.of(*PLACED).number("placementOf", "3e-37 + 3e-37 *")]
-OF_VERTICES = min(VERTEX) / DEVICE_FLOATS.flushed
 
 
 def flushing(balance):
@@ -344,7 +338,7 @@ def boxes_of_objects(sources):
     ends = evaluator.call("meetsBox", box, middle, size)
     for k in range(3):
         at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
-        relative = (COMPONENT.error + DIVISION) * (1 + 4 * UNIT)
+        relative = (DIRECTION.error.without("flushed") + DIVISION) * (1 + 4 * UNIT)
         need = symbol(f"size{k}") + symbol(f"half{k}") - room * Fraction(1, 2) + at.error + (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")
         rules = at_most({f"at{k}": at.size, f"extent{k}": reach.size})

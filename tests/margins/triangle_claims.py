@@ -4,8 +4,8 @@ from fractions import Fraction
 
 from claims import Claim, Inequality, Rule, at_most
 from evaluator import UNKNOWN, Evaluator, Vector
-from polynomial import Polynomial, total
-from reader import SourceError
+from polynomial import Polynomial, divided, total
+from reader import SourceError, Sources
 from rounding import DEVICE_FLOATS, FLUSHED, ZERO, Number, exactly, given, known, plain, symbol
 from sizes import ROOT_OF_3, holds, matrix, vector
 
@@ -15,15 +15,17 @@ FILES = [
     "shaders/contact/triangle_pair.glsl",
     "shaders/contact/nodes.glsl",
 ]
-HOST = ["engine/scene/placement.cpp"]
-# Where flushing is left out.
-FLOATS = replace(DEVICE_FLOATS, flushed=Fraction(0))
+HOST, PLACED = ["engine/scene/placement.cpp"], ["shaders/shared/placement.glsl"]
 UNIT, NEAREST = DEVICE_FLOATS.unit, Fraction(1, 1 << 24)
 ROUNDED = DEVICE_FLOATS.of_result
 # Two parts of a matrix's entry, added with one rounding, hold it to 2^-39.
 IN_PARTS = ROUNDED + Fraction(1, 1 << 39)
 # A component of a direction of unit length, rounded to nearest; 1 stands for its size.
-COMPONENT = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50))
+DIRECTION = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50) + FLUSHED)
+# A placement's error has this per entry of its matrix, in FLUSHED, for vertices, which lose 1 before they are normalised, and 1
+# then. A float that is read may lose 1 more.
+_VERTEX = Sources.of(*HOST).number("kFlushedVertex", "3e-37"), Sources.of(*PLACED).number("placementOf", "3e-37 + 3e-37 *")
+OF_VERTICES = min(_VERTEX) / DEVICE_FLOATS.flushed
 AXES = "xyz"
 
 E = symbol("E")
@@ -130,41 +132,60 @@ def plane_keeps_apart(sources):
 
 
 def frame_of(sources, texel, apart, **conditions):
-    """What pairFrameOf computes; flushing is left out. texel: takes the place of sensorTexel and objectTexel."""
+    """What pairFrameOf computes. texel: takes the place of sensorTexel and objectTexel."""
     contracts = {"sensorTexel": texel, "objectTexel": texel, "rowApart": apart}
     contracts |= {"normalised": UNKNOWN, "anchorOf": UNKNOWN}
-    return Evaluator(sources, FLOATS, contracts=contracts, **conditions).call("pairFrameOf", *[UNKNOWN] * 4)
+    return Evaluator(sources, DEVICE_FLOATS, contracts=contracts, **conditions).call("pairFrameOf", *[UNKNOWN] * 4)
 
 
 def placed_triangle(sources, side, counting):
     """Evaluates pairFrameOf and placedTriangle for a triangle of `side`, of which corner number `counting` counts.
 
-    Flushing is left out: 1e-37 and 1e-30 are for that (by hand). Inputs, in the sensor's unit of length:
+    Inputs, in the sensor's unit of length:
+    - e, a placement's error;
     - m00 to m22, the matrix, in two parts;
     - apart0 to apart2, the rows of the anchors' difference: only their last rounding is charged to the margin checked
       here;
     - the frame's axes;
-    - q00 to q22, the corners less the anchor: (vertex - origin) perUnit is exact.
+    - q00 to q22, the corners less the anchor: (vertex - origin) perUnit is exact, or flushed.
+    What flushing takes from a matrix, a position or a vertex before it is scaled, the placement's error pays for.
     """
-    # Only nonnegative numbers, which do not matter here.
-    other = plain("other", nonnegative=True, scales=True)
+    errors, one = Vector([known(symbol("e"), nonnegative=True)] * 4), exactly(1)
     error_texel = sources.value("kTexelError")
 
     def texel(_, number):
-        return Vector([other] * 4) if number == error_texel else Vector([COMPONENT] * 3 + [other])
+        return errors if number == error_texel else Vector([DIRECTION] * 3 + [one])
 
     def corner(i):
-        numbers = vector(f"q{i}", ROUNDED)
+        numbers = vector(f"q{i}", ROUNDED, given)
         return numbers if i == counting else Vector(replace(n, least=ZERO) for n in numbers)
 
-    names = {f"matrix{side}": matrix("m", IN_PARTS), "apart": vector("apart", ROUNDED)}
+    names = {f"matrix{side}": matrix("m", IN_PARTS, given), "apart": vector("apart", ROUNDED, given)}
     frame = frame_of(sources, texel, SIGN, names=names)
     contracts = {"triangleAt": UNKNOWN, "vertexAt": UNKNOWN, "normalised": iter(map(corner, range(3)))}
     zero = Vector(exactly(0) for _ in AXES)
     offset = frame["offset"] if side == "B" else zero
     arguments = zero, offset, frame[f"columns{side}"], frame[f"error{side}"]
-    placing = Evaluator(sources, FLOATS, contracts=contracts)
+    placing = Evaluator(sources, DEVICE_FLOATS, contracts=contracts)
     return placing.call("placedTriangle", UNKNOWN, frame[f"turned{side}"], UNKNOWN, UNKNOWN, *arguments)
+
+
+def flushed_corner(balance):
+    """A step: flushing takes a share of a product, far below its rounding; per entry of a matrix, what the placement's error has
+    for vertices; or a number, times a corner's distance from the anchor, which is at most 4."""
+
+    def taken(monomial, c):
+        left = divided(monomial, ("flushed",))
+        if left is None:
+            return monomial, c
+        kinds = "".join(sorted(s[0] for s in left if s != "flushed"))
+        others = [s for s in left if s != "flushed"]
+        share = min(c, 0) * DEVICE_FLOATS.flushed ** (len(left) - len(others) + 1)
+        if kinds == "m":
+            return ("e",), share / OF_VERTICES / DEVICE_FLOATS.flushed
+        return ((), share * 4 ** len(others)) if set(kinds) <= {"q"} else (tuple(others), share)
+
+    return Polynomial(taken(m, c) for m, c in balance.terms.items())
 
 
 def corner_error(sources):
@@ -173,7 +194,7 @@ def corner_error(sources):
         triangle = placed_triangle(sources, side, i)
         for k, value in enumerate(triangle["corners"][i]):
             need = (value.error + value.size * UNIT) * (1 + 3 * UNIT)
-            yield Inequality(f"corner {i} of {side}, component {k}", triangle["error"].least, need)
+            yield Inequality(f"corner {i} of {side}, component {k}", triangle["error"].least, need, [flushed_corner])
 
 
 def boxes(sources):
@@ -186,7 +207,7 @@ def boxes(sources):
         triangle = placed_triangle(sources, side, 0)
         for value in triangle["corners"][0]:
             what = f"error of a corner of {side} against a coordinate"
-            yield Inequality(what, triangle["error"].least, value.size * 23 * NEAREST)
+            yield Inequality(what, triangle["error"].least, value.size * 23 * NEAREST, [flushed_corner])
 
     def triangle_of(size, rest):
         error = rest + size * (23 * NEAREST)
@@ -196,11 +217,13 @@ def boxes(sources):
     contracts = {"faceOf": UNKNOWN, "signOf": SIGN, "edgeSeparates": UNKNOWN, "planeKeepsApart": UNKNOWN}
     # As computed, E is exact.
     names = {"error": lambda e: Number(e.size, ZERO, e.least, nonnegative=True, normal=True)}
-    evaluator = Evaluator(sources, FLOATS, contracts=contracts, names=names)
+    evaluator = Evaluator(sources, DEVICE_FLOATS, contracts=contracts, names=names)
     a, b = symbol("a"), symbol("b")
     triangles = triangle_of(a, symbol("A")), triangle_of(b, symbol("B"))
     evaluator.call("mayMeet", *triangles, positive("c"), positive("l"))
-    rules = at_most({"c": (a + b) * (1 + Fraction(1, 10**6))})
+    # Each error is 1e-30 at least.
+    least = (symbol("A") + symbol("B")) * (DEVICE_FLOATS.flushed * 10**30)
+    rules = at_most({"c": (a + b) * (1 + Fraction(1, 10**6)), "flushed": least})
     for (text, left, right), _ in zip(evaluator.compared, range(6), strict=True):
         yield Inequality(text, evaluator.variables["error"].least, left.error + right.error, [rules])
 
@@ -230,14 +253,14 @@ def error_of_a_row(sources):
 
     sizes = total(symbol(f"m{side}{j}") * symbol(f"r{side}{j}") * 2 for side in "AB" for j in range(3))
     names = {"high": exactly(0), "low": fine(sizes, 20, Fraction(1, 1 << 40))}
-    evaluator = Evaluator(sources, FLOATS, contracts={"addExactly": iter([UNKNOWN] * 7)}, names=names)
+    evaluator = Evaluator(sources, DEVICE_FLOATS, contracts={"addExactly": iter([UNKNOWN] * 7)}, names=names)
     coarse = Vector([UNKNOWN] * 4)
     return evaluator.call("rowApart", coarse, fine_row("A"), anchor("A"), coarse, fine_row("B"), anchor("B")).error
 
 
 def positions(sources):
-    """The rest of a corner's error is in the placement's own: 2^-44 of S, the terms of a position, and 2^-35 of Z, its
-    size.
+    """The rest of a corner's error is in the placement's own: 2^-44 of S, the terms of a position, 2^-35 of Z, its size,
+    and 4e-36 for flushing.
 
     Turned by a row of the frame, whose components are at most 1 and add up to at most the root of 3.
     """
@@ -245,6 +268,7 @@ def positions(sources):
     error = error_of_a_row(sources)
     bound = symbol("S") * host.number("placementOf", "0x1p-44 * sum")
     bound += symbol("Z") * host.number("placementOf", "0x1p-35 * size")
+    bound += symbol("flushed") * (host.number("kFlushed", "4e-36") / DEVICE_FLOATS.flushed)
     ones = Vector(map(exactly, (1, 1, 1, 1)))
     texels = {
         sources.value("kTexelError"): Vector([known(bound, nonnegative=True)] + ones[1:]),
@@ -257,12 +281,15 @@ def positions(sources):
         of_size = max(error.coefficient((f"m{side}{j}", f"r{side}{j}")) for j in range(3))
         need = symbol("Z") * of_size + symbol("S") * error.coefficient((f"P{side}",)) * ROOT_OF_3
         margin = frame[f"error{side}"].least
+        # Each of 7 calls of addExactly flushes up to 8 numbers, and up to 160 (by hand) flush where the mesh is placed.
+        need += FLUSHED * (error.coefficient(("flushed",)) + 7 * 8 + 160) * ROOT_OF_3
         yield Inequality(f"position of {side}", margin - margin.coefficient(()), need)
-    expected = {(f"m{side}{j}", f"r{side}{j}") for side in "AB" for j in range(3)} | {("PA",), ("PB",)}
+    expected = {(f"m{side}{j}", f"r{side}{j}") for side in "AB" for j in range(3)} | {("PA",), ("PB",), ("flushed",)}
     if error.terms.keys() - expected:
         raise SourceError(f"the error of rowApart has terms that the claim does not know: {error}")
 
 
+POSITION = ["0x1p-44 * sum", "0x1p-35 * size", ("kFlushed", "4e-36")]
 EDGE = ["6.0 * kUlp", "1.0001 * (error", "4.0 * kFlushed"]
 PLANE = ["12.0 * kUlp", "1.0001 * given", "6.0 + 6.0 * g", "6.0 * g"]
 QUOTIENT = ["8.0 * kUlp", "1.0001 + 8.0", "4.0 * kFlushed"]
@@ -275,7 +302,7 @@ def claims():
     plane_of = holds(DEVICE_FLOATS, "planeOf", difference("g"), *edges, steps=[EDGES + FLUSHING], spare=FLUSHED * SPARE)
     errors = ["1.75 * scale * sensorTexel", "1.75 * scale * objectTexel"]
     return [
-        Claim("position in two parts", "placementOf", ["0x1p-44 * sum", "0x1p-35 * size"], HOST, positions),
+        Claim("position in two parts", "placementOf", POSITION, HOST, positions),
         Claim("position in two parts", "pairFrameOf", errors, FILES, positions),
         Claim("distance of the anchors", "pairFrameOf", ["24.0 * kUnit"], FILES, corner_error),
         Claim("corner about its anchor", "placedTriangle", ["24.0 * kUnit"], FILES, corner_error),

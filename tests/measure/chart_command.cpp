@@ -73,9 +73,24 @@ TEST_CASE("chart refuses what it cannot do with status 2 and the option's or fil
   checkRefused(folder, "chart --out c --extent huge", "--extent");
 }
 
-TEST_CASE("without gnuplot nothing is measured or written, and the error says what to install, with status 2") {
+TEST_CASE("without gnuplot chart measures and says how to draw, which gives the charts later") {
   const ScratchFolder folder;
-  for (const char* arguments : {"chart --extent least --out c", "scale --sensors 2 --out c"}) {
+  const Run run = runProgram(folder, "chart --extent least --section front --out c", "PATH=/nowhere");
+  INFO(run.err);
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("interlocking") && !Contains(".svg"));
+  CHECK_THAT(run.err, Contains("gnuplot") && Contains("apt install gnuplot-nox") &&
+                          Contains("cyber-radar chart --render --out " + (folder.path() / "c").string()));
+  CHECK_FALSE(folder.read("c/workloads.csv").empty());
+  CHECK_THAT(folder.read("c/index.html"), !Contains(".svg"));
+  CHECK(runProgram(folder, "chart --render --out c").status == 0);
+  CHECK_THAT(folder.read("c/front-interlocking.svg"), Contains("</svg>"));
+  CHECK_THAT(folder.read("c/index.html"), Contains("front-interlocking.svg"));
+}
+
+TEST_CASE("what needs gnuplot does nothing without it, and the error says what to install, with status 2") {
+  const ScratchFolder folder;
+  for (const char* arguments : {"chart --render --out c", "scale --sensors 2 --out c"}) {
     const Run run = runProgram(folder, arguments, "PATH=/nowhere");
     CHECK(run.status == 2);
     CHECK(run.out.empty());

@@ -25,7 +25,8 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar chart --out chart --render            measures nothing: draws the charts again
 
 DIR receives index.html, a page with charts and tables; the charts as SVG files and the tables as .csv; and report.json, which
-has all measurements. Tables are on disk as soon as a workload is measured. A program built with -DRADAR_BASELINES=ON
+has all measurements. Tables are on disk as soon as a workload is measured. gnuplot draws the charts: without it, all but they
+are there, and --render draws them later, or elsewhere. A program built with -DRADAR_BASELINES=ON
 (./tools/bootstrap chart) also measures other libraries.)";
 
 struct Options {
@@ -113,16 +114,21 @@ Json readReport(const std::string& folder) {
 }
 
 void chart(Options options) {
-  requireGnuplot();
+  if (options.render) requireGnuplot();
   if (options.quick) options.extent = "quick";
   Json report = options.render ? readReport(options.out) : measure(options);
-  sumUp(report, options.out);
+  const std::string whyUndrawn = tools::whyUndrawn();
+  sumUp(report, options.out, whyUndrawn.empty());
   for (const char* name : {"workloads", "methods", "growth", "edits", "recorded"}) {
     Json& part = partOf(report, name);
     if (!part["rows"].empty()) std::cout << part["title"].get<std::string>() << ":\n" << textOf(part["rows"]) << "\n";
   }
-  std::cout << "In " << std::filesystem::absolute(options.out).string()
-            << ": index.html, report.json, tables as .csv, charts as .svg\n";
+  const std::string folder = std::filesystem::absolute(options.out).string();
+  std::cout << "In " << folder << ": index.html, report.json, tables as .csv"
+            << (whyUndrawn.empty() ? ", charts as .svg\n" : "\n");
+  if (whyUndrawn.empty()) return;
+  printWarnings({"the charts are not drawn: " + whyUndrawn +
+                 "; then, here or where gnuplot is: cyber-radar chart --render --out " + folder});
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ std::vector<const Cell*> frontOf(std::span<const Cell* const> cells) {
   return front;
 }
 
-void sumUp(Json& report, const std::filesystem::path& folder) {
+void sumUp(Json& report, const std::filesystem::path& folder, bool draws) {
   const std::vector<Cell> cells = cellsOf(report);
   std::map<std::string, int> linetypes = linetypesOf(cells);
   const bool hasOthers = std::any_of(cells.begin(), cells.end(), [](const Cell& cell) {
@@ -253,6 +253,10 @@ void sumUp(Json& report, const std::filesystem::path& folder) {
                              "; commit " + report.at("commit").get<std::string>();
   Json workloads = Json::array(), growth = Json::array();
   for (Json& part : report["parts"]) part["charts"] = Json::array();
+  const auto draw = [&](Json& part, const std::string& name, const char* script, const Json& rows,
+                        const std::vector<std::string>& texts) {
+    if (draws) drawFor(part, folder, name, plot(script, rows, texts));
+  };
   const Json cases = partOf(report, "cases")["rows"];
   for (const Json& one : cases) {
     const std::string workload = one.at("workload"), axis = one.at("axis");
@@ -263,13 +267,12 @@ void sumUp(Json& report, const std::filesystem::path& folder) {
     Json& part = partOf(report, one.at("section"));
     if (axis.empty()) {
       workloads.push_back(workloadRow(shown));
-      drawFor(part, folder, "front-" + workload, plot(kFrontScript, frontRows(shown, linetypes), {title, origin}));
+      draw(part, "front-" + workload, kFrontScript, frontRows(shown, linetypes), {title, origin});
     } else {
       addGrowth(growth, shown);
-      drawFor(part, folder, workload,
-              plot(kLinesScript, lineRows(shown, linetypes),
-                   {title, origin, axis, hasOthers ? "filled: Cyber Radar\nhollow: other libraries" : "",
-                    "microseconds per query"}));
+      draw(part, workload, kLinesScript, lineRows(shown, linetypes),
+           {title, origin, axis, hasOthers ? "filled: Cyber Radar\nhollow: other libraries" : "",
+            "microseconds per query"});
     }
   }
   setRows(report, "workloads", "Each workload; microseconds per query", workloads);

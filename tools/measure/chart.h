@@ -36,11 +36,11 @@ std::vector<const Cell*> shownCells(std::span<const Cell> cells, const std::stri
 /// of equal shares, a lesser worst error, down to 1e-13 sizes of the sensor.
 std::vector<const Cell*> frontOf(std::span<const Cell* const> cells);
 
-/// Sums the sections up in tables, draws a chart of each workload that has cells, and writes all.
+/// Sums the sections up in tables, draws a chart of each workload that has cells if `draws`, and writes all.
 ///
 /// `workloads`: microseconds per query of our methods, and the fastest other library without a wrong answer;
 /// `methods`: accuracy and times over all workloads of section front; `growth`: each method's microseconds per query at
 /// both ends of an axis.
-void sumUp(Json& report, const std::filesystem::path& folder);
+void sumUp(Json& report, const std::filesystem::path& folder, bool draws = true);
 
 }  // namespace radar::tools

@@ -94,4 +94,13 @@ void requireGnuplot() {
   gnuplot(kStyleScript, {});
 }
 
+std::string whyUndrawn() {
+  try {
+    requireGnuplot();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 }  // namespace radar::tools

@@ -20,5 +20,7 @@ void drawFor(Json& part, const std::filesystem::path& folder, const std::string&
 
 /// Throws as plot() does if gnuplot is missing or too old. Call it before work whose results would be lost.
 void requireGnuplot();
+/// What requireGnuplot() would say; empty if gnuplot can draw.
+std::string whyUndrawn();
 
 }  // namespace radar::tools

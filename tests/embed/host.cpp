@@ -72,23 +72,31 @@ Host::Host(Mode mode, uint32_t index) {
   const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(handles.instance, "vkCreateDebugUtilsMessengerEXT"));
   require(create(handles.instance, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
-  uint32_t count = index + 1;
+  uint32_t count = 0;
+  require(vkEnumeratePhysicalDevices(handles.instance, &count, nullptr), "vkEnumeratePhysicalDevices");
   std::vector<VkPhysicalDevice> all(count);
-  vkEnumeratePhysicalDevices(handles.instance, &count, all.data());
-  if (count <= index) throw Error("the host finds " + std::to_string(count) + " devices");
-  handles.physicalDevice = all[index];
+  require(vkEnumeratePhysicalDevices(handles.instance, &count, all.data()), "vkEnumeratePhysicalDevices");
+  std::erase_if(all, [](VkPhysicalDevice device) {
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(device, &properties);
+    return !isTested(properties.deviceName);
+  });
+  if (all.empty()) throw Error("the host finds none of the tested devices");
+  handles.physicalDevice = all[index % all.size()];
   const float priority = 1;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = 0,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
-  VkPhysicalDeviceFeatures features;
-  vkGetPhysicalDeviceFeatures(handles.physicalDevice, &features);
-  handles.doubles = features.shaderFloat64 == VK_TRUE && wantsDoubles();
+  VkPhysicalDeviceVulkan12Features more{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &more};
+  vkGetPhysicalDeviceFeatures2(handles.physicalDevice, &features);
+  handles.doubles = features.features.shaderFloat64 == VK_TRUE && wantsDoubles();
   handles.sampled = mode == Mode::sampled;
   handles.debugNames = true;
   handles.getInstanceProcAddr = watchedLoader();
   Requirements needed = requirements(mode, handles.doubles);
+  needed.vulkan12.shaderOutputLayer &= more.shaderOutputLayer;  // optional
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = needed.chain(),
                                 .queueCreateInfoCount = 1,

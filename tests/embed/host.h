@@ -7,7 +7,8 @@ namespace radar::test {
 
 class Host {
  public:
-  /// Enables what `mode` requires and nothing else, on physical device `index`. Gives separateAllocations().
+  /// Enables what `mode` requires and nothing else, on number `index` of the tested devices (support/test_device.h);
+  /// beyond the last, on the first again. Gives separateAllocations().
   explicit Host(Mode mode = Mode::sampled, uint32_t index = 0);
   ~Host();
   Host(const Host&) = delete;

@@ -1,6 +1,7 @@
 // Cancelling, waiting, and pools that end with work queued.
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <new>
@@ -9,6 +10,7 @@
 #include "pool/fixture.h"
 #include "pool/work_queue.h"
 #include "support/catch.h"
+#include "support/test_device.h"
 
 using namespace radar;
 using test::Boxes;
@@ -107,7 +109,7 @@ TEST_CASE("creating, using and destroying a thousand pools leaks no thread and n
   const char* layers = std::getenv("VK_INSTANCE_LAYERS");
   const std::string restored = layers == nullptr ? "" : layers;
   unsetenv("VK_INSTANCE_LAYERS");
-  const std::vector<Device> devices = openDevices();
+  const std::vector<Device> devices = openDevices(test::testedDevices());
   setenv("VK_INSTANCE_LAYERS", restored.c_str(), 1);
   const auto cycle = [&](int count) {
     for (int i = 0; i < count; ++i) {
@@ -116,11 +118,11 @@ TEST_CASE("creating, using and destroying a thousand pools leaks no thread and n
       if (i % 100 == 0) answers.wait();  // the other pools are destroyed with the query queued or in flight
     }
   };
-  // A driver keeps allocations for its first pipelines, so both devices answer queries before the count.
-  for (bool both = false; !both;) {
+  // A driver keeps allocations for its first pipelines, so all devices answer queries before the count.
+  for (bool all = false; !all;) {
     Pool pool(devices, boxes.player.scene(), test::kOnDevice);
     pool.submit(boxes.queries).wait();
-    both = pool.devices()[0].queries > 0 && pool.devices()[1].queries > 0;
+    all = std::ranges::all_of(pool.devices(), [](const auto& device) { return device.queries > 0; });
   }
   cycle(101);
   const size_t threads = threadCount(), before = allocatedBytes();

@@ -20,14 +20,17 @@ using namespace radar::soak;
 
 constexpr uint64_t kMostWrong = 20;
 
-/// All usable devices, each twice: what one thread uses, and what the pool does, which has at least two.
+/// All tested devices that are usable, each twice: what one thread uses, and what the pool does, which has at least
+/// two.
 struct Hosts {
   Hosts() {
     const std::vector<DeviceReport> reports = listDevices();
-    for (uint32_t i = 0; i < reports.size(); ++i) {
-      if (!reports[i].usable()) continue;
-      const Mode mode = reports[i].sampledReasons.empty() ? Mode::sampled : Mode::contact;
-      std::printf("device %s, driver %s\n", reports[i].name.c_str(), reports[i].driver.c_str());
+    const std::vector<uint32_t>& tested = test::testedDevices();
+    for (uint32_t i = 0; i < tested.size(); ++i) {
+      const DeviceReport& report = reports[tested[i]];
+      if (!report.usable()) continue;
+      const Mode mode = report.sampledReasons.empty() ? Mode::sampled : Mode::contact;
+      std::printf("device %s, driver %s\n", report.name.c_str(), report.driver.c_str());
       single.push_back(std::make_unique<test::Host>(mode, i));
       pooled.push_back(std::make_unique<test::Host>(mode, i));
     }

@@ -1,5 +1,6 @@
 #include "support/test_device.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <utility>
@@ -11,6 +12,22 @@ namespace {
 std::mutex mutex;
 std::vector<std::string> messages;
 std::vector<std::function<void()>> ends;
+
+constexpr const char* kLavapipe = "llvmpipe";
+
+std::string settingOf(const char* variable, const char* without) {
+  const char* setting = std::getenv(variable);
+  return setting == nullptr ? without : setting;
+}
+
+const std::vector<DeviceReport>& reports() {
+  static const std::vector<DeviceReport> kReports = listDevices();
+  return kReports;
+}
+
+const DeviceReport& tested() {
+  return reports()[testedDevices()[0]];
+}
 
 }  // namespace
 
@@ -26,13 +43,54 @@ std::vector<std::string> takeValidationMessages() {
   return std::exchange(messages, {});
 }
 
+bool isTested(const std::string& name) {
+  return name.find(settingOf("RADAR_TEST_DEVICE", kLavapipe)) != std::string::npos;
+}
+
+const std::vector<uint32_t>& testedDevices() {
+  static const std::vector<uint32_t> kNumbers = [] {
+    std::vector<uint32_t> numbers;
+    std::vector<std::string> names;
+    for (const DeviceReport& report : reports()) {
+      if (isTested(report.name)) numbers.push_back(static_cast<uint32_t>(names.size()));
+      names.push_back(report.name);
+    }
+    if (numbers.empty()) {
+      throw Error("no device's name contains " + settingOf("RADAR_TEST_DEVICE", kLavapipe), VK_SUCCESS, names);
+    }
+    return numbers;
+  }();
+  return kNumbers;
+}
+
+bool isLavapipe() {
+  return tested().name.find(kLavapipe) != std::string::npos;
+}
+
+bool isValidated() {
+  static const bool kIs = [] {
+    const bool is = std::getenv("RADAR_TEST_DEVICE") == nullptr ||
+                    settingOf("VK_INSTANCE_LAYERS", "").find("VK_LAYER_KHRONOS_validation") != std::string::npos;
+    if (!is) {
+      std::fputs(
+          "not checked: that hazards are reported, since VK_INSTANCE_LAYERS does not name the validation layers\n",
+          stderr);
+    }
+    return is;
+  }();
+  return kIs;
+}
+
 bool wantsDoubles() {
-  const char* setting = std::getenv("RADAR_TEST_DOUBLES");
-  return setting == nullptr || std::string(setting) != "off";
+  return settingOf("RADAR_TEST_DOUBLES", "on") != "off" && tested().doubles;
+}
+
+DeviceOptions deviceOptions() {
+  return {.index = testedDevices()[0], .onValidation = onValidation, .doubles = wantsDoubles()};
 }
 
 const Device& device() {
-  return onceInRun([] { return Device::open({.onValidation = onValidation, .doubles = wantsDoubles()}); });
+  return onceInRun([] { return Device::open(deviceOptions()); });
 }
 
 void atEndOfRun(std::function<void()> end) {

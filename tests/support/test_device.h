@@ -10,9 +10,21 @@
 
 namespace radar::test {
 
-/// Whether the device may use doubles: not if the environment variable RADAR_TEST_DOUBLES is "off".
+/// Whether a device of this name is one that the tests are of: its name contains the environment variable
+/// RADAR_TEST_DEVICE, such as "H200"; without the variable, "llvmpipe".
+bool isTested(const std::string& name);
+/// Their numbers in listDevices(). Throws Error with all names if there is none.
+const std::vector<uint32_t>& testedDevices();
+/// Whether the first is lavapipe. What is true of it alone is checked on it alone.
+bool isLavapipe();
+/// Whether the validation layers have to report what is wrong. Always if RADAR_TEST_DEVICE is not set, so that nothing
+/// is skipped unasked; else if VK_INSTANCE_LAYERS names them. If not, says so on standard error.
+bool isValidated();
+/// Whether the device has doubles and may use them: not if the environment variable RADAR_TEST_DOUBLES is "off".
 bool wantsDoubles();
-/// Opened on first use. Messages of the validation layers go to onValidation().
+/// Of the first tested device; messages of the validation layers go to onValidation().
+DeviceOptions deviceOptions();
+/// Opened with these on first use.
 const Device& device();
 
 /// Collects a message, which begins with its name. Other devices use it as their DeviceOptions::onValidation.

@@ -34,6 +34,7 @@ std::atomic<int64_t> live{0};
 std::atomic<uint64_t> allocatedBytes{0};
 std::atomic<bool> areHollow{false}, areInTurn{false};
 std::atomic<VkPipelineCache> pipelineCache{VK_NULL_HANDLE};
+std::atomic<uint32_t> visibleTypes{0};  // a bit for each type of memory that a host can map
 std::mutex turns;
 
 std::mutex mutex;  // of what follows
@@ -100,11 +101,22 @@ void created(VkDevice, VkPipelineCache cache, uint32_t, const Info*, const VkAll
   pipelineCache = cache;
 }
 
+// Tells which memory the next function may map.
+void told(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* memory) {
+  uint32_t types = 0;
+  for (uint32_t i = 0; i < memory->memoryTypeCount; ++i) {
+    const bool isVisible = (memory->memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
+    types |= isVisible ? 1u << i : 0;
+  }
+  visibleTypes = types;
+}
+
 // Memory begins with garbage, so that what was never written is not taken for what it happened to be.
 void created(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks*, VkDeviceMemory* memory) {
   ++live;
   allocatedBytes += info->allocationSize;
   void* bytes = nullptr;
+  if ((visibleTypes >> info->memoryTypeIndex & 1) == 0) return;
   if (vkMapMemory(device, *memory, 0, VK_WHOLE_SIZE, 0, &bytes) != VK_SUCCESS) return;
   std::memset(bytes, 0xfe, info->allocationSize);
   vkUnmapMemory(device, *memory);
@@ -160,6 +172,9 @@ struct Wrapped<Member> {
         if (result == VK_SUCCESS) created(args...);
       }
       return result;
+    } else if constexpr (requires { told(args...); }) {
+      driver(args...);
+      told(args...);
     } else {
       return driver(args...);
     }

@@ -6,6 +6,7 @@
 
 #include "radar/cpu_sweeper.h"
 #include "scene/scene.h"
+#include "sweep/difference.h"
 #include "sweep/sweeper.h"
 
 namespace radar {
@@ -150,27 +151,23 @@ AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<Answe
   } catch (const Error& error) {
     if (error.vulkan != VK_ERROR_UNKNOWN) throw;
     const auto all = static_cast<uint32_t>(asked);
-    return {.kind = kind, .asked = all, .wrong = all, .firstWrong = error.what()};
+    return {
+        .kind = kind, .asked = all, .wrong = all, .stage = nameOf(Stage::searching, false), .firstWrong = error.what()};
   }
 }
 
-AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact) {
+AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact, bool places) {
   found.resize(exact.size());
   AnswerCheck check{.kind = kind, .asked = static_cast<uint32_t>(exact.size())};
+  Stage first = Stage::none;
   for (size_t i = 0; i < exact.size(); ++i) {
-    Result same = exact[i];
-    same.tier = found[i].tier;
-    // A Result has no padding.
-    if (std::ranges::equal(std::as_bytes(std::span(&found[i], 1)), std::as_bytes(std::span(&same, 1)))) continue;
+    const auto [stage, numbers] = differenceOf(found[i], exact[i]);
+    if (stage == Stage::none) continue;
+    if (check.wrong == 0) check.firstWrong = "answer " + std::to_string(i) + ": " + numbers;
     ++check.wrong;
-    if (check.wrong > 1) continue;
-    const auto words = [](const Result& result) {
-      return "status " + std::to_string(static_cast<uint32_t>(result.status)) + ", flags " +
-             std::to_string(result.flags) + ", t " + std::to_string(result.t) + ", object " +
-             std::to_string(result.object);
-    };
-    check.firstWrong = "query " + std::to_string(i) + ": " + words(found[i]) + "; expected " + words(exact[i]);
+    first = std::max(first, stage);
   }
+  check.stage = nameOf(first, places);
   return check;
 }
 
@@ -202,7 +199,9 @@ AnswerCheck check(const char* kind, const Device::Impl& device, const KnownScene
     // But for clearances, where the device may well leave queries open.
     if (onCpu > 0 && queries[0].clearance == 0) {
       check.wrong += static_cast<uint32_t>(onCpu);
-      check.firstWrong += " " + std::to_string(onCpu) + " queries were left to the CPU";
+      if (check.stage.empty()) check.stage = nameOf(Stage::solving, false);
+      check.firstWrong +=
+          (check.firstWrong.empty() ? "" : "; ") + std::to_string(onCpu) + " queries were left to the CPU";
     }
     return check;
   });
@@ -259,7 +258,9 @@ AnswerCheck checkSampled(const Device::Impl& device, uint64_t seed) {
       found[i] = exact[i];
     }
   }
-  return compared("mode sampled", found, exact);
+  AnswerCheck check = compared("mode sampled", found, exact);
+  if (!check.passed()) check.stage = "drawing or solving";
+  return check;
 }
 
 void requirePassed(const Device::Impl& device, std::span<const AnswerCheck> checks) {
@@ -267,11 +268,12 @@ void requirePassed(const Device::Impl& device, std::span<const AnswerCheck> chec
   for (const AnswerCheck& check : checks) {
     if (check.passed()) continue;
     reasons.push_back(check.kind + ": " + std::to_string(check.wrong) + " of " + std::to_string(check.asked) +
-                      " answers are wrong; " + check.firstWrong);
+                      " answers differ from the CPU's, in " + check.stage + "; " + check.firstWrong);
   }
   if (!reasons.empty()) {
-    throw Error(device.name + " (" + device.driver + ") cannot be used: it gives wrong answers to known queries",
-                VK_SUCCESS, reasons);
+    throw Error(
+        device.name + " (" + device.driver + ") cannot be used: its answers to known queries differ from the CPU's",
+        VK_SUCCESS, reasons);
   }
 }
 

@@ -24,13 +24,13 @@ inline constexpr uint64_t kProofs = 2;
 
 /// What `check` returns. If it throws an error to which only the device's answers can lead, all `asked` are wrong.
 AnswerCheck orAllWrong(const char* kind, size_t asked, const std::function<AnswerCheck()>& check);
-/// Compares answers with the CPU's, to the bit.
-AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact);
+/// Compares answers with the CPU's, to the bit. `places`: the device has placed the geometry (sweep/difference.h).
+AnswerCheck compared(const char* kind, std::vector<Result> found, std::span<const Result> exact, bool places = false);
 /// Mode contact's answers of a Sweeper: first contacts, lists, steps, and with `clearances` those with a clearance.
 std::vector<AnswerCheck> checkSweeper(const Device::Impl& device, uint64_t seed, bool clearances);
 /// Mode sampled's: each bracket holds the exact distance.
 AnswerCheck checkSampled(const Device::Impl& device, uint64_t seed);
-/// Throws Error with reasons, naming the device, if a check failed.
+/// Throws Error, naming the device, if a check failed; the reasons say at which stage, and what differs.
 void requirePassed(const Device::Impl& device, std::span<const AnswerCheck> checks);
 /// The same if a Sweeper's answers to `kProofs` scenes are wrong; asks them once per device.
 void requireProof(const Device::Impl& device);

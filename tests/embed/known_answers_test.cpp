@@ -2,17 +2,23 @@
 // answers.
 #include "sweep/known_answers.h"
 
+#include <cmath>
+#include <cstring>
 #include <future>
 
 #include "embed/known_recordings.h"
 #include "gpu/device.h"
+#include "radar/cpu_sweeper.h"
 #include "radar/recorder.h"
 #include "support/catch.h"
+#include "support/separate_allocations.h"
 #include "support/test_device.h"
 
 namespace {
 
 using namespace radar;
+
+constexpr const char* kDiffers = "its answers to known queries differ from the CPU's";
 
 void checkAll(const std::vector<AnswerCheck>& checks) {
   for (const AnswerCheck& check : checks) {
@@ -26,7 +32,7 @@ VKAPI_ATTR VkResult VKAPI_CALL neverEnds(VkDevice, uint32_t, const VkFence*, VkB
   return VK_TIMEOUT;
 }
 PFN_vkWaitForFences waitForFences;
-/// What is lost works no more; lavapipe, which plays it, would.
+/// What is lost works no more; the device that plays it would.
 template <VkResult kResult>
 VKAPI_ATTR VkResult VKAPI_CALL waitsAndSays(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all,
                                             uint64_t patience) {
@@ -44,7 +50,21 @@ VKAPI_ATTR VkResult VKAPI_CALL compilesUntilTold(VkDevice, VkPipelineCache, uint
 VKAPI_ATTR void VKAPI_CALL doesNothing(VkCommandBuffer, uint32_t, uint32_t, uint32_t) {}
 
 Device ownDevice() {
-  return Device::open({.onValidation = test::onValidation, .doubles = test::wantsDoubles()});
+  return Device::open(test::deviceOptions());
+}
+
+/// A device whose memory begins with zeros: what no shader writes is the same everywhere.
+Device clearedDevice() {
+  HostDevice host = test::device().handles();
+  host.memory = test::separateAllocations(host);
+  host.memory.allocate = [give = host.memory.allocate](const MemoryRequest& request, MemoryPiece& piece) {
+    MemoryRequest mapped = request;
+    mapped.required |= VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    const VkResult result = give(mapped, piece);
+    if (result == VK_SUCCESS) std::memset(piece.mapped, 0, request.requirements.size);
+    return result;
+  };
+  return Device::adopt(host);
 }
 
 /// A call's error.
@@ -77,34 +97,80 @@ TEST_CASE("a device gives known answers in mode contact, whatever the number of 
   }
 }
 
-TEST_CASE("a device that answers wrongly is refused with the reasons, by Sweepers that search on it and by Recorders") {
+TEST_CASE(
+    "a device that answers otherwise is refused with the reasons, by Sweepers that search on it and by Recorders") {
   const Scene scene;
-  const Device device = ownDevice();
+  const Device device = clearedDevice();
   gpu::Api& vk = device.impl().vk;
   const PFN_vkCmdDispatch dispatch = vk.CmdDispatch;
   vk.CmdDispatch = doesNothing;
   const auto searches = [&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); };
   const Error error = errorOf(searches);
   CAPTURE(error.what(), error.reasons);
-  CHECK_THAT(error.what(), test::Contains(device.name()) && test::Contains("wrong answers to known queries"));
+  CHECK_THAT(error.what(), test::Contains(device.name()) && test::EndsWith(kDiffers));
   REQUIRE_FALSE(error.reasons.empty());
-  CHECK_THAT(error.reasons[0], test::StartsWith("first contacts: ") && test::Contains(" answers are wrong; "));
+  CHECK_THAT(error.reasons[0],
+             test::StartsWith("first contacts: ") &&
+                 test::Contains(" answers differ from the CPU's, in searching or solving; answer 0: "));
   // What it has shown once, it need not show again.
   vk.CmdDispatch = dispatch;
   CHECK_THROWS_AS(searches(), Error);
-  CHECK_THROWS_WITH(Recorder(device, scene), test::Contains("wrong answers to known queries"));
+  CHECK_THROWS_WITH(Recorder(device, scene), test::EndsWith(kDiffers));
   // Where nothing is searched on it, it is no matter.
   const Sweeper onCpu(device, scene, {.cpuBatch = kNone});
 }
 
+TEST_CASE("who is refused reads at which stage answers differ, in which numbers, bits and ulps") {
+  const KnownScene known(0);
+  const std::vector<Result> exact = CpuSweeper(known.scene).run(known.queries).results;
+  const auto hit = std::find_if(exact.begin(), exact.end(), [](const Result& result) {
+    return result.status == Status::hit && result.t > 0.125 && std::isfinite(result.normal[2]);
+  });
+  REQUIRE(hit != exact.end());
+  std::vector<Result> answers(2, *hit);
+  answers[0].t = 1;
+  answers[0].normal = {0, 0, 1};
+  std::vector<Result> found = answers;
+  found[1].tier = Tier::sampled;  // who has answered is no matter
+  CHECK(compared("lists", found, answers).passed());
+  const auto reasonOf = [&](bool places = false) {
+    const AnswerCheck check = compared("lists", found, answers, places);
+    const Error error = errorOf([&] { requirePassed(test::device().impl(), {&check, 1}); });
+    REQUIRE(error.reasons.size() == 1);
+    return error.reasons[0];
+  };
+  found[0].t = 1 - 0x1p-53;
+  found[0].normal[2] = 1 + 0x1p-51;
+  CHECK(reasonOf() ==
+        "lists: 1 of 2 answers differ from the CPU's, in describing; answer 0: t 0.99999999999999989, expected 1 "
+        "(bits 0x1fffffffffffff, 1 ulp); normal z 1.0000000000000004, expected 1 (bits 0x2, 2 ulp)");
+  CHECK_THAT(reasonOf(true), test::Contains(", in placing or describing; "));
+  // The first stage of any answer counts, since others follow from it; the words are of the first answer.
+  found[1].featureA = Feature::none;
+  CHECK_THAT(reasonOf(), test::StartsWith("lists: 2 of 2 answers differ from the CPU's, in solving; answer 0: t "));
+  found[1].status = Status::clear;
+  found[0] = answers[0];
+  found[1].object = kNone;
+  CHECK_THAT(reasonOf(), test::StartsWith("lists: 1 of 2 answers differ from the CPU's, in searching or solving; "
+                                          "answer 1: status clear, expected hit; object none, expected "));
+  CHECK_THAT(reasonOf(true), test::Contains(", in placing, searching or solving; "));
+  found[1] = answers[1];
+  found[1].t = NAN;
+  found[1].lo = -0.0;
+  answers[1].lo = 0;
+  CHECK_THAT(reasonOf(), test::Contains("; lo -0, expected 0 (bits 0x8000000000000000, 0 ulp)") &&
+                             test::Contains("answer 1: t nan, expected ") && !test::Contains("t nan, expected 0 "));
+}
+
 TEST_CASE("a device that reads a host's geometry wrongly is refused by Recorders") {
   const Scene scene;
-  const Device device = ownDevice();
+  const Device device = clearedDevice();
   const Sweeper sweeper(device, scene, {.cpuBatch = 0});
   device.impl().vk.CmdDispatch = doesNothing;
   const Error error = errorOf([&] { const Recorder recorder(device, scene); });
   REQUIRE_FALSE(error.reasons.empty());
-  CHECK_THAT(error.reasons[0], test::StartsWith("recordings of a host's geometry: "));
+  CHECK_THAT(error.reasons[0], test::StartsWith("recordings of a host's geometry: ") &&
+                                   test::Contains(", in placing, searching or solving; "));
 }
 
 TEST_CASE("a device that never ends is given up, and nothing of it is destroyed") {
@@ -120,13 +186,13 @@ TEST_CASE("a device that compiles for longer than its host waits is given up") {
   const Scene scene;
   std::string shader;
   uint32_t waited = 0;
-  const Device device = Device::open({.onValidation = test::onValidation,
-                                      .doubles = test::wantsDoubles(),
-                                      .onCompiling = [&](const std::string& name, uint32_t seconds) {
-                                        shader = name;
-                                        waited = seconds;
-                                        return seconds < 2;
-                                      }});
+  DeviceOptions options = test::deviceOptions();
+  options.onCompiling = [&](const std::string& name, uint32_t seconds) {
+    shader = name;
+    waited = seconds;
+    return seconds < 2;
+  };
+  const Device device = Device::open(options);
   device.impl().vk.CreateComputePipelines = compilesUntilTold;
   const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
   CHECK_THAT(error.what(), test::Contains(" has not compiled " + shader + " in 2 s, and is given up"));
@@ -151,7 +217,9 @@ TEST_CASE("a device whose answers lead to an error is refused with it") {
   waitForFences = device.impl().vk.WaitForFences;
   device.impl().vk.WaitForFences = waitsAndSays<VK_ERROR_UNKNOWN>;
   const Error error = errorOf([&] { const Sweeper sweeper(device, scene, {.cpuBatch = 0}); });
-  CHECK_THAT(error.what(), test::Contains("wrong answers to known queries"));
+  CHECK_THAT(error.what(), test::EndsWith(kDiffers));
   REQUIRE_FALSE(error.reasons.empty());
-  CHECK_THAT(error.reasons[0], test::StartsWith("first contacts: 24 of 24 answers are wrong; vkWaitForFences"));
+  CHECK_THAT(error.reasons[0],
+             test::StartsWith("first contacts: 24 of 24 answers differ from the CPU's, in searching or "
+                              "solving; vkWaitForFences"));
 }

@@ -220,8 +220,10 @@ RADAR_API std::vector<ArithmeticCheck> checkArithmetic(const Device& device);
 struct AnswerCheck {
   std::string kind;
   uint32_t asked = 0;
-  uint32_t wrong = 0;      ///< answers that differ in any bit; of mode sampled, brackets without the exact distance
-  std::string firstWrong;  ///< what was answered, and what was expected
+  uint32_t wrong = 0;  ///< answers that differ in any bit; of mode sampled, brackets without the exact distance
+  std::string
+      stage;  ///< the first stage of the device that differs: placing, drawing, searching, solving or describing
+  std::string firstWrong;  ///< what was answered, and what was expected: each number, its bits and ulps
   bool passed() const { return wrong == 0; }
 };
 

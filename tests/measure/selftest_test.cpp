@@ -20,7 +20,8 @@ using radar::test::StartsWith;
 namespace {
 
 Json raceRow(uint64_t batch, double times) {
-  return {{"device", 3}, {"batch", batch}, {"device_per_s", 1e6}, {"cpu_over_device", times}, {"differ", 0}};
+  return {{"device", 3},         {"workload", "light"},      {"batch", batch},
+          {"device_per_s", 1e6}, {"cpu_over_device", times}, {"differ", 0}};
 }
 
 // A report with all parts done.
@@ -42,32 +43,63 @@ std::string verdictOn(Json report) {
 
 }  // namespace
 
-TEST_CASE("a selftest's first line says whether all is right, who is faster, by how much, and what to set") {
+TEST_CASE("a selftest's first line says whether all is right") {
   Json report = madeUp();
-  const auto verdictWith = [&](const std::vector<std::pair<uint64_t, double>>& races) {
+  CHECK(verdictOn(report) == "RIGHT (1065 answers, 0 wrong)");
+  partOf(report, "lanes")["state"] = "running";
+  CHECK(verdictOn(report) == "UNFINISHED (1065 answers, 0 wrong)");
+  partOf(report, "lanes")["state"] = "failed";
+  CHECK(verdictOn(report) == "WRONG (1065 answers, 0 wrong, part lanes failed)");
+  partOf(report, "lanes")["state"] = "done";
+  partOf(report, "exactness")["rows"][0]["wrong"] = 2;
+  CHECK(verdictOn(report) == "WRONG (1065 answers, 2 wrong)");
+}
+
+TEST_CASE("the lines below say of each workload from which size of batch on the device or the CPU is faster") {
+  Json report = madeUp();
+  const auto linesWith = [&](const std::vector<std::pair<uint64_t, double>>& races) {
     Json& rows = partOf(report, "throughput")["rows"] = Json::array();
     for (const auto& [batch, times] : races) rows.push_back(raceRow(batch, times));
-    return verdictOn(report);
+    conclude(report);
+    return report["findings"].get<std::vector<std::string>>();
   };
-  CHECK(verdictWith({{1, 0.1}, {100, 2.0}, {100, 0.1}, {1000, 2.0}, {1000, 8.0}}) ==
-        "RIGHT (2265 answers, 0 wrong); device 3 is 4 times as fast as the CPU, from batches of 1000 on: set "
-        "--cpu-batch 1000");
+  using Lines = std::vector<std::string>;
+  CHECK(linesWith({}).empty());
   CHECK(
-      verdictWith({{1, 1.5}, {10, 3.14159}}) ==
-      "RIGHT (75 answers, 0 wrong); device 3 is 3.14 times as fast as the CPU, whatever the batch: set --cpu-batch 0");
-  CHECK(verdictWith({{1, 2.0}, {10, 0.25}}) ==
-        "RIGHT (75 answers, 0 wrong); the CPU is 4 times as fast as device 3: set --mode reference");
-  CHECK(verdictWith({}) == "RIGHT (64 answers, 0 wrong)");
-  partOf(report, "lanes")["state"] = "running";
-  CHECK_THAT(verdictWith({{10, 2.0}}), StartsWith("UNFINISHED (74 answers, 0 wrong); device 3 is 2 times"));
-  partOf(report, "lanes")["state"] = "failed";
-  CHECK(verdictWith({{10, 2.0}}) == "WRONG (74 answers, 0 wrong, part lanes failed)");
-  partOf(report, "exactness")["rows"][0]["wrong"] = 2;
-  partOf(report, "lanes")["state"] = "done";
-  CHECK(verdictWith({{10, 2.0}}) == "WRONG (74 answers, 2 wrong)");
-  partOf(report, "exactness")["rows"][0]["wrong"] = 0;
-  partOf(report, "throughput")["rows"][0]["differ"] = 1;
-  CHECK(verdictOn(report) == "WRONG (74 answers, 1 wrong)");
+      linesWith({{1, 0.1}, {100, 0.5}, {1000, 2}, {10'000, 3.14159}}) ==
+      Lines{"device 3, light, batches of 1 to 100: the CPU is 2 to 10 times as fast",
+            "device 3, light, batches of 1000 to 10000: the device is 2 to 3.14 times as fast: set --cpu-batch 1000"});
+  CHECK(linesWith({{1, 1.5}}) ==
+        Lines{"device 3, light, batches of 1: the device is 1.5 times as fast: set --cpu-batch 0"});
+  CHECK(linesWith({{1, 0.8}, {10, 0.25}}) ==
+        Lines{"device 3, light, batches of 1 to 10: the CPU is 1.25 to 4 times as fast: set --mode reference"});
+  // What is true of some sizes only recommends nothing for all.
+  CHECK(linesWith({{1, 2}, {10, 0.25}}) == Lines{"device 3, light, batches of 1: the device is 2 times as fast",
+                                                 "device 3, light, batches of 10: the CPU is 4 times as fast"});
+  partOf(report, "throughput")["rows"][0]["workload"] = "heavy";
+  conclude(report);
+  CHECK(report["findings"].size() == 2);
+  CHECK_THAT(summaryOf(report), Contains("\ndevice 3, heavy, batches of 1: the device is 2 times as fast: set "));
+}
+
+TEST_CASE("if anything is wrong, the lines below say what differs, and in which of the device's stages") {
+  Json report = madeUp();
+  partOf(report, "answers")["rows"] = {{{"device", 3},
+                                        {"kind", "lists"},
+                                        {"queries", 24},
+                                        {"wrong", 2},
+                                        {"stage", "describing"},
+                                        {"first_wrong", "seed 2, answer 7: t 1, expected 2"}}};
+  partOf(report, "exactness")["rows"][0].update({{"wrong", 1}, {"first_wrong", "query 5: point"}});
+  partOf(report, "throughput")["rows"][0]["differ"] = 4;
+  conclude(report);
+  CHECK(report["answers_wrong"] == 7);
+  CHECK(
+      report["findings"] ==
+      Json{
+          "answers, device 3, lists: 2 answers differ from the CPU's, in describing; seed 2, answer 7: t 1, expected 2",
+          "throughput, device 3, light: 4 answers differ from the CPU's",
+          "exactness, device 3, convex: 1 answers differ from the CPU's; query 5: point"});
 }
 
 TEST_CASE("a selftest can be read whenever it is interrupted, and every part has at least its first row") {

@@ -89,9 +89,15 @@ std::string processorInWords() {
 std::string headText(const Json& report) {
   std::string text;
   for (const auto& [name, value] : report.items()) {
-    if (name == "title" || name == "verdict" || name == "parts" || value == "") continue;
+    if (name == "title" || name == "verdict" || name == "findings" || name == "parts" || value == "") continue;
     for (const Json& one : value.is_array() ? value : Json::array({value})) text += name + ": " + cellOf(one) + "\n";
   }
+  return text;
+}
+
+std::string findingsText(const Json& report) {
+  std::string text;
+  for (const Json& line : report.value("findings", Json::array())) text += line.get<std::string>() + "\n";
   return text;
 }
 
@@ -153,8 +159,8 @@ std::string tableElement(const Json& table) {
 }
 
 std::string pageOf(const Json& report) {
-  std::string text =
-      kPageHead + element("h1", report["title"]) + element("p", report["verdict"]) + element("pre", headText(report));
+  std::string text = kPageHead + element("h1", report["title"]) + element("p", report["verdict"]) +
+                     element("pre", findingsText(report) + headText(report));
   for (const Json& part : report["parts"]) {
     text += part["charts"].empty() ? "<details>" : "<details open>";
     text += element("summary", part["title"].get<std::string>() + ": " + stateText(part));
@@ -238,7 +244,7 @@ void setRows(Json& report, const std::string& name, const std::string& title, co
 }
 
 std::string summaryOf(const Json& report) {
-  std::string text = report["verdict"].get<std::string>() + "\n";
+  std::string text = report["verdict"].get<std::string>() + "\n" + findingsText(report);
   for (const Json& part : report["parts"]) text += part["name"].get<std::string>() + ": " + stateText(part) + "\n";
   return text;
 }

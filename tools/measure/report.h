@@ -1,7 +1,7 @@
 // What a command measured: a JSON document of parts, each a table, that is complete whenever it is written.
 //
-//   {"title", "verdict", ..., "parts": [{"name", "title", "state", "note", "seconds", "rows": table, "charts":
-//   [name]}]}
+//   {"title", "verdict", "findings": [line], ..., "parts": [{"name", "title", "state", "note", "seconds", "rows":
+//   table, "charts": [name]}]}
 //
 // A table is an array of objects that all have the same keys: the names of its columns.
 #pragma once
@@ -39,7 +39,7 @@ Json& partOf(Json& report, const std::string& name, const std::string& title = "
 /// Replaces the part's rows, and says that it is done.
 void setRows(Json& report, const std::string& name, const std::string& title, const Json& rows);
 
-/// The verdict, and what became of each part; and all of it, which begins so.
+/// The verdict, the findings if there are any, and what became of each part; and all of it, which begins so.
 std::string summaryOf(const Json& report);
 std::string reportText(const Json& report);
 

@@ -1,52 +1,75 @@
 #include "measure/selftest.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
+#include <utility>
 
 namespace radar::tools {
 
 namespace {
 
-// Who is faster, by the table of part throughput.
-struct Race {
-  uint32_t device = 0;     ///< its number
-  double times = 0;        ///< the CPU's time over the device's in the largest batches, in the mean of the workloads
-  uint64_t from = 0;       ///< the device is faster in batches of this size and in larger ones; beyond all: in none
-  bool atAnySize = false;  ///< the smallest that was tried is one
+// Batches of sizes that follow each other, of one workload, in which the same side is faster.
+struct Run {
+  bool isDevices;
+  uint64_t least, most;     ///< sizes
+  double slowest, fastest;  ///< how many times as fast as the other side
 };
 
-// That of the device that is fastest.
-std::optional<Race> raceOf(const Json& throughput) {
-  std::map<uint32_t, std::map<uint64_t, std::vector<double>>> logarithms;  // by device, by size of batch
-  for (const Json& row : throughput) {
-    logarithms[row["device"]][row["batch"]].push_back(std::log(row["cpu_over_device"].get<double>()));
+std::vector<Run> runsOf(const std::map<uint64_t, double>& times) {
+  std::vector<Run> runs;
+  for (const auto& [size, cpuOverDevice] : times) {
+    const bool isDevices = cpuOverDevice > 1;
+    const double factor = isDevices ? cpuOverDevice : 1 / cpuOverDevice;
+    if (runs.empty() || runs.back().isDevices != isDevices) runs.push_back({isDevices, size, size, factor, factor});
+    Run& run = runs.back();
+    run.most = size;
+    run.slowest = std::min(run.slowest, factor);
+    run.fastest = std::max(run.fastest, factor);
   }
-  const auto timesIn = [](const std::vector<double>& all) {
-    double sum = 0;
-    for (const double one : all) sum += one;
-    return std::exp(sum / static_cast<double>(all.size()));
-  };
-  std::optional<Race> best;
-  for (const auto& [device, sizes] : logarithms) {
-    Race race{device, timesIn(sizes.rbegin()->second), UINT64_MAX};
-    for (auto size = sizes.rbegin(); size != sizes.rend() && timesIn(size->second) > 1; ++size) race.from = size->first;
-    race.atAnySize = race.from == sizes.begin()->first;
-    if (!best || race.times > best->times) best = race;
-  }
-  return best;
+  return runs;
 }
 
-std::string speedText(const Race& race) {
-  const std::string device = "device " + std::to_string(race.device);
-  if (race.times <= 1) {
-    return "; the CPU is " + print("%.3g", 1 / race.times) + " times as fast as " + device + ": set --mode reference";
+// Who is faster in batches of which size, by the table of part throughput: a line for each run.
+Json raceLines(const Json& throughput) {
+  std::map<std::pair<uint32_t, std::string>, std::map<uint64_t, double>> races;
+  for (const Json& row : throughput) races[{row["device"], row["workload"]}][row["batch"]] = row["cpu_over_device"];
+  Json lines = Json::array();
+  for (const auto& [race, times] : races) {
+    const std::vector<Run> runs = runsOf(times);
+    for (const Run& run : runs) {
+      const bool isFirst = &run == &runs.front(), isLast = &run == &runs.back();
+      std::string line =
+          "device " + std::to_string(race.first) + ", " + race.second + ", batches of " + std::to_string(run.least);
+      if (run.most != run.least) line += " to " + std::to_string(run.most);
+      line += std::string(": the ") + (run.isDevices ? "device" : "CPU") + " is " + print("%.3g", run.slowest);
+      if (run.most != run.least) line += " to " + print("%.3g", run.fastest);
+      line += " times as fast";
+      if (isLast && run.isDevices) line += ": set --cpu-batch " + std::to_string(isFirst ? 0 : run.least);
+      if (isLast && isFirst && !run.isDevices) line += ": set --mode reference";
+      lines.push_back(line);
+    }
   }
-  return "; " + device + " is " + print("%.3g", race.times) + " times as fast as the CPU, " +
-         (race.atAnySize
-              ? "whatever the batch: set --cpu-batch 0"
-              : "from batches of " + std::to_string(race.from) + " on: set --cpu-batch " + std::to_string(race.from));
+  return lines;
+}
+
+// What is wrong, a line for each row that tells of any.
+Json faultLines(const Json& report) {
+  Json lines = Json::array();
+  for (const Json& part : report["parts"]) {
+    for (const Json& row : part["rows"]) {
+      const uint64_t wrong = row.value("wrong", uint64_t{0}) + row.value("differ", uint64_t{0});
+      if (wrong == 0) continue;
+      std::string line = part["name"].get<std::string>() + ", device " + row["device"].dump();
+      for (const char* name : {"kind", "family", "workload"}) {
+        if (row.contains(name)) line += ", " + row[name].get<std::string>();
+      }
+      line += ": " + std::to_string(wrong) + " answers differ from the CPU's";
+      if (row.contains("stage")) line += ", in " + row["stage"].get<std::string>();
+      if (row.contains("first_wrong")) line += "; " + row["first_wrong"].get<std::string>();
+      lines.push_back(line);
+    }
+  }
+  return lines;
 }
 
 std::string joined(const std::vector<std::string>& texts) {
@@ -212,7 +235,6 @@ void conclude(Json& report) {
     }
   }
   const bool isWrong = wrong > 0 || !failed.empty();
-  const std::optional<Race> best = raceOf(partOf(report, "throughput")["rows"]);
   report["answers_checked"] = checked;
   report["answers_wrong"] = wrong;
   report["right"] = ended && !isWrong;
@@ -220,8 +242,8 @@ void conclude(Json& report) {
                             isWrong ? "WRONG"
                             : ended ? "RIGHT"
                                     : "UNFINISHED",
-                            size_t{checked}, size_t{wrong}, failed.c_str()) +
-                      (best && !isWrong ? speedText(*best) : "");
+                            size_t{checked}, size_t{wrong}, failed.c_str());
+  report["findings"] = isWrong ? faultLines(report) : raceLines(partOf(report, "throughput")["rows"]);
 }
 
 }  // namespace radar::tools

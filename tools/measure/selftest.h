@@ -44,7 +44,8 @@ Json lookAtDevices(const std::vector<uint32_t>& numbers);
 void runSelftest(Json& report, double minutes, const std::function<void()>& onChange);
 
 /// Sums up the parts: sets "answers_checked", "answers_wrong", "right", which is false until all parts have ended, and
-/// "verdict": right or not, whether the CPU or which device is faster, by how much, and what to set.
+/// "verdict"; and "findings": what differs from the CPU's answers, and in which of a device's stages; or if nothing
+/// does, in batches of which size the CPU or the device is faster, by how much, and what to set.
 void conclude(Json& report);
 
 }  // namespace radar::tools

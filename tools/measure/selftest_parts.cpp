@@ -205,13 +205,15 @@ bool measureAnswers(std::span<const Device> devices, std::span<const uint32_t>, 
     for (size_t i = 0; i < checks.size(); ++i) {
       const AnswerCheck& check = checks[i];
       if (rows.size() == i) {
-        rows.push_back({{"kind", check.kind}, {"scenes", 0}, {"queries", 0}, {"wrong", 0}, {"first_wrong", ""}});
+        rows.push_back(
+            {{"kind", check.kind}, {"scenes", 0}, {"queries", 0}, {"wrong", 0}, {"stage", ""}, {"first_wrong", ""}});
       }
       Json& row = rows[i];
       row["scenes"] = row["scenes"].get<uint64_t>() + 1;
       row["queries"] = row["queries"].get<uint64_t>() + check.asked;
       row["wrong"] = row["wrong"].get<uint64_t>() + check.wrong;
       if (row["first_wrong"] == "" && !check.passed()) {
+        row["stage"] = check.stage;
         row["first_wrong"] = "seed " + std::to_string(seed) + ", " + check.firstWrong;
       }
     }
@@ -236,9 +238,14 @@ bool measureExactness(std::span<const Device> devices, std::span<const uint32_t>
       }
       for (size_t f = 0; f < families.size(); ++f) {
         if (deadline.isOver() && !rows.empty()) return round > 0;
-        if (round == 0) rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.doubles()}});
-        const Tally tally = variants[v]->run({families[f], 1, round * kAtOnce, kAtOnce});
+        if (round == 0) {
+          rows.push_back({{"family", families[f]}, {"doubles", v == 0 && device.doubles()}, {"first_wrong", ""}});
+        }
         Json& row = rows[v * families.size() + f];
+        const auto onWrong = [&](uint64_t query, const Approach&, const std::string& words) {
+          if (row["first_wrong"] == "") row["first_wrong"] = "query " + std::to_string(query) + ": " + words;
+        };
+        const Tally tally = variants[v]->run({families[f], 1, round * kAtOnce, kAtOnce}, onWrong);
         for (const auto& [name, count] :
              {std::pair("queries", tally.queries), std::pair("hits", tally.hits), std::pair("clear", tally.clear),
               std::pair("overlaps", tally.overlaps), std::pair("wrong", tally.wrong), std::pair("pairs", tally.pairs),

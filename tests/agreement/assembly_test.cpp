@@ -1,6 +1,7 @@
 // A real assembly, whose parts touch and cross where they are joined: every part moved out along 26 directions.
 #include <algorithm>
 
+#include "agreement/real_meshes.h"
 #include "import/mesh_import.h"
 #include "radar/cpu_sweeper.h"
 #include "support/catch.h"
@@ -32,7 +33,7 @@ std::vector<Query> disassembly(const Scene& scene) {
 
 TEST_CASE("the parts of an engine are swept out of it with the CPU's answers, and each object's contact is its own") {
   std::vector<std::string> warnings;
-  const tools::Assembly assembly = tools::readAssembly(RADAR_ENGINE, warnings);
+  const tools::Assembly assembly = tools::readAssembly(test::engineFile(), warnings);
   REQUIRE(warnings.empty());
   Scene scene;
   for (const tools::MeshData& mesh : assembly.meshes) scene.addMesh(mesh.positions, mesh.indices);

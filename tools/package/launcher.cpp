@@ -1,4 +1,4 @@
-// bin/cyber-radar of the archive. It runs the program with those libraries of the machine that are new enough, and with
+// bin/PROGRAM of an archive. It runs lib/PROGRAM with those libraries of the machine that are new enough, and with
 // the archive's copies of the others. It is linked statically, since it chooses the C library.
 //
 // A Vulkan driver is loaded into the same process and needs the libraries of its machine, or newer ones. A machine's
@@ -63,23 +63,24 @@ std::map<std::string, bool> replaceable(const fs::path& ours) {
   return folders;
 }
 
-/// The folder of the archive, through symbolic links. /proc may not be there.
-fs::path archiveFolder() {
+/// This program's file, through symbolic links. /proc may not be there.
+fs::path ownFile() {
   const char* const started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // NOLINT: given as a number
   std::error_code error;
-  fs::path folder = fs::canonical(started, error).parent_path().parent_path();
+  fs::path file = fs::canonical(started, error);
   if (error) fail(std::string(started) + ": " + error.message());
+  const fs::path folder = file.parent_path().parent_path();
   if (folder.string().find_first_of(":;") != std::string::npos) {
     fail(folder.string() +
          ": the dynamic linker cannot find libraries in a folder with a colon or semicolon in its name");
   }
-  return folder;
+  return file;
 }
 
 }  // namespace
 
 int main(int, char** argv) {
-  const fs::path folder = archiveFolder(), lib = folder / "lib", ours = lib / "replaceable";
+  const fs::path own = ownFile(), lib = own.parent_path().parent_path() / "lib", ours = lib / "replaceable";
   fs::path linker = fs::path("/lib64") / kLinker;
   std::string search = lib;
   for (const auto& [library, replaced] : replaceable(ours)) {
@@ -92,7 +93,7 @@ int main(int, char** argv) {
   }
   search += ":/lib64:/usr/lib64";  // the archive's linker, which is Debian's, does not look there by itself
 
-  const fs::path program = lib / "cyber-radar";
+  const fs::path program = lib / own.filename();
   std::vector<const char*> arguments{linker.c_str(), "--library-path", search.c_str(),
                                      "--argv0",      argv[0],          program.c_str()};
   for (char** argument = argv + 1; *argument != nullptr; ++argument) arguments.push_back(*argument);

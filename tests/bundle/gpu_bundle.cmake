@@ -1,0 +1,27 @@
+# Makes TO/cyber-radar-gpu-check.tar.gz, and its checksum beside it: PROGRAMS with all that they need, the meshes that they
+# read, and the script `check`, which runs them: cmake -DPROGRAMS=... -P gpu_bundle.cmake. In gzip, which every machine has.
+cmake_minimum_required(VERSION 3.25)
+set(name cyber-radar-gpu-check)
+include(${SOURCE}/tools/package/contents.cmake)
+gather_programs()
+
+file(READ ${SOURCE}/tests/agreement/real_meshes.cpp meshes)
+string(REGEX MATCHALL "[A-Za-z0-9/_-]+\\.(obj|ply|stl|dae|glb|off)\"" files "${meshes}")
+list(TRANSFORM files REPLACE "\"" "")
+foreach(file IN LISTS files)
+  set(from ${CGAL})
+  set(to ${root}/meshes/cgal)
+  if(EXISTS ${ASSIMP}/${file})
+    set(from ${ASSIMP})
+    set(to ${root}/meshes/assimp)
+    list(APPEND origins ${from}/${file})
+  endif()
+  cmake_path(GET file PARENT_PATH folder)
+  file(COPY ${from}/${file} DESTINATION ${to}/${folder})
+endforeach()
+list(APPEND origins ${CGAL_ARCHIVE})
+
+file(COPY ${CMAKE_CURRENT_LIST_DIR}/check DESTINATION ${root})
+gather_licences()
+set(SUFFIX gz)
+pack()

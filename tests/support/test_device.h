@@ -17,8 +17,9 @@ bool isTested(const std::string& name);
 const std::vector<uint32_t>& testedDevices();
 /// Whether the first is lavapipe. What is true of it alone is checked on it alone.
 bool isLavapipe();
-/// Whether the validation layers have to report what is wrong. Always if RADAR_TEST_DEVICE is not set, so that nothing
-/// is skipped unasked; else if VK_INSTANCE_LAYERS names them. If not, says so on standard error.
+/// Whether the validation layers have to report hazards. Always if RADAR_TEST_DEVICE is not set, so that nothing is
+/// skipped unasked, unless they are GPU-assisted; else if VK_INSTANCE_LAYERS names them. If not, says so on standard
+/// error.
 bool isValidated();
 /// Whether the device has doubles and may use them: not if the environment variable RADAR_TEST_DOUBLES is "off".
 bool wantsDoubles();

@@ -22,43 +22,34 @@ NORM = (1 - UNIT) ** 2 * (1 + UNIT / 4)
 OF_MOTION = Fraction(1, 400)
 ABOUT = 1 + Fraction(1, 1 << 18)
 ONES = Vector([exactly(1)] * 3)
-# At most, in the sensor's unit of length (docs/method.md, section 6): by the first letters of symbols. 1/f is at most 2^20,
-# since `farthest` is raised to its inverse; so are velocities, in the ratio to it.
-_MOST = {"n": 10**12, "m": 10**12, "apart": 10**12, "high": 10**13, "low": 10**13, "size": 10**12, "e": 10**9, "c": 10**9,
-         "f": 10**12, "D": 1 << 42, "1/f": 1 << 20, "w": 10**24, "r": 10**25, "a": 10**25, "way": 10**25, "held": 10**25,
-         "raised": 10**25, "gap": 10**25, "extent": 10**25, "middle": 10**25, "v": 10**13, "least": 10**25, "reach": 2,
-         "centre": 2, "half": 2, "own_middle": 8, "own_slab": 8, "mu": 8, "h": 8, "g": 2, "o": 2, "d": 2,
-         "flushed": DEVICE_FLOATS.flushed}
-# Of a row of an inverse, what flushes to 0 when it is scaled: below 2^-126 in the world, where matrices are at most 2^80,
-# times a reach of 2, for three columns.
+# In the sensor's unit of length, symbols that begin with these letters are at most this (docs/method.md, section 6). 1/f
+# is at most 2^20, since `farthest` is raised to 2^-20.
+_MOST = {
+    **dict.fromkeys(("n", "m", "apart", "high", "low", "size", "f"), 1001 * 10**9),
+    **dict.fromkeys(("e", "c"), 10**9),
+    **dict.fromkeys(("w", "r", "a"), 10**25),
+    **dict.fromkeys(("reach", "centre", "half", "g", "o", "d"), 2),
+    **dict.fromkeys(("own_middle", "own_slab", "mu", "h"), 8),
+    "D": 1 << 42,
+    "1/f": 1 << 20,
+    "flushed": DEVICE_FLOATS.flushed,
+}
+# Of a row of an inverse, what flushes to 0 when it is scaled: below 2^-126 in the world, where matrices are at most
+# 2^80, times a reach of 2, for three columns.
 _OF_ROW = Polynomial.constant(DEVICE_FLOATS.flushed * (1 << 80) * 6)
 
 
 def flushing(balance):
-    """A step: what flushing takes, as numbers. But the residual pays for its own share; and where an entry m of a matrix is
-    multiplied by one of an inverse, n, the placement's error does, by its room for vertices that flush."""
-
-    def most(symbols):
-        return math.prod(_MOST[re.match("1/f$|[a-z_]+", s)[0]] for s in symbols)
+    """A step: what flushing takes, as numbers; the residual pays for its own share."""
 
     def as_number(monomial, c):
         left = divided(monomial, ("flushed",))
         if left is None:
             return monomial, c
-        residual = [s for s in left if s.startswith("residual")]
-        inverse = [s for s in left if re.match("n[AB]", s)]
-        entry = [s for s in left if re.match("m[AB]", s)]
-        if residual:
-            kept, rest, share = residual[:1], residual[:1], 1
-        elif inverse and entry:
-            kept, rest = [inverse[0], "e" + entry[0][1]], [inverse[0], entry[0]]
-            share = 1 / OF_VERTICES / DEVICE_FLOATS.flushed
-        else:
-            kept, rest, share = [], [], 1
-        of_normal = [s for s in left if re.match("g[012]", s)] if kept else []
-        others = divided(left, (*rest, *of_normal))
-        flushed = DEVICE_FLOATS.flushed * share
-        return tuple(sorted(kept + of_normal)), min(c, 0) * flushed * most(others)
+        kept = [s for s in left if s.startswith("residual")]
+        kept += [s for s in left if kept and re.match("g[012]", s)]
+        most = math.prod(_MOST[re.match("1/f$|[a-z_]+", s)[0]] for s in divided(left, kept))
+        return tuple(sorted(kept)), min(c, 0) * DEVICE_FLOATS.flushed * most
 
     return Polynomial(as_number(m, c) for m, c in balance.terms.items())
 
@@ -66,6 +57,11 @@ def flushing(balance):
 def inverse_of_about_1(x):
     """A bound on 1 / x for x from 1 to 1.00003, and affine."""
     return 2 - x + Fraction(1, 10**9)
+
+
+def of_raised(name):
+    """What flushing takes, times what a velocity is raised by, is at most a share of f times that, as f is at least 2^-20."""
+    return symbol(name) * symbol("f") * (DEVICE_FLOATS.flushed * (1 << 20))
 
 
 class Pair:
@@ -147,7 +143,7 @@ class Pair:
 
     @staticmethod
     def _apart(value):
-        """The difference of the positions, named. Before it is scaled, flushing takes what the placements' errors are for."""
+        """The difference of the positions, named. What flushes before it is scaled is in the placements' errors."""
         named = (Rounding(DEVICE_FLOATS).named(x, f"apart{k}") for k, x in enumerate(value))
         return Vector(replace(x, error=x.error.without("flushed") + FLUSHED) for x in named)
 
@@ -155,8 +151,8 @@ class Pair:
         return summed("n{own}{k}{j}", own=self.own, k=k)
 
     def needs(self, k):
-        """What a slack along axis k must hold: the residual, half of the placements' errors and what flushing takes from
-        vertices, the clearance."""
+        """What a slack along axis k must hold: the residual, half of the placements' errors and what flushing takes
+        from vertices, the clearance."""
         errors = (symbol("eA") + symbol("eB")) * (Fraction(1, 2) + 2 / OF_VERTICES)
         rows = self.row(k) * (errors + symbol("c") * NORM)
         return symbol(f"residual{self.own}{k}") * self.residual + rows + _OF_ROW
@@ -167,6 +163,7 @@ class Pair:
         bounds |= {f"l{j}": symbol(f"low{j}") * (1 + 2 * UNIT) for j in range(3)}
         bounds |= {f"w{k}{j}": self.matrix[j][k].size for j in range(3)}
         bounds |= {f"v{k}": self.velocity[k].size, f"raised{k}": self.least[k].size * (1 + UNIT)}
+        bounds |= {("flushed", f"way{k}"): FLUSHED * self.velocity[k].size + of_raised(f"raised{k}")}
         return at_most(bounds)
 
     def named_matrix(self):
@@ -304,11 +301,12 @@ def along_normal(pair, negative):
 
     reaches = summed("g{k} reach{own}{k}", own=own) * WITHIN
     n = [summed("g{k} w{k}{j}", j=j) * (1 + 4 * UNIT) for j in range(3)]
+    velocities = at_most({("flushed", "held"): FLUSHED * way + of_raised("raised")})
     along = {("a", f"o{j}"): n[j] + r[j] * (1 + 2 * UNIT) for j in range(3)}
     start = symbol("own_middle") + slabs + summed("a mu") + summed("g{k} n{own}{k}{i} apart{i}", own=own)
     start += summed("r{j} centre{other}{j}", other=other) + summed("r{j} half{other}{j}", other=other)
     steps = [
-        at_most({"extent": kept["reach"].size, "gap": kept["gap"].size, "way": kept["way"].size}),
+        velocities + at_most({"extent": kept["reach"].size, "gap": kept["gap"].size, "way": kept["way"].size}),
         pair.clearance_paid(start, {k: (f"g{k}",) for k in range(3)}),
         together("own_middle", "own_slab", reaches),
         [rule for k in range(3) for rule in pair.rules(k)] + at_most(along),
@@ -339,7 +337,8 @@ def boxes_of_objects(sources):
     for k in range(3):
         at, reach = (evaluator.values[name][0][k].times(symbol(f"d{k}")) for name in ("at", "reach"))
         relative = (DIRECTION.error.without("flushed") + DIVISION) * (1 + 4 * UNIT)
-        need = symbol(f"size{k}") + symbol(f"half{k}") - room * Fraction(1, 2) + at.error + (symbol(f"gap{k}") + reach.size) * relative
+        need = symbol(f"size{k}") + symbol(f"half{k}") - room * Fraction(1, 2) + at.error
+        need += (symbol(f"gap{k}") + reach.size) * relative
         need += of_ends(*ends, f"at{k}", f"extent{k}")
         rules = at_most({f"at{k}": at.size, f"extent{k}": reach.size})
         yield Inequality(f"axis {k} of the world", reach.least, need, [rules, flushing])

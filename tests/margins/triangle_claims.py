@@ -22,10 +22,10 @@ ROUNDED = DEVICE_FLOATS.of_result
 IN_PARTS = ROUNDED + Fraction(1, 1 << 39)
 # A component of a direction of unit length, rounded to nearest; 1 stands for its size.
 DIRECTION = Number(Polynomial.constant(1), NEAREST + Fraction(1, 1 << 50) + FLUSHED)
-# A placement's error has this per entry of its matrix, in FLUSHED, for vertices, which lose 1 before they are normalised, and 1
-# then. A float that is read may lose 1 more.
-_VERTEX = Sources.of(*HOST).number("kFlushedVertex", "3e-37"), Sources.of(*PLACED).number("placementOf", "3e-37 + 3e-37 *")
-OF_VERTICES = min(_VERTEX) / DEVICE_FLOATS.flushed
+# A placement's error has this per entry of its matrix, in FLUSHED, for vertices, which lose 1 before they are
+# normalised, and 1 then. A float that is read may lose 1 more.
+_VERTEX = Sources.of(*PLACED).number("placementOf", "3e-37 + 3e-37 *")
+OF_VERTICES = min(_VERTEX, Sources.of(*HOST).number("kFlushedVertex", "3e-37")) / DEVICE_FLOATS.flushed
 AXES = "xyz"
 
 E = symbol("E")
@@ -171,8 +171,8 @@ def placed_triangle(sources, side, counting):
 
 
 def flushed_corner(balance):
-    """A step: flushing takes a share of a product, far below its rounding; per entry of a matrix, what the placement's error has
-    for vertices; or a number, times a corner's distance from the anchor, which is at most 4."""
+    """A step: flushing takes a share of a product, far below its rounding; per entry of a matrix, what the placement's
+    error has for vertices; or a number, times a corner's distance from the anchor, which is at most 4."""
 
     def taken(monomial, c):
         left = divided(monomial, ("flushed",))
@@ -259,8 +259,8 @@ def error_of_a_row(sources):
 
 
 def positions(sources):
-    """The rest of a corner's error is in the placement's own: 2^-44 of S, the terms of a position, 2^-35 of Z, its size,
-    and 4e-36 for flushing.
+    """The rest of a corner's error is in the placement's own: 2^-44 of S, the terms of a position, 2^-35 of Z, its
+    size, and 4e-36 for flushing.
 
     Turned by a row of the frame, whose components are at most 1 and add up to at most the root of 3.
     """
@@ -290,6 +290,7 @@ def positions(sources):
 
 
 POSITION = ["0x1p-44 * sum", "0x1p-35 * size", ("kFlushed", "4e-36")]
+FLUSHED_CORNER = [("pairFrameOf", text) for text in ("1e-30 + slack", "abs(apart)) + 1e-30")]
 EDGE = ["6.0 * kUlp", "1.0001 * (error", "4.0 * kFlushed"]
 PLANE = ["12.0 * kUlp", "1.0001 * given", "6.0 + 6.0 * g", "6.0 * g"]
 QUOTIENT = ["8.0 * kUlp", "1.0001 + 8.0", "4.0 * kFlushed"]
@@ -305,7 +306,7 @@ def claims():
         Claim("position in two parts", "placementOf", POSITION, HOST, positions),
         Claim("position in two parts", "pairFrameOf", errors, FILES, positions),
         Claim("distance of the anchors", "pairFrameOf", ["24.0 * kUnit"], FILES, corner_error),
-        Claim("corner about its anchor", "placedTriangle", ["24.0 * kUnit"], FILES, corner_error),
+        Claim("corner about its anchor", "placedTriangle", ["24.0 * kUnit", *FLUSHED_CORNER], FILES, corner_error),
         Claim("boxes of a pair", "differenceError", ["2.0 * (a.error"], FILES, boxes),
         Claim("z of x cross y", "faceOf", ["6.0 * kUlp", "1.0001 * given", "4.0 * kFlushed"], FILES, face_of),
         Claim("gap . (x cross y)", "planeOf", PLANE, FILES, plane_of),

@@ -22,8 +22,8 @@ NORM = (1 - UNIT) ** 2 * (1 + UNIT / 4)
 OF_MOTION = Fraction(1, 400)
 ABOUT = 1 + Fraction(1, 1 << 18)
 ONES = Vector([exactly(1)] * 3)
-# In the sensor's unit of length, symbols that begin with these letters are at most this (docs/method.md, section 6). 1/f
-# is at most 2^20, since `farthest` is raised to 2^-20.
+# In the sensor's unit of length, symbols that begin with these letters are at most this (docs/method.md, section 6).
+# 1/f is at most 2^20, since `farthest` is raised to 2^-20.
 _MOST = {
     **dict.fromkeys(("n", "m", "apart", "high", "low", "size", "f"), 1001 * 10**9),
     **dict.fromkeys(("e", "c"), 10**9),
@@ -60,7 +60,7 @@ def inverse_of_about_1(x):
 
 
 def of_raised(name):
-    """What flushing takes, times what a velocity is raised by, is at most a share of f times that, as f is at least 2^-20."""
+    """What flushing takes, times what a velocity is raised by: a share of f times that, since f is at least 2^-20."""
     return symbol(name) * symbol("f") * (DEVICE_FLOATS.flushed * (1 << 20))
 
 

@@ -40,7 +40,6 @@ bool flushes(void* caller) {
 }  // namespace
 
 // These stand before the C library's.
-
 extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* thread,
                                                                      const pthread_attr_t* attributes,
                                                                      void* (*function)(void*),
@@ -52,7 +51,7 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(pthread_t* 
 }
 
 extern "C" __attribute__((visibility("default"))) int thrd_create(thrd_t* thread, int (*function)(void*),
-                                                                  void* argument) noexcept {
+                                                                  void* argument) {
   using Function = int (*)(thrd_t*, int (*)(void*), void*);
   static const auto kCreate = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "thrd_create"));
   if (!flushes(__builtin_return_address(0))) return kCreate(thread, function, argument);

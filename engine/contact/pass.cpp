@@ -16,11 +16,16 @@ using gpu::bytesOf;
 namespace {
 
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-// Default maximum number of tasks, in addition to one per sensor: 20 bytes each, in two lists.
-constexpr uint32_t kMostTasks = 1u << 21;
-// Capacity for candidates, of 24 bytes and 64 as refined pairs: at first per sensor, at least in total, and the most
-// that it grows to. Sensors have some 10 candidates among boxes, 30 among meshes, hundreds where shapes interlock.
-constexpr uint32_t kCandidates = 64, kLeastCandidates = 1u << 16, kMostCandidates = 1u << 22;
+// Tasks, of 20 bytes in two lists: at most, in addition to two per search. The search makes do with less than what all
+// stacks hold (search.glsl).
+constexpr uint32_t kMostTasks = 3u << 17;
+// Lanes that search at once on a GPU, with queues of 320 bytes each: for each search, at least, and at most; of very
+// many searches, a quarter. An NVIDIA H200 searched 256 times in 0.79 ms with 2,048 lanes, and in 1.2 with 65,536.
+constexpr uint32_t kLanes = 8, kLeastLanes = 1u << 10, kMostLanes = 1u << 14, kMostOfAll = 1u << 15;
+// Subgroups have no more queues than so many lanes need: smaller ones take more workgroups.
+constexpr uint32_t kLeastGroup = 16;
+// Capacity for candidates, of 24 bytes and 64 as refined pairs, that lists grow to.
+constexpr uint32_t kMostCandidates = 1u << 22;
 // Capacity for unresolved pairs, of 192 bytes: at first per sensor, and at most in total.
 constexpr uint32_t kUnresolved = 4, kUnresolvedWithClearance = 16, kMostUnresolved = 1u << 20;
 
@@ -42,6 +47,11 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
 }
 
 }  // namespace
+
+uint64_t usualCandidates(uint64_t searches) {
+  return std::max(
+      {std::min(searches << 11, uint64_t{1} << 15), std::min(64 * searches, uint64_t{3} << 15), 2 * searches});
+}
 
 std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {
   std::vector<gpu::Program> all = PairSolver::programs(device);
@@ -68,25 +78,30 @@ ContactPass::ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchR
       candidates_(owner, "candidate pairs", BufferDomain::device),
       solver_(owner, scene) {
   if (room_.budget == 0) room_.budget = kMostBudget;
-  // On the CPU, as many lanes are at work as threads times the width of a vector.
-  if (room_.width == 0) {
-    room_.width = owner.device().runsOnCpu()
-                      ? 2 * std::max(1u, std::thread::hardware_concurrency()) * owner.device().subgroupSize
-                      : 1u << 15;
-  }
 }
 
 uint32_t ContactPass::groupsFor(uint32_t sensors) const {
   if (room_.groups != 0) return room_.groups;
-  return device_->runsOnCpu() ? std::max(32u, sensors / 256) : 2048;
+  if (device_->runsOnCpu()) return std::max(32u, sensors / 256);
+  const uint64_t lanes =
+      std::max<uint64_t>(std::clamp(uint64_t{kLanes} * sensors, uint64_t{kLeastLanes}, uint64_t{kMostLanes}),
+                         std::min(sensors / 4, kMostOfAll));
+  return static_cast<uint32_t>(lanes / std::max(device_->subgroupSize, kLeastGroup));
+}
+
+uint32_t ContactPass::widthFor(uint32_t sensors) const {
+  if (room_.width != 0) return room_.width;
+  // On the CPU, as many lanes are at work as threads times the width of a vector.
+  const uint32_t groups = device_->runsOnCpu() ? std::max(1u, std::thread::hardware_concurrency()) : groupsFor(sensors);
+  return 2 * groups * device_->subgroupSize;
 }
 
 void ContactPass::reserveLists(uint32_t sensors, uint32_t results) {
   const VkDeviceSize limit = device_->properties.limits.maxStorageBufferRange;
   const uint64_t all = uint64_t{groupsFor(sensors)} * device_->subgroupSize * (search_.constants[2] + 1);
-  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, kMostTasks);
+  const uint64_t tasks = room_.tasks != 0 ? room_.tasks : std::min<uint64_t>(all, uint64_t{kMostTasks} + sensors);
   const uint64_t candidates =
-      room_.candidates != 0 ? room_.candidates : std::max({kCandidates * sensors, kLeastCandidates, wantedCandidates_});
+      room_.candidates != 0 ? room_.candidates : std::max<uint64_t>(usualCandidates(sensors), wantedCandidates_);
   const uint32_t usual = (hasClearances_ ? kUnresolvedWithClearance : kUnresolved) * sensors;
   const uint32_t unresolved =
       room_.unresolved != 0 ? room_.unresolved : std::clamp(std::max(usual, wantedUnresolved_), 4096u, kMostUnresolved);
@@ -185,7 +200,7 @@ void ContactPass::recordRound(const gpu::Commands& commands, uint32_t round, boo
   const uint32_t budget = hasClearances_ ? std::max(room_.budget / 2, 1u) : room_.budget;
   const Array<SearchTask>&from = round % 2 == 0 ? tasks_ : spilled_, &to = round % 2 == 0 ? spilled_ : tasks_;
   run_(commands, hasClearances_ ? searchWithClearance_ : search_, groupsFor(sensorCount_),
-       SearchPush{round, taskRoom_, candidateRoom_, budget, room_.width},
+       SearchPush{round, taskRoom_, candidateRoom_, budget, widthFor(sensorCount_)},
        {{kSlotMeshNodes, scene.meshNodes},
         {kSlotObjectNodes, scene.objectNodes},
         {kSlotVertices, scene.vertices},

@@ -26,6 +26,10 @@ struct SearchRoom {
   std::function<std::chrono::steady_clock::time_point()> now;
 };
 
+/// Candidates for which there is room unless told otherwise: see Capacity. Sensors have some 10 among boxes, 30 among
+/// meshes, hundreds where shapes interlock.
+uint64_t usualCandidates(uint64_t searches);
+
 class ContactPass {
  public:
   ContactPass(const gpu::Owner& owner, GpuScene& scene, const SearchRoom& room);
@@ -92,6 +96,7 @@ class ContactPass {
   uint32_t groupsFor(uint32_t sensors) const;
 
   const Device::Impl* device_;
+  uint32_t widthFor(uint32_t sensors) const;
   GpuScene& scene_;
   SearchRoom room_;
   gpu::Program search_, searchWithClearance_;

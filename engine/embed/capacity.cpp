@@ -2,25 +2,18 @@
 
 #include <algorithm>
 
-#include "shaders/contact/interop.h"
+#include "contact/pass.h"
 
 namespace radar {
 
 namespace {
 
-// Capacity of a list, and rounds, if the host does not choose them.
-struct ListRoom {
-  uint64_t perQuery;  // what interlocking meshes of some thousand triangles need
-  uint64_t most;      // in total, as long as that leaves `least` per query
-  uint64_t least;
-};
-constexpr ListRoom kCandidates{1u << 11, 1u << 20, 64}, kUnresolved{1u << 7, 1u << 15, 4},
-    kUnresolvedWithoutDoubles{1u << 10, 1u << 18, 32};  // which leave every contact to the CPU
 constexpr uint32_t kRounds = 16;
 
-uint32_t roomOf(const ListRoom& room, uint64_t queries, uint64_t limit) {
-  const uint64_t wanted = std::max(std::min(room.perQuery * queries, room.most), room.least * queries);
-  return static_cast<uint32_t>(std::clamp<uint64_t>(wanted, 1, limit));
+// Without doubles, every contact is left to the CPU.
+uint64_t usualUnresolved(uint64_t searches, bool doubles) {
+  const uint64_t most = doubles ? std::max(std::min(16 * searches, uint64_t{1} << 14), searches) : 16 * searches;
+  return std::max(std::min(128 * searches, uint64_t{1} << 13), most);
 }
 
 }  // namespace
@@ -43,10 +36,11 @@ Capacity completed(Capacity capacity, const Device::Impl& device) {
   }
   if (capacity.rounds == 0) capacity.rounds = kRounds;
   const uint64_t searches = uint64_t{capacity.queries} + capacity.searches;
-  if (capacity.candidates == 0) capacity.candidates = roomOf(kCandidates, searches, candidates);
-  if (capacity.unresolvedPairs == 0) {
-    capacity.unresolvedPairs = roomOf(device.doubles ? kUnresolved : kUnresolvedWithoutDoubles, searches, unresolved);
-  }
+  const auto choose = [](uint32_t& member, uint64_t usual, uint64_t most) {
+    if (member == 0) member = static_cast<uint32_t>(std::clamp<uint64_t>(usual, 1, most));
+  };
+  choose(capacity.candidates, usualCandidates(searches), candidates);
+  choose(capacity.unresolvedPairs, usualUnresolved(searches, device.doubles), unresolved);
   return capacity;
 }
 

@@ -20,7 +20,7 @@ namespace radar {
 namespace {
 
 // Excluded objects per query for which memory is reserved in advance.
-constexpr uint32_t kExcluded = 8;
+constexpr uint32_t kExcluded = 2;
 constexpr VkDeviceSize kFirstResult = PairSolver::kFirstResult;
 SearchRoom roomFor(const Capacity& capacity, const Device::Impl& device) {
   return {.candidates = capacity.candidates,

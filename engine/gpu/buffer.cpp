@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cassert>
 #include <cstring>
 #include <utility>
@@ -55,10 +54,9 @@ bool Buffer::reserve(VkDeviceSize bytes) {
     throw LimitError(std::string(name_) + ": " + std::to_string(bytes) + " bytes, but the device's maxBufferSize is " +
                      std::to_string(device.maxBufferBytes));
   }
-  // At most a quarter more than is needed; but a buffer that grows a little each time grows by half, so that it is
-  // seldom made and filled anew.
-  VkDeviceSize wanted = std::max({roundedUp(bytes, std::max<VkDeviceSize>(std::bit_floor(bytes) / 4, 256)),
-                                  roundedUp(capacity_ + capacity_ / 2, 256), VkDeviceSize{256}});
+  // Little more than is needed; but a buffer that grows a little each time grows by half, so that it is seldom made and
+  // filled anew.
+  VkDeviceSize wanted = roundedUp(std::max({bytes + bytes / 64, capacity_ + capacity_ / 2, VkDeviceSize{1}}), 256);
   // An odd number of times 256: lavapipe compiles a kernel anew for a texel buffer whose size is a power of two or a
   // multiple of 64 KiB, if its sizes were neither before, and the other way round.
   if ((usage_ & kAsTexels) != 0) wanted = roundedUp(wanted, 512) + 256;

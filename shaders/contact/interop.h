@@ -156,6 +156,7 @@ struct SearchRound {
   uint tasks;    // number of tasks
   uint taken;    // tasks taken; may exceed `tasks`
   uint spilled;  // tasks left by invocations that ran out of budget
+  uint aside;    // room kept for those of all workgroups but the first, and taken by them
 };
 INTEROP_CONST kMostRounds = 64;
 

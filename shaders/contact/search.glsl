@@ -65,6 +65,8 @@ const uint kObjectSteps = 16, kNodeSteps = 24;
 const uint kLeafBatch = kQueue / 4;
 // Iterations of the loops within a test of leaves, and of the solution of a pair.
 const uint kLeafIterations = 11, kSolveIterations = 27 + kClearanceIterations;
+// Entries of a lane, in addition to the current one, that a workgroup sets aside at a time in the list of spilled tasks.
+const uint kEntries = 8;
 // Budget while there are too few tasks for the device, so that they are soon split into more.
 const uint kSplitBudget = 48;
 
@@ -75,6 +77,8 @@ uint leaves, leafHead, leafTail;     // where the queue begins; numbers of entri
 uint pairs, pairHead, pairTail;
 uint work;
 bool tasksLeft;
+uint room;                           // in the list of spilled tasks, for all workgroups but the first
+uint allowed;                        // entries of a lane's stack for which there is room there
 bool whole;                          // at each meet() all lanes were there
 
 // Of a lane.
@@ -191,8 +195,31 @@ uint shareTasks(uint named) {
   return named;
 }
 
-// Turns pending entries into tasks of the next round.
-void spill() {
+// Sets room aside for tasks that the lanes may spill, as many of each. Returns whether there was enough.
+bool setAside(uint perLane) {
+  const uint wanted = perLane * kLanes;
+  uint before = 0;
+  if (subgroupElect()) before = atomicAdd(counts.rounds[push.round].aside, wanted);
+  before = subgroupBroadcastFirst(before);
+  const bool fits = before + wanted <= room;
+  if (!fits && subgroupElect()) atomicAdd(counts.rounds[push.round].aside, 0u - wanted);
+  return fits;
+}
+
+// Whether all stacks have room for what a step may push; sets more aside if they are nearly full.
+bool stacksHaveRoom() {
+  while (subgroupAny(depth + 2 > allowed)) {
+    ++work;
+    const uint more = min(kEntries, kStack - allowed);
+    if (more == 0 || !setAside(more)) return false;
+    allowed += more;
+  }
+  return true;
+}
+
+// Turns pending entries into tasks of the next round; returns how many.
+uint spill() {
+  uint all = 0;
   while (countOf(!isIdle()) != 0) {
     const bool has = !isIdle();
     uvec3 entry = current;
@@ -208,6 +235,7 @@ void spill() {
     const bool keeps = has && uintBitsToFloat(entry.z) <= limit && (named == kNobody || named <= least);
     const uvec4 who = subgroupBallot(keeps);
     uint first = 0;
+    all += subgroupBallotBitCount(who);
     if (subgroupElect()) first = atomicAdd(counts.rounds[push.round].spilled, subgroupBallotBitCount(who));
     first = subgroupBroadcastFirst(first);
     const uint at = first + rankOf(who);
@@ -218,6 +246,7 @@ void spill() {
       atomicOr(states[sensor].flags, kSearchLost);
     }
   }
+  return all;
 }
 
 // ---- nodes -------------------------------------------------------------------------------------------------------------
@@ -229,7 +258,7 @@ uint findObjects(uint named) {
   const float scale = sensorTexel(sensor, kTexelDirection).w, most = limit * sensorTexel(sensor, kTexelMask).w;
   for (uint step = 0; step < kObjectSteps; ++step) {
     const bool searching =
-        named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < kStack;
+        named == kNobody && current.x == kNobody && depth > 0 && depth == objectDepth && depth < allowed;
     const uint count = countOf(searching);
     if (count == 0 || (count < kFew && step > 0)) break;
     ++work;
@@ -302,7 +331,7 @@ void descend() {
   const bool more = countOf(current.x == kNobody && (depth > 0 || tasksLeft)) != 0;
   for (uint step = 0; step < kNodeSteps; ++step) {
     if (current.x == kNobody && depth > objectDepth) current = stack[--depth];
-    const bool tries = current.x != kNobody && depth < kStack;
+    const bool tries = current.x != kNobody && depth < allowed;
     const uint count = countOf(tries);
     if (count == 0 || leafTail - leafHead + 2 * kLanes > kQueue || (count < kFew && step > 0 && more)) break;
     work += 4;
@@ -466,9 +495,13 @@ void main() {
     return;
   }
   const uint count = counts.rounds[push.round].tasks;
-  // Only as many workgroups take part as can spill all their entries.
-  const uint room = (push.taskCapacity - count) / ((kStack + 1) * kLanes);
-  if (count == 0 || workgroupIndex() >= max(room, 1u)) return;
+  if (workgroupIndex() * kLanes >= count) return;
+  // A workgroup goes on only while there is room for all that it may have to spill. The first one always has its own.
+  const bool isFirst = workgroupIndex() == 0;
+  const uint most = (kStack + 1) * kLanes;
+  room = max(push.taskCapacity - count, most) - most;
+  allowed = isFirst ? kStack : min(kStack, kEntries);
+  if (!isFirst && !setAside(allowed + 1)) return;
   const uint budget = count < push.width ? min(push.budget, kSplitBudget) : push.budget;
   leaves = 2 * kQueue * workgroupIndex();
   pairs = leaves + kQueue;
@@ -497,7 +530,7 @@ void main() {
       descend();
       meet();
       idle = subgroupAll(isIdle()) && !tasksLeft;
-      last = idle || work >= budget || subgroupAny(depth + 2 > kStack);
+      last = idle || work >= budget || !stacksHaveRoom();
     } while (!last && leafTail - leafHead < kLeafBatch);
     subgroupBarrier();
     do {
@@ -507,7 +540,10 @@ void main() {
       subgroupBarrier();
     } while (last && (leafTail != leafHead || pairTail != pairHead));
   }
-  spill();
+  const uint spilledNow = spill();
+  if (!isFirst && subgroupElect()) {
+    atomicAdd(counts.rounds[push.round].aside, spilledNow - (allowed + 1) * kLanes);
+  }
   addCount();
   if (!loopsEnd()) counts.broken = kBrokenLoops;
   if (!whole || !subgroupAllEqual(uvec3(leafTail, pairTail, work))) counts.broken = kBrokenLanes;

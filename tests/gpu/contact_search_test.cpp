@@ -11,6 +11,7 @@
 #include "sweep/sweeper.h"
 #include "workloads/generate.h"
 #include "workloads/hard_cases.h"
+#include "workloads/interlocking.h"
 #include "workloads/shapes.h"
 
 namespace radar {
@@ -78,6 +79,22 @@ TEST_CASE("the answers have the same bits with the smallest lists and in the sho
   if (test::isLavapipe() && room.budget == 1 && family == "interlocking") CHECK(answers.stats.submissions > 1);
   const bool few = family == "lattice";
   if (few && room.tasks == 0 && room.candidates == 0 && room.unresolved == 0) CHECK(answers.stats.cpuQueries == 0);
+}
+
+TEST_CASE("workgroups that could spill more than there is room for spill less, and no task is lost", "[subgroups]") {
+  // Rings on pegs: very many tasks, as each is split early.
+  const test::Case batch = test::caseOf(
+      tools::makeWorkload(tools::InterlockingPairs{.kind = tools::Interlocking::ringOnPeg, .sensors = 32}));
+  const Answers roomy = DeviceSearch(batch.scene, {.candidates = 1u << 17}).run(batch.queries);
+  // A lane has up to 41 entries. There is room for those of a few workgroups, and 64 want to take part.
+  const uint32_t all = 41 * test::device().impl().subgroupSize;
+  for (const uint32_t groups : {2u, 8u}) {
+    CAPTURE(groups);
+    const SearchRoom room{.tasks = groups * all, .candidates = 1u << 17, .groups = 64, .width = 1'000'000};
+    const Answers answers = DeviceSearch(batch.scene, room).run(batch.queries);
+    CHECK(differenceOf(answers.results, roomy.results) == "");
+    CHECK(answers.stats.cpuQueries == roomy.stats.cpuQueries);
+  }
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include "gpu/submission.h"
 #include "radar/recorder.h"
 #include "support/catch.h"
+#include "support/pretended_gpu.h"
 #include "support/same_bits.h"
 #include "support/separate_allocations.h"
 #include "support/test_device.h"
@@ -66,10 +67,11 @@ const Device& hostsDevice() {
   });
 }
 
-/// A device of its own, whose blocks of memory can fail.
+/// A device of its own, whose blocks of memory can fail: as it is, or as if it were a GPU, with more types of memory.
 class OwnMemory {
  public:
-  OwnMemory() : device(Device::adopt(test::device().handles())) {
+  explicit OwnMemory(bool isGpu)
+      : device(Device::adopt(isGpu ? test::asGpu(test::device().handles()) : test::device().handles())) {
     allocateMemory = device.impl().vk.AllocateMemory;
     most = std::numeric_limits<VkDeviceSize>::max();
     failing = -1;
@@ -206,7 +208,7 @@ TEST_CASE("whichever allocation or submission fails for lack of memory, every qu
 }
 
 TEST_CASE("buffers take few allocations, of which each has its own bytes, and give them back") {
-  const OwnMemory memory;
+  const OwnMemory memory(GENERATE(false, true));
   const MemoryUse before = memory.device.memoryUse();
   CHECK(before.used == 0);
   tools::Random random(11);
@@ -238,11 +240,11 @@ TEST_CASE("buffers take few allocations, of which each has its own bytes, and gi
   CHECK(20 * OwnMemory::calls < made);
   buffers.clear();
   CHECK(memory.device.memoryUse().used == 0);
-  CHECK(memory.device.memoryUse().allocations == 1);
+  CHECK(memory.device.memoryUse().allocations == before.allocations);
 }
 
 TEST_CASE("a buffer may have memory of its own where a block finds none, and else says what it needed") {
-  const OwnMemory memory;
+  const OwnMemory memory(GENERATE(false, true));
   std::vector<gpu::Buffer> buffers;
   for (int i = 0; i < 3; ++i) buffers.push_back(memory.buffer(400'000));  // the first block is full
   OwnMemory::most = 500'000;
@@ -252,19 +254,29 @@ TEST_CASE("a buffer may have memory of its own where a block finds none, and els
                     test::StartsWith("vkAllocateMemory (mapped, ") && test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
 }
 
-TEST_CASE("whichever block finds no memory, every query has its answer") {
+TEST_CASE(
+    "whichever block finds no memory, every query has its answer, or in mode sampled a reason, and later its answer") {
   const Teapots teapots(20, GENERATE(Mode::contact, Mode::sampled));
+  const bool isGpu = GENERATE(false, true);
   bool failed = true;
   for (int failing = 0; failed; ++failing) {
-    CAPTURE(failing);
-    const OwnMemory memory;
+    CAPTURE(isGpu, failing);
+    const OwnMemory memory(isGpu);
     Sweeper(memory.device, teapots.scene, kOnDevice).run(std::span(teapots.queries).first(2), teapots.mode);
     OwnMemory::calls = 0;
     OwnMemory::failing = failing;
     Sweeper sweeper(memory.device, teapots.scene, kOnDevice);
     const Answers answers = sweeper.run(teapots.queries, teapots.mode);
-    CHECK(differenceOf(answers.results, teapots.answers) == "");
-    CHECK(answers.reasons.empty());
+    for (size_t i = 0; i < answers.results.size(); ++i) {
+      if (!answers.reasons.contains(i)) {
+        CHECK(test::sameBits(answers.results[i], teapots.answers[i]));
+        continue;
+      }
+      CHECK(teapots.mode == Mode::sampled);
+      CHECK(answers.results[i].status == Status::invalid);
+      CHECK_THAT(answers.reasons.at(i), test::Contains("VK_ERROR_OUT_OF_DEVICE_MEMORY"));
+    }
+    CHECK(differenceOf(sweeper.run(teapots.queries, teapots.mode).results, teapots.answers) == "");
     failed = OwnMemory::calls > failing;
     CHECK((failed || failing > 0));
   }
@@ -273,7 +285,7 @@ TEST_CASE("whichever block finds no memory, every query has its answer") {
 
 TEST_CASE("a copy of a scene, recorders and sweepers say how much memory they hold, which is all that is held") {
   const Teapots teapots(20, Mode::contact);
-  const OwnMemory memory;
+  const OwnMemory memory(GENERATE(false, true));
   prepare(memory.device);
   OwnMemory::calls = 0;
   SceneCopy copy(memory.device, teapots.scene);
@@ -342,7 +354,7 @@ TEST_CASE("a host's allocator gives all memory, takes it back, and is told what 
   CHECK_THROWS_WITH(Device::adopt(host), "HostDevice::memory: expected both functions or none, got one");
 }
 
-TEST_CASE("a buffer takes at most a quarter more memory than asked for, or half if it grows a little, in few steps") {
+TEST_CASE("a buffer takes little more memory than asked for, or half if it grows a little, in few steps") {
   const auto made = [] {
     return gpu::Buffer(test::device().impl(), "grown", gpu::BufferDomain::device, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   };
@@ -350,7 +362,7 @@ TEST_CASE("a buffer takes at most a quarter more memory than asked for, or half 
     gpu::Buffer buffer = made();
     CHECK(buffer.reserve(bytes));
     REQUIRE(buffer.capacity() >= bytes);
-    REQUIRE(4 * buffer.capacity() <= 5 * bytes);
+    REQUIRE(buffer.capacity() <= bytes + bytes / 64 + 256);
   }
   gpu::Buffer buffer = made();
   int steps = 0;

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <utility>
 
+#include "gpu/device.h"
+
 namespace radar::test {
 
 namespace {
@@ -91,7 +93,13 @@ DeviceOptions deviceOptions() {
 }
 
 const Device& device() {
-  return onceInRun([] { return Device::open(deviceOptions()); });
+  return onceInRun([] {
+    Device opened = Device::open(deviceOptions());
+    if (settingOf("RADAR_TEST_KIND", "") == "gpu") {
+      opened.impl().properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    }
+    return opened;
+  });
 }
 
 void atEndOfRun(std::function<void()> end) {

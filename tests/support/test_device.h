@@ -25,7 +25,7 @@ bool isValidated();
 bool wantsDoubles();
 /// Of the first tested device; messages of the validation layers go to onValidation().
 DeviceOptions deviceOptions();
-/// Opened with these on first use.
+/// Opened with these on first use; said to be a GPU if the environment variable RADAR_TEST_KIND is "gpu".
 const Device& device();
 
 /// Collects a message, which begins with its name. Other devices use it as their DeviceOptions::onValidation.

@@ -93,10 +93,7 @@ void Agents::makeLayout() {
 }
 
 void Agents::makeSlot(Slot& slot) {
-  // No CPU reads what is left undecided, so there is room for little of it.
-  slot.recorder.emplace(copy_, radar::Capacity{.queries = push.agents,
-                                               .candidates = std::max(1u << 14, 64 * push.agents),
-                                               .unresolvedPairs = 4 * push.agents});
+  slot.recorder.emplace(copy_, radar::Capacity{.queries = push.agents});
   slot.recorder->prepare(queries_, geometry());
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBindings};
   const VkDescriptorPoolCreateInfo setsInfo{

@@ -53,7 +53,7 @@ void PairSolver::reserve(uint32_t sensors, uint32_t results, uint32_t pairs, uin
 
 void PairSolver::begin(uint32_t sensors, gpu::Upload& upload) {
   sensorCount_ = sensors;
-  gpu::SearchCounts counts{};
+  gpu::SearchCounts counts{.serial = ++serial_};
   counts.refineGroups[2] = counts.openGroups[2] = 1;
   lists_.counts.reserve(1);
   upload.add(&counts, sizeof(counts), lists_.counts);

@@ -43,6 +43,8 @@ class PairSolver {
   const Lists& lists() const { return lists_; }
   /// The unresolved pairs, in host memory. Valid until the device works again.
   std::span<const gpu::UnresolvedPair> unresolved(const gpu::SearchCounts& counts) const;
+  /// Of the recording begun last; never 0.
+  uint32_t serial() const { return serial_; }
   uint32_t unresolvedRoom() const { return unresolvedRoom_; }
 
   /// Where the results begin in a readback of counts, then results.
@@ -55,7 +57,7 @@ class PairSolver {
   Lists lists_;
   gpu::Array<uint32_t> heads_;
   gpu::Array<gpu::UnresolvedPair> unresolved_;  ///< in host memory: rarely used
-  uint32_t sensorCount_ = 0, unresolvedRoom_ = 0;
+  uint32_t sensorCount_ = 0, unresolvedRoom_ = 0, serial_ = 0;
 };
 
 }  // namespace radar

@@ -81,6 +81,8 @@ class ContactPass {
     return solver_.unresolved(counts);
   }
   uint32_t sensorCount() const { return sensorCount_; }
+  /// SearchCounts::serial of what was staged last.
+  uint32_t serial() const { return solver_.serial(); }
   /// Enlarges lists that were too small, for the next batch. Returns whether the list of candidates was.
   bool learn(const gpu::SearchCounts& counts);
 
@@ -94,9 +96,9 @@ class ContactPass {
   void recordRound(const gpu::Commands& commands, uint32_t round, bool isLast);
   void reserveLists(uint32_t sensors, uint32_t results);
   uint32_t groupsFor(uint32_t sensors) const;
+  uint32_t widthFor(uint32_t sensors) const;
 
   const Device::Impl* device_;
-  uint32_t widthFor(uint32_t sensors) const;
   GpuScene& scene_;
   SearchRoom room_;
   gpu::Program search_, searchWithClearance_;

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "embed/host_format.h"
+#include "embed/refusal.h"
 #include "gpu/barrier.h"
 #include "spirv/radar_shaders.h"
 
@@ -47,8 +48,8 @@ void HostQueriesPass::stage(const HostQueries& queries) {
   const VkDeviceSize bytes = span + 2 * sizeof(uint32_t);
   const uint64_t limit = device_->properties.limits.maxStorageBufferRange;
   if (std::max(bytes, queries.count * sizeof(gpu::Sensor)) > limit) {
-    throw Error("record: the host's queries, or their sensors, exceed the " + std::to_string(limit) +
-                " bytes of the device's maxStorageBufferRange");
+    throw Refusal("the host's queries, or their sensors, exceed the " + std::to_string(limit) +
+                  " bytes of the device's maxStorageBufferRange");
   }
   words_.reserve(bytes / sizeof(uint32_t));
   run_.begin();

@@ -5,6 +5,7 @@
 #include "contact/decode.h"
 #include "cpu/clearance.h"
 #include "embed/host_queries.h"
+#include "embed/refusal.h"
 #include "query/route.h"
 #include "query/swept.h"
 
@@ -60,8 +61,8 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
     objects[i] = searchesEach ? mayReach(query, scene, geometry) : std::vector<ObjectId>{kNone};
     const auto several = static_cast<uint32_t>(searchesEach ? objects[i].size() : 0);
     if (several > kMostSearches) {
-      throw Error("record: query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
-                  " objects in reach, got " + std::to_string(several));
+      throw Refusal("query " + std::to_string(i) + ": expected at most " + std::to_string(kMostSearches) +
+                    " objects in reach, got " + std::to_string(several));
     }
     searches += several;
     hitOffsets.push_back(end);
@@ -71,8 +72,8 @@ void Recorded::plan(std::span<const Query> asked, const Scene::Impl& scene, cons
     tolerances.push_back(cpu::toleranceOf(query, scene.meshes[query.mesh]));
   }
   if (searches > mostSearches) {
-    throw Error("record: expected at most " + std::to_string(mostSearches) +
-                " searches past one object each (Capacity::searches), got " + std::to_string(searches));
+    throw Refusal("expected at most " + std::to_string(mostSearches) +
+                  " searches past one object each (Capacity::searches), got " + std::to_string(searches));
   }
   hitOffsets.push_back(end);
   known.assign(end, clearAnswer());

@@ -32,9 +32,7 @@ struct Recorded {
   /// The same for queries that a host's shader writes.
   void planWritten(uint32_t most);
   /// Searches past one object each.
-  uint32_t searchCount() const {
-    return static_cast<uint32_t>(known.size()) - (hitOffsets.empty() ? 0 : hitOffsets.back());
-  }
+  uint32_t searchCount() const { return static_cast<uint32_t>(known.size()) - (known.empty() ? 0 : hitOffsets.back()); }
   /// Takes the boxes of meshes whose vertices only the device knew.
   void learn(const std::map<MeshId, Box>& boxes);
   /// The answers, from all that the device wrote: results in the order of `known`, and the pairs that it left open.

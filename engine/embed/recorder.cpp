@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 
 #include "contact/pass.h"
 #include "embed/capacity.h"
@@ -10,6 +11,7 @@
 #include "embed/host_queries.h"
 #include "embed/known_recordings.h"
 #include "embed/recorded.h"
+#include "embed/refusal.h"
 #include "gpu/barrier.h"
 #include "math/float_environment.h"
 #include "query/route.h"
@@ -43,15 +45,41 @@ struct Recorder::Impl {
         readback(owner, "recorded results", gpu::BufferDomain::readback, VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
     const uint32_t results = capacity.queries + 2 * capacity.searches;  // lists are no longer than what they are from
     pass.reserve(capacity.queries + capacity.searches, results, kExcluded * capacity.queries);
-    readback.reserve(kFirstResult + results * sizeof(Result));
+    makeReadback(kFirstResult + results * sizeof(Result));
   }
 
+  /// Enlarges it; what it has then is of no recording.
+  void makeReadback(VkDeviceSize bytes) {
+    if (readback.reserve(bytes)) new (readback.mapped()) gpu::SearchCounts{};
+  }
+  /// Whether the commands recorded last have not been executed.
+  bool isPending() const { return recorded.isComplete && counts().serial != serial; }
+  void requireExecuted(const char* call) const {
+    if (!isPending()) return;
+    throw Error(std::string(call) +
+                ": the last recording has not been executed: wait for it, or reset() if it never is");
+  }
   const gpu::SearchCounts& counts() const { return *reinterpret_cast<const gpu::SearchCounts*>(readback.mapped()); }
+  /// Of queries, as the device wrote them; of a host's queries, those that count.
+  std::span<const Result> recordedResults() const {
+    const uint32_t count = recorded.isWritten ? std::min(counts().queries, recorded.count) : recorded.count;
+    return {reinterpret_cast<const Result*>(readback.mapped() + kFirstResult), count};
+  }
   void validateAll(std::span<const Query> queries) const;
   void validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const;
   /// What both kinds of record() do before they record.
   GpuScene::Staged stage(std::span<const Query> queries, const HostGeometry& hostGeometry);
   GpuScene::Staged stage(const HostQueries& queries, const HostGeometry& hostGeometry);
+  /// The same, on behalf of a call. `queries`: Queries or HostQueries.
+  template <class Queries>
+  GpuScene::Staged stageFor(const char* call, const Queries& queries, const HostGeometry& hostGeometry) {
+    requireExecuted(call);
+    try {
+      return stage(queries, hostGeometry);
+    } catch (const Refusal& refusal) {
+      throw Error(std::string(call) + ": " + refusal.what());
+    }
+  }
   void begin(const HostGeometry& hostGeometry);
   void upload();
   void recordSearch(VkCommandBuffer commandBuffer, GpuScene::Staged staged);
@@ -70,26 +98,27 @@ struct Recorder::Impl {
   GatherPass gathers;
   gpu::Buffer readback;  ///< counts, then results; then sweeps, if a host's shader wrote the queries
   Recorded recorded;     ///< the last record()
+  uint32_t serial = 0;   ///< SearchCounts::serial of it
 };
 
 void Recorder::Impl::validateAll(std::span<const Query> queries) const {
   if (queries.size() > capacity.queries) {
-    throw Error("record: expected at most " + std::to_string(capacity.queries) + " queries, got " +
-                std::to_string(queries.size()));
+    throw Refusal("expected at most " + std::to_string(capacity.queries) + " queries, got " +
+                  std::to_string(queries.size()));
   }
   for (size_t i = 0; i < queries.size(); ++i) {
     std::string wrong = validate(queries[i], scene);
     if (const char* what = wrong.empty() ? onlyForCpu(queries[i], scene.impl(), false) : nullptr) {
       wrong = std::string("only the CPU combines ") + what + ": ask a Sweeper";
     }
-    if (!wrong.empty()) throw Error("record: query " + std::to_string(i) + ": " + wrong);
+    if (!wrong.empty()) throw Refusal("query " + std::to_string(i) + ": " + wrong);
   }
 }
 
 void Recorder::Impl::validateHost(const HostQueries& queries, const HostGeometry& hostGeometry) const {
-  if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Error("record: queries: " + wrong);
-  if (scene.impl().moving > 0) throw Error("record: queries: expected a scene in which no object has a motion");
-  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(queries, capacity.queries); !wrong.empty()) throw Refusal("queries: " + wrong);
+  if (scene.impl().moving > 0) throw Refusal("queries: expected a scene in which no object has a motion");
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Refusal("geometry: " + wrong);
 }
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -157,6 +186,7 @@ void Recorder::Impl::recordSearch(VkCommandBuffer commandBuffer, GpuScene::Stage
   usedBuffers = copy->shareBuffers();
   recorded.farthest = copy->farthest();
   recorded.isComplete = true;
+  serial = pass.serial();
 }
 
 void Recorder::Impl::begin(const HostGeometry& hostGeometry) {
@@ -167,7 +197,7 @@ void Recorder::Impl::begin(const HostGeometry& hostGeometry) {
 
 GpuScene::Staged Recorder::Impl::stage(std::span<const Query> queries, const HostGeometry& hostGeometry) {
   validateAll(queries);
-  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Error("record: geometry: " + wrong);
+  if (std::string wrong = validate(hostGeometry, scene); !wrong.empty()) throw Refusal("geometry: " + wrong);
   begin(hostGeometry);
   recorded.plan(queries, scene.impl(), geometry, capacity.searches);
   gathers.stage(recorded.gathered);
@@ -180,7 +210,7 @@ GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeo
   recorded.planWritten(queries.count);
   gathers.stage(recorded.gathered);
   GpuScene::Staged staged = pass.stageWritten(queries.count, scene.impl(), geometry.overwritten());
-  readback.reserve(firstSweep() + capacity.queries * sizeof(gpu::Sweep));
+  makeReadback(firstSweep() + capacity.queries * sizeof(gpu::Sweep));
   if (!hostQueries) hostQueries.emplace(owner);
   if (queries.count != 0) hostQueries->stage(queries);
   return staged;
@@ -188,12 +218,12 @@ GpuScene::Staged Recorder::Impl::stage(const HostQueries& queries, const HostGeo
 
 void Recorder::record(VkCommandBuffer commands, std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  impl_->recordSearch(commands, impl_->stage(queries, geometry));  // from here on nothing throws
+  impl_->recordSearch(commands, impl_->stageFor("record", queries, geometry));  // from here on nothing throws
 }
 
 void Recorder::record(VkCommandBuffer commands, const HostQueries& queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
-  impl_->recordSearch(commands, impl_->stage(queries, geometry));
+  impl_->recordSearch(commands, impl_->stageFor("record", queries, geometry));
 }
 
 void Recorder::Impl::upload() {
@@ -205,16 +235,17 @@ void Recorder::Impl::upload() {
 void Recorder::prepare(std::span<const Query> queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   impl_->upload();
-  impl_->stage(queries, geometry);
+  impl_->stageFor("prepare", queries, geometry);
 }
 
 void Recorder::prepare(const HostQueries& queries, const HostGeometry& geometry) {
   const FloatEnvironment floats;
   impl_->upload();
-  impl_->stage(queries, geometry);
+  impl_->stageFor("prepare", queries, geometry);
 }
 
 void Recorder::reset() {
+  impl_->recorded.isComplete = false;
   impl_->copy->forget();
   impl_->geometry.forget();
 }
@@ -232,10 +263,10 @@ Answers Recorder::read() {
   Impl& self = *impl_;
   Recorded& recorded = self.recorded;
   if (!recorded.isComplete) return {};
+  self.requireExecuted("read");
   recorded.learn(self.geometry.unboundedBoxes());
   const std::byte* const mapped = self.readback.mapped();
-  const uint32_t count = recorded.isWritten ? std::min(self.counts().queries, recorded.count)
-                                            : static_cast<uint32_t>(recorded.known.size());
+  const size_t count = recorded.isWritten ? self.recordedResults().size() : recorded.known.size();
   const auto* first = reinterpret_cast<const Result*>(mapped + kFirstResult);
   std::vector<Result> results(first, first + count);
   const auto pairs = self.pass.unresolved(self.counts());
@@ -247,7 +278,7 @@ Answers Recorder::read() {
 Capacity Recorder::needed() const {
   const Impl& self = *impl_;
   Capacity needed = self.capacity;
-  if (!self.recorded.isComplete || self.recorded.count == 0) return needed;
+  if (!self.recorded.isComplete || self.isPending() || self.recorded.count == 0) return needed;
   const gpu::SearchCounts& counts = self.counts();
   const auto of = [](uint32_t count, uint32_t capacity) {
     constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max();
@@ -264,12 +295,24 @@ Capacity Recorder::needed() const {
   return needed;
 }
 
+AnswerCounts Recorder::answerCounts() const {
+  const Impl& self = *impl_;
+  AnswerCounts answers;
+  answers.isExecuted = self.recorded.isComplete && !self.isPending();
+  if (!answers.isExecuted) return answers;
+  for (const Result& result : self.recordedResults()) {
+    ++answers.byStatus[static_cast<size_t>(result.status)];
+    for (size_t bit = 0; bit < answers.byFlag.size(); ++bit) answers.byFlag[bit] += result.flags >> bit & 1;
+  }
+  return answers;
+}
+
 uint64_t Recorder::memoryUse() const {
   return impl_->owner.bytes() + memoryAlone(impl_->copy);
 }
 
 std::string Recorder::boundsViolation() const {
-  return impl_->geometry.boundsViolation();
+  return impl_->isPending() ? "" : impl_->geometry.boundsViolation();
 }
 
 }  // namespace radar

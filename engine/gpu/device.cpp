@@ -35,7 +35,8 @@ Device::Impl::Impl(const HostDevice& given)
     const gpu::DeviceFacts facts = gpu::factsOf(vk, host.physicalDevice);
     choosesLayers = facts.outputLayer;
     reasonsAgainstSampled = gpu::unsupportedReasons(facts, Mode::sampled);
-    if (reasonsAgainstSampled.empty() && !gpu::doesGraphics(vk, host.physicalDevice, host.queueFamily)) {
+    const VkQueueFlags queue = gpu::queueFlagsOf(vk, host.physicalDevice, host.queueFamily);
+    if (reasonsAgainstSampled.empty() && (queue & VK_QUEUE_GRAPHICS_BIT) == 0) {
       reasonsAgainstSampled = {"queue family " + std::to_string(host.queueFamily) + " does not support graphics"};
     }
   } else {
@@ -87,6 +88,8 @@ Device::Impl::Shared& Device::Impl::sharedOf(std::type_index type) const {
 }
 
 std::vector<std::string> unsupportedReasons(const HostDevice& host, Mode mode) {
+  if (host.instance == VK_NULL_HANDLE) return {"HostDevice::instance is null"};
+  if (host.physicalDevice == VK_NULL_HANDLE) return {"HostDevice::physicalDevice is null"};
   gpu::Api vk(host.getInstanceProcAddr);
   vk.load(host.instance);
   return gpu::unsupportedReasons(gpu::factsOf(vk, host.physicalDevice), mode);
@@ -106,9 +109,30 @@ std::vector<std::string> failedChecks(const std::vector<ArithmeticCheck>& checks
 
 }  // namespace
 
+namespace {
+
+// Of what a host may have filled in wrongly, and no physical device is to blame for.
+std::vector<std::string> reasonsAgainst(const HostDevice& host) {
+  std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
+  if (host.device == VK_NULL_HANDLE) reasons.emplace_back("HostDevice::device is null");
+  if (!reasons.empty()) return reasons;
+  gpu::Api vk(host.getInstanceProcAddr);
+  vk.load(host.instance);
+  if ((gpu::queueFlagsOf(vk, host.physicalDevice, host.queueFamily) & VK_QUEUE_COMPUTE_BIT) == 0) {
+    reasons.push_back("HostDevice::queueFamily: family " + std::to_string(host.queueFamily) +
+                      " does not exist, or does not support compute");
+  }
+  if (host.debugNames && vk.SetDebugUtilsObjectNameEXT == nullptr) {
+    reasons.emplace_back("HostDevice::debugNames: the instance lacks VK_EXT_debug_utils");
+  }
+  return reasons;
+}
+
+}  // namespace
+
 Device Device::adopt(const HostDevice& host) {
   const FloatEnvironment floats;
-  const std::vector<std::string> reasons = unsupportedReasons(host, Mode::contact);
+  const std::vector<std::string> reasons = reasonsAgainst(host);
   if (!reasons.empty()) throw Error("the adopted device cannot be used", VK_SUCCESS, reasons);
   if (!host.memory.allocate != !host.memory.free) {
     throw Error("HostDevice::memory: expected both functions or none, got one");

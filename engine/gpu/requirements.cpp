@@ -100,7 +100,7 @@ DeviceFacts factsOf(const Api& vk, VkPhysicalDevice device) {
   const uint32_t family = queueFamilyOf(vk, device);
   DeviceFacts facts{.apiVersion = properties.apiVersion,
                     .computeQueue = family != kNone,
-                    .graphicsAndComputeQueue = family != kNone && doesGraphics(vk, device, family)};
+                    .graphicsAndComputeQueue = (queueFlagsOf(vk, device, family) & VK_QUEUE_GRAPHICS_BIT) != 0};
   if (properties.apiVersion < VK_API_VERSION_1_3) return facts;  // the structs below do not exist there
   facts.subgroups = subgroupFactsOf(vk, device);
   facts.limits = limitsOf(properties.limits, facts.subgroups);
@@ -154,9 +154,9 @@ uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device) {
   return kNone;
 }
 
-bool doesGraphics(const Api& vk, VkPhysicalDevice device, uint32_t family) {
+VkQueueFlags queueFlagsOf(const Api& vk, VkPhysicalDevice device, uint32_t family) {
   const std::vector<VkQueueFamilyProperties> families = queueFamiliesOf(vk, device);
-  return family < families.size() && (families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
+  return family < families.size() ? families[family].queueFlags : 0;
 }
 
 }  // namespace radar::gpu

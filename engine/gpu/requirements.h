@@ -48,7 +48,7 @@ std::vector<std::string> unsupportedReasons(const DeviceFacts& facts, Mode mode)
 /// The queue family to use: the first with graphics and compute, else the first with compute, else kNone.
 uint32_t queueFamilyOf(const Api& vk, VkPhysicalDevice device);
 
-/// Whether the queue family supports graphics.
-bool doesGraphics(const Api& vk, VkPhysicalDevice device, uint32_t family);
+/// What the queue family supports; 0 if there is no such family.
+VkQueueFlags queueFlagsOf(const Api& vk, VkPhysicalDevice device, uint32_t family);
 
 }  // namespace radar::gpu

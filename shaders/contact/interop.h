@@ -189,6 +189,7 @@ struct SearchCounts {
   uint trianglePairs;    // tested; low word
   uint trianglePairsHigh;
   uint queries;          // written by a host's shader, as far as they count
+  uint serial;           // of the recording; its copy on the host tells which was the last to be executed
   uint done[kWorks];     // times a lane did it, if the search counts its work;
   uint steps[kWorks];    // and times that it could have, had it had something to do
   SearchRound rounds[kMostRounds + 1];

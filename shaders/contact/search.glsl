@@ -208,6 +208,7 @@ bool setAside(uint perLane) {
 
 // Whether all stacks have room for what a step may push; sets more aside if they are nearly full.
 bool stacksHaveRoom() {
+  ++work;
   while (subgroupAny(depth + 2 > allowed)) {
     ++work;
     const uint more = min(kEntries, kStack - allowed);

@@ -9,6 +9,9 @@ if(HOW STREQUAL "pkg-config")
   set(ENV{PKG_CONFIG_PATH} ${folder})
   execute_process(COMMAND pkg-config --static --cflags --libs "cyber-radar = ${VERSION}"
     OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  if(flags MATCHES "vulkan")
+    message(FATAL_ERROR "the loader is opened at run time, but pkg-config names it: ${flags}")
+  endif()
   separate_arguments(flags)
   foreach(app readme eigen_arrays)
     execute_process(COMMAND ${CXX} -std=c++20 ${SOURCE}/tests/consumer/${app}.cpp -isystem ${EIGEN} ${flags}

@@ -75,6 +75,37 @@ TEST_CASE("adopt throws and names a function that the host's loader lacks") {
   CHECK_THROWS_WITH(Device::adopt(host.handles), test::Contains("vkGetDeviceProcAddr is missing"));
 }
 
+TEST_CASE("adopt refuses what a host has filled in wrongly, and names it") {
+  test::Host host;
+  const auto refuses = [&](const auto& change, const char* why) {
+    HostDevice wrong = host.handles;
+    change(wrong);
+    std::vector<std::string> reasons;
+    try {
+      Device::adopt(wrong);
+    } catch (const Error& error) {
+      reasons = error.reasons;
+    }
+    REQUIRE(reasons.size() == 1);
+    CHECK_THAT(reasons[0], test::StartsWith(why));
+  };
+  refuses([](HostDevice& wrong) { wrong.instance = VK_NULL_HANDLE; }, "HostDevice::instance is null");
+  refuses([](HostDevice& wrong) { wrong.physicalDevice = VK_NULL_HANDLE; }, "HostDevice::physicalDevice is null");
+  refuses([](HostDevice& wrong) { wrong.device = VK_NULL_HANDLE; }, "HostDevice::device is null");
+  refuses([](HostDevice& wrong) { wrong.queueFamily = 99; }, "HostDevice::queueFamily: family 99 does not exist");
+  // An instance without the extension has no such function.
+  refuses(
+      [](HostDevice& wrong) {
+        wrong.getInstanceProcAddr = [](VkInstance instance, const char* name) -> PFN_vkVoidFunction {
+          return std::string(name).ends_with("EXT") ? nullptr : vkGetInstanceProcAddr(instance, name);
+        };
+      },
+      "HostDevice::debugNames: the instance lacks VK_EXT_debug_utils");
+  HostDevice missing = host.handles;
+  missing.physicalDevice = VK_NULL_HANDLE;
+  CHECK(unsupportedReasons(missing, Mode::sampled) == std::vector<std::string>{"HostDevice::physicalDevice is null"});
+}
+
 TEST_CASE("two engines on two threads share a host's queue under the host's lock") {
   test::Host host;
   std::mutex mutex;

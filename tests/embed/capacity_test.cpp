@@ -1,5 +1,6 @@
 // Capacities of a recording: a query that exceeds one is invalid or unresolved and has its flag; no answer is wrong.
 #include <cmath>
+#include <numeric>
 
 #include "embed/checks.h"
 #include "embed/on_device.h"
@@ -27,6 +28,17 @@ struct Batch {
     fuzz::Outcomes outcomes;
     fuzz::checkRecorded(queries, execute(device, recorder, queries), truth, outcomes);
     CHECK(outcomes.outOfRange + outcomes.reordered == 0);
+    // read() decides what is unresolved, and no other answer.
+    const AnswerCounts counted = recorder.answerCounts();
+    CHECK(counted.isExecuted);
+    CHECK(std::accumulate(counted.byStatus.begin(), counted.byStatus.end(), 0u) == queries.size());
+    CHECK(counted.flagged(Flag::candidates) == outcomes.candidates);
+    CHECK(counted.flagged(Flag::rounds) == outcomes.rounds);
+    CHECK(counted.flagged(Flag::unresolved) >= outcomes.unresolved);
+    CHECK(counted.of(Status::undecided) <= counted.flagged(Flag::unresolved));  // hits are open, too
+    CHECK(counted.of(Status::hit) + counted.of(Status::clear) + counted.of(Status::overlap) +
+              counted.of(Status::undecided) ==
+          outcomes.answered + outcomes.unresolved);
     return outcomes;
   }
   static Scene sceneOf(const tools::Workload& workload) {
@@ -177,17 +189,6 @@ TEST_CASE("the default capacity grows with the number of queries, for sensors of
   }
 }
 
-TEST_CASE("a Recorder refuses an invalid capacity or one beyond the device's limits and names the member") {
-  const test::Row row(1);
-  const auto refused = [&](const Capacity& capacity, const char* why) {
-    CHECK_THROWS_WITH(Recorder(test::device(), row.scene, capacity), test::Contains(why));
-  };
-  refused({.queries = 1u << 31}, "Capacity::queries: this device allows");
-  refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");
-  refused({.rounds = 66}, "Capacity::rounds: this device allows 64, got 66");
-  refused({.unresolvedPairs = 1u << 30}, "Capacity::unresolvedPairs: this device allows");
-  refused({.rounds = 3}, "Capacity::rounds: expected an even number, got 3");
-}
 TEST_CASE("where meshes interlock, the default capacity does not suffice, and needed() tells what does") {
   const Batch batch(ringsOnPegs(64));
   Capacity capacity{.queries = 64};
@@ -202,6 +203,17 @@ TEST_CASE("where meshes interlock, the default capacity does not suffice, and ne
   CHECK(all.back().answered == 64);
 }
 
+TEST_CASE("a Recorder refuses an invalid capacity or one beyond the device's limits and names the member") {
+  const test::Row row(1);
+  const auto refused = [&](const Capacity& capacity, const char* why) {
+    CHECK_THROWS_WITH(Recorder(test::device(), row.scene, capacity), test::Contains(why));
+  };
+  refused({.queries = 1u << 31}, "Capacity::queries: this device allows");
+  refused({.candidates = 1u << 30}, "Capacity::candidates: this device allows");
+  refused({.rounds = 66}, "Capacity::rounds: this device allows 64, got 66");
+  refused({.unresolvedPairs = 1u << 30}, "Capacity::unresolvedPairs: this device allows");
+  refused({.rounds = 3}, "Capacity::rounds: expected an even number, got 3");
+}
 
 TEST_CASE("an object that floats cannot represent gives Flag::range only to the queries that reach it") {
   Scene scene;

@@ -1,4 +1,6 @@
 // A host's shader writes queries and their number in the command buffer that answers them.
+#include <numeric>
+
 #include "embed/checks.h"
 #include "embed/quiet_frames.h"
 #include "embed/renderer.h"
@@ -101,6 +103,25 @@ TEST_CASE(
     "frames in which a shader writes queries and their number are answered, and allocate, submit and wait for "
     "nothing") {
   test::checkQuiet<AskingFrames>(60, 2);
+}
+
+TEST_CASE("of queries that a shader writes, only those that count are counted, and needed() tells what would do") {
+  const test::Row row(1);
+  Recorder recorder(test::device(), row.scene, {.queries = 256});
+  Asker asker(test::device());
+  const std::vector<Result> expected = asker.ask(recorder, {.number = 100, .height = -3});
+  REQUIRE(expected.size() == 100);
+  const AnswerCounts counted = recorder.answerCounts();
+  CHECK(std::accumulate(counted.byStatus.begin(), counted.byStatus.end(), 0u) == 100);
+  CHECK(counted.of(Status::invalid) == 0);
+  CHECK(counted.of(Status::clear) == std::ranges::count(expected, Status::clear, &Result::status));
+  CHECK(counted.of(Status::clear) > 0);
+  CHECK(counted.of(Status::hit) + counted.of(Status::undecided) > 0);
+  const Capacity needed = recorder.needed();
+  CHECK(needed.searches == 0);
+  CHECK(needed.candidates < 100 * 100);
+  Recorder again(test::device(), row.scene, needed);
+  test::checkSame(asker.ask(again, {.number = 100, .height = -3}), expected);
 }
 
 TEST_CASE("a shader that writes queries without the documented barrier causes a hazard") {

@@ -1,4 +1,5 @@
 // What Recorders refuse: each refusal names what is wrong and records nothing, so the next recording is answered.
+#include "contact/pass.h"
 #include "embed/checks.h"
 #include "embed/on_device.h"
 #include "embed/renderer.h"
@@ -15,6 +16,7 @@ struct Refusing {
   void refuse(const Queries& queries, const std::string& why, const HostGeometry& geometry = {}) {
     CAPTURE(why);
     CHECK_THROWS_WITH(test::execute(recorder, queries, geometry), test::StartsWith("record: ") && Contains(why));
+    CHECK_THROWS_WITH(recorder.prepare(queries, geometry), test::StartsWith("prepare: ") && Contains(why));
     test::checkSame(test::execute(recorder, good), expected);
   }
   void refuseMesh(const DeformedMesh& deformed, const std::string& why) {
@@ -40,6 +42,29 @@ struct Refusing {
 };
 
 }  // namespace
+
+TEST_CASE("a Recorder whose last recording has not been executed says so, until reset()") {
+  Refusing all;
+  CHECK_FALSE(all.recorder.answerCounts().isExecuted);
+  gpu::Submission submission(test::device().impl(), false);
+  const ObjectId moved[] = {1};
+  const MovedObjects group{.transforms = all.buffer, .objects = moved};
+  const HostGeometry geometries[] = {{}, {.objects = {&group, 1}}};
+  for (const HostGeometry& geometry : geometries) {
+    all.recorder.record(submission.begin(), all.good, geometry);
+    CHECK_FALSE(all.recorder.answerCounts().isExecuted);
+    CHECK(all.recorder.boundsViolation().empty());
+    CHECK(all.recorder.needed().candidates == usualCandidates(3));
+    CHECK_THROWS_WITH(all.recorder.read(), test::StartsWith("read: the last recording has not been executed"));
+    const std::string why = ": the last recording has not been executed: wait for it, or reset()";
+    CHECK_THROWS_WITH(test::execute(all.recorder, all.good), test::StartsWith("record" + why));
+    CHECK_THROWS_WITH(all.recorder.prepare(all.good), test::StartsWith("prepare" + why));
+    all.recorder.reset();
+    CHECK(all.recorder.read().results.empty());
+    test::checkSame(test::execute(all.recorder, all.good), all.expected);
+    CHECK(all.recorder.answerCounts().isExecuted);
+  }
+}
 
 TEST_CASE("record refuses queries that break their contract, or are too many, and names them") {
   Refusing all;

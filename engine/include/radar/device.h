@@ -146,8 +146,8 @@ class RADAR_API Device {
  public:
   /// Throws, listing devices and reasons, if no device is usable, or the requested one is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if the physical device lacks what mode contact needs, or its arithmetic breaks the error
-  /// bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
+  /// Throws with reasons if a handle is null, the queue family is none of the device's for compute, debugNames lacks its
+  /// extension, the physical device lacks what mode contact needs, or its arithmetic breaks the error bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
   /// it gives the lock functions. If `host` has a queue, submits at most twice, to check the arithmetic. Any number of
   /// Devices may be made from one VkDevice.
   static Device adopt(const HostDevice& host);

@@ -5,6 +5,9 @@
 // for shaders.
 #pragma once
 
+#include <array>
+#include <bit>
+
 #include "radar/answers.h"
 #include "radar/host.h"
 #include "radar/scene_copy.h"
@@ -41,6 +44,16 @@ struct Capacity {
   uint32_t rounds = 0;
   uint32_t unresolvedPairs = 0;
   uint32_t searches = 0;
+};
+
+/// The answers of a recording as results() has them, by kind; lists of hits do not count.
+struct AnswerCounts {
+  bool isExecuted = false;             ///< the last recording's commands; else nothing is counted
+  std::array<uint32_t, 5> byStatus{};  ///< queries
+  std::array<uint32_t, 6> byFlag{};    ///< by bit
+  uint32_t of(Status status) const { return byStatus[static_cast<uint32_t>(status)]; }
+  /// `flag`: one of Flag.
+  uint32_t flagged(uint32_t flag) const { return byFlag[static_cast<size_t>(std::countr_zero(flag))]; }
 };
 
 /// Records batches of mode contact. Make one per frame in flight, while loading: each has its own lists. The first one
@@ -90,8 +103,9 @@ class RADAR_API Recorder {
   /// - Before: the previous recording of this object has executed and been waited for. Writes to the buffers of
   ///   `geometry` are visible to VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT; the next writes to them
   ///   wait for that stage. Without `geometry` nothing needs to be made visible.
-  /// - Afterwards: submit the commands once or never; if never, call reset() before the next record(). Readers of the
-  ///   answers wait for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
+  /// - Afterwards: submit the commands once or never; if never, call reset() before the next record(), which else
+  ///   throws. Readers of the answers wait for VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+  ///   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT.
   /// - Disturbed: the bound compute pipeline, descriptor set 0 of the compute bind point, and push constants.
   /// - Allocates device memory only if the scene, the geometry or the lists of excluded objects have grown since.
   ///
@@ -132,8 +146,11 @@ class RADAR_API Recorder {
   /// The answers on the CPU, one per recorded query (of a host's queries, as many as count), with open ones decided,
   /// and lists; Result::flags tell what is missing, instead of reasons, and there are no statistics. Call it once the
   /// last recording has executed and been waited for (by a fence, or a semaphore's wait on the host); it does not wait
-  /// itself. Later changes of the scene do not matter.
+  /// itself, and throws if they have not been executed. Later changes of the scene do not matter.
   Answers read();
+  /// How many answers the last recording has of each kind. Decides none, and so takes next to no time. To be called
+  /// when read() may be, or if the commands may never have been executed.
+  AnswerCounts answerCounts() const;
   /// What the last recording needed, to be called when read() may be: a list's length may differ by some percent when
   /// the same is recorded again. Where the need is unknown because a limit was exceeded: four times as many candidates,
   /// twice as many rounds. If a query exceeded a limit and this is no more than there was, only a Sweeper answers it:

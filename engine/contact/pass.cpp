@@ -18,7 +18,7 @@ namespace {
 constexpr VkBufferUsageFlags kUploaded = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 // Tasks, of 20 bytes in two lists: at most, in addition to two per search. The search makes do with less than what all
 // stacks hold (search.glsl).
-constexpr uint32_t kMostTasks = 3u << 17;
+constexpr uint32_t kMostTasks = 1u << 18;
 // Lanes that search at once on a GPU, with queues of 320 bytes each: for each search, at least, and at most; of very
 // many searches, a quarter. An NVIDIA H200 searched 256 times in 0.79 ms with 2,048 lanes, and in 1.2 with 65,536.
 constexpr uint32_t kLanes = 8, kLeastLanes = 1u << 10, kMostLanes = 1u << 14, kMostOfAll = 1u << 15;
@@ -49,8 +49,8 @@ gpu::Program searchOf(const Device::Impl& device, const SearchRoom& room, bool h
 }  // namespace
 
 uint64_t usualCandidates(uint64_t searches) {
-  return std::max(
-      {std::min(searches << 11, uint64_t{1} << 15), std::min(64 * searches, uint64_t{3} << 15), 2 * searches});
+  return std::max({std::min(searches << 11, uint64_t{1} << 15), std::min(64 * searches, uint64_t{3} << 15),
+                   std::min(12 * searches, uint64_t{3} << 16), 2 * searches});
 }
 
 std::vector<gpu::Program> ContactPass::programs(const Device::Impl& device) {

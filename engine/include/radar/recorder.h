@@ -20,15 +20,15 @@ namespace radar {
 /// | member          | counts                                  | 0 stands for   | too small        | bytes |
 /// |-----------------|-----------------------------------------|----------------|------------------|-------|
 /// | queries         | queries                                 | none           | record() throws  | 830   |
-/// | candidates      | pairs of triangles that may be first    | 2,048, 64 or 2 | Flag::candidates | 88    |
+/// | candidates      | pairs of triangles that may be first    | 2,048 to 2     | Flag::candidates | 88    |
 /// | rounds          | dispatches of the search; even, to 64   | 16             | Flag::rounds     | none  |
-/// | unresolvedPairs | pairs that only the CPU decides         | 128, 16 or 1   | Flag::unresolved | 192   |
+/// | unresolvedPairs | pairs that only the CPU decides         | 128 to 1       | Flag::unresolved | 192   |
 /// | searches        | objects searched one by one             | none           | record() throws  | 960   |
 ///
 /// Bytes are about what each takes of the device's memory; for unresolvedPairs, of the host's. Searches count as
 /// queries where 0 is chosen. It stands for the largest of 2,048 candidates a query, but at most 2^15 in all, 64 but at
-/// most 98,304, and 2; and of 128 unresolved pairs, but at most 2^13, 16 but at most 2^14, and 1. Without
-/// Device::doubles(), there are always 16. If a query's do not fit, read() leaves Flag::unresolved.
+/// most 98,304, 12 but at most 196,608, and 2; of 128 unresolved pairs, but at most 2^13, 16 but at most 2^14, and 1.
+/// Without Device::doubles(), there are always 16. If a query's do not fit, read() leaves Flag::unresolved.
 ///
 /// A Recorder whose lists are chosen so takes, without its copy of the scene, at most 8 MB for up to 64 queries; 25.6
 /// KB more for each further one up to 1,000, for which it takes 32 MB; and for each beyond, 1 KB of the device's memory

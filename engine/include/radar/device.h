@@ -146,10 +146,11 @@ class RADAR_API Device {
  public:
   /// Throws, listing devices and reasons, if no device is usable, or the requested one is not.
   static Device open(const DeviceOptions& options = {});
-  /// Throws with reasons if a handle is null, the queue family is none of the device's for compute, debugNames lacks its
-  /// extension, the physical device lacks what mode contact needs, or its arithmetic breaks the error bounds. While this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless
-  /// it gives the lock functions. If `host` has a queue, submits at most twice, to check the arithmetic. Any number of
-  /// Devices may be made from one VkDevice.
+  /// Throws with reasons if a handle is null, the queue family is none of the device's for compute, debugNames lacks
+  /// its extension, the physical device lacks what mode contact needs, or its arithmetic breaks the error bounds. While
+  /// this call or a Sweeper of this device runs, the host keeps other threads from using `queue`, unless it gives the
+  /// lock functions. If `host` has a queue, submits at most twice, to check the arithmetic. Any number of Devices may
+  /// be made from one VkDevice.
   static Device adopt(const HostDevice& host);
   ~Device();
   Device(Device&&) noexcept;
@@ -220,9 +221,8 @@ RADAR_API std::vector<ArithmeticCheck> checkArithmetic(const Device& device);
 struct AnswerCheck {
   std::string kind;
   uint32_t asked = 0;
-  uint32_t wrong = 0;  ///< answers that differ in any bit; of mode sampled, brackets without the exact distance
-  std::string
-      stage;  ///< the first stage of the device that differs: placing, drawing, searching, solving or describing
+  uint32_t wrong = 0;      ///< answers that differ in any bit; of mode sampled, brackets without the exact distance
+  std::string stage;       ///< the first that differs: placing, drawing, searching, solving or describing
   std::string firstWrong;  ///< what was answered, and what was expected: each number, its bits and ulps
   bool passed() const { return wrong == 0; }
 };

@@ -36,6 +36,8 @@ const DeviceReport& tested() {
 void onValidation(const std::string& message) {
   // Layers since 1.4.309 say so of every draw that writes the layer, though it writes 0 and there is one.
   if (message.starts_with("Undefined-Value-Layer-Written")) return;
+  // GPU-assisted ones tell so of each feature that they switch on for themselves, and that they are slow.
+  if (message.starts_with("WARNING-GPU-Assisted-Validation") || message.starts_with("VALIDATION-SETTINGS")) return;
   const std::lock_guard lock(mutex);
   messages.push_back(message);
 }

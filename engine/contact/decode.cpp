@@ -50,7 +50,7 @@ exact::PlacedPair placedPair(const gpu::UnresolvedPair& pair, const Query& query
 
 // Considers a pair by the rule of a query that ignores what does not block.
 void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& inOrder,
-                      const exact::PlacedPair& sorted, const Query& query, const Vector& direction,
+                      const exact::PlacedPair& sorted, const Query& query, const exact::Course& course,
                       std::span<const Vector> farthest, exact::EarliestContact& earliest) {
   const Transform worldFromObject = poseOf(pair);
   const double slack = query.slack
@@ -59,10 +59,10 @@ void considerBlocking(const gpu::UnresolvedPair& pair, const exact::PlacedPair& 
                                                           placedMagnitude(farthest[pair.mesh], worldFromObject)));
   const exact::Mirrored mirrored{exact::isMirroring(query.worldFromMesh), exact::isMirroring(worldFromObject)};
   const exact::PairName name{pair.object, pair.triB, pair.triA};
-  if (exact::arePressed(inOrder.a, inOrder.b, direction, slack, mirrored)) {
+  if (exact::arePressed(inOrder.a, inOrder.b, course, slack, mirrored)) {
     earliest.considerPressed(name, sorted);
   } else {
-    earliest.consider(name, sorted, [&] { return exact::blocks(inOrder.a, inOrder.b, direction, slack, mirrored); });
+    earliest.consider(name, sorted, [&] { return exact::blocks(inOrder.a, inOrder.b, course, slack, mirrored); });
   }
 }
 
@@ -75,6 +75,13 @@ Result decideClearance(std::span<const gpu::UnresolvedPair* const> pairs, const 
     if (contact.isDecided()) break;
   }
   Result result = contact.first();
+  if (result.status == Status::overlap) {
+    // Only the CPU's search names the nearest pair.
+    result = {};
+    result.status = Status::overlap;
+    result.detected = Detected::yes;
+    result.t = result.lo = result.hi = result.fraction = 0;
+  }
   result.tier = Tier::contact;
   return result;
 }
@@ -92,7 +99,7 @@ Result decideUnresolved(const Result& found, std::span<const gpu::UnresolvedPair
     std::sort(sorted.a.begin(), sorted.a.end());
     std::sort(sorted.b.begin(), sorted.b.end());
     if (query.ignoreLeaving) {
-      considerBlocking(*pair, inOrder, sorted, query, motion.stands ? Vector{} : motion.direction, farthest, earliest);
+      considerBlocking(*pair, inOrder, sorted, query, exact::courseOf(motion), farthest, earliest);
     } else {
       earliest.consider({pair->object, pair->triB, pair->triA}, sorted);
     }
@@ -118,7 +125,7 @@ namespace {
 bool isSettled(const Query& query, double tolerance, const Result& found) {
   if (found.flags != 0 || found.status == Status::invalid) return false;
   if (query.clearance > 0) {
-    // The CPU finds the least pair of triangles that are that near at the start.
+    // The CPU finds the nearest pair of triangles at the start.
     if (found.status == Status::overlap && found.object == kNone) return false;
     // What is certain on the device may have kept the search from other pairs.
     if (found.status == Status::undecided) return false;

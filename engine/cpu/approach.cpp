@@ -6,12 +6,14 @@
 
 #include "exact/double_double.h"
 #include "exact/motion.h"
+#include "exact/nearest_points.h"
 
 namespace radar::cpu {
 
 namespace {
 
-using exact::DoubleDouble;
+using exact::Corners, exact::DoubleDouble, exact::dot, exact::Nearest, exact::nearestPoints, exact::Point;
+using exact::operator+, exact::operator-, exact::operator*;
 
 // Steps converge quadratically, or by a factor of two where the triangles pass each other just within the clearance.
 constexpr int kMostSteps = 200;
@@ -38,31 +40,6 @@ struct Of<DoubleDouble> {
 };
 
 template <class Real>
-using Point = std::array<Real, 3>;
-template <class Real>
-using Corners = std::array<Point<Real>, 3>;
-
-template <class Real>
-Point<Real> operator+(const Point<Real>& p, const Point<Real>& q) {
-  return {p[0] + q[0], p[1] + q[1], p[2] + q[2]};
-}
-template <class Real>
-Point<Real> operator-(const Point<Real>& p, const Point<Real>& q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-template <class Real>
-Point<Real> operator*(const Real& f, const Point<Real>& v) {
-  return {f * v[0], f * v[1], f * v[2]};
-}
-template <class Real>
-Real dot(const Point<Real>& p, const Point<Real>& q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-template <class Real>
-Point<Real> crossProduct(const Point<Real>& p, const Point<Real>& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-template <class Real>
 Vector rounded(const Point<Real>& p) {
   return {Of<Real>::rounded(p[0]), Of<Real>::rounded(p[1]), Of<Real>::rounded(p[2])};
 }
@@ -73,91 +50,6 @@ double norm1(const Point<Real>& p) {
 template <class Real>
 Point<Real> exactly(const Vector& v) {
   return {Real{v[0]}, Real{v[1]}, Real{v[2]}};
-}
-
-/// The nearest pair of points found so far.
-template <class Real>
-struct Nearest {
-  Point<Real> a{}, b{};
-  exact::Features features{Feature::vertex, Feature::vertex};
-  size_t corner = 0;  ///< of b, if that is a vertex
-  Real squared{Of<Real>::never};
-
-  void offer(const Point<Real>& p, const Point<Real>& q, const exact::Features& on, size_t cornerOfB = 0) {
-    const Point<Real> gap = q - p;
-    if (const Real d = dot(gap, gap); d < squared) *this = {p, q, on, cornerOfB, d};
-  }
-};
-
-/// The feature on which the point at a share of an edge is.
-template <class Real>
-Feature featureAt(const Real& share) {
-  return share > Real{} && share < Real{1} ? Feature::edge : Feature::vertex;
-}
-
-// The points need not be the nearest: any will do for the bounds, but these make them tight. Cross products lose far
-// fewer digits than the squares of a Gram matrix if a triangle is a needle.
-
-template <class Real>
-Real share(const Real& part, const Real& whole) {
-  return whole > Real{} ? std::clamp(part / whole, Real{}, Real{1}) : Real{};
-}
-
-/// Edge i of a and edge k of b.
-template <class Real>
-void offerEdges(Nearest<Real>& nearest, const Corners<Real>& a, size_t i, const Corners<Real>& b, size_t k) {
-  const size_t end = (k + 1) % 3;
-  const Point<Real>&a0 = a[i], &b0 = b[k];
-  const Point<Real> x = a[(i + 1) % 3] - a0, y = b[end] - b0, r = b0 - a0, n = crossProduct(x, y);
-  const Real nn = dot(n, n), xx = dot(x, x), yy = dot(y, y);
-  Real s = share(dot(crossProduct(r, y), n), nn);
-  Real t = share(dot(a0 + s * x - b0, y), yy);
-  s = share(dot(b0 + t * y - a0, x), xx);
-  t = share(dot(a0 + s * x - b0, y), yy);
-  nearest.offer(a0 + s * x, b0 + t * y, {featureAt(s), featureAt(t)}, t > Real{} ? end : k);
-}
-
-/// The point of a face at `p`, as seen along its normal; none if it is outside.
-template <class Real>
-std::optional<Point<Real>> onFace(const Point<Real>& p, const Corners<Real>& face) {
-  const Point<Real> x = face[1] - face[0], y = face[2] - face[0], r = p - face[0], n = crossProduct(x, y);
-  const Real nn = dot(n, n);
-  if (!(nn > Real{})) return std::nullopt;
-  const Real v = dot(crossProduct(r, y), n) / nn, w = dot(crossProduct(x, r), n) / nn;
-  if (!(v >= Real{} && w >= Real{} && v + w <= Real{1})) return std::nullopt;
-  return face[0] + v * x + w * y;
-}
-
-/// Where an edge crosses a face: the points of both, which rounding may keep apart.
-template <class Real>
-struct Crossing {
-  Point<Real> onEdge, onFace;
-};
-template <class Real>
-std::optional<Crossing<Real>> crossing(const Point<Real>& p, const Point<Real>& q, const Corners<Real>& face) {
-  const Point<Real> n = crossProduct(face[1] - face[0], face[2] - face[0]);
-  const Real before = dot(n, p - face[0]), after = dot(n, q - face[0]);
-  if (!(before * after < Real{})) return std::nullopt;
-  const Point<Real> at = p + std::clamp(before / (before - after), Real{}, Real{1}) * (q - p);
-  const auto above = onFace(at, face);
-  return above ? std::optional(Crossing<Real>{at, *above}) : std::nullopt;
-}
-
-template <class Real>
-Nearest<Real> nearestPoints(const Corners<Real>& a, const Corners<Real>& b) {
-  Nearest<Real> nearest{a[0], b[0]};
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t k = 0; k < 3; ++k) offerEdges(nearest, a, i, b, k);
-    if (const auto p = onFace(a[i], b)) nearest.offer(a[i], *p, {Feature::vertex, Feature::face});
-    if (const auto p = onFace(b[i], a)) nearest.offer(*p, b[i], {Feature::face, Feature::vertex}, i);
-    if (const auto at = crossing(a[i], a[(i + 1) % 3], b)) {
-      nearest.offer(at->onEdge, at->onFace, {Feature::edge, Feature::face});
-    }
-    if (const auto at = crossing(b[i], b[(i + 1) % 3], a)) {
-      nearest.offer(at->onFace, at->onEdge, {Feature::face, Feature::edge});
-    }
-  }
-  return nearest;
 }
 
 /// The triangles at one moment.
@@ -305,34 +197,55 @@ double roundedUp(const DoubleDouble& x) {
   return x.high < Of<DoubleDouble>::never ? (1 + 2 * kUnit) * x.high : std::numeric_limits<double>::infinity();
 }
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Of triangle a, moved by `way` along the unit vector, and b.
 template <class Real>
-Approach inWorld(const Found<Real>& found, const exact::Triangle& a, const exact::Triangle& b, const Point<Real>& unit,
-                 double unscale) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  Approach out{
-      unscale * roundedDown(found.lo), unscale * roundedUp(found.hi), {kNan, kNan, kNan}, {kNan, kNan, kNan}, {}};
-  if (!found.atLo) return out;
-  const Nearest<Real>& nearest = found.atLo->nearest;
-  out.features = nearest.features;
+Separation inWorld(const Moment<Real>& moment, const Real& way, const exact::Triangle& a, const exact::Triangle& b,
+                   const Point<Real>& unit, double unscale) {
+  const Nearest<Real>& nearest = moment.nearest;
+  const Point<Real> gap = nearest.a - nearest.b;
+  const Real length = Of<Real>::root(dot(gap, gap));
+  Separation out{unscale * Of<Real>::rounded(length), {}, {kNan, kNan, kNan}, nearest.features};
   if (nearest.features.b == Feature::vertex) {
     out.point = b[nearest.corner];
   } else {
-    const Real lo = Real{unscale} * found.lo;
-    out.point = rounded(exactly<Real>(a[0]) + lo * unit + Real{unscale} * nearest.b);
+    out.point = rounded(exactly<Real>(a[0]) + Real{unscale} * way * unit + Real{unscale} * nearest.b);
   }
-  const Point<Real> gap = nearest.a - nearest.b;
-  if (found.atLo->least > Real{}) out.normal = rounded((Real{1} / Of<Real>::root(dot(gap, gap))) * gap);
+  if (moment.least > Real{}) out.normal = rounded((Real{1} / length) * gap);
   return out;
+}
+
+template <class Real>
+Approach inWorld(const Found<Real>& found, const exact::Triangle& a, const exact::Triangle& b, const Point<Real>& unit,
+                 double unscale) {
+  Approach out{unscale * roundedDown(found.lo), unscale * roundedUp(found.hi), {}};
+  if (found.atLo) out.atLo = inWorld(*found.atLo, found.lo, a, b, unit, unscale);
+  return out;
+}
+
+/// Exponent of a power of two that scales lengths up to about `size` to 1, so that products neither overflow nor
+/// underflow.
+int exponentOf(const exact::Triangle& a, const exact::Triangle& b, double size) {
+  for (size_t i = 0; i < 3; ++i) size = std::max({size, norm1(a[i] - a[0]), norm1(b[i] - a[0])});
+  return std::clamp(std::ilogb(size), -1000, 1000);
 }
 
 }  // namespace
 
+Separation separationOf(const exact::Triangle& a, const exact::Triangle& b) {
+  const int exponent = exponentOf(a, b, 0);
+  const double scale = std::ldexp(1.0, -exponent);
+  const Pair<double> pair{relative<double>(a, a[0], scale), relative<double>(b, a[0], scale), {}, 0, 0, 0};
+  Separation out = inWorld(momentAt(pair, 0.0), 0.0, a, b, pair.unit, std::ldexp(1.0, exponent));
+  const auto meets = std::isnan(out.normal[0]) ? exact::contact(a, b, {1, 0, 0}) : std::nullopt;
+  if (meets && exact::sign(meets->first) <= 0 && exact::sign(meets->last) >= 0) out.distance = 0;
+  return out;
+}
+
 std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle& b, const Vector& direction,
                                  const Vector& unit, double clearance, double distance, double tolerance) {
-  double size = clearance;
-  for (size_t i = 0; i < 3; ++i) size = std::max({size, norm1(a[i] - a[0]), norm1(b[i] - a[0])});
-  // Scaled by a power of two to about 1, so that products neither overflow nor underflow.
-  const int exponent = std::clamp(std::ilogb(size), -1000, 1000);
+  const int exponent = exponentOf(a, b, clearance);
   const double scale = std::ldexp(1.0, -exponent), unscale = std::ldexp(1.0, exponent);
   const Pair<double> rough{relative<double>(a, a[0], scale),
                            relative<double>(b, a[0], scale),
@@ -340,9 +253,15 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
                            scale * clearance,
                            scale * distance,
                            scale * tolerance};
+  // A trial at the end may come out a little later, by the rounding of its bound.
+  const auto withinWay = [&](Approach out) {
+    if (!std::isinf(out.hi)) out.hi = std::min(out.hi, distance);
+    return out;
+  };
   const auto found = search(rough);
   if (!found) return std::nullopt;
-  if (!found->isRough || found->hi - found->lo <= rough.tolerance) return inWorld(*found, a, b, unit, unscale);
+  if (!found->isRough || found->hi - found->lo <= rough.tolerance)
+    return withinWay(inWorld(*found, a, b, unit, unscale));
   const Pair<DoubleDouble> fine{relative<DoubleDouble>(a, a[0], scale),
                                 relative<DoubleDouble>(b, a[0], scale),
                                 normalised(direction),
@@ -350,7 +269,16 @@ std::optional<Approach> approach(const exact::Triangle& a, const exact::Triangle
                                 {std::min(rough.distance, 1e290)},
                                 {rough.tolerance}};
   const auto better = search(fine);
-  return better ? std::optional(inWorld(*better, a, b, fine.unit, unscale)) : std::nullopt;
+  return better ? std::optional(withinWay(inWorld(*better, a, b, fine.unit, unscale))) : std::nullopt;
+}
+
+bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const Vector& displacement, double clearance) {
+  const int exponent = exponentOf(a, b, std::max(clearance, radar::norm1(displacement)));
+  const double scale = std::ldexp(1.0, -exponent);
+  Pair<DoubleDouble> pair{
+      relative<DoubleDouble>(a, a[0], scale), relative<DoubleDouble>(b, a[0], scale), {}, {}, {}, {}};
+  for (Point<DoubleDouble>& corner : pair.gaps) corner = corner - exactly<DoubleDouble>(scaled(scale, displacement));
+  return momentAt(pair, DoubleDouble{}).most <= DoubleDouble{scale * clearance};
 }
 
 }  // namespace radar::cpu

@@ -7,12 +7,22 @@
 
 namespace radar::cpu {
 
+/// Where two triangles are nearest to each other.
+struct Separation {
+  double distance;           ///< world units; off by rounding, but exactly 0 if they touch
+  Vector point;              ///< of the resting triangle, nearest to the moving one; a corner is given exactly
+  Vector normal;             ///< unit, towards the moving one; NaN if they touch, as far as doubles tell
+  exact::Features features;  ///< on which the nearest points are
+};
+Separation separationOf(const exact::Triangle& a, const exact::Triangle& b);
+
+/// Whether they certainly are within the clearance once a has moved by `displacement`.
+bool certainlyWithin(const exact::Triangle& a, const exact::Triangle& b, const Vector& displacement, double clearance);
+
 struct Approach {
-  double lo;                 ///< world units: the triangles are farther apart before this
-  double hi;                 ///< they certainly are within the distance by this; infinite if rounding leaves it open
-  Vector point;              ///< of the resting triangle, nearest to the moving one at `lo`; a corner is given exactly
-  Vector normal;             ///< unit, from the resting triangle towards the moving one at `lo`; NaN if they touch
-  exact::Features features;  ///< on which the nearest points at `lo` are
+  double lo;        ///< world units: the triangles are farther apart before this
+  double hi;        ///< they certainly are within the distance by this; infinite if rounding leaves it open
+  Separation atLo;  ///< if `hi` is known
 };
 
 /// When triangle a, moved by t along `direction`, comes within `clearance` > 0 of b; none if it certainly does not for

@@ -14,6 +14,14 @@ namespace {
 // Of the longest side of the sensor's box.
 constexpr double kTolerance = 1e-6;
 
+void setSeparation(Result& result, const Separation& separation) {
+  result.featureB = separation.features.b;
+  result.featureA = separation.features.a;
+  result.point = exact::withoutZeroSigns(separation.point);
+  result.normal = exact::withoutZeroSigns(separation.normal);
+  result.gap = separation.distance;
+}
+
 }  // namespace
 
 double toleranceOf(const Query& query, const Mesh& sensor) {
@@ -45,24 +53,41 @@ std::optional<Approach> ClearanceContact::approachOf(const exact::PlacedPair& pa
   const Motion& motion = *motion_;
   auto found = approach(pair.a, pair.b, motion.direction, motion.unit, query_.clearance,
                         motion.wayUntil(motion.distance), tolerance_);
-  if (!found || !motion.isStep) return found;
-  const auto timeOf = [&](double way, double rounding) {
-    return way > 0 && motion.speed > 0 ? rounding * (way / motion.speed) : 0;
-  };
-  found->lo = timeOf(found->lo, 1 - 4 * kUnit);
-  if (!std::isinf(found->hi)) found->hi = timeOf(found->hi, 1 + 4 * kUnit);
-  if (found->lo > motion.distance) return std::nullopt;
-  // Rounding does not tell the end from a time before it.
-  if (found->hi > motion.distance) found->hi = std::numeric_limits<double>::infinity();
-  found->point = along(found->point, found->lo, motion.drift);
+  if (!found) return found;
+  if (motion.isStep) {
+    const auto timeOf = [&](double way, double rounding) {
+      return way > 0 && motion.speed > 0 ? rounding * (way / motion.speed) : 0;
+    };
+    found->lo = timeOf(found->lo, 1 - 4 * kUnit);
+    if (!std::isinf(found->hi)) found->hi = timeOf(found->hi, 1 + 4 * kUnit);
+    if (found->lo > motion.distance) return std::nullopt;
+    // The way until then has been rounded: only the end itself is known to be in time.
+    const bool isLate = found->hi > motion.distance && !std::isinf(found->hi);
+    if (isLate && certainlyWithin(pair.a, pair.b, motion.direction, query_.clearance)) {
+      found->hi = motion.distance;
+    } else if (isLate) {
+      found->hi = std::numeric_limits<double>::infinity();
+    }
+  }
+  // No digits tell how far a tiny clearance is; but what touches is within it.
+  if (std::isinf(found->hi)) {
+    exact::EarliestContact touching(motion);
+    touching.consider({}, pair);
+    if (!touching.found()) return found;
+    const Result result = touching.answer(false);
+    found->hi = result.hi;
+    found->lo = std::min(found->lo, found->hi);
+    found->atLo = {0, result.point, result.normal, {result.featureA, result.featureB}};
+    return found;
+  }
+  if (motion.isStep) found->atLo.point = along(found->atLo.point, found->lo, motion.drift);
   return found;
 }
 
 void ClearanceContact::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
   if (isBefore(name)) return;
-  if (query_.ignoreLeaving && !rule_.blocks(pair, *motion_)) return;
   const auto found = approachOf(pair);
-  if (!found) return;
+  if (!found || (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance))) return;
   lo_ = std::min(lo_, found->lo);
   Near near{name, *found, found->lo};
   if (best_.empty()) {
@@ -101,10 +126,7 @@ Result ClearanceContact::answer(const Near& near) const {
   result.fraction = motion_->distance > 0 ? result.t / motion_->distance : 0;
   result.triB = near.name.triB;
   result.triA = near.name.triA;
-  result.featureB = near.approach.features.b;
-  result.featureA = near.approach.features.a;
-  result.point = exact::withoutZeroSigns(near.approach.point);
-  result.normal = exact::withoutZeroSigns(near.approach.normal);
+  setSeparation(result, near.approach.atLo);
   return result;
 }
 
@@ -117,7 +139,8 @@ Result ClearanceContact::first() const {
   // No ids, as of any decision and of what is undecided.
   Result result(first.isCertain() ? Status::hit : Status::undecided);
   result.lo = first.isCertain() ? 0 : lo_;
-  if (first.isCertain()) result.hi = motion_->distance;
+  if (first.isCertain()) result.t = result.hi = motion_->distance;
+  if (first.isCertain()) result.fraction = motion_->distance > 0 ? 1 : 0;
   if (first.isCertain()) result.detected = Detected::yes;
   return result;
 }
@@ -132,6 +155,32 @@ std::vector<Result> ClearanceContact::nearest() const {
   std::sort(results.begin(), results.end(),
             [](const Result& p, const Result& q) { return p.lo != q.lo ? p.lo < q.lo : p.object < q.object; });
   return results;
+}
+
+void NearestAtStart::consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis) {
+  if (isBefore(name)) return;
+  const Separation found = separationOf(pair.a, pair.b);
+  const bool isNearer = found.distance < nearest_.distance || (found.distance == nearest_.distance && name < name_);
+  if (!isNearer || found.distance > reach_) return;
+  if (query_.ignoreLeaving && !rule_.blocks(pair, *motion_, query_.clearance)) return;
+  nearest_ = found;
+  name_ = first_ = name;
+  atStart_ = found.distance == 0;
+  decided_ = found.distance < 0.5 * reach_;
+}
+
+bool NearestAtStart::narrow() {
+  if (!std::exchange(decided_, false)) return false;
+  reach_ = nearest_.distance;
+  return true;
+}
+
+void NearestAtStart::describe(Result& result) const {
+  if (name_.object == kNone) return;
+  result.object = name_.object;
+  result.triB = name_.triB;
+  result.triA = name_.triA;
+  setSeparation(result, nearest_);
 }
 
 }  // namespace radar::cpu

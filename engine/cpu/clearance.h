@@ -1,6 +1,7 @@
 // Finds when a query's sensor comes within its clearance of an object: first, or of each of the nearest objects.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -51,6 +52,34 @@ class ClearanceContact final : public PairVisitor {
   std::vector<Near> best_;     // at most one: of all objects, or of the current one if several are asked for
   std::vector<Near> nearest_;  // one per object, earliest first
   std::vector<Near> open_;     // of objects that rounding leaves open
+};
+
+/// Of what is within a query's clearance at the start, finds the nearest pair, and of equals the least. It passes over
+/// the pairs within `reach`, again as long as it can narrow that: those within a large clearance may be very many.
+class NearestAtStart final : public PairVisitor {
+ public:
+  /// `query` must outlive this.
+  explicit NearestAtStart(const Query& query) : PairVisitor(0), query_(query), reach_(query.clearance) {}
+
+  /// `motion`: the query's past the next object, which must stay in place meanwhile.
+  void beginObject(const PairRule& rule, const Motion& motion) {
+    rule_ = rule;
+    motion_ = &motion;
+  }
+  void consider(const exact::PairName& name, const exact::PlacedPair& pair, Axis axis) override;
+  /// Whether the last search past an object has ended early, to go on within less reach.
+  bool narrow();
+  double reach() const { return reach_; }
+  /// Sets ids, features, point, normal and gap.
+  void describe(Result& result) const;
+
+ private:
+  const Query& query_;
+  const Motion* motion_ = nullptr;
+  PairRule rule_;
+  double reach_;
+  exact::PairName name_;
+  Separation nearest_{std::numeric_limits<double>::infinity(), {}, {}, {}};
 };
 
 }  // namespace radar::cpu

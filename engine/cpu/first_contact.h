@@ -11,6 +11,7 @@
 #include "cpu/view.h"
 #include "exact/blocking.h"
 #include "exact/earliest_contact.h"
+#include "exact/nearness.h"
 
 namespace radar::cpu {
 
@@ -46,10 +47,14 @@ struct PairRule {
   exact::Mirrored mirrored;
 
   bool blocks(const exact::PlacedPair& pair, const Motion& motion) const {
-    return exact::blocks(pair.a, pair.b, motion.stands ? Vector{} : motion.direction, slack, mirrored);
+    return exact::blocks(pair.a, pair.b, exact::courseOf(motion), slack, mirrored);
+  }
+  /// With a clearance.
+  bool blocks(const exact::PlacedPair& pair, const Motion& motion, double clearance) const {
+    return exact::blocksWithin(pair.a, pair.b, exact::courseOf(motion), clearance, slack, mirrored);
   }
   bool arePressed(const exact::PlacedPair& pair, const Motion& motion) const {
-    return exact::arePressed(pair.a, pair.b, motion.stands ? Vector{} : motion.direction, slack, mirrored);
+    return exact::arePressed(pair.a, pair.b, exact::courseOf(motion), slack, mirrored);
   }
 };
 

@@ -19,6 +19,13 @@ Vector middleOf(const Mesh& mesh, const MeshPlacement& placement) {
   return middle;
 }
 
+Query stillAt(const Query& query) {
+  Query still = query;
+  still.distance = 0;
+  if (query.motion) still.motion = Vector{};
+  return still;
+}
+
 }  // namespace
 
 void toDistances(Result& result, double distance) {
@@ -88,7 +95,7 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     });
     const bool scales = task.isStep && !query.motion;
     if (lists != nullptr) {
-      *lists = {finder.nearest(), std::move(skipped)};
+      *lists = {finder.nearest(), skipped};
       for (Result& hit : lists->hits) {
         if (scales) toDistances(hit, query.distance);
       }
@@ -97,14 +104,17 @@ Result QuerySearch::answer(const Query& query, const Scene::Impl& scene, const O
     if (scales) toDistances(first, query.distance);
     return first;
   };
-  if (query.clearance > 0) return find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
+  if (query.clearance > 0) {
+    Result first = find(ClearanceContact(query, task.motion, toleranceOf(query, task.sensor)));
+    describeStart(query, scene, tree, skipped, first, lists);
+    return first;
+  }
   return find(FirstContact(query, task.motion, middleOf(task.sensor, task.placement), size));
 }
 
 std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree) {
-  Query still = query;
-  still.distance = still.clearance = 0;
-  if (query.motion) still.motion = Vector{};
+  Query still = stillAt(query);
+  still.clearance = 0;
   const Task task(still, scene);
   std::vector<ObjectId> found;
   CrossingTest test;
@@ -116,6 +126,37 @@ std::vector<ObjectId> QuerySearch::overlapping(const Query& query, const Scene::
       });
   std::sort(found.begin(), found.end());
   return found;
+}
+
+void QuerySearch::describeStart(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                                std::span<const ObjectId> skipped, Result& first, Listed* lists) {
+  if (first.status != Status::overlap) return;
+  Query still = stillAt(query);
+  const Task task(still, scene);
+  NearestAtStart nearest(query);
+  const auto consider = [&](ObjectId id, NearestAtStart& finder) {
+    const PairRule rule = Task(query, scene).ruleFor(id);
+    const Motion motion = motionPast(query, scene, id);
+    finder.beginObject(rule, motion);
+    do {
+      still.clearance = finder.reach();
+      searchObject(task, id, rule, motionPast(still, scene, id), finder);
+    } while (finder.narrow());
+  };
+  walk(
+      still, task.motion, scene, tree, [](double near) { return near <= 0; },
+      [&](ObjectId id) {
+        if (!std::binary_search(skipped.begin(), skipped.end(), id)) consider(id, nearest);
+      });
+  nearest.describe(first);
+  for (size_t i = 0; lists != nullptr && i < lists->hits.size(); ++i) {
+    Result& hit = lists->hits[i];
+    if (hit.status != Status::overlap) continue;
+    NearestAtStart own(query);
+    still.clearance = query.clearance;
+    consider(hit.object, own);
+    own.describe(hit);
+  }
 }
 
 template <class Finder>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cpu/mesh_search.h"
@@ -24,6 +25,10 @@ class QuerySearch {
 
   /// Finds the objects whose surfaces cross the sensor's at the start.
   std::vector<ObjectId> overlapping(const Query& query, const Scene::Impl& scene, const ObjectTree& tree);
+  /// Of an answer that something is within the clearance at the start, names the nearest pair; in its list, of each
+  /// object.
+  void describeStart(const Query& query, const Scene::Impl& scene, const ObjectTree& tree,
+                     std::span<const ObjectId> skipped, Result& first, Listed* lists);
   template <class Finder>
   void search(const Task& task, ObjectId id, Finder& finder);
   void searchObject(const Task& task, ObjectId id, const PairRule& rule, const Motion& motion, PairVisitor& visitor);

@@ -50,12 +50,12 @@ struct Depths {
   Number allowed;   ///< slack times the largest component of n
 };
 
-/// Two placed triangles, and the direction if one counts.
+/// Two placed triangles, and the course if one counts.
 template <class Number>
 class Pair {
  public:
-  Pair(const Triangle& a, const Triangle& b, const Vector* direction, double slack)
-      : moves_(direction != nullptr), slack_(slack) {
+  Pair(const Triangle& a, const Triangle& b, const Course* course, double slack)
+      : moves_(course != nullptr), slack_(slack) {
     const Three<Number> origin = numbers<Number>(a[0]);
     for (size_t i = 0; i < 3; ++i) {
       a_[i] = minus(numbers<Number>(a[i]), origin);
@@ -65,7 +65,11 @@ class Pair {
       edgesA_[i] = minus(a_[(i + 1) % 3], a_[i]);
       edgesB_[i] = minus(b_[(i + 1) % 3], b_[i]);
     }
-    if (direction != nullptr) direction_ = numbers<Number>(*direction);
+    if (course != nullptr) {
+      direction_ = numbers<Number>(course->direction);
+      distance_ = Number(course->distance);
+      length_ = Number(course->length);
+    }
     normalA_ = crossProduct(edgesA_[0], edgesA_[1]);
     normalB_ = crossProduct(edgesB_[0], edgesB_[1]);
     depthsA_ = depthsAlong(normalA_);
@@ -85,20 +89,25 @@ class Pair {
     return flush;
   }
 
-  /// Whether the direction goes against the outward normal of b.
-  Answer isAgainstB(bool mirrored) const {
-    const Number along = inner(direction_, normalB_);
-    return isPositive(mirrored ? along : Number(0) - along);
+  /// Whether flush triangles would sink into each other by more than the slack: no plane that has the solid behind b on
+  /// its one side, and a on the other, does for the whole motion.
+  Answer isPressing(bool mirrored) const {
+    Three<Number> outwards = normalB_;
+    if (mirrored) outwards = minus(Three<Number>{Number(0), Number(0), Number(0)}, normalB_);
+    const Number sinking = distance_ * (Number(0) - inner(direction_, outwards));
+    const Answer sinks = isPositive(sinking - length_ * depthsB_.allowed);
+    return sinks == Answer::no ? sinks : both(sinks, areInseparable(&outwards));
   }
 
-  /// Whether no normal keeps the triangles apart. The normals are those of all faces of the polyhedron of differences b
-  /// - a or, with a direction, b - a - s * direction for all s >= 0.
-  Answer areInseparable() const {
+  /// Whether no normal keeps the triangles apart; only those count that lead `outwards`, if that is given. The normals
+  /// are those of all faces of the polyhedron of differences b - a or, with a direction, b - a - s * direction for all
+  /// s >= 0.
+  Answer areInseparable(const Three<Number>* outwards = nullptr) const {
     Answer exists = Answer::no, apart = Answer::no;
     const auto tryNormal = [&](const Three<Number>& n, const Depths<Number>& depths, bool isAcross) {
       const Answer isNormal = isNotZero(n);
       exists = either(exists, isNormal);
-      if (isNormal != Answer::no) apart = either(apart, both(isNormal, separates(n, depths, isAcross)));
+      if (isNormal != Answer::no) apart = either(apart, both(isNormal, separates(n, depths, isAcross, outwards)));
       return apart == Answer::yes;
     };
     if (tryNormal(normalA_, depthsA_, false) || tryNormal(normalB_, depthsB_, false)) return Answer::no;
@@ -129,13 +138,19 @@ class Pair {
   }
 
   /// Whether n or -n keeps the triangles apart. `isAcross`: n is orthogonal to the direction.
-  Answer separates(const Three<Number>& n, const Depths<Number>& depths, bool isAcross) const {
+  Answer separates(const Three<Number>& n, const Depths<Number>& depths, bool isAcross,
+                   const Three<Number>* outwards) const {
     Answer forward = !isPositive(depths.forward - depths.allowed);
     Answer backward = !isPositive(depths.backward - depths.allowed);
     if (moves_ && !isAcross && (forward != Answer::no || backward != Answer::no)) {
       const Number along = inner(n, direction_);
       forward = both(forward, !isPositive(Number(0) - along));
       backward = both(backward, !isPositive(along));
+    }
+    if (outwards != nullptr && (forward != Answer::no || backward != Answer::no)) {
+      const Number leads = inner(n, *outwards);
+      forward = both(forward, isPositive(leads));
+      backward = both(backward, isPositive(Number(0) - leads));
     }
     return either(forward, backward);
   }
@@ -150,30 +165,31 @@ class Pair {
   }
 
   bool moves_;
-  Number slack_;
+  Number slack_, distance_, length_;
   Three<Number> a_[3], b_[3], edgesA_[3], edgesB_[3];  // corners relative to corner 0 of a
   Three<Number> direction_, normalA_, normalB_;
   Depths<Number> depthsA_, depthsB_;
 };
 
 /// Whether doubles with error bounds may compute with these numbers.
-bool haveSafeRange(const Triangle& a, const Triangle& b, const Vector* direction, double slack) {
+bool haveSafeRange(const Triangle& a, const Triangle& b, const Course* course, double slack) {
   bool safe = hasSafeRange(slack);
   for (size_t k = 0; k < 3; ++k) {
     for (size_t i = 1; i < 3; ++i) safe &= hasSafeRange(a[i][k] - a[0][k]);
     for (size_t i = 0; i < 3; ++i) safe &= hasSafeRange(b[i][k] - a[0][k]);
-    if (direction != nullptr) safe &= hasSafeRange((*direction)[k]);
+    if (course != nullptr) safe &= hasSafeRange(course->direction[k]);
   }
+  if (course != nullptr) safe &= hasSafeRange(course->distance) && hasSafeRange(course->length);
   return safe;
 }
 
 template <class Decide>
-bool decided(const Triangle& a, const Triangle& b, const Vector* direction, double slack, const Decide& decide) {
-  if (haveSafeRange(a, b, direction, slack)) {
-    const Answer rough = decide(Pair<Bounded>(a, b, direction, slack));
+bool decided(const Triangle& a, const Triangle& b, const Course* course, double slack, const Decide& decide) {
+  if (haveSafeRange(a, b, course, slack)) {
+    const Answer rough = decide(Pair<Bounded>(a, b, course, slack));
     if (rough != Answer::open) return rough == Answer::yes;
   }
-  return decide(Pair<Dyadic>(a, b, direction, slack)) == Answer::yes;
+  return decide(Pair<Dyadic>(a, b, course, slack)) == Answer::yes;
 }
 
 }  // namespace
@@ -184,18 +200,18 @@ bool isMirroring(const Transform& pose) {
   return sign(Determinant{{kOrigin, first}, {kOrigin, second}, {kOrigin, third}}) < 0;
 }
 
-bool blocks(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  return decided(a, b, &direction, slack, [&](const auto& pair) {
+bool blocks(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored) {
+  return decided(a, b, &course, slack, [&](const auto& pair) {
     const Answer flush = pair.areFlush(mirrored);
     if (flush == Answer::open) return flush;
-    return flush == Answer::yes ? pair.isAgainstB(mirrored.b) : pair.areInseparable();
+    return flush == Answer::yes ? pair.isPressing(mirrored.b) : pair.areInseparable();
   });
 }
 
-bool arePressed(const Triangle& a, const Triangle& b, const Vector& direction, double slack, Mirrored mirrored) {
-  return decided(a, b, &direction, slack, [&](const auto& pair) {
+bool arePressed(const Triangle& a, const Triangle& b, const Course& course, double slack, Mirrored mirrored) {
+  return decided(a, b, &course, slack, [&](const auto& pair) {
     const Answer flush = pair.areFlush(mirrored);
-    return flush == Answer::no ? flush : both(flush, pair.isAgainstB(mirrored.b));
+    return flush == Answer::no ? flush : both(flush, pair.isPressing(mirrored.b));
   });
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "exact/determinant.h"
+#include "exact/nearest_points.h"
 
 namespace radar::exact {
 
@@ -87,7 +88,9 @@ Vector commonPoint(const Triangle& first, const Triangle& second) {
   // Where triangles cross by little more than rounding errors, the crossing may seem to be outside.
   if (!(best.inside >= 0)) {
     const std::optional<Vector> ofA = exactCrossing(b, a), crossing = ofA ? ofA : exactCrossing(a, b);
-    return withoutZeroSigns(crossing.value_or(Vector{kNaN, kNaN, kNaN}));
+    if (crossing) return withoutZeroSigns(*crossing);
+    // In one plane, or degenerate: they touch where they are nearest to each other.
+    best.at = nearestPoints<double>(pa, pb).b;
   }
   for (int k = 0; k < 3; ++k) best.at[k] = best.at[k] * size + origin[k];
   return withoutZeroSigns(best.at);

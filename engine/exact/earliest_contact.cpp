@@ -87,7 +87,8 @@ Result EarliestContact::answer(bool anyHit) const {
   if (anyHit) {
     result.status = Status::hit;
     result.lo = 0;
-    result.hi = kept_.distance;
+    result.t = result.hi = kept_.distance;
+    result.fraction = kept_.distance > 0 ? 1 : 0;
   } else {
     describe(result);
   }
@@ -105,6 +106,7 @@ void EarliestContact::describe(Result& result) const {
   const bool begins = !overlap_ || sign(event_) == 0;
   result.point = pointAt(s, begins);
   if (begins) result.normal = normalOf();
+  result.gap = 0;
   if (overlap_) {
     result.t = result.lo = result.hi = result.fraction = 0;
   } else {

@@ -15,6 +15,9 @@ namespace {
 // Lengths of directions up to this do not overflow, if they cannot be scaled exactly.
 constexpr double kMostLength = 0x1p1023;
 
+// Of the sensor's size or, if that is more, of the clearance: a larger slack would let shapes pass each other.
+constexpr double kMostSlack = 0.1;
+
 // Checks where a query's sensor goes.
 std::string validateCourse(const Query& query, const Scene::Impl& scene) {
   if (query.motion) {
@@ -55,6 +58,14 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
   if (query.slack && !(std::isfinite(*query.slack) && *query.slack >= 0)) {
     return "slack: expected a finite number of 0 or more, got " + std::to_string(*query.slack);
   }
+  if (query.slack && *query.slack > 0) {
+    const Box box = boxOf(scene.impl().meshes[query.mesh], query.worldFromMesh.m);
+    const double size = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+    if (size > 0 && *query.slack > kMostSlack * std::max(size, query.clearance)) {
+      return "slack: expected at most a tenth of the sensor's size, which is " + std::to_string(size) + ", got " +
+             std::to_string(*query.slack);
+    }
+  }
   if (!std::isfinite(query.clearance) || query.clearance < 0) {
     return "clearance: expected a finite number of 0 or more, got " + std::to_string(query.clearance);
   }
@@ -76,7 +87,7 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
 }
 
 Result::Result() {
-  t = lo = hi = fraction = paperMinL = std::numeric_limits<double>::quiet_NaN();
+  t = lo = hi = fraction = gap = paperMinL = std::numeric_limits<double>::quiet_NaN();
   point.fill(std::numeric_limits<double>::quiet_NaN());
   normal.fill(std::numeric_limits<double>::quiet_NaN());
 }

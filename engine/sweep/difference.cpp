@@ -103,6 +103,7 @@ AnswerDifference differenceOf(const Result& found, const Result& exact) {
   const char* const normals[] = {"normal x", "normal y", "normal z"};
   for (size_t k = 0; k < 3; ++k) all.add(points[k], found.point[k], exact.point[k]);
   for (size_t k = 0; k < 3; ++k) all.add(normals[k], found.normal[k], exact.normal[k]);
+  all.add("gap", found.gap, exact.gap);
   all.add("paperMinL", found.paperMinL, exact.paperMinL);
   end(Stage::describing);
   return {stage, all.numbers()};

@@ -77,13 +77,13 @@ uvec2 bitsOf(uvec2 x) { return x; }
 // Compares the bits of non-negative doubles.
 bool isAbove(uvec2 p, uvec2 q) { return p.y > q.y || (p.y == q.y && p.x > q.x); }
 
-const uvec2 kNoNumber = uvec2(0, 0x7ff80000u);
+const uvec2 kNoNumber = uvec2(0, 0x7ff80000u), kOne = uvec2(0, 0x3ff00000u);
 
 // A result without a contact, with `distances` in place of all of them.
 RadarResult nothing(uint status, uvec2 distances) {
   const uvec2 n = kNoNumber;
   return RadarResult(status, RADAR_TIER_contact, RADAR_DETECTED_notLooked, 0, distances, distances, distances, distances,
-                     kNobody, kNobody, kNobody, 0, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n), uvec2[3](n, n, n), n);
+                     kNobody, kNobody, kNobody, 0, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n), uvec2[3](n, n, n), n, n);
 }
 RadarResult free(uint status) { return nothing(status, uvec2(0, 0x7ff00000u)); }
 
@@ -101,7 +101,8 @@ RadarResult within() {
   RadarResult r = nothing(RADAR_STATUS_hit, kNoNumber);
   r.detected = RADAR_DETECTED_yes;
   r.lo = uvec2(0);
-  r.hi = bitsOf(sweeps[s].distance);
+  r.t = r.hi = bitsOf(sweeps[s].distance);
+  r.fraction = r.hi == uvec2(0) ? r.hi : kOne;
   return r;
 }
 

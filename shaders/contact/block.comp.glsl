@@ -28,6 +28,11 @@ Bounded minus(Bounded p, Bounded q) {
 }
 Bounded negative(Bounded p) { return Bounded(-p.value, p.error); }
 
+Bounded times(Bounded p, double exactly) {
+  const double value = p.value * exactly;
+  return Bounded(value, (p.error * abs(exactly) + kHalfUlp * abs(value)) * kMore + kTiny);
+}
+
 BoundedVector exactly(dvec3 v) { return BoundedVector(v, dvec3(0.0LF)); }
 // The difference of exact vectors.
 BoundedVector difference(dvec3 p, dvec3 q) {
@@ -76,6 +81,8 @@ int isNotZero(BoundedVector v) { return any(greaterThan(abs(v.value), v.error)) 
 // The pair, beside its corners.
 BoundedVector direction;
 Bounded slack;
+// The normal of b, before its corners turn.
+BoundedVector outwards;
 
 BoundedVector selected(bool first, BoundedVector p, BoundedVector q) {
   return BoundedVector(first ? p.value : q.value, first ? p.error : q.error);
@@ -98,6 +105,14 @@ void extend(inout Span span, Bounded height) {
   span.error = max(span.error, height.error);
 }
 
+// The slack times the largest component of n.
+Bounded allowedAlong(BoundedVector n) {
+  const double largest = max(abs(n.value.x), max(abs(n.value.y), abs(n.value.z)));
+  const double error = max(n.error.x, max(n.error.y, n.error.z));
+  return Bounded(slack.value * largest, (slack.error * (largest + error) + slack.value * error +
+                                         kHalfUlp * slack.value * largest) * kMore + kTiny);
+}
+
 // How far the triangles reach past each other along n and against it, beyond the slack.
 struct Depths {
   Bounded forward, backward;
@@ -112,29 +127,32 @@ Depths depthsAlong(BoundedVector n) {
     cycleA();
     cycleB();
   }
-  const double largest = max(abs(n.value.x), max(abs(n.value.y), abs(n.value.z)));
-  const double error = max(n.error.x, max(n.error.y, n.error.z));
-  const Bounded allowed = Bounded(slack.value * largest, (slack.error * (largest + error) + slack.value * error +
-                                                          kHalfUlp * slack.value * largest) * kMore + kTiny);
+  const Bounded allowed = allowedAlong(n);
   const Bounded forward = minus(Bounded(spanB.most, spanB.error), Bounded(spanA.least, spanA.error));
   const Bounded backward = minus(Bounded(spanA.most, spanA.error), Bounded(spanB.least, spanB.error));
   return Depths(minus(forward, allowed), minus(backward, allowed));
 }
 
 // Whether n or -n keeps the triangles apart, and the motion does not go against it. `isAcross`: n is orthogonal to the
-// direction.
-int separates(BoundedVector n, bool isAcross) {
+// direction. `turn`: if not 0, only what leads outwards from b counts, as its normal does, times `turn`.
+int separates(BoundedVector n, bool isAcross, double turn) {
   const Depths depths = depthsAlong(n);
   const Bounded along = inner(n, direction);
-  const int forward = min(-isPositive(depths.forward), isAcross ? kYes : -isPositive(negative(along)));
-  const int backward = min(-isPositive(depths.backward), isAcross ? kYes : -isPositive(along));
+  int forward = min(-isPositive(depths.forward), isAcross ? kYes : -isPositive(negative(along)));
+  int backward = min(-isPositive(depths.backward), isAcross ? kYes : -isPositive(along));
+  if (turn != 0.0LF) {
+    const Bounded leads = times(inner(n, outwards), turn);
+    forward = min(forward, isPositive(leads));
+    backward = min(backward, isPositive(negative(leads)));
+  }
   return min(isNotZero(n), max(forward, backward));
 }
 
 // Whether no normal keeps the triangles apart. Those that may are the two faces'; the direction's products with the six edges;
 // and the products of an edge of each.
-int areInseparable() {
+int areInseparable(double turn) {
   int exists = kOpen, apart = kNo;
+  outwards = normalOf(false);
   [[dont_unroll]] for (uint k = 0; k < 17 && apart != kYes; ++k) {
     // Of an edge of a: its products with all edges of b, and with the direction; then that of the direction with an edge of b,
     // and after the first two edges a face's normal.
@@ -145,7 +163,7 @@ int areInseparable() {
     const BoundedVector y = selected(isPair || step == 4, edgeB, selected(step == 3, edgeA, secondEdgeOf(faceOfA)));
     const BoundedVector n = crossProduct(x, y);
     exists = max(exists, isNotZero(n));
-    apart = max(apart, separates(n, isAcross));
+    apart = max(apart, separates(n, isAcross, turn));
     if (isPair || step == 4) cycleB();
     if (step == 5) cycleA();
   }
@@ -175,6 +193,16 @@ int areFlush(int facing) {
   return flush;
 }
 
+// Whether flush triangles would sink into each other by more than the slack: no plane that has the solid behind b on its one
+// side, and a on the other, does for the whole motion, which is `distance` / `length` times the direction.
+int isPressing(bool isMirroredB, double distance, double length) {
+  const BoundedVector normal = normalOf(false);
+  const double turn = isMirroredB ? -1.0LF : 1.0LF;
+  const Bounded sinking = times(inner(direction, normal), -turn * distance);
+  const int sinks = isPositive(minus(sinking, times(allowedAlong(normal), length)));
+  return sinks == kNo ? kNo : min(sinks, areInseparable(turn));
+}
+
 // `x` if `sign` is kYes, -x if it is kNo.
 int signed(int x, int sign) { return sign == kOpen ? kOpen : x * sign; }
 
@@ -198,8 +226,9 @@ int blocks(Sweep sweep, PreciseRows pose, bool isLate, out bool mayBePressed) {
   const int flush = areFlush(facing);
   mayBePressed = flush != kNo;
   if (flush == kYes && isAtRest(sweep)) return kNo;
-  if (flush == kYes) return signed(isPositive(inner(direction, normalOf(false))), mirroredB);
-  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable();
+  if (flush == kYes && mirroredB == kOpen) return kOpen;
+  if (flush == kYes) return isPressing(mirroredB == kYes, sweep.distance, sweep.perParameter);
+  return flush == kOpen ? kOpen : isLate ? kNo : areInseparable(0.0LF);
 }
 
 void main() {

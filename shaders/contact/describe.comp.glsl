@@ -181,6 +181,7 @@ bool setHit(RefinedPair c, inout RadarResult r) {
   const dvec3 point = details.point + t * dvec3(sweeps[s].drift[0], sweeps[s].drift[1], sweeps[s].drift[2]);
   r.point = bitsOf(point);
   r.normal = bitsOf(normal);
+  r.gap = uvec2(0);
   return sound && details.known && unit && t > 1e-270LF && t * (1.0LF + kRounded) < distance;
 }
 

@@ -47,7 +47,7 @@ bool setOverlap(RefinedPair c, inout RadarResult r) {
   r.status = RADAR_STATUS_overlap;
   // The contact certainly begins before the start and ends after it.
   r.featureA = r.featureB = RADAR_FEATURE_face;
-  r.t = r.lo = r.hi = r.fraction = uvec2(0);
+  r.t = r.lo = r.hi = r.fraction = r.gap = uvec2(0);
   const uint at = reserveUnresolved(1);
   if (at != kNobody) writeUnresolved(at, c);
   return at != kNobody;

@@ -21,5 +21,5 @@ void main() {
   const uvec2 n = uvec2(0, 0x7ff80000u);
   results[i] = RadarResult(RADAR_STATUS_invalid, RADAR_TIER_select, RADAR_DETECTED_notLooked, 0, n, n, n, n, kNobody, kNobody,
                            kNobody, RADAR_FLAG_bounds, RADAR_FEATURE_none, RADAR_FEATURE_none, uvec2[3](n, n, n),
-                           uvec2[3](n, n, n), n);
+                           uvec2[3](n, n, n), n, n);
 }

@@ -105,15 +105,32 @@ inline std::vector<IntVec> differences(const Faced& a, const Faced& b) {
   return out;
 }
 
-/// Whether they are flush, and the direction goes against the normal of b.
-inline bool arePressed(const Faced& a, const Faced& b, const IntVec& direction, const Integer& slack) {
-  return dot(direction, b.normal) < 0 && areFlush(a, b, slack);
+/// How triangle a moves: `distance` times the direction.
+struct Course {
+  IntVec direction;
+  Rational distance;
+};
+
+/// The course of a motion by `distance` along a direction of that `length`, past triangles in units of 2^unit.
+inline Course courseOf(const Corner& direction, double distance, double length, int unit) {
+  const int exponent = leastExponent(direction.data(), 3);
+  const int shift = exponent - unit;
+  const Rational times = Rational(distance) / Rational(length), power(Integer(Integer(1) << std::abs(shift)));
+  return {scaled(direction, exponent), shift < 0 ? Rational(times / power) : Rational(times * power)};
 }
 
-/// Whether triangle a, in motion along `direction`, is blocked by b.
-inline bool blocks(const Faced& a, const Faced& b, const IntVec& direction, const Integer& slack) {
-  if (areFlush(a, b, slack)) return dot(direction, b.normal) < 0;
-  return !detail::hasNormal(differences(a, b), {direction}, slack);
+/// Whether they are flush, and the motion would sink a into the solid behind b by more than the slack.
+inline bool arePressed(const Faced& a, const Faced& b, const Course& course, const Integer& slack) {
+  if (!areFlush(a, b, slack)) return false;
+  const Integer against = -dot(course.direction, b.normal);
+  if (course.distance * against <= Rational(Integer(slack * detail::largest(b.normal)))) return false;
+  return !detail::hasNormal(differences(a, b), {course.direction}, slack, &b.normal);
+}
+
+/// Whether triangle a, in motion, is blocked by b.
+inline bool blocks(const Faced& a, const Faced& b, const Course& course, const Integer& slack) {
+  if (areFlush(a, b, slack)) return arePressed(a, b, course, slack);
+  return !detail::hasNormal(differences(a, b), {course.direction}, slack);
 }
 
 /// Whether the triangles cross by more than the slack.
@@ -132,9 +149,11 @@ struct ScaledPair {
     a = faced(scaled(first, scale), mirroredA);
     b = faced(scaled(second, scale), mirroredB);
     slack = scaled(room, scale);
+    unit = scale;
   }
   Faced a, b;
   Integer slack;
+  int unit;  ///< exponent of the scale
 };
 
 }  // namespace oracle

@@ -172,6 +172,8 @@ class Meeting {
     dirScale_ = leastExponent(direction.data(), 3);
     direction_ = scaled(direction, dirScale_);
     stands_ = isZero(direction_);
+    const radar::Motion sweep = isStep ? radar::Motion(direction, {}) : radar::Motion(query);
+    whole_ = courseOf(isStep ? direction : sweep.direction, sweep.distance, sweep.length, scale_);
     course_ = stands_ ? IntVec{1, 2, 3} : direction_;
     a_ = boxed(a, isMirrored(query.worldFromMesh), scale_);
     b_ = boxed(b, isMirrored(object.worldFromMesh), scale_);
@@ -254,7 +256,7 @@ class Meeting {
                                ? contact(m.a_[i].faced.corners, m.b_[k].faced.corners, m.course_)
                                : std::nullopt;
           if (!met || compare(met->first, s) > 0 || compare(met->last, s) < 0) continue;
-          if (m.query_.ignoreLeaving && !blocks(m.a_[i].faced, m.b_[k].faced, m.direction_, m.slack_)) continue;
+          if (m.query_.ignoreLeaving && !blocks(m.a_[i].faced, m.b_[k].faced, m.whole_, m.slack_)) continue;
           touching.emplace_back(i, k);
           const std::vector<IntVec> own = differencesOf(a[i], b[k]);
           all.insert(all.end(), own.begin(), own.end());
@@ -305,7 +307,7 @@ class Meeting {
 
   /// When contact of two triangles begins, if it counts, is before `limit` and within D.
   std::optional<Fraction> startOf(const Boxed& a, const Boxed& b, const Fraction* limit) const {
-    const auto isPressed = [&] { return query_.ignoreLeaving && arePressed(a.faced, b.faced, direction_, slack_); };
+    const auto isPressed = [&] { return query_.ignoreLeaving && arePressed(a.faced, b.faced, whole_, slack_); };
     if (!boxesMeet(a, b, limit) && !isPressed()) return std::nullopt;
     const std::optional<Interval> interval = contact(a.faced.corners, b.faced.corners, course_);
     if (!interval || interval->last.sign() < 0) {
@@ -316,7 +318,7 @@ class Meeting {
     const Fraction s = interval->first.sign() < 0 ? Fraction{} : interval->first;
     if (limit != nullptr && compare(s, *limit) >= 0) return std::nullopt;
     if (isBeyondD(s)) return std::nullopt;
-    if (query_.ignoreLeaving && !blocks(a.faced, b.faced, direction_, slack_)) return std::nullopt;
+    if (query_.ignoreLeaving && !blocks(a.faced, b.faced, whole_, slack_)) return std::nullopt;
     return s;
   }
 
@@ -342,6 +344,7 @@ class Meeting {
   int scale_ = 0, dirScale_ = 0;
   Integer slack_;
   IntVec direction_;
+  Course whole_;
   bool isStep_, stands_ = false;
   IntVec course_;  ///< the direction, or any if the sensor stands
   std::vector<Boxed> a_, b_;

@@ -40,8 +40,10 @@ std::string faultOfCorner(const Scene& scene, const Query& query, const Result& 
 std::string faultOfPoint(const Scene& scene, const Query& query, const Result& result, double mostOff) {
   if (result.status != Status::hit && result.status != Status::overlap) return "";
   if (std::string fault = faultOfCorner(scene, query, result); !fault.empty() || query.clearance > 0) return fault;
-  if (std::isnan(result.point[0])) return result.status == Status::hit ? "no point" : "";
-  const double most = result.status == Status::hit ? 1e-13 : mostOff;
+  if (std::isnan(result.point[0])) return "no point";
+  // What is pressed together may have sunk in.
+  const double sunk = query.ignoreLeaving ? 4 * query.slack.value_or(0) : 0;
+  const double most = result.status == Status::hit ? 1e-13 : mostOff + sunk;
   return distances::offFromBoth(scene, query, result) <= most ? "" : "a point off its triangles";
 }
 

@@ -26,6 +26,7 @@ struct Pair {
   Triangle a, b;
   Vector direction;
   double slack = 0;
+  double distance = 1;
 };
 
 Pair lattices(Random& random) {
@@ -38,6 +39,18 @@ Pair inOnePlane(Random& random) {
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Vector& c : *t) c[2] = 1;
   }
+  return pair;
+}
+
+// Directions that go into the plane by about as much as the slack allows.
+Pair almostSliding(Random& random) {
+  Pair pair = inOnePlane(random);
+  const double tilt = std::ldexp(1.0, -random.integer(10, 60));
+  if (random.chance(0.5)) pair.direction = {random.uniform(-1, 1), random.uniform(-1, 1), 0};
+  pair.direction[2] = tilt * random.uniform(-1, 1);
+  pair.slack = random.chance(0.1) ? 0 : tilt * std::ldexp(random.uniform(0.5, 1), random.integer(-3, 3));
+  pair.distance = std::ldexp(random.uniform(0.5, 1), random.integer(-6, 6));
+  if (random.chance(0.5)) jitter(random, pair.a, pair.slack);
   return pair;
 }
 
@@ -67,13 +80,15 @@ Pair almostTouching(Random& random) {
 }
 
 void check(const Pair& made, Counts& counts) {
-  const auto& [a, b, direction, slack] = made;
+  const auto& [a, b, direction, slack, distance] = made;
   for (const bool mirroredA : {false, true}) {
     const bool mirroredB = a[0][0] > b[0][0];
     const oracle::ScaledPair pair(a, mirroredA, b, mirroredB, slack);
-    const oracle::IntVec scaled = oracle::scaled(direction, oracle::leastExponent(direction.data(), 3));
-    const bool truth = oracle::blocks(pair.a, pair.b, scaled, pair.slack);
-    REQUIRE(radar::exact::blocks(a, b, direction, slack, {mirroredA, mirroredB}) == truth);
+    const double length = radar::exact::length(direction);
+    const bool truth =
+        oracle::blocks(pair.a, pair.b, oracle::courseOf(direction, distance, length, pair.unit), pair.slack);
+    const radar::exact::Course course{direction, distance, length};
+    REQUIRE(radar::exact::blocks(a, b, course, slack, {mirroredA, mirroredB}) == truth);
     ++(truth ? counts.blocking : counts.passing);
     counts.flush += oracle::areFlush(pair.a, pair.b, pair.slack);
   }
@@ -93,6 +108,7 @@ TEST_CASE(
     Counts least;
   } rows[] = {{lattices, 2500, {100, 1000, 20, 0}},
               {inOnePlane, 1000, {0, 0, 0, 100}},
+              {almostSliding, 2000, {50, 50, 0, 100}},
               {withSlack, 2000, {100, 1000, 0, 0}},
               {almostTouching, 2000, {100, 1000, 0, 0}}};
   for (const auto& row : rows) {

@@ -134,6 +134,8 @@ void makeSolids(Random& random, uint32_t mostSide, size_t queries, Case& out) {
     query.distance = random.chance(0.1) ? 0 : random.uniform(0, 20);
     query.ignoreLeaving = !random.chance(0.1);
     if (random.chance(0.4)) query.slack = random.chance(0.5) ? 0 : random.uniform(0, 0.3);
+    // A large slack beside a small sensor is refused.
+    if (!validate(query, out.scene).empty()) *query.slack *= 1e-3;
     out.queries.push_back(query);
   }
 }

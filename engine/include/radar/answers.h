@@ -12,19 +12,19 @@
 
 namespace radar {
 
-/// An answer. Layout version 4: 128 bytes, natural alignment. Absent ids are kNone. Where no contact within D is
+/// An answer. Layout version 5: 136 bytes, natural alignment. Absent ids are kNone. Where no contact within D is
 /// certain, t, hi and fraction are +infinity, and if the answer is clear, lo is, too: distances of any answers compare.
 /// Of answers that a Recorder leaves open (Flag::unresolved), t is lo.
 /// Other absent numbers, and all of an invalid answer, are NaN.
 ///
-/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided; ids, features, point and
-/// normal are absent, and for a hit t and fraction are; then lo is 0 and hi is D.
+/// If the query has `anyHit`, the status is hit (overlap included), clear or undecided, and ids, features, point,
+/// normal and gap are absent. Nobody looked for the first contact, so a hit's lo is 0, and t and hi are D.
 struct RADAR_API Result {
   Status status = Status::invalid;
   Tier tier = Tier::select;
   Detected detected = Detected::notLooked;
   uint32_t resolution = 0;  ///< pixels along the window's longer side; 0 if no picture was drawn
-  double t;                 ///< best estimate of t*, world units; tier sampled: hi
+  double t;                 ///< best estimate of t*, world units; tier sampled, and with anyHit: hi
   double lo, hi;            ///< the certified bracket, world units
   double fraction;          ///< t / D (0 if D is 0); of the step, if the query takes one
   ObjectId object = kNone;  ///< the object touched
@@ -36,8 +36,8 @@ struct RADAR_API Result {
   Feature featureB = Feature::none, featureA = Feature::none;
   /// World position of the contact at the moment of contact. Where featureB is a vertex, it is that corner as placed,
   /// exactly (in a step, moved with its object); where only featureA is one, that corner moved by t. Where surfaces
-  /// cross at the start, it is a point of the crossing, found in plain doubles, so that needles cost digits; absent if
-  /// both triangles lie in one plane and neither feature is a vertex. With a clearance, it is of the touched surface.
+  /// cross at the start, it is a point of the crossing, found in plain doubles, so that needles cost digits. With a
+  /// clearance, it is of the touched surface.
   std::array<double, 3> point;
   /// Unit, from the touched surface towards the sensor. Every hit in mode contact has one. To rounding, normal .
   /// direction <= 0 (in a step: the relative motion), and normal . (a - b) >= 0 for all points a of the sensor's
@@ -48,13 +48,17 @@ struct RADAR_API Result {
   /// along the line between the nearest points, and is absent where they touch.
   /// Mode sampled knows of the pairs that it has found.
   std::array<double, 3> normal;
+  /// How far apart the surfaces are at t, world units: of the named pair, the distance from `point` to the sensor's
+  /// nearest point, which is point + gap * normal. 0 without a clearance; with one, up to that much, and at the start
+  /// the least of all pairs that count. Off by rounding.
+  double gap;
   double paperMinL;  ///< the paper's literal min(L), for comparison: may be negative, too early or too late
   Result();
   /// An answer without a contact: clear or undecided, with lo to be set. Others as above.
   explicit Result(Status status);
 };
-inline constexpr uint32_t kResultVersion = 4;
-static_assert(sizeof(Result) == 128);
+inline constexpr uint32_t kResultVersion = 5;
+static_assert(sizeof(Result) == 136);
 
 /// What a query lists besides its first contact.
 struct Listed {

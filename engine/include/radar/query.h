@@ -51,7 +51,7 @@ struct Query {
   bool skipOverlapping = false;
   /// With the two above, world units: by how much rounding may have let surfaces that touch sink into each other. Faces
   /// pressed together block even so, at t = 0; crossings no deeper are no overlap. It is for rounding: far below the
-  /// size of triangles. Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms'
+  /// size of triangles, and at most a tenth of the longest side of the sensor's box or of the clearance. Without a value: 2^-48 times the greatest coordinate of the two shapes as placed (its terms'
   /// absolute values summed; within the bounds of a mesh that has some), which covers poses rounded once.
   std::optional<double> slack{};
   /// Mode contact, world units, at least 0: surfaces are in contact where their distance is at most this. If above 0, t

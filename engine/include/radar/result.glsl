@@ -36,6 +36,7 @@ struct RadarResult {
   uint featureA;
   RADAR_DOUBLE point[3];
   RADAR_DOUBLE normal[3];
+  RADAR_DOUBLE gap;
   RADAR_DOUBLE paperMinL;
 };
 

@@ -56,6 +56,19 @@ TEST_CASE("shards, merged, are the bytes of one run") {
   }
 }
 
+TEST_CASE("merge writes records to .npy alone, and lines to any other file") {
+  const ScratchFolder folder;
+  REQUIRE(runProgram(folder, kWorkload).status == 0);
+  for (const std::string part : {"lines", "records.npy"}) {
+    REQUIRE(runProgram(folder, "query w/queries.json --mode reference --shard 0/1 --out " + part).status == 0);
+  }
+  checkRefused(folder, "merge lines --out z.npy", "z.npy: expected another file than .npy, as the shards are lines");
+  checkRefused(folder, "merge records.npy --out z.jsonl", "z.jsonl: expected a file .npy, as the shards are records");
+  CHECK(runProgram(folder, "merge records.npy --out z.npy").status == 0);
+  CHECK(folder.read("z.npy").starts_with("\x93NUMPY"));
+  CHECK(runProgram(folder, "merge lines --out /dev/stdout").out.starts_with("{\"id\""));
+}
+
 TEST_CASE("merge names shards that are missing, doubled, cut off or of another run") {
   const ScratchFolder folder;
   REQUIRE(runProgram(folder, kWorkload).status == 0);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -172,6 +173,13 @@ void put(char* to, double value) {
 const char* nameOf(Status status) {
   constexpr std::array<const char*, 5> kNames{"hit", "clear", "overlap", "undecided", "invalid"};
   return kNames[static_cast<size_t>(status)];
+}
+
+Status statusFrom(std::string_view name) {
+  for (uint32_t code = 0; code <= static_cast<uint32_t>(Status::invalid); ++code) {
+    if (name == nameOf(static_cast<Status>(code))) return static_cast<Status>(code);
+  }
+  throw std::invalid_argument("expected hit, clear, overlap, undecided or invalid, got \"" + std::string(name) + "\"");
 }
 
 const char* nameOf(Tier tier) {

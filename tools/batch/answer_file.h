@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "radar/radar.h"
@@ -29,6 +30,8 @@ void appendRecord(std::string& records, uint64_t index, const QuerySpec& query, 
 std::string recordDescription();
 
 const char* nameOf(Status status);
+/// Throws std::invalid_argument that lists the names.
+Status statusFrom(std::string_view name);
 const char* nameOf(Tier tier);
 const char* nameOf(Feature feature);
 

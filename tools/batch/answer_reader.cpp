@@ -55,13 +55,6 @@ Result resultOf(const RowReader& row, Status status, const Workload& workload, c
                    "expected " + counted(expected, "answer") + ", one for each query, got " + std::to_string(got));
 }
 
-Status statusFrom(const JsonValue& word) {
-  for (uint32_t code = 0; code <= static_cast<uint32_t>(Status::invalid); ++code) {
-    if (word.string() == nameOf(static_cast<Status>(code))) return static_cast<Status>(code);
-  }
-  word.expected("hit, clear, overlap, undecided or invalid");
-}
-
 std::vector<Answer> readLines(const std::string& file, std::string_view text, const Workload& workload) {
   std::vector<Answer> answers;
   while (!text.empty()) {
@@ -83,7 +76,8 @@ std::vector<Answer> readLines(const std::string& file, std::string_view text, co
                           return value[part].number();
                         }};
     Answer& answer = answers.emplace_back();
-    answer.result = resultOf(row, statusFrom(root.member("status")), workload, file);
+    const JsonValue status = root.member("status");
+    answer.result = resultOf(row, status.guard([&] { return statusFrom(status.string()); }), workload, file);
     root.ifHas("reason", [&](const JsonValue& reason) { answer.reason = reason.string(); });
     if (root.has("paper_min_l")) answer.mode = AnswerMode::sampled;
   }

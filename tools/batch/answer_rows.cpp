@@ -75,11 +75,22 @@ bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const Quer
   return query ? row.starts_with(quoted(query->id) + ", ") : stringLength(row) > 0;
 }
 
-bool isInvalidRow(AnswerFormat format, std::string_view row) {
-  if (format == AnswerFormat::records) return row[kStatusPlace] == static_cast<char>(Status::invalid);
-  row.remove_prefix(kLineStart.size());
-  row.remove_prefix(stringLength(row));
-  return row.starts_with(", \"status\": \"invalid\"");
+std::optional<Status> statusOfRow(AnswerFormat format, std::string_view row) {
+  constexpr std::string_view kBefore = ", \"status\": \"";
+  if (format == AnswerFormat::lines) {
+    row.remove_prefix(kLineStart.size());
+    row.remove_prefix(stringLength(row));
+    if (!row.starts_with(kBefore)) return std::nullopt;
+    row.remove_prefix(kBefore.size());
+  }
+  for (uint8_t code = 0; code <= static_cast<uint8_t>(Status::invalid); ++code) {
+    const auto status = static_cast<Status>(code);
+    if (format == AnswerFormat::records ? static_cast<uint8_t>(row[kStatusPlace]) == code
+                                        : row.starts_with(nameOf(status) + std::string("\""))) {
+      return status;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace radar::tools

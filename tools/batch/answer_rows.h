@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,7 +44,7 @@ std::string startOf(AnswerFormat format, uint64_t queries);
 size_t rowLength(AnswerFormat format, std::string_view rows);
 /// Whether a row is that of the query with this index, as far as a row says; `query`: that query, if at hand.
 bool isRow(AnswerFormat format, std::string_view row, uint64_t index, const QuerySpec* query);
-/// Whether a row says that its query was not answered.
-bool isInvalidRow(AnswerFormat format, std::string_view row);
+/// What a row says; none if it is damaged there.
+std::optional<Status> statusOfRow(AnswerFormat format, std::string_view row);
 
 }  // namespace radar::tools

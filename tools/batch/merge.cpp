@@ -78,12 +78,14 @@ std::string_view rowsOf(const Piece& piece, bool& someInvalid) {
                            std::to_string(i - part.first()) + ": finish it with --resume");
     }
     const std::string_view row = rest.substr(0, length);
-    if (!isRow(part.format, row, i, nullptr)) {
+    const bool isItsRow = isRow(part.format, row, i, nullptr);
+    const std::optional<Status> status = isItsRow ? statusOfRow(part.format, row) : std::nullopt;
+    if (!status) {
       throw InputError(
           piece.name, "answer " + std::to_string(i - part.first()),
           "expected the answer to query " + std::to_string(i) + ", got \"" + std::string(row.substr(0, 60)) + "\"");
     }
-    someInvalid = someInvalid || isInvalidRow(part.format, row);
+    someInvalid = someInvalid || *status == Status::invalid;
     rest.remove_prefix(length);
   }
   if (!rest.empty()) {
@@ -99,6 +101,12 @@ bool mergeShards(const std::vector<std::string>& files, const std::filesystem::p
   const std::map<uint32_t, Piece> pieces = openAll(files);
   requireAll(pieces, out);
   const Part& one = pieces.begin()->second.part;
+  if (!isStream(out) && answerFormatOf(out) != one.format) {
+    throw InputError(out.string(), "",
+                     one.format == AnswerFormat::lines
+                         ? "expected another file than .npy, as the shards are lines of JSON"
+                         : "expected a file .npy, as the shards are records");
+  }
   bool someInvalid = false;
   AtomicFile whole(out);
   whole.write(startOf(one.format, one.queries));

@@ -193,12 +193,14 @@ size_t PartWriter::keptBytes(const Part& found, std::string_view bytes, const Qu
       const size_t length = rowLength(part_.format, bytes.substr(kept));
       if (length == 0) return kept;
       const std::string_view row = bytes.substr(kept, length);
-      if (!isRow(part_.format, row, next_, &query)) {
+      const bool isItsRow = isRow(part_.format, row, next_, &query);
+      const std::optional<Status> status = isItsRow ? statusOfRow(part_.format, row) : std::nullopt;
+      if (!status) {
         throw InputError(
             name, "answer " + std::to_string(next_ - part_.first()),
             "expected the answer to query \"" + query.id + "\", got \"" + std::string(row.substr(0, 60)) + "\"");
       }
-      keptInvalid_ = keptInvalid_ || isInvalidRow(part_.format, row);
+      ++kept_[static_cast<size_t>(*status)];
       kept += length;
       ++next_;
     }

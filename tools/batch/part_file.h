@@ -3,6 +3,7 @@
 // are rows of answers, in the order of the queries.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -61,8 +62,8 @@ class PartWriter {
   AnswerFormat format() const { return part_.format; }
   /// The query whose row comes next, in the whole file.
   uint64_t next() const { return next_; }
-  /// Whether a row that was kept says that its query was not answered.
-  bool keptInvalid() const { return keptInvalid_; }
+  /// How many of the rows that were kept have this status.
+  uint64_t kept(Status status) const { return kept_[static_cast<size_t>(status)]; }
   /// The rows of the next `count` queries.
   void append(std::string_view rows, uint64_t count);
   /// After the last row. FILE is then complete: a shard with its first line, else the rows alone.
@@ -79,7 +80,7 @@ class PartWriter {
   std::filesystem::path file_, partial_;
   Part part_;
   uint64_t next_ = 0;
-  bool keptInvalid_ = false;
+  std::array<uint64_t, 5> kept_{};
   Descriptor descriptor_;
 };
 

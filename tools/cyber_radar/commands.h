@@ -17,6 +17,7 @@ void addScaleCommand(CLI::App& app, int& status);
 void addSelftestCommand(CLI::App& app, int& status);
 void addStabilityCommand(CLI::App& app, int& status);
 void addChartCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app, int& status);
 void addMergeCommand(CLI::App& app, int& status);
 void addViewCommand(CLI::App& app, int& status);
 void addWorkloadCommand(CLI::App& app);

@@ -18,6 +18,7 @@ constexpr const char* kExamples = R"(Try:
                                             many sweeps from a file, one JSON line each
   cyber-radar merge PART... --out answers.jsonl
                                             joins the parts that query --shard answered
+  cyber-radar compare A B --within 1e-9     whether two answer files agree
   cyber-radar workload table1 --out DIR     a batch to try that with
   cyber-radar scale --quick --out DIR       what several devices gain, and what limits them
   cyber-radar stability --out DIR           every tier against the exact answer, where methods fail
@@ -26,7 +27,8 @@ constexpr const char* kExamples = R"(Try:
   cyber-radar devices                       what could compute here, and what speaks against it
 
 Each command explains itself: cyber-radar sweep --help
-Exit status: 0, or 1 if some query could not be answered, or 2 for bad input or no usable device.)";
+Exit status: 0; 1 if some query could not be answered, or answers are not as --expect, --fail-on or compare want them;
+2 for bad input or no usable device.)";
 
 constexpr const char* kNoDeviceHint =
     "To compute without a GPU, install Mesa's software device: apt install mesa-vulkan-drivers\n"
@@ -55,6 +57,7 @@ int main(int argc, char** argv) try {
   radar::tools::addViewCommand(app, status);
   radar::tools::addQueryCommand(app, status);
   radar::tools::addMergeCommand(app, status);
+  radar::tools::addCompareCommand(app, status);
   radar::tools::addScopesCommand(app);
   radar::tools::addDevicesCommand(app, status);
   radar::tools::addDemoCommand(app, status);

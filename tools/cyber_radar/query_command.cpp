@@ -20,6 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar query batch.json --mode contact --device all
   cyber-radar query batch.json --out answers.npy     records that numpy.load reads
   cyber-radar query batch.json --out part-0 --shard 0/4 --resume
+  cyber-radar query batch.json --fail-on hit,overlap,undecided --out answers.jsonl
   cyber-radar query batch.json --repeat 9 --stats stats.json --out answers.jsonl
 
 A query file is one JSON object of meshes, scenes and queries (format cyber-radar-queries-1); the answers are JSON
@@ -29,6 +30,7 @@ struct Options {
   RunOptions run;
   uint32_t repeat = 1;
   bool repeated = false;
+  std::string failOn;
 };
 
 struct Times {
@@ -58,6 +60,23 @@ std::string textOf(uint64_t queries, const Answering& answering, const Answering
   return stats.dump(2) + "\n";
 }
 
+constexpr std::array kStatuses{Status::hit, Status::clear, Status::overlap, Status::undecided, Status::invalid};
+
+/// "hit,overlap".
+std::vector<Status> statusesIn(const std::string& list) {
+  std::vector<Status> statuses;
+  if (list.empty()) return statuses;
+  for (size_t from = 0, comma = 0; comma != list.npos; from = comma + 1) {
+    comma = list.find(',', from);
+    try {
+      statuses.push_back(statusFrom(list.substr(from, comma - from)));
+    } catch (const std::invalid_argument& error) {
+      throw InputError("--fail-on", "", error.what());
+    }
+  }
+  return statuses;
+}
+
 /// One run over a query file, or a part of it.
 class Run {
  public:
@@ -70,7 +89,7 @@ class Run {
       writer_.emplace(options.run.out, part, queries, options.run.resume);
       first_ = writer_->next();
       kept_ = first_ - part.first();
-      someInvalid_ = writer_->keptInvalid();
+      for (const Status status : kStatuses) statuses_[static_cast<size_t>(status)] = writer_->kept(status);
     }
   }
 
@@ -94,7 +113,7 @@ class Run {
     AnswerRows rows(queries_.world(), writer_ ? writer_->format() : AnswerFormat::lines);
     return pass(answering_, "answering", [&](uint64_t first, auto queries, std::span<const Answer> answers) {
       const std::string text = rows.text(first, queries, answers);
-      someInvalid_ = someInvalid_ || someInvalid(answers);
+      for (const Answer& answer : answers) ++statuses_[static_cast<size_t>(answer.result.status)];
       if (writer_) {
         writer_->append(text, answers.size());
       } else {
@@ -108,7 +127,8 @@ class Run {
     if (writer_) writer_->finish();
     writeMs_ += 1e3 * (now() - start);
   }
-  int status() const { return someInvalid_ ? kStatusSomeInvalid : 0; }
+  /// Of all answers that were written or kept.
+  uint64_t count(Status status) const { return statuses_[static_cast<size_t>(status)]; }
   double readMs() const { return readMs_; }    ///< waited for in the last pass
   double writeMs() const { return writeMs_; }  ///< likewise, and for the end of the file
 
@@ -130,10 +150,23 @@ class Run {
   std::optional<PartWriter> writer_;
   uint64_t first_ = 0, end_ = 0, kept_ = 0;
   double readMs_ = 0, writeMs_ = 0;
-  bool someInvalid_ = false;
+  std::array<uint64_t, 5> statuses_{};
 };
 
+// The exit status; says on standard error what it is for.
+int judge(const Run& run, const std::vector<Status>& failing) {
+  std::string found;
+  for (const Status status : failing) {
+    if (run.count(status) == 0) continue;
+    found += (found.empty() ? "" : ", ") + std::to_string(run.count(status)) + " " + nameOf(status);
+  }
+  if (!found.empty()) std::cerr << "cyber-radar: --fail-on: expected none of these, got " << found << "\n";
+  if (run.count(Status::invalid) > 0) return kStatusSomeInvalid;
+  return found.empty() ? 0 : kStatusNotAsWanted;
+}
+
 int query(const Options& options) {
+  const std::vector<Status> failing = statusesIn(options.failOn);
   AnsweringOptions engine = options.run.engine.checked();
   options.run.check();
 
@@ -177,7 +210,7 @@ int query(const Options& options) {
     if (!device.retired.empty()) printWarnings({device.name + " was given up: " + device.retired});
   }
   sayDone("cyber-radar", {run.count(), run.kept(), seconds, begun - start}, statusesInWords(pass));
-  return run.status();
+  return judge(run, failing);
 }
 
 }  // namespace
@@ -195,6 +228,10 @@ void addQueryCommand(CLI::App& app, int& status) {
           ->check(CLI::Range(1u, 1'000'000u))
           ->type_name("N")
           ->capture_default_str();
+  command
+      ->add_option("--fail-on", options->failOn,
+                   "Ends with exit status 1 if an answer has one of these statuses: hit, clear, overlap, undecided")
+      ->type_name("STATUS,...");
   command->add_flag_callback(
       "--fields",
       [] {

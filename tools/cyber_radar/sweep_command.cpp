@@ -16,6 +16,7 @@ constexpr const char* kExamples = R"(Examples:
   cyber-radar sweep ring.obj peg.stl --at 0 0 -3 --rotate 0 1 0 15 --direction 0 0 1 --distance 8 --speed 0.5
   cyber-radar sweep floor.stl crate.stl --direction 0 0 1 --distance 8 --ignore-leaving
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --json | python3 -m json.tool
+  cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --expect clear
   cyber-radar sweep ring.obj peg.stl --direction 0 0 1 --distance 8 --view sweep.html
 
 SCENE and SENSOR are any files assimp reads (OBJ, PLY, STL, glTF, ...), in one common unit; FILE#3 or FILE#NAME is one
@@ -25,7 +26,7 @@ and moved along --direction for --distance.)";
 struct Options {
   EngineOptions engine;
   SweepOptions sweep;
-  std::string view;
+  std::string view, expect;
   bool json = false;
 };
 
@@ -37,6 +38,15 @@ std::string introduction(const Workload& workload) {
   const QuerySpec& query = workload.queries.front();
   return "scene:  " + describe(0) + "sensor: " + describe(1) + "moves " + inDigits(query.distance) + " along " +
          inDigits(query.direction) + "\n";
+}
+
+// The exit status; says on standard error what it is for.
+int judge(Status status, const std::string& expect) {
+  if (status == Status::invalid) return kStatusSomeInvalid;
+  const bool isHit = status == Status::hit || status == Status::overlap;
+  if (expect.empty() || (expect == "hit" ? isHit : status == Status::clear)) return 0;
+  std::cerr << "cyber-radar: --expect: expected " << expect << ", got " << nameOf(status) << "\n";
+  return kStatusNotAsWanted;
 }
 
 int sweep(const Options& options) {
@@ -66,7 +76,7 @@ int sweep(const Options& options) {
     writePage(options.view, options.sweep.sensor + " in " + options.sweep.scene, workload, {&answer, 1},
               {.device = devices.empty() ? nullptr : &devices[0]});
   }
-  return someInvalid({&answer, 1}) ? kStatusSomeInvalid : 0;
+  return judge(answer.result.status, options.expect);
 }
 
 }  // namespace
@@ -83,6 +93,11 @@ void addSweepCommand(CLI::App& app, int& status) {
   command->add_option("--view", options->view, "Writes a page here that shows the answer in any browser")
       ->type_name("FILE.html");
   command->add_flag("--json", options->json, "Prints the answer as one line of an answer file");
+  command
+      ->add_option("--expect", options->expect,
+                   "Ends with exit status 1 if the answer is another one; an overlap is a hit, too")
+      ->check(CLI::IsMember({"clear", "hit"}))
+      ->type_name("clear|hit");
   command->callback([options, &status] { status = sweep(*options); });
 }
 

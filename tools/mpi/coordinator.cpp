@@ -14,7 +14,7 @@ Coordinator::Coordinator(PartWriter& writer, uint64_t end, size_t ranks, ChunkAn
       next_(writer.next()),
       end_(end),
       progress_("answering", end - writer.next()),
-      someInvalid_(writer.keptInvalid()) {}
+      someInvalid_(writer.kept(Status::invalid) > 0) {}
 
 void Coordinator::run() {
   using namespace std::chrono_literals;

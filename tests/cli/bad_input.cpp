@@ -89,8 +89,9 @@ TEST_CASE("the message about an unknown option or a bad value names it") {
         std::pair{"--mode bounded", "expected mode sampled, contact or reference, got \"bounded\""},
         std::pair{"--tolerance 1", "--tolerance"}, std::pair{"--resolution 0", "--resolution"},
         std::pair{"--resolution 4096", "--resolution"}, std::pair{"--resolution 64x", "\"64x\""},
-        std::pair{"--repeat 0", "--repeat"}, std::pair{"--fast", "--fast"},
-        std::pair{"--out no/folder.jsonl", "no/folder.jsonl"}, std::pair{"--stats no/s.json", "no/s.json"}}) {
+        std::pair{"--repeat 0", "--repeat"}, std::pair{"--device ''", "--device: expected all or numbers"},
+        std::pair{"--fast", "--fast"}, std::pair{"--out no/folder.jsonl", "no/folder.jsonl"},
+        std::pair{"--stats no/s.json", "no/s.json"}}) {
     checkRefused(folder, std::string("query q.json ") + options, words);
   }
 }

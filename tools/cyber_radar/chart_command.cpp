@@ -31,7 +31,8 @@ are there, and --render draws them later, or elsewhere. A program built with -DR
 
 struct Options {
   std::vector<std::string> files, meshes, sections{"front", "table1"};
-  std::string out, device, extent = "full";
+  std::optional<std::string> device;
+  std::string out, extent = "full";
   bool quick = false, render = false;
 
   bool has(const char* section) const { return std::find(sections.begin(), sections.end(), section) != sections.end(); }

@@ -101,14 +101,14 @@ AnsweringOptions EngineOptions::checked() const {
     return true;
   };
   options.onLost = [](const std::string& how) { printWarnings({"the CPU alone answers mode contact: " + how}); };
-  if (device.empty()) return options;
-  const std::vector<uint32_t> devices = devicesFrom(device);
+  if (!device) return options;
+  const std::vector<uint32_t> devices = devicesFrom(*device);
   if (devices.size() == 1) {
     options.device = devices[0];
   } else if (severalDevices) {
     options.pool = devices;
   } else {
-    throw InputError("--device", "", "expected the number of one device, got \"" + device + "\"");
+    throw InputError("--device", "", "expected the number of one device, got \"" + *device + "\"");
   }
   return options;
 }

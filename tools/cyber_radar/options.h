@@ -13,7 +13,8 @@ namespace radar::tools {
 
 /// --mode, --resolution, --device, --cpu-batch, --threads.
 struct EngineOptions {
-  std::string mode = "contact", resolution = "auto", device;
+  std::string mode = "contact", resolution = "auto";
+  std::optional<std::string> device;
   std::optional<uint32_t> cpuBatch;
   uint32_t threads = 0;
   bool severalDevices = false;  ///< --device may name more than one

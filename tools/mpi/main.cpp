@@ -45,7 +45,7 @@ void takeShare(AnsweringOptions& options, const EngineOptions& given, const MpiS
     options.threads = std::max(1u, std::thread::hardware_concurrency() / static_cast<uint32_t>(count));
   }
   if (!needsDevice) return;
-  std::vector<uint32_t> all = given.device.empty() ? std::vector<uint32_t>() : devicesFrom(given.device);
+  std::vector<uint32_t> all = !given.device ? std::vector<uint32_t>() : devicesFrom(*given.device);
   if (all.empty()) {
     const std::vector<DeviceReport> reports = listDevices();
     for (uint32_t i = 0; i < reports.size(); ++i) {

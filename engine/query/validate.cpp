@@ -5,6 +5,7 @@
 
 #include "math/float_environment.h"
 #include "math/frame.h"
+#include "math/number_text.h"
 #include "query/hits.h"
 #include "scene/scene.h"
 
@@ -29,7 +30,7 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
   }
   double largest = 0;
   for (double value : query.direction) {
-    if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + std::to_string(value);
+    if (!std::isfinite(value)) return "direction: expected 3 finite numbers, got " + textOf(value);
     largest = std::max(largest, std::abs(value));
   }
   if (largest == 0) return "direction: expected a vector that is not zero";
@@ -37,10 +38,10 @@ std::string validateCourse(const Query& query, const Scene::Impl& scene) {
     return "direction: expected a length below 2^1023 beside a component below 2^-1020";
   }
   if (!std::isfinite(query.distance) || query.distance < 0) {
-    return "distance: expected a finite number of 0 or more, got " + std::to_string(query.distance);
+    return "distance: expected a finite number of 0 or more, got " + textOf(query.distance);
   }
   if (scene.moving > 0 && query.distance > kMostMotion) {
-    return "distance: expected at most 2^1000 where objects move, got " + std::to_string(query.distance);
+    return "distance: expected at most 2^1000 where objects move, got " + textOf(query.distance);
   }
   return {};
 }
@@ -56,7 +57,7 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
     if (!scene.hasObject(object)) return "exclude: object " + std::to_string(object) + " does not exist";
   }
   if (query.slack && !(std::isfinite(*query.slack) && *query.slack >= 0)) {
-    return "slack: expected a finite number of 0 or more, got " + std::to_string(*query.slack);
+    return "slack: expected a finite number of 0 or more, got " + textOf(*query.slack);
   }
   if (query.slack && *query.slack > 0) {
     const Box box = boxOf(scene.impl().meshes[query.mesh], query.worldFromMesh.m);
@@ -67,10 +68,10 @@ std::string validate(const Query& query, const Scene& scene, Mode mode) {
     }
   }
   if (!std::isfinite(query.clearance) || query.clearance < 0) {
-    return "clearance: expected a finite number of 0 or more, got " + std::to_string(query.clearance);
+    return "clearance: expected a finite number of 0 or more, got " + textOf(query.clearance);
   }
   if (query.tolerance && !(std::isfinite(*query.tolerance) && *query.tolerance >= 0)) {
-    return "tolerance: expected a finite number of 0 or more, got " + std::to_string(*query.tolerance);
+    return "tolerance: expected a finite number of 0 or more, got " + textOf(*query.tolerance);
   }
   if (query.hits == 0) return "hits: expected 1 or more, got 0";
   if (query.hits > 1 && query.anyHit) return "hits: expected 1 with anyHit, got " + std::to_string(query.hits);

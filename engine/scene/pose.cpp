@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "math/float_environment.h"
+#include "math/number_text.h"
 #include "scene/scene.h"
 
 namespace radar {
@@ -30,7 +31,7 @@ std::string validate(const Transform& pose) {
   if (isSurelyInvertible(pose)) return {};
   for (double value : pose.m) {
     if (!(std::abs(value) <= kMostPose)) {
-      return "expected 12 finite numbers of at most 2^800, got " + std::to_string(value);
+      return "expected 12 finite numbers of at most 2^800, got " + textOf(value);
     }
   }
   // Columns, then rows are scaled to length 1, so that a scale of 1e-5 along one axis does not look singular.
@@ -53,7 +54,7 @@ std::string validate(const Transform& pose) {
 std::string validateMotion(const std::array<double, 3>& motion) {
   for (double value : motion) {
     if (!(std::abs(value) <= kMostMotion)) {
-      return "expected 3 finite numbers of at most 2^1000, got " + std::to_string(value);
+      return "expected 3 finite numbers of at most 2^1000, got " + textOf(value);
     }
   }
   return {};

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "math/float_environment.h"
+#include "math/number_text.h"
 #include "math/rounding.h"
 #include "scene/parallel.h"
 
@@ -52,7 +53,7 @@ Box boxOf(const char* call, const Bounds& bounds) {
   for (int k = 0; k < 3; ++k) {
     if (!(bounds.lo[k] <= bounds.hi[k] && bounds.lo[k] >= -kMostBound && bounds.hi[k] <= kMostBound)) {
       throw Error(std::string(call) + ": bounds: expected lo <= hi and magnitudes of at most 2^120, got " +
-                  std::to_string(bounds.lo[k]) + " and " + std::to_string(bounds.hi[k]));
+                  textOf(bounds.lo[k]) + " and " + textOf(bounds.hi[k]));
     }
   }
   Box box;

@@ -228,6 +228,7 @@ void ContactRunner::answerLeft(Flight& flight) {
   const Clock::time_point start = Clock::now();
   Answers& answers = flight.answers;
   const size_t first = left.front(), count = left.size();
+  const uint64_t before = cpu_.pairs();
   if (left.back() - first + 1 == count) {  // without gaps
     cpu_.run(flight.queries.subspan(first, count), scene_.impl(), Tier::contact, options_.cpuThreads,
              std::span(answers.results).subspan(first, count),
@@ -241,6 +242,9 @@ void ContactRunner::answerLeft(Flight& flight) {
     for (size_t k = 0; k < count; ++k) answers.results[left[k]] = found.results[k];
     for (size_t k = 0; k < found.lists.size(); ++k) answers.lists[left[k]] = std::move(found.lists[k]);
   }
+  const uint64_t pairs = cpu_.pairs() - before;
+  answers.stats.pairs += pairs;
+  answers.stats.cpuPairs += pairs;
   answers.stats.cpuQueries += count;
   flight.addCpuTime("cpu", msSince(start));
 }

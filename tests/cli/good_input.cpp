@@ -129,6 +129,11 @@ TEST_CASE("query writes answers and statistics to files") {
   CHECK(stats["stages"].is_object());
   CHECK(stats["pairs"].get<int>() >= 6);
   CHECK(stats["cpu_pairs"] == stats["pairs"]);
+  CHECK(stats["cpu_queries"] == 7);
+  // Mode contact leaves few queries to the CPU whole, which counts what it does as mode reference does.
+  REQUIRE(runProgram(folder, "query q.json --cpu-batch 100 --stats s.json").status == 0);
+  const auto left = nlohmann::json::parse(folder.read("s.json"));
+  for (const char* key : {"pairs", "cpu_pairs", "cpu_queries"}) CHECK(left[key] == stats[key]);
   CHECK(stats["device"].is_null());
   CHECK(stats["driver"].is_null());
   CHECK(stats["commit"].is_string());

@@ -24,7 +24,7 @@ uint32_t idIn(const RowReader& row, const char* name, uint64_t limit, const std:
   if (std::isnan(value)) return kNone;
   if (value >= 0 && value < static_cast<double>(limit)) return static_cast<uint32_t>(value);
   throw InputError(file, row.place + ": " + name,
-                   "expected a whole number below " + std::to_string(limit) + ", got " + std::to_string(value));
+                   "expected a whole number below " + std::to_string(limit) + ", got " + inShortest(value));
 }
 
 Result resultOf(const RowReader& row, Status status, const Workload& workload, const std::string& file) {

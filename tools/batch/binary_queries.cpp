@@ -17,15 +17,6 @@ namespace {
 
 constexpr double kLongestMotion = 0x1p1000;
 
-std::string text(double value) {
-  std::string digits;
-  if (std::isfinite(value)) {
-    appendNumber(digits, value);
-    return digits;
-  }
-  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
-}
-
 std::string among(size_t count, const char* what) {
   return "a whole number that names one of the " + std::to_string(count) + " " + what + ", from 0";
 }
@@ -84,7 +75,7 @@ void BinaryQueries::refuse(const Column& column, uint64_t index, const std::stri
 
 double BinaryQueries::finite(const Column& column, uint64_t index, uint64_t part) const {
   const double value = column.real(index, part);
-  if (!std::isfinite(value)) refuse(column, index, "expected finite numbers, got " + text(value));
+  if (!std::isfinite(value)) refuse(column, index, "expected finite numbers, got " + inShortest(value));
   return value;
 }
 
@@ -106,7 +97,8 @@ void BinaryQueries::readMove(QuerySpec& query, uint64_t index) const {
   for (uint64_t k = 0; k < 3; ++k) query.direction[k] = finite(*direction_, index, k);
   if (query.direction == std::array<double, 3>{}) refuse(*direction_, index, "expected a vector that is not zero");
   query.distance = finite(*distance_, index);
-  if (query.distance < 0) refuse(*distance_, index, "expected a number of 0 or more, got " + text(query.distance));
+  if (query.distance < 0)
+    refuse(*distance_, index, "expected a number of 0 or more, got " + inShortest(query.distance));
   if (query.distance > kLongestMotion && !world_.scenes[query.scene].motions.empty()) {
     refuse(*distance_, index, "expected at most 2^1000 in a scene with motions");
   }
@@ -128,7 +120,7 @@ void BinaryQueries::readField(const QueryField& field, const Column& column, uin
   if (std::isnan(given) || setValue(query, field, field.word && given == 0 ? HUGE_VAL : given)) return;
   refuse(column, index,
          "expected " + expectedFor(field) +
-             (isReal       ? ", or nan for none, got " + text(given)
+             (isReal       ? ", or nan for none, got " + inShortest(given)
               : field.word ? ", which is 0"
                            : ""));
 }

@@ -66,6 +66,7 @@ std::vector<Answer> Answering::run(std::span<const QuerySpec> queries, Progress&
     for (const auto& [i, reason] : found.reasons) answers[batch.numbers[i]].reason = reason;
     stats_.pairs += found.stats.pairs;
     stats_.cpuPairs += found.stats.cpuPairs;
+    stats_.cpuQueries += found.stats.cpuQueries;
     for (const StageTime& stage : found.stats.stages) addStage(stats_.stages, stage);
     progress.add(found.results.size());
   }

@@ -23,6 +23,7 @@ struct AnsweringStats {
   uint64_t batches = 0;                ///< calls of the engine's
   uint64_t pairs = 0;                  ///< pairs of triangles or leaves that were looked at, or were proposed by pixels
   uint64_t cpuPairs = 0;               ///< those of them decided on the CPU
+  uint64_t cpuQueries = 0;             ///< answered by the CPU alone
   std::array<uint64_t, 5> statuses{};  ///< answers of each Status
   uint32_t leastResolution = kNone, mostResolution = 0;  ///< of the pictures; 0 if none was drawn
   std::vector<StageTime> stages;

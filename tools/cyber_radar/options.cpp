@@ -15,7 +15,7 @@ namespace {
 
 void requireFinite(const char* option, const std::vector<double>& values) {
   for (double value : values) {
-    if (!std::isfinite(value)) throw InputError(option, "", "expected finite numbers, got " + std::to_string(value));
+    if (!std::isfinite(value)) throw InputError(option, "", "expected finite numbers, got " + inShortest(value));
   }
 }
 
@@ -150,7 +150,7 @@ void SweepOptions::addFieldsTo(CLI::App& command) {
     std::ranges::replace(name, '_', '-');
     const auto set = [&, name](double value) {
       if (std::isnan(value) || !setValue(fields, field, value)) {
-        throw InputError(name, "", "expected " + expectedFor(field) + ", got " + std::to_string(value));
+        throw InputError(name, "", "expected " + expectedFor(field) + ", got " + inShortest(value));
       }
     };
     if (field.kind() == 'b') {

@@ -49,6 +49,7 @@ std::string textOf(uint64_t queries, const Answering& answering, const Answering
   for (const StageTime& stage : pass.stages) stats["stages"][stage.name] = stage.ms;
   stats["pairs"] = pass.pairs;
   stats["cpu_pairs"] = pass.cpuPairs;
+  stats["cpu_queries"] = pass.cpuQueries;
   const std::span<const Device> devices = answering.answerer().devices();
   stats["device"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].name());
   stats["driver"] = devices.empty() ? nullptr : nlohmann::ordered_json(devices[0].driver());

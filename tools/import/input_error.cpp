@@ -1,6 +1,8 @@
 #include "import/input_error.h"
 
 #include <bit>
+#include <charconv>
+#include <cmath>
 
 namespace radar::tools {
 
@@ -22,6 +24,12 @@ size_t characterLength(std::string_view text) {
 
 std::string counted(uint64_t count, const std::string& one, const std::string& several) {
   return std::to_string(count) + " " + (count == 1 ? one : several.empty() ? one + "s" : several);
+}
+
+std::string inShortest(double number) {
+  if (std::isnan(number)) return "nan";  // of either sign
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, number).ptr};
 }
 
 std::string printable(std::string_view text, size_t most) {

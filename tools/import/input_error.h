@@ -10,6 +10,9 @@ namespace radar::tools {
 /// `text` for a message: control characters and what is no UTF-8 as \xNN, cut short after about `most` bytes.
 std::string printable(std::string_view text, size_t most = 1000);
 
+/// The shortest decimal number that reads back as the same double; "nan", "inf".
+std::string inShortest(double number);
+
 /// "1 scene", "2 scenes"; `several`: where that is not the word with an s.
 std::string counted(uint64_t count, const std::string& one, const std::string& several = "");
 

@@ -81,7 +81,7 @@ struct SweepStats {
   uint64_t drawnObjects = 0;      ///< objects drawn, summed over sensors
   uint64_t drawnTriangles = 0;    ///< triangles drawn for R and M, summed over sensors
   uint64_t pairs = 0;             ///< proposed pairs of triangles (sampled), pairs of leaves (contact)
-  uint64_t cpuPairs = 0;          ///< pairs of triangles left to the CPU
+  uint64_t cpuPairs = 0;          ///< pairs of triangles decided on the CPU
   uint64_t cpuQueries = 0;        ///< queries answered by the CPU alone (contact)
   std::string lost;               ///< how the device was lost: the CPU alone answers mode contact since; else empty
   std::vector<StageTime> stages;  ///< with SweeperOptions::timestamps, CPU stages included; else empty

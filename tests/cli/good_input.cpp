@@ -101,11 +101,15 @@ TEST_CASE("answers about an assembly name the objects") {
   folder.write("assembly.json", R"({"format": "cyber-radar-queries-1", "meshes": ["b.obj#floor"],
     "scenes": [{"id": "a", "assembly": "b.obj"}],
     "queries": [{"id": "up", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,1], "D": 8, "hits": "all"},
-                {"id": "down", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,-1], "D": 8}]})");
+                {"id": "down", "scene": 0, "sensor": [0], "exclude": [0], "dir": [0,0,-1], "D": 8},
+                {"id": "left out", "scene": 0, "sensor": [0, 0,0,1,-1, 0,1,0,1, 1,0,0,2.5], "dir": [0,0,-1], "D": 1,
+                 "skip_overlapping": true, "exclude": [0]}]})");
   const Run run = runProgram(folder, "query assembly.json --mode reference");
   REQUIRE(run.status == 0);
   const auto answers = linesOf(run.out);
-  REQUIRE(answers.size() == 2);
+  REQUIRE(answers.size() == 3);
+  CHECK((answers[2]["status"] == "clear" && answers[2]["overlapping"] == nlohmann::json({1})));
+  CHECK(answers[2]["overlapping_names"] == nlohmann::json({"roof"}));
   CHECK((answers[0]["t"] == 1 && answers[0]["object"] == 1 && answers[0]["object_name"] == "roof"));
   CHECK(answers[0]["hits"][0]["object_name"] == "roof");
   CHECK(answers[1]["object_name"].is_null());
@@ -148,6 +152,10 @@ TEST_CASE("sweep describes the contact in words, and --json prints the answer li
   CHECK(words.status == 0);
   CHECK_THAT(words.out,
              Contains("hit: first contact after 3 of 9") && Contains("object 0 (a.obj)") && Contains("after 1.5 s"));
+  const Run crossing = runProgram(folder,
+                                  "sweep a.obj a.obj --at 1 1 -1 --rotate 0 1 0 -90 --direction 0 0 1 --distance 2 "
+                                  "--mode reference --skip-overlapping");
+  CHECK_THAT(crossing.out, Contains("clear of all but 1 object left out: 0 (a.obj), whose surface crosses"));
   const Run json = runProgram(folder, arguments + "--json");
   const auto answers = linesOf(json.out);
   REQUIRE(answers.size() == 1);

@@ -40,7 +40,12 @@ def test_messages_name_the_argument_and_the_shape(boxes):
         (lambda: cast(mesh, None, DOWN, mode="fast"), 'mode: expected "contact", "sampled" or "reference"'),
         (lambda: cast(mesh, None, DOWN, slack=-1), "slack: expected a finite number of 0 or more, got -1"),
         (lambda: cast(mesh, None, DOWN, clearance=np.inf), "clearance: expected a finite number of 0 or more"),
-        (lambda: cast(mesh, None, DOWN, tolerance=[1]), "tolerance: expected one number, got shape (1,)"),
+        (lambda: cast(mesh, None, [DOWN] * 3, tolerance=[1, 2]), "got displacements (3, 3), tolerance (2,)"),
+        (lambda: cast(mesh, None, DOWN, skip_overlapping=[True]), "skip_overlapping: expected"),
+        (lambda: cast(mesh, None, DOWN, ignore_leaving=[0, 1]), "ignore_leaving: expected True or False for each cast"),
+        (lambda: cast(mesh, None, DOWN, hits=[1, -1]), "hits: expected whole numbers from 0 to"),
+        (lambda: cast(mesh, None, DOWN, hits=[1, 2], mode="sampled"), 'mode: expected "contact" or "reference" with'),
+        (lambda: scene.add_mesh("part.stl"), "got 'part.stl'; load_mesh() reads a file"),
         (lambda: cast(mesh, None, DOWN, hits=0), "hits: expected a whole number from 1 to"),
         (lambda: cast(mesh, None, DOWN, hits="al"), "hits: expected a whole number from 1 to 4294967294, or \"all\", got 'al'"),
         (lambda: cast(mesh, None, DOWN, hits=2, any_hit=True), "hits: expected 1 with any_hit"),
@@ -200,3 +205,13 @@ def test_the_compiled_half_refuses_arrays_that_do_not_fit(boxes):
         of[wrong] = of[wrong][:2]
         with pytest.raises(ValueError):
             engine.cast((4,), arguments, options, results, lambda n: {}, None)
+
+
+def test_poses_may_lack_their_last_row(boxes):
+    scene, mesh = boxes
+    poses = at(np.linspace((-9, -9, 9), (9, 9, 20), 12).reshape(3, 4, 3))
+    whole = scene.cast(mesh, poses, DOWN, mode="reference")
+    assert same_answers(scene.cast(mesh, poses[..., :3, :], DOWN, mode="reference"), whole)
+    one = cyber_radar.Scene()
+    one.add(one.add_mesh(box(1, 1, 1), FACES), poses[:, :, :3])
+    assert (one.objects().transforms == poses.reshape(-1, 4, 4)).all()

@@ -351,6 +351,60 @@ def test_an_index_of_lists_has_errors_of_its_own():
         casts[0, 0].hits.of(3)
 
 
+@pytest.mark.parametrize("mode", ["reference", "contact"])
+def test_options_given_for_each_cast_answer_as_those_given_for_one(mode):
+    scene = cyber_radar.Scene(cpu_batch=0)
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0, 0, -3], [0.5, 0, -6], [1.25, 0, 0]]))
+    ways = np.array([DOWN, [0, 3, -9], [-2, 0, 0]])
+    for name, values in {
+        "ignore_leaving": [True, False, True],
+        "slack": [0.0, np.nan, 1e-3],
+        "clearance": [0.0, 0.5, 0.25],
+        "tolerance": [1e-2, np.nan, 1e-9],
+        "hits": [1, 3, 0],
+    }.items():
+        others = {"clearance": 0.3} if name == "tolerance" else {"ignore_leaving": True} if name == "slack" else {}
+        column = np.array(values)[:, None]
+        casts = scene.cast(mesh, None, ways, mode=mode, **{name: column}, **others)
+        assert casts.shape == (3, 3)
+        for row, value in enumerate(values):
+            one = "all" if name == "hits" and value == 0 else None if np.isnan(value) else value
+            single = scene.cast(mesh, None, ways, mode=mode, **{name: one}, **others)
+            for key, array in single.to_dict().items():
+                np.testing.assert_array_equal(casts[row].to_dict()[key], array, err_msg=f"{name} {value} {key}")
+            for way in range(3) if name == "hits" and value != 1 else ():
+                rows = casts.hits.of(row, way)
+                np.testing.assert_array_equal(casts.hits.object[rows], single.hits.object[single.hits.of(way)])
+            assert name != "hits" or value != 1 or casts[row].hits.object.size == 0
+
+
+def test_a_wrong_option_of_one_cast_makes_that_cast_invalid():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([0, 0, -3]))
+    casts = scene.cast(mesh, None, DOWN, clearance=[0, -1, np.nan], mode="reference")
+    assert casts.status.tolist() == [Status.HIT, Status.INVALID, Status.INVALID]
+    assert {reason: found.tolist() for reason, found in casts.reasons.items()} == {
+        "clearance: expected a finite number of 0 or more, got -1": [1],
+        "clearance: expected a finite number of 0 or more, got nan": [2],
+    }
+
+
+def test_casts_name_the_objects_that_they_leave_out():
+    scene = cyber_radar.Scene()
+    mesh = scene.add_mesh(box(1, 1, 1), FACES)
+    scene.add(mesh, at([[0.5, 0, 0.5], [0, 0, -3], [0, 5, 0]]))
+    scene._names = {0: "bin"}  # as load_assembly() gives them
+    options = {"mode": "reference", "skip_overlapping": True}
+    assert repr(scene.cast(mesh, None, [0, 0, 9], **options)) == (
+        "<Casts of shape (): 1 clear of all but 1 object left out: 0 (bin)>"
+    )
+    casts = scene.cast(mesh, at([[0.25, 0.25, 0], [0.5, 5, 0.5], [9, 9, 9]]), [0, 0, 9], **options)
+    assert repr(casts) == "<Casts of shape (3,): 3 clear of all but 2 objects left out: 0 (bin), 2>"
+    assert repr(casts[2]) == "<Casts of shape (): 1 clear>"
+
+
 def test_masks_exclusions_clearance_and_any_hit():
     scene = cyber_radar.Scene()
     mesh = scene.add_mesh(box(1, 1, 1), FACES)
@@ -363,7 +417,10 @@ def test_masks_exclusions_clearance_and_any_hit():
     near = cast(clearance=0.5, tolerance=1e-3)
     assert 1.5 - 1e-3 <= near.lo <= 1.5 <= near.hi <= near.lo + 1e-3
     any_hit = cast(any_hit=True)
-    assert any_hit.status == Status.HIT and np.isnan(any_hit.distance) and any_hit.object == -1
+    assert any_hit.status == Status.HIT and any_hit.object == -1
+    assert any_hit.distance == any_hit.hi == 10 and any_hit.lo == 0 and any_hit.fraction == 1  # it comes by then
+    there = scene.cast(mesh, at([0, 0, -3.5]), DOWN, mode="reference", any_hit=True)
+    assert there.status == Status.HIT and there.distance == 10
     assert cast(any_hit=True, mask=4).status == Status.CLEAR
     assert cast(distances=[1.5, 2.5]).distance.tolist() == [np.inf, 2]
 

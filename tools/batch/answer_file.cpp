@@ -209,6 +209,11 @@ std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<c
   if (query.skipOverlapping) {
     line.add("overlapping", listOf(answer.listed.overlapping, ", ",
                                    [](std::string& text, ObjectId id) { text += std::to_string(id); }));
+    if (!objectNames.empty()) {
+      line.add("overlapping_names", listOf(answer.listed.overlapping, ", ", [&](std::string& text, ObjectId id) {
+                 text += objectNames[id].empty() ? "null" : quoted(objectNames[id]);
+               }));
+    }
   }
   return line.text();
 }

@@ -20,8 +20,8 @@ struct Answer {
 
 /// One line, without its end. All keys of the format are there, with null for what the answer does not have;
 /// `paper_min_l` only in mode sampled, `time` only where the query gives a speed, `reason` only where the status is
-/// invalid, `hits` and `overlapping` only where the query asks for them, `object_name` only with `objectNames`, which
-/// are Workload::objectNames of the query's scene.
+/// invalid, `hits` and `overlapping` only where the query asks for them, `object_name` and `overlapping_names` only
+/// with `objectNames`, which are Workload::objectNames of the query's scene.
 std::string answerLine(const QuerySpec& query, const Answer& answer, std::span<const std::string> objectNames = {});
 
 /// The same as a record of numpy's, whose type recordDescription() says; NaN and -1 for null.

@@ -47,7 +47,10 @@ std::string leastFreeDistance(const Scopes& scopes) {
 
 std::string inWords(const Workload& workload, const QuerySpec& query, const Answer& answer) {
   if (!answer.listed.overlapping.empty()) {
-    return "skipped: the surfaces cross at the start, so nothing is left to meet\n";
+    const ObjectId object = answer.listed.overlapping[0];  // the only one
+    return "clear of all but 1 object left out: " + std::to_string(object) + " (" +
+           workload.meshes[workload.instance(query.scene, object).mesh].name +
+           "), whose surface crosses the sensor's at the start\n";
   }
   const Result& result = answer.result;
   const std::string distance = inDigits(query.distance);

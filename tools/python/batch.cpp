@@ -75,7 +75,7 @@ void setWay(Query& query, const std::array<double, 3>& way, AnswerMode mode, boo
 /// Goes through the queries in row-major order.
 class Reader {
  public:
-  /// Begins with query `first`. `mayRoundUp`: see setWay.
+  /// Begins with query `first`. `mayRoundUp`: see setWay; of queries with a clearance.
   Reader(const BatchInput& input, size_t first, bool mayRoundUp)
       : input_(input), mayRoundUp_(mayRoundUp), index_(input.shape.size()) {
     for (size_t d = index_.size(); d-- > 0; first /= input.shape[d]) {
@@ -93,6 +93,7 @@ class Reader {
     for (size_t d = 0; d < index_.size(); ++d) at += index_[d] * from.strides[d];
     std::copy_n(at, count * sizeof(T), reinterpret_cast<char*>(to));
   }
+  void readOptions(Query& query) const;
   void advance() {
     for (size_t d = index_.size(); d-- > 0;) {
       if (++index_[d] < static_cast<ptrdiff_t>(input_.shape[d])) return;
@@ -106,17 +107,34 @@ class Reader {
   std::vector<int64_t> excluded_;
 };
 
+void Reader::readOptions(Query& query) const {
+  const auto readOptional = [&](const PerQuery& from, std::optional<double>& to) {
+    if (!from.data) return;
+    double value = 0;
+    read(from, &value, 1);
+    to = std::isnan(value) ? std::optional<double>() : value;
+  };
+  if (input_.leaving.data) read(input_.leaving, &query.ignoreLeaving, 1);
+  readOptional(input_.slacks, query.slack);
+  readOptional(input_.tolerances, query.tolerance);
+  if (input_.clearances.data) read(input_.clearances, &query.clearance, 1);
+  if (!input_.hits.data) return;
+  read(input_.hits, &query.hits, 1);
+  if (query.hits == 0) query.hits = kAllHits;
+}
+
 void Reader::next(Query& query) {
   read(input_.meshes, &query.mesh, 1);
   read(input_.poses, query.worldFromMesh.m.data(), 12);
   read(input_.masks, &query.mask, 1);
   std::array<double, 3> way;
   read(input_.displacements, way.data(), 3);
+  readOptions(query);
   if (input_.distances.data) {
     query.direction = way;
     read(input_.distances, &query.distance, 1);
   } else {
-    setWay(query, way, input_.mode, mayRoundUp_);
+    setWay(query, way, input_.mode, mayRoundUp_ && query.clearance > 0);
   }
   excluded_.resize(input_.excludedCount);
   read(input_.excluded, excluded_.data(), excluded_.size());
@@ -209,8 +227,9 @@ void BatchOutput::write(size_t i, const Result& result, bool anyHit) const {
   const bool met = result.status == Status::hit || result.status == Status::overlap;
   const bool clear = result.status == Status::clear, undecided = result.status == Status::undecided;
   const double none = clear ? kInfinity : kNaN;
-  distance[i] = met && !anyHit ? result.t : none;
-  fraction[i] = met && !anyHit ? result.fraction : none;
+  // Nobody looked for the first contact: it comes by hi, the end of the way.
+  distance[i] = !met ? none : anyHit ? result.hi : result.t;
+  fraction[i] = !met ? none : anyHit ? double(result.hi > 0) : result.fraction;
   lo[i] = met || undecided ? result.lo : none;
   hi[i] = met ? result.hi : undecided ? kInfinity : none;
   status[i] = static_cast<uint8_t>(result.status);
@@ -231,7 +250,7 @@ BatchLists cast(CastingScene& scene, const BatchInput& input, const BatchOutput&
                 const std::function<void(size_t)>& afterChunk) {
   BatchLists lists;
   const bool listing = input.options.hits > 1 || input.options.skipOverlapping;
-  const bool mayRoundUp = input.options.clearance > 0 && !scene.moves();
+  const bool mayRoundUp = !scene.moves();
   const size_t count = input.count();
   std::vector<Query> queries;
   size_t chunk = kFirstChunk;

@@ -28,7 +28,11 @@ struct BatchInput {
   PerQuery masks;             ///< uint32_t
   PerQuery excluded;          ///< int64_t, `excludedCount` of them; below 0: none
   size_t excludedCount = 0;
-  Query options;  ///< for the members that all queries share
+  PerQuery leaving;             ///< bool; without data, as `options` says; likewise the next four
+  PerQuery slacks, tolerances;  ///< double, NaN for none
+  PerQuery clearances;          ///< double
+  PerQuery hits;                ///< uint32_t, 0 for all; if one is above 1, so is options.hits
+  Query options;                ///< for the members that all queries share
   tools::AnswerMode mode = tools::AnswerMode::contact;
 
   size_t count() const;

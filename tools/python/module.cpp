@@ -298,6 +298,15 @@ py::tuple castArrays(CastingScene& scene, const std::vector<size_t>& shape, cons
     distances = argument("distances");
     input.distances = perQuery<double>(distances, shape, 1, "distances");
   }
+  std::vector<py::array> each;  // keeps the arrays alive
+  const auto readEach = [&]<class T>(const char* name, PerQuery& to, T) {
+    if (arguments.contains(name)) to = perQuery<T>(each.emplace_back(argument(name)), shape, 1, name);
+  };
+  readEach("ignore_leaving", input.leaving, false);
+  readEach("slack", input.slacks, 0.0);
+  readEach("tolerance", input.tolerances, 0.0);
+  readEach("clearance", input.clearances, 0.0);
+  readEach("hits", input.hits, uint32_t{});
   input.options = optionsFrom(options);
   input.mode = modeFrom(options);
   const BatchOutput output = outputFrom(out, input.count());

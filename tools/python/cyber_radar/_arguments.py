@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +14,7 @@ from ._warnings import RoundingWarning, warn
 
 Mode = Literal["contact", "sampled", "reference"]
 MOST_ID = 2**32 - 2
+_OF_EACH = ("ignore_leaving", "slack", "clearance", "tolerance", "hits")  # options that may differ from cast to cast
 
 
 def cast_option(value: Any, name: str) -> bool | float | str | None:
@@ -25,6 +27,24 @@ def cast_option(value: Any, name: str) -> bool | float | str | None:
     if number.ndim:
         raise ValueError(f"{name}: expected one number, got shape {number.shape}")
     return float(number)
+
+
+def option_of_each(value: Any, name: str) -> tuple[npt.NDArray[Any], Any] | None:
+    """An option with a value for each cast: the values, whose range is checked cast by cast, and one for all casts that
+    asks for what any of them asks. None: one value for all casts."""
+    if name not in _OF_EACH or np.ndim(value) == 0:
+        return None
+    if name == "ignore_leaving":
+        flags = np.asarray(value)
+        if flags.dtype != bool:
+            raise ValueError(f"{name}: expected True or False for each cast, got dtype {flags.dtype}")
+        return flags, bool(flags.any())
+    if name == "hits":
+        counts = whole_numbers(value, name, np.uint32, 0, MOST_ID)
+        return counts, "all" if (counts == 0).any() else float(counts.max(initial=1))
+    numbers = reals(value, name)
+    wanted = numbers[np.isfinite(numbers) & (numbers > 0)]
+    return numbers, float(wanted.max(initial=0.0)) if name == "clearance" else None
 
 
 def one_whole_number(value: Any, name: str, least: int, most: int) -> int:
@@ -49,6 +69,8 @@ def device_choice(device: Any) -> tuple[int | None, list[int] | None]:
 
 def mesh_arrays(vertices: Any, faces: npt.ArrayLike | None) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
     """`faces` may be missing if `vertices` is a mesh of another package."""
+    if isinstance(vertices, (str, bytes, os.PathLike)):
+        raise ValueError(f"vertices: expected numbers of shape (N, 3), got {vertices!r}; load_mesh() reads a file")
     if faces is None:
         name = "faces" if hasattr(vertices, "faces") else "triangles"
         if not (hasattr(vertices, "vertices") and hasattr(vertices, name)):

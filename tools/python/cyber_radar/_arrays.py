@@ -37,7 +37,12 @@ def whole_numbers(
 
 
 def poses(value: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
-    """Matrices of shape (..., 4, 4). Those with a number that is not finite may have any last row."""
+    """Matrices of shape (..., 4, 4), from those or their first three rows. Those with a number that is not finite may
+    have any last row."""
+    if np.shape(value)[-2:] == (3, 4):
+        rows = reals(value, name, (3, 4))
+        last = np.broadcast_to(np.array([0.0, 0.0, 0.0, 1.0]), (*rows.shape[:-2], 1, 4))
+        return np.concatenate([rows, last], axis=-2)
     matrices = reals(value, name, (4, 4))
     wrong = (matrices[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any(axis=-1)
     if wrong.any():

@@ -19,7 +19,7 @@ from ._show import Asked, in_notebook, open_in_browser, page_of, write
 class Status(enum.IntEnum):
     """What an answer says: the values of Casts.status."""
 
-    HIT = 0  #: certainly a contact
+    HIT = 0  #: certainly a contact; with any_hit, overlaps at the start, too
     CLEAR = 1  #: certainly none
     OVERLAP = 2  #: the surfaces meet at the start
     UNDECIDED = 3  #: no contact before `lo`; only in mode "sampled" and with a clearance
@@ -65,6 +65,9 @@ _SAMPLED_FIELDS: dict[str, tuple[Any, tuple[int, ...]]] = {
 }
 
 
+_MOST_NAMED = 5  # objects in a line
+
+
 @dataclasses.dataclass(eq=False, repr=False)
 class Casts:
     """Answers as arrays, each of the casts' leading shape (...).
@@ -77,8 +80,8 @@ class Casts:
     """
 
     distance: npt.NDArray[np.float64]
-    """(...) to first contact: exact to rounding, but `hi` in mode "sampled". inf: free. NaN: undecided, invalid, or
-    any_hit, which does not ask for it."""
+    """(...) to first contact: exact to rounding, but `hi` in mode "sampled" and with any_hit, which does not ask for it.
+    inf: free. NaN: undecided or invalid."""
     lo: npt.NDArray[np.float64]
     """(...) no contact before this."""
     hi: npt.NDArray[np.float64]
@@ -106,7 +109,7 @@ class Casts:
     resolution: npt.NDArray[np.uint32] | None = None
     """(...) mode "sampled": pixels along the picture's longer side; 0 if none was drawn."""
     hits: Hits | None = None
-    """With hits above 1: the first contact with each of the nearest objects."""
+    """With hits above 1: the first contact with each of the nearest objects; no rows of casts that ask for 1."""
     overlapping: Overlapping | None = None
     """With skip_overlapping: the objects left out."""
     reasons: dict[str, npt.NDArray[np.int64]] = dataclasses.field(default_factory=dict)
@@ -180,7 +183,17 @@ class Casts:
     def __repr__(self) -> str:
         counts = np.bincount(self.status.ravel(), minlength=len(Status))
         words = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status if counts[status])
-        return f"<{type(self).__name__} of shape {self.shape}: {words or 'none'}>"
+        return f"<{type(self).__name__} of shape {self.shape}: {words or 'none'}{self._left_out()}>"
+
+    def _left_out(self) -> str:
+        """What skip_overlapping left out: of all but these the answers speak."""
+        ids = [] if self.overlapping is None else np.unique(self.overlapping.object).tolist()
+        if not ids:
+            return ""
+        names = self._asked.scene.names if self._asked else {}
+        words = [f"{number} ({names[number]})" if number in names else str(number) for number in ids[:_MOST_NAMED]]
+        more = f" and {len(ids) - _MOST_NAMED} more" if len(ids) > _MOST_NAMED else ""
+        return f" of all but {len(ids)} object{'s' if len(ids) > 1 else ''} left out: {', '.join(words)}{more}"
 
 
 class _Ragged:

@@ -21,6 +21,7 @@ from ._arguments import (
     mesh_arrays,
     mesh_vertices,
     one_whole_number,
+    option_of_each,
     refuse_one_each,
     regular,
 )
@@ -151,7 +152,7 @@ class Scene:
     ) -> Any:
         """Adds objects, which place meshes, and returns their ids: (...), or a number for a single one.
 
-        mesh: (...) ids. transforms: (..., 4, 4) world from mesh, any invertible affine matrices; None: the identity.
+        mesh: (...) ids. transforms: (..., 4, 4) or (..., 3, 4) world from mesh, any invertible affine matrices; None: the identity.
         mask: (...) 32 bits; an object takes part in a cast whose mask shares one. All leading shapes broadcast.
         """
         matrices = np.eye(4) if transforms is None else regular(_poses(transforms, "transforms"), "transforms")
@@ -240,12 +241,12 @@ class Scene:
         exclude_from_each: npt.ArrayLike | None = None,
         mask: npt.ArrayLike = _ALL_BITS,
         any_hit: bool = False,
-        ignore_leaving: bool = False,
+        ignore_leaving: npt.ArrayLike = False,
         skip_overlapping: bool = False,
-        slack: float | None = None,
-        clearance: float = 0.0,
-        tolerance: float | None = None,
-        hits: int | Literal["all"] = 1,
+        slack: npt.ArrayLike | None = None,
+        clearance: npt.ArrayLike = 0.0,
+        tolerance: npt.ArrayLike | None = None,
+        hits: npt.ArrayLike | Literal["all"] = 1,
         resolution: int = 0,
         out: Casts | None = None,
         progress: Callable[[int, int], object] | None = None,
@@ -253,7 +254,7 @@ class Scene:
         """How far can a mesh move before its surface first touches an object? Any number of casts at once.
 
         mesh: (...) ids of the moving meshes. They need not be objects of the scene; if they are, exclude these.
-        poses: (..., 4, 4) world from mesh at the start, affine; None: the identity.
+        poses: (..., 4, 4) or (..., 3, 4) world from mesh at the start, affine; None: the identity.
         displacements: (..., 3) the way to go, its end included; world units, at most 2^1000. With a zero the mesh
             rests: only what is there at the start, or moves (set_motions), meets it.
         Leading shapes broadcast together, also those of the next three; the result has the common shape.
@@ -265,13 +266,20 @@ class Scene:
         exclude_from_all: (K,) ids of objects that every cast ignores, or one id.
         mode: "contact", exact, on device or CPU; "sampled", the paper's depth pictures, an upper bound; "reference",
             exact, on the CPU alone. "contact" and "reference" give the same numbers.
-        any_hit: ask only whether there is a contact; cheaper if there is one.
-        ignore_leaving: count only what blocks: the mesh may leave what it rests on, or slide along it.
+        any_hit: ask only whether there is a contact; cheaper if there is one. A start that overlaps is a HIT, too, and
+            the distance of a hit is the whole way: contact comes by then.
         skip_overlapping: leave out objects whose surfaces cross the mesh's at the start; the answer lists them.
-        slack: with these two: how far rounding may have let surfaces sink into each other, world units.
-        clearance: surfaces are in contact where their distance is at most this, world units.
-        tolerance: with a clearance: how narrow hi - lo is to be, world units.
-        hits: list the first contacts with this many nearest objects, one each; "all" for all in reach.
+
+        The next five are one value for all casts, or (...) one for each:
+
+        ignore_leaving: count only what blocks: the mesh may leave what it rests on, or slide along it.
+        slack: with ignore_leaving and skip_overlapping: how far rounding may have let surfaces sink into each other,
+            world units; NaN in an array: derived from the coordinates.
+        clearance: surfaces are in contact where their distance is at most this, world units: a ball is a point (a tiny
+            triangle) with a clearance, a capsule a segment.
+        tolerance: with a clearance: how narrow hi - lo is to be, world units; NaN in an array: chosen.
+        hits: list the first contacts with this many nearest objects, one each; "all", 0 in an array: all in reach.
+
         resolution: mode "sampled": pixels along the picture's longer side, up to 2048; 0: chosen.
 
         out: Casts of this shape, whose arrays are used again.
@@ -281,7 +289,9 @@ class Scene:
         A cast whose own numbers are wrong, such as a NaN in its pose, has status INVALID and a reason, and the others
         are answered. Raises ValueError for arguments of a wrong type or shape, and Error if no device is usable.
         """
-        options = {name: cast_option(value, name) for name, value in locals().items() if name in _engine.OPTIONS}
+        given = {name: value for name, value in locals().items() if name in _engine.OPTIONS}
+        each = {name: found for name, value in given.items() if (found := option_of_each(value, name)) is not None}
+        options = {name: each[name][1] if name in each else cast_option(value, name) for name, value in given.items()}
         if mode not in ("contact", "sampled", "reference"):
             raise ValueError(f'mode: expected "contact", "sampled" or "reference", got {mode!r}')
         options["mode"] = mode
@@ -296,6 +306,7 @@ class Scene:
         }
         if distances is not None:
             arrays["distances"] = (reals(distances, "distances"), 0)
+        arrays |= {name: (array, 0) for name, (array, _) in each.items()}
         shape = common_shape(arrays)
         if exclude_from_each is not None:
             refuse_one_each(np.shape(exclude_from_each), shape)

@@ -69,6 +69,8 @@ TEST_CASE("a bad query file ends with status 2, a message that names the place, 
   requireRefused(folder, queryFile(query("p", R"("sensor": [0], "dir": [0,0,1], "D": 8, "mode": "bounded")")),
                  "queries[0].mode", "expected mode sampled, contact or reference, got \"bounded\"");
   requireRefused(folder, queryFile(kGood + "," + kGood), "queries[1].id", "no other query");
+  requireRefused(folder, queryFile(R"({"id": "p", "sensor": [0], "dir": [0,0,1], "D": 8})"), "queries[0]",
+                 "expected the key \"scene\", the number of the query's scene, from 0, which is missing");
   const std::string whole = queryFile(kGood);
   requireRefused(folder, whole.substr(0, whole.size() - 9), "line 2", "unexpected end of input");
   requireRefused(folder, queryFile(query("p", R"("sensor": [0], "rotation": [0,0,1])")), "queries[0].rotation",

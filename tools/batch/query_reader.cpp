@@ -342,6 +342,9 @@ void Reader::readQuery(const JsonValue& query) {
   const JsonValue id = query.member("id");
   spec.id = id.string();
   if (!queryIds_.insert(spec.id).second) id.expected("an id that no other query has");
+  if (!query.has("scene")) {
+    query.refuse("expected the key \"scene\", the number of the query's scene, from 0, which is missing");
+  }
   spec.scene = query.member("scene").index(workload_.scenes.size(), "scenes");
   query.ifHas("batch", [&](const JsonValue& batch) { spec.batch = batch.wholeNumber<uint64_t>(); });
   spec.setSensor(readInstance(query.member("sensor")));

@@ -7,7 +7,8 @@
 
 The part is a mesh file, or "relief" or "cube", which are made here. The cutter is a ball, a flat or a bull-nosed end
 mill, a cone, or any mesh file with its tip at the origin. A round cutter is cast twice, as a mesh inside it and as a mesh
-around it: its exact height lies between the two. The higher one is driven, so that it never cuts too deep.
+around it: its exact height lies between the two. The higher one is driven, so that it does not cut
+too deep at any point; the straight moves between the points are not cast, and may.
 
 Writes heights.npy (the tip's height at each point, row by row), heights.png, path.ngc (G-code, millimetres),
 report.json, drops.html (a page that shows some of the casts), of a round cutter also surface.png (what is left of the
